@@ -20,6 +20,7 @@ LEAST_SCENES = 5
 LEAST_FREEDOM = 10
 LEVEL = 0.05
 SHARES = {"ok": got_through, "common": lambda row: not row["failed"]}
+ROUNDING = 1e-12  # of a spread over scenes that is none
 TESTED = 1e-8  # of a column: how much of it the rows may leave undetermined
 
 
@@ -114,11 +115,11 @@ def over_scenes(metric: str, term: Term, scenes: dict[str, float]) -> Effect:
     if len(values) < 2:
         return Effect(metric, term, scenes, float(values[0]) if len(values) else None)
     low, high = student(values)
-    p, spread = None, values.std(ddof=1)
-    if len(values) >= LEAST_SCENES and spread > 0:
-        from scipy.stats import ttest_1samp
+    p, spread, middle = None, values.std(ddof=1), abs(values.mean())
+    if len(values) >= LEAST_SCENES and spread > ROUNDING * (1 + middle):
+        from scipy.stats import t
 
-        p = float(ttest_1samp(values, 0.0).pvalue)
+        p = float(2 * t.sf(middle * np.sqrt(len(values)) / spread, len(values) - 1))
     return Effect(metric, term, scenes, float(values.mean()), float(low), float(high), p)
 
 

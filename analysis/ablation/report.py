@@ -145,62 +145,70 @@ def _interactions(factorial: Factorial, study: Study) -> list[str]:
     return ["## Interactions that are decided", "", *shown, ""]
 
 
-def page(factorial: Factorial, table: Table, study: Study) -> str:
-    """The whole page."""
-    about, spec = table.about, factorial.spec
-    allowed, every = len(factorial.allowed()), math.prod(factorial.sizes)
-    n_scenes = len(factorial.scenes.levels)
+def _what_was_run(factorial: Factorial, table: Table) -> list[str]:
+    spec, n_scenes = factorial.spec, len(factorial.scenes.levels)
+    allowed, every = len(factorial.allowed()) * n_scenes, math.prod(factorial.sizes) * n_scenes
     asked = spec["combinations"] * n_scenes
     missing = asked - len(table.rows)
     axes = ", ".join(f"{f.name} ({', '.join(f.levels)})" for f in factorial.factors)
-    arrays = [seldom(factorial, drawn(factorial, scene)) for scene in factorial.scenes.labels]
+    rarest = [seldom(factorial, drawn(factorial, scene)) for scene in factorial.scenes.labels]
     core = sum(row["core_s"] for row in table.rows)
-    mean = core / max(len(table.rows), 1)
-    text = [
-        "# Ablation",
-        "",
-        (
-            f"Written by `./bench ablation`. {about['date']}, {about['machine']}; commit {about['commit']},"
-            f" build {about['build']}. Rules: docs/laboratory.md, Ablation; they were committed before the"
-            " first run."
-        ),
-        "",
-        *(f"{k}. {sentence}" for k, sentence in enumerate(sentences(factorial, table, study), 1)),
-        "",
-        "![main effects and interactions](../docs/ablation.png)",
-        "",
+    mean, plan = core / max(len(table.rows), 1), table.about.get("plan")
+    return [
         "## What was run",
         "",
         (
-            f"`{factorial.sweep_path.relative_to(factorial.path.parents[2])}` has {every * n_scenes}"
-            f" combinations of {n_scenes} scenes ({', '.join(factorial.scenes.levels)}) and {axes};"
-            f" {allowed * n_scenes} of them are allowed. The fraction has {spec['combinations']} in each"
-            f" scene; the rarest allowed pair of levels of two factors is in {min(arrays)} to {max(arrays)} of them."
-            f" {len(table.rows)} of"
-            f" {asked} runs are there"
+            f"`{factorial.sweep['name']}` has {every} combinations of {n_scenes} scenes"
+            f" ({', '.join(factorial.scenes.levels)}) and {axes}; {allowed} of them are allowed. The fraction"
+            f" has {spec['combinations']} in each scene; the rarest allowed pair of levels of two factors is"
+            f" in {min(rarest)} to {max(rarest)} of them. {len(table.rows)} of {asked} runs are there"
             + (f"; {missing} are not run yet, and `./bench ablation` goes on with them" if missing else "")
             + f". An effect is decided at p < {LEVEL:g} after Holm over all effects of a number."
         ),
         "",
         (
             f"Cost: {core:.0f} core seconds for these {len(table.rows)} runs, {mean:.2f} each, from start to"
-            f" end of a run on a machine that did other things too. At that mean the {allowed * n_scenes}"
-            f" allowed combinations take {mean * allowed * n_scenes / 3600:.1f} core hours"
-            + (f"; `./bench plan` says {about['plan']}" if about.get("plan") else "")
+            " end of a run on a machine that did many other things at the same time. At that mean the"
+            f" {allowed} allowed combinations take {mean * allowed / 3600:.1f} core hours"
+            + (f"; `./bench plan` says {plan}" if plan else "")
             + "."
         ),
         "",
+    ]
+
+
+def _reasons(factorial: Factorial) -> list[str]:
+    excluded = zip(factorial.sweep["exclude"], factorial.spec["excluded"], strict=True)
+    return [
         "Excluded:",
         "",
-        *(
-            f"- {' with '.join(entry['labels'])}: {reason}."
-            for entry, reason in zip(factorial.sweep["exclude"], spec["excluded"], strict=True)
-        ),
+        *(f"- {' with '.join(entry['labels'])}: {reason}." for entry, reason in excluded),
         "",
         "Left out:",
         "",
-        *(f"- {level}: {reason}." for level, reason in spec["left_out"].items()),
+        *(f"- {level}: {reason}." for level, reason in factorial.spec["left_out"].items()),
         "",
+    ]
+
+
+def page(factorial: Factorial, table: Table, study: Study) -> str:
+    """The whole page."""
+    about = table.about
+    text = [
+        "# Ablation",
+        "",
+        (
+            f"Written by `./bench ablation`. {about['date']}, {about['machine']}; commit {about['commit']},"
+            f" build {about['build']}. Rules: docs/laboratory.md, Ablation; what was changed after the first"
+            " runs is listed there."
+        ),
+        "",
+        *(f"{k}. {sentence}" for k, sentence in enumerate(sentences(factorial, table, study), 1)),
+        "",
+        "![main effects and interactions](../docs/ablation.png)",
+        "",
+        *_what_was_run(factorial, table),
+        *_reasons(factorial),
         *_outcomes(table),
         "## Main effects",
         "",

@@ -12,11 +12,9 @@ for program in slurmctld slurmd sbatch srun munged scontrol; do
   PATH="$PATH:/usr/sbin" command -v "$program" > /dev/null || cannot "$program is not installed (apt-get install slurmctld slurmd slurm-client munge)"
 done
 [ "$(id -u)" -eq 0 ] || cannot "slurmd starts jobs of a user as root only"
-id munge > /dev/null 2>&1 || cannot "there is no user munge"
 PATH="$PATH:/usr/sbin"
 
-mkdir -p "$dir"/{state,n1,n2} && install -d -o munge -m 711 "$dir/munge"
-chmod 755 "$dir"
+mkdir -p "$dir"/{state,n1,n2,munge}
 started=()
 steps() {  # of this Slurm: they are no children of slurmd, and wait for slurmctld
   for process in /proc/[0-9]*; do
@@ -36,11 +34,13 @@ stop() {
 trap stop EXIT
 trap 'exit 143' TERM INT HUP
 
-head -c 128 /dev/urandom > "$dir/munge/key"
-chown munge "$dir/munge/key" && chmod 400 "$dir/munge/key"
-runuser -u munge -- "$(command -v munged)" --foreground --force --key-file="$dir/munge/key" --socket="$dir/munge/socket" \
-  --pid-file="$dir/munge/pid" --log-file="$dir/munge/log" --seed-file="$dir/munge/seed" > /dev/null 2>&1 &
+head -c 128 /dev/urandom > "$dir/munge/key" && chmod 400 "$dir/munge/key"
+# As root, and forced: a folder of tests may be closed to other users, to whom munged wants its socket open.
+munged --foreground --force --key-file="$dir/munge/key" --socket="$dir/munge/socket" \
+  --pid-file="$dir/munge/pid" --log-file="$dir/munge/log" --seed-file="$dir/munge/seed" > "$dir/munge.out" 2>&1 &
 started+=($!)
+for _ in $(seq 300); do [ -S "$dir/munge/socket" ] && break; sleep 0.1; done
+[ -S "$dir/munge/socket" ] || cannot "munged did not start: $(tail -1 "$dir/munge.out")"
 
 read -r ctld one two < <(python3 -c '
 import socket
@@ -80,7 +80,6 @@ PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
 CONF
 export SLURM_CONF="$dir/slurm.conf"
 
-for _ in $(seq 300); do [ -S "$dir/munge/socket" ] && break; sleep 0.1; done
 slurmctld -D -i > "$dir/slurmctld.out" 2>&1 &
 started+=($!)
 for node in n1 n2; do

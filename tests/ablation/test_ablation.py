@@ -1,0 +1,146 @@
+"""The draw of the fraction, and what effects are made of: known answers on made tables."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analysis.ablation import effects, factors, report, runs, table
+from analysis.ablation.design import drawn, seldom
+from analysis.errors import UserError
+
+ROOT = Path(__file__).resolve().parents[2]
+DEFAULT = ROOT / "configs/ablation/default.json"
+SCENES = ("one", "two", "three", "four", "five", "six")
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory) -> factors.Factorial:
+    """Six scenes, three factors of 3, 2 and 2 levels; c with y is excluded."""
+    folder = tmp_path_factory.mktemp("small")
+
+    def axis(pointer, labels):
+        return {"cases": [{"label": label, "set": {pointer: label}} for label in labels]}
+
+    sweep = {"schema": "barrierbench.sweep/1", "name": "small", "base": "b.json", "set": {}, "budget": {"run_s": 9}, "exclude": [{"labels": ["c", "y"]}],
+             "axes": [axis("/scene", SCENES), axis("/shape", "abc"), axis("/solver", "xy"), axis("/precision", ["double", "float"])]}
+    (folder / "sweep.json").write_text(json.dumps(sweep))
+    spec = {"schema": "barrierbench.ablation/1", "name": "small", "sweep": "sweep.json", "factors": ["scene", "shape", "solver", "precision"],
+            "excluded": ["it means nothing"], "left_out": {}, "seed": 3, "combinations": 8, "shards": 2}
+    (folder / "spec.json").write_text(json.dumps(spec))
+    return factors.read_factorial(folder / "spec.json")
+
+
+def made(small, newton, through=lambda levels: True) -> table.Table:
+    """A row of every allowed combination in every scene. newton: scene number, levels -> iterations."""
+    rows = []
+    for k, scene in enumerate(SCENES):
+        for levels in small.allowed():
+            ok = through(levels)
+            rows.append({"scene": scene, "case": " ".join(small.labels_of(levels)), "outcome": "ok" if ok else "newton_stall", "valid": ok, "failed": "" if ok else "not_valid",
+                         "newton": newton(k, levels), "bj_p95": 10.0, "pcg": 5.0, "gap": 0.1, "core_s": 1.0, "config_id": "", "run_id": ""})
+    return table.Table(small.digest, {"date": "d", "machine": "m", "commit": "c", "build": "b", "plan": ""}, rows)
+
+
+def effect(found, small, name) -> effects.Effect:
+    return next(e for e in found if report.name_of(small, e.term) == name)
+
+
+def test_exclusions_leave_what_they_do_not_name(small):
+    assert small.sizes == (3, 2, 2) and len(small.allowed()) == 10
+    assert (2, 1, 0) not in small.allowed() and (2, 0, 0) in small.allowed() and (1, 1, 0) in small.allowed()
+    assert small.settings_of("two", (1, 0, 1)) == {"/scene": "two", "/shape": "b", "/solver": "x", "/precision": "float"}
+
+
+def test_a_draw_is_that_of_its_seed_and_scene(small):
+    first = drawn(small, "one")
+    assert first == drawn(small, "one") and len(set(first)) == 8 and set(first) <= set(small.allowed())
+    assert any(drawn(small, scene) != first for scene in SCENES)
+
+
+def test_the_fraction_tells_every_main_effect():
+    """Of each scene: no level is a combination of others. Integrator and step solver exclude each other in part."""
+    whole = factors.read_factorial(DEFAULT)
+    terms = effects.main_terms(whole)
+    assert len(terms) == 19 and len(whole.allowed()) * len(whole.scenes.levels) == 31680
+    for scene in whole.scenes.labels:
+        array = drawn(whole, scene)
+        found = effects.fitted(array, [float(k) for k in range(len(array))], terms, terms)
+        assert set(found) == set(terms), scene
+        assert seldom(whole, array) >= 0
+
+
+def test_main_effects_are_ratios_with_the_other_factors_equal(small):
+    found = effects.study(small, made(small, lambda k, v: (10 + k) * 2.0 ** (v[0] == 1) * 3.0 ** v[1] * (1 + 0.001 * k) ** v[1])).main["newton"]
+    b, y, single = (effect(found, small, name) for name in ("b", "y", "float"))
+    assert np.exp(b.mean) == pytest.approx(2) and np.exp(y.mean) == pytest.approx(3, rel=0.01) and single.mean == pytest.approx(0, abs=1e-12)
+    assert y.decided and y.signs == (6, 0) and y.sign_p == pytest.approx(2 / 64)
+    assert np.exp(y.low) < np.exp(y.mean) < np.exp(y.high)
+
+
+def test_scenes_are_the_samples(small):
+    """An effect that one scene has sixfold and five have not is not decided, however many runs each has."""
+    found = effects.study(small, made(small, lambda k, v: 10 * (6.0 if k == 0 else 1.0 + 0.01 * k) ** v[1])).main["newton"]
+    y = effect(found, small, "y")
+    assert y.mean > 0 and not y.decided and y.low < 0 < y.high
+
+
+def test_failures_are_counted_in_the_share_and_in_no_ratio(small):
+    found = effects.study(small, made(small, lambda k, v: 1000.0 if v[0] == 1 and v[1] else 10.0 + k, lambda v: not (v[0] == 1 and v[1])))
+    share = effect(found.main["ok"], small, "b")
+    assert share.mean < -0.2 and all(abs(e.mean or 0) < 1e-9 for e in found.main["newton"])
+
+
+def test_an_interaction_is_no_main_effect():
+    """Holm: the smallest of m p is multiplied by m, the next by m - 1."""
+    term = [effects.Term(((0, k),)) for k in (1, 2, 3)]
+    many = [effects.Effect("newton", t, {}, 1.0, 0.5, 1.5, p) for t, p in zip(term, (0.01, 0.02, 0.2), strict=True)]
+    assert [e.holm for e in effects.with_holm(many)] == pytest.approx([0.03, 0.04, 0.2])
+    assert [e.decided for e in effects.with_holm(many)] == [True, True, False]
+
+
+def test_what_no_run_tells_apart_has_no_value(small):
+    made_of_x = made(small, lambda k, v: 10.0 + k)
+    only = table.Table(small.digest, made_of_x.about, [row for row in made_of_x.rows if " y " not in row["case"]])
+    y = effect(effects.study(small, only).main["newton"], small, "y")
+    assert y.mean is None and y.scenes == {} and report.value_of(y) == "no scene tells it"
+
+
+def test_sentences_name_the_slice_and_what_is_not_decided(small):
+    flat = made(small, lambda k, v: 10.0 + k)
+    said = report.sentences(small, flat, effects.study(small, flat))
+    assert len(said) == 3 and all("without a strain limit" in sentence and "6 scenes" in sentence for sentence in said)
+    assert "60 of 60 runs end `ok`" in said[0] and "0 of 4 main effects" in said[1]
+
+
+@pytest.mark.parametrize(("edit", "said"), [
+    (lambda d: d["factors"].pop(), "#/factors: 3 names for 4 axes"),
+    (lambda d: d.update(excluded=[]), "#/excluded: 0 reasons for 1 exclusions"),
+    (lambda d: d.update(combinations=500), "#/combinations: found 500; at most 10")])
+def test_a_spec_that_does_not_fit_its_sweep(small, edit, said):
+    data = json.loads(small.path.read_text())
+    edit(data)
+    file = small.path.with_name("edited.json")
+    file.write_text(json.dumps(data))
+    with pytest.raises(UserError, match="edited.json" + said.replace("/", "/")):
+        drawn(factors.read_factorial(file), "one")
+
+
+def test_kept_rows_are_those_of_the_draw():
+    if not table.FILE.is_file():
+        pytest.skip("results/ablation.json is not kept yet: ./bench ablation")
+    whole, kept = factors.read_factorial(DEFAULT), table.read()
+    assert kept.digest == whole.digest
+    for scene in whole.scenes.labels:
+        asked = {" ".join(whole.labels_of(one)) for one in drawn(whole, scene)}
+        assert {row["case"] for row in kept.rows if row["scene"] == scene} <= asked
+    page = report.page(whole, kept, effects.study(whole, kept))
+    assert page == (ROOT / "results/ABLATION.md").read_text()
+
+
+def test_a_sweep_of_a_scene_has_a_case_a_combination(small, tmp_path):
+    data = json.loads(runs.write_sweep(small, "two", tmp_path).read_text())
+    (axis,) = data["axes"]
+    assert len(axis["cases"]) == 8 and all(case["set"]["/scene"] == "two" for case in axis["cases"])
+    assert len({case["label"] for case in axis["cases"]}) == 8
