@@ -1,6 +1,6 @@
 """Draws a balanced fraction of a factorial sweep, runs what is missing of it shard by shard, keeps a row a
-run in results/ablation.json, and writes results/ABLATION.md and docs/ablation.png of these rows. Stop it and call
-it again: it goes on. --plan says what the whole factorial would take and keeps that (minutes).
+run in results/ablation.json, and writes results/ABLATION.md and docs/ablation.png of these rows. Stop it and
+call it again: it goes on. --plan says what the whole factorial would take and keeps that (minutes).
 
 Exit codes: 0 written, 2 bad input, or what is kept is of other files.
 """

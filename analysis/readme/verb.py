@@ -30,16 +30,10 @@ MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/READ
 
 
 def kept() -> dict:
-    """The numbers of the demo, those of the claims' slices, the sentences of the gap map, and what studies take. Errors:
-    UserError where one is missing.
+    """The numbers of the demo, those of the claims' slices, the sentences of the gap map, and what studies
+    take. Errors: UserError where one is missing.
     """
     return read() | {"slices": gather_slices(), "gap_map": gather_map(), "cost": gather_cost()}
-
-
-def pages_with_snippets(root: Path) -> list[str]:
-    """From the root, the generated ones first."""
-    found = sorted(str(path.relative_to(root)) for pattern in MORE for path in root.glob(pattern))
-    return [*PAGES, *(page for page in found if page not in PAGES)]
 
 
 def pages_with_snippets(root: Path) -> list[str]:
