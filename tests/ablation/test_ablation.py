@@ -135,6 +135,8 @@ def test_kept_rows_are_those_of_the_draw():
     for scene in whole.scenes.labels:
         asked = {" ".join(whole.labels_of(one)) for one in drawn(whole, scene)}
         assert {row["case"] for row in kept.rows if row["scene"] == scene} <= asked
+    if not (ROOT / "results/ABLATION.md").is_file():
+        pytest.skip("results/ABLATION.md is not written yet: ./bench ablation --no-run")
     page = report.page(whole, kept, effects.study(whole, kept))
     assert page == (ROOT / "results/ABLATION.md").read_text()
 
