@@ -4,7 +4,7 @@
 namespace bb::test::collision_settings_test {
 namespace {
 
-/// A square over a ball, both given as bodies, and a floor.
+/// A square that is pinned over a ball, both given as bodies, and a floor.
 json three_kinds() {
   json config = bodies_config();
   config["scene"]["bodies"].push_back(
@@ -28,7 +28,7 @@ TEST(CollisionSettings, AreWrittenAndReadAgain) {
   json config = three_kinds();
   config["scene"]["collisions"] = {{{"a", "ball"}, {"b", "cloth"}, {"kind", "auto"}},
                                    {{"a", "floor"}, {"b", "ball"}, {"kind", "static"}},
-                                   {{"a", "cloth"}, {"b", "cloth"}, {"kind", "off"}}};
+                                   {{"a", "ball"}, {"b", "ball"}, {"kind", "off"}}};
   config["scene"]["bodies"][1]["collision_group"] = "solids";
   config["scene"]["obstacles"][0]["collision_group"] = "others";
   const RunConfig read = parsed(config);
@@ -38,7 +38,8 @@ TEST(CollisionSettings, AreWrittenAndReadAgain) {
   const Collisions of = build_scene(read).collisions;
   EXPECT_EQ(of.kind(0, 1), CollisionKind::ccd) << "open";
   EXPECT_EQ(of.kind(1, 2), CollisionKind::static_test) << "though the groups differ";
-  EXPECT_EQ(of.kind(0, 0), CollisionKind::off);
+  EXPECT_EQ(of.kind(1, 1), CollisionKind::off);
+  EXPECT_EQ(of.kind(0, 0), CollisionKind::ccd) << "is not named";
   EXPECT_EQ(of.kind(0, 2), CollisionKind::ccd) << "the cloth is of no group";
 }
 

@@ -35,6 +35,9 @@ void add_lists(json& scene) {
   pin["motion"] = scene["bodies"][1]["motion"] = scene["obstacles"][0]["motion"] = motion;
   scene["gravity_schedule"] = {{{"time_s", 0}, {"gravity_m_per_s2", {0, 0, -9}}}};
   scene["air"]["wind_schedule"] = {{{"time_s", 0}, {"wind_m_per_s", {0, 0, 1}}}};
+  scene["bodies"][0]["material"]["shrink_schedule"] = {{{"time_s", 0}, {"factor", 1}}};
+  scene["bodies"][0]["pressure_schedule"] = {{{"time_s", 0}, {"pressure_Pa", 1}}};
+  scene["collisions"] = {{{"a", "cloth"}, {"b", "plate"}, {"kind", "ccd"}}};
   scene["stitches"] = {
       {{"a", "cloth"}, {"a_vertices", {0}}, {"b", "cloth"}, {"b_vertices", {3}}, {"stiffness_N_per_m", 1}}};
 }

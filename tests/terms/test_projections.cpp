@@ -51,7 +51,7 @@ TEST(Projections, terms_with_a_choice_are_those_that_are_not_convex) {
   std::size_t n = 0;
   for (const TermEntry& entry : term_entries()) n += entry.convex ? 0 : 1;
   EXPECT_EQ(hessian_choices().size(), n);
-  EXPECT_EQ(n, 9U);
+  EXPECT_EQ(n, 10U);
 }
 
 TEST(Projections, the_exact_hessian_is_the_derivative_of_the_gradient) {
