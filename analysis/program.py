@@ -49,6 +49,12 @@ def begun(*words: str) -> subprocess.Popen:
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
 
+def piped(*words: str) -> subprocess.Popen:
+    """The program with these words, not waited for; its streams are pipes of bytes. Errors: as `started`."""
+    streams = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    return subprocess.Popen([str(built_program()), *words], **streams)
+
+
 def in_shell(line: str, **options) -> subprocess.CompletedProcess:
     """A line of bash in which ./bench stands for the program; otherwise as `started`."""
     command = line.replace("./bench", shlex.quote(str(built_program())))

@@ -23,8 +23,9 @@ CAPTION = (
     " first of its factor, mean and 95% interval over scenes; filled and blue: decided (p < 0.05 after Holm);"
     " hollow: not decided. Right: largest mean of an interaction of two levels of each pair of factors on"
     " Newton iterations, as a factor up or down, of those that at least five scenes tell; a dot where one is"
-    " decided; empty where none is told.\n"
+    " decided; white where none is told.{untold}\n"
 )
+UNTOLD = " Here five scenes tell no interaction on Newton iterations, so the right panel is left out."
 
 
 def _panel(axis, factorial: Factorial, study: Study, metric: str) -> None:
@@ -71,17 +72,21 @@ def _matrix(axis, factorial: Factorial, study: Study) -> None:
 
 def draw(factorial: Factorial, table: Table, study: Study, path: Path) -> None:
     """The PNG, and its caption beside it."""
-    grid = {"width_ratios": [1, 1, 1, 1.5]}
-    fig, axes = plt.subplots(1, 4, figsize=(1.7 * style.WIDE_IN, 4.2), gridspec_kw=grid, layout="constrained")
+    told = any(effect.p is not None for effect in study.pairs["newton"])
+    widths = [1, 1, 1, 1.5] if told else [1, 1, 1]
+    size, grid = (0.38 * style.WIDE_IN * sum(widths), 4.2), {"width_ratios": widths}
+    fig, axes = plt.subplots(1, len(widths), figsize=size, gridspec_kw=grid, layout="constrained")
     for axis, metric in zip(axes[:3], SHOWN):
         _panel(axis, factorial, study, metric)
     labels = [name_of(factorial, effect.term) for effect in study.main["ok"]]
     axes[0].set_yticks(range(len(labels)), labels)
     for axis in axes[1:3]:
         axis.set_yticks(range(len(labels)), [""] * len(labels))
-    _matrix(axes[3], factorial, study)
+    if told:
+        _matrix(axes[3], factorial, study)
     path.parent.mkdir(parents=True, exist_ok=True)
     fig.savefig(path, metadata={"Software": None})
     plt.close(fig)
     scenes = len({row["scene"] for row in table.rows})
-    write_whole(path.with_suffix(".txt"), CAPTION.format(runs=len(table.rows), scenes=scenes, slice=SLICE))
+    text = CAPTION.format(runs=len(table.rows), scenes=scenes, slice=SLICE, untold="" if told else UNTOLD)
+    write_whole(path.with_suffix(".txt"), text)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..program import built_program
+from ..program import piped
 from .about import About
 from .trajectory import Trajectory, surface_of
 
@@ -54,8 +54,7 @@ def audited(
     with tempfile.TemporaryDirectory(prefix="barrierbench-judge-") as folder:
         path = Path(folder) / "subject.json"
         path.write_text(json.dumps(subject, allow_nan=False))
-        pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
-        with subprocess.Popen([str(built_program()), "audit", str(path)], **pipes) as child:
+        with piped("audit", str(path)) as child:
             said: dict[str, bytes] = {}
             threads = [
                 threading.Thread(target=lambda name=name: said.update({name: getattr(child, name).read()}))

@@ -12,9 +12,11 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import UserError
 from ..front import verbs
 from ..places import ROOT
 from ..program import in_shell, started
+from ..spec_file import read_spec
 
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```[ ]*$", re.DOTALL | re.MULTILINE)
 PLAIN = ("", "text")  # what is shown and not run: output, a file's layout
@@ -128,21 +130,29 @@ def _shell_faults(snippet: Snippet) -> list[str]:
     return faults
 
 
+def _spec_faults(snippet: Snippet, file: Path, kind: str) -> list[str]:
+    """Of a file that Python reads: held against its schema."""
+    try:
+        read_spec(file, kind)
+    except (UserError, OSError) as error:
+        return [f"{snippet.place}: {error}"]
+    return []
+
+
 def _json_faults(snippet: Snippet) -> list[str]:
     try:
         data = json.loads(snippet.text)
     except ValueError as error:
         return [f"{snippet.place}: not JSON: {error}"]
+    kind = str(data.get("schema", "")).partition("/")[0].removeprefix("barrierbench.")
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "scenes").symlink_to(ROOT / "configs/scenes")
         file = Path(folder) / "sweeps" / "snippet.json"
         file.parent.mkdir()
         file.write_text(snippet.text)
-        words = (
-            ["sweep", str(file), "--dry-run"]
-            if str(data.get("schema", "")).startswith("barrierbench.sweep")
-            else ["check", str(file)]
-        )
+        if kind not in ("", "config", "sweep"):
+            return _spec_faults(snippet, file, kind)
+        words = ["sweep", str(file), "--dry-run"] if kind == "sweep" else ["check", str(file)]
         done = started(*words, timeout=SECONDS)
     return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
 

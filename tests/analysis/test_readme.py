@@ -51,7 +51,7 @@ def of_slices(**changed) -> Table:
 
 
 def everything():
-    return kept() | {"slices": slices.gather(of_slices()), "gap_map": ["With no limit raw 0.01.", "Of 4 cells 3 are decided."]}
+    return kept() | {"slices": slices.gather(of_slices()), "gap_map": ["With no limit raw 0.01.", "Of 4 cells 3 are decided."], "cost": [{"study": "claims", "command": "./bench claims", "runs": 3, "core_s": 7200.0}]}
 
 
 def test_slices_are_those_of_theta_and_limit():
@@ -133,20 +133,23 @@ def test_kept_numbers_come_back_as_they_were(tmp_path):
 
 
 def test_pages_whose_numbers_are_others_are_named(tmp_path):
-    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs/jobs").mkdir(parents=True)
     for page, parts in templates.PARTS.items():
         (tmp_path / page).write_text("".join(f"<!-- numbers: {name} -->\nold\n<!-- /numbers -->\n" for name in parts))
-    assert len(readme.stale(tmp_path, everything())) == 2
+    assert len(readme.stale(tmp_path, everything())) == len(templates.PARTS) == 3
     assert readme.write_pages(tmp_path, everything()) == list(readme.PAGES)
     assert readme.stale(tmp_path, everything()) == [] and readme.write_pages(tmp_path, everything()) == []
 
 
 def test_a_page_that_lost_its_marks_is_no_page_that_is_right(tmp_path):
-    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs/jobs").mkdir(parents=True)
     (tmp_path / "README.md").write_text("<!-- numbers: result -->\nold\n")  # the end is gone
     (tmp_path / "docs/results.md").write_text("")
+    (tmp_path / "docs/jobs/cluster.md").write_text("<!-- numbers: cost -->\nold\n<!-- /numbers -->\n")
     found = readme.stale(tmp_path, everything())
-    assert [line.partition(":")[0] for line in found] == ["README.md"] * len(templates.PARTS["README.md"]) + ["docs/results.md"] and "no <!-- numbers: demo -->" in found[-1]
+    lost = [page for page in ("README.md", "docs/results.md") for _ in templates.PARTS[page]]
+    assert [line.partition(":")[0] for line in found] == [*lost, "docs/jobs/cluster.md"]
+    assert "no <!-- numbers: demo -->" in found[len(templates.PARTS["README.md"])] and "its numbers are not" in found[-1]
     with pytest.raises(UserError, match="README.md: no <!-- numbers: result -->"):
         readme.write_pages(tmp_path, everything())
 
