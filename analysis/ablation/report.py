@@ -61,6 +61,12 @@ def _named(factorial: Factorial, effects: list[Effect]) -> str:
     )
 
 
+def _untested(effects: list[Effect]) -> str:
+    """How many effects have too few scenes to be tested at all."""
+    count = sum(effect.p is None for effect in effects)
+    return f" ({count} have fewer than {LEAST_SCENES} scenes, and no test)" if count else ""
+
+
 def sentences(factorial: Factorial, table: Table, study: Study) -> list[str]:
     """Three: who gets through, what the work depends on, and which interactions there are."""
     runs, through = len(table.rows), sum(map(got_through, table.rows))
@@ -77,7 +83,7 @@ def sentences(factorial: Factorial, table: Table, study: Study) -> list[str]:
         effects, found = study.main[metric], _largest(study.main[metric], 3)
         parts.append(
             f"of the {WORDS[metric]} {len([e for e in effects if e.decided])} of {len(effects)} main effects"
-            " are decided" + (f" ({_named(factorial, found)})" if found else "")
+            " are decided" + (f" ({_named(factorial, found)})" if found else "") + _untested(effects)
         )
     second = f"{where}, in runs that end `ok` and valid, {', and '.join(parts)}; the others are not decided."
     pairs = [e for metric in ("newton", "bj_p95", "ok") for e in study.pairs[metric]]
