@@ -62,21 +62,8 @@ class Physics:
         six = np.einsum("ni,ni->n", x[t[:, 0]], np.cross(x[t[:, 1]], x[t[:, 2]]))
         return np.bincount(body[t[:, 0]], six / 6, len(self.topology.names))
 
-    def closed_bodies(self) -> list[str]:
-        """Names of the bodies each of whose edges has an even number of its triangles."""
-        t = surface_of(self.topology)
-        if not len(t):
-            return []
-        body = self.topology.body_of_vertices()[t[:, 0]]
-        sides = np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]])
-        _, place, count = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
-        odd = np.zeros(len(self.topology.names), bool)
-        np.logical_or.at(odd, np.tile(body, 3), count[place.ravel()] % 2 == 1)
-        there = set(body.tolist())
-        return [name for k, name in enumerate(self.topology.names) if k in there and not odd[k]]
-
-    def of(self, number: int, x: np.ndarray, closed: list[str]) -> dict:
-        """closed: names of the closed bodies. A frame that is not finite has no numbers."""
+    def of(self, number: int, x: np.ndarray) -> dict:
+        """A frame that is not finite has no numbers. Volumes are of all bodies, open ones too."""
         out: dict = {}
         if not np.isfinite(x).all():
             self.last = None
@@ -89,9 +76,8 @@ class Physics:
         if len(t.tetrahedra):
             inner = np.linalg.det(x[t.tetrahedra[:, 1:]] - x[t.tetrahedra[:, :1]])
             out["tetrahedra_inverted"] = int((inner <= 0).sum())
-        if closed:
-            share = self._volumes(x) / self.volumes
-            out["volume_rel"] = {name: float(share[t.names.index(name)]) for name in closed}
+        with np.errstate(invalid="ignore", divide="ignore"):
+            out["volume_rel"] = dict(zip(t.names, (self._volumes(x) / self.volumes).tolist()))
         if self.mass is not None and self.last is not None:
             dt = self.times_s[number] - self.times_s[number - 1]
             v = (x - self.last) / dt

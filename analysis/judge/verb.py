@@ -102,15 +102,13 @@ class Watch:
         self.rows: list[dict] = []
         self.reference = reference.frames() if reference else None
         self.largest_m = 0.0
-        self.closed: list[str] = []
 
     def __call__(self, number: int, x: np.ndarray) -> None:
         t = self.trajectory
         if self.physics is None:
             self.physics = Physics(t.topology, self.about, x, times_of(t, self.about))
-            self.closed = self.physics.closed_bodies()
             self.largest_m = float(np.ptp(x, axis=0).max())
-        row = self.physics.of(number, x, self.closed)
+        row = self.physics.of(number, x)
         if self.reference is not None and (other := next(self.reference, None)) is not None:
             apart = np.linalg.norm(x - other, axis=1)
             row |= {"apart_max_m": float(apart.max()), "apart_rms_m": float(np.sqrt((apart**2).mean()))}
@@ -143,6 +141,9 @@ def judged(options: argparse.Namespace) -> dict:
         notes.append(f"the first frame is {watch.largest_m:g} m wide: if its unit is mm, --scale 0.001")
     for frame, row, label in zip(frames, watch.rows, trajectory.labels):
         frame |= row | {"label": label}
+        volumes = frame.pop("volume_rel", {})  # the program says which bodies are closed
+        if closed := {name: volumes[name] for name in total["closed_bodies"] if name in volumes}:
+            frame["volume_rel"] = closed
     times = times_of(trajectory, about)
     return {
         "schema": "barrierbench.judgement/1",

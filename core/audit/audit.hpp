@@ -33,11 +33,6 @@ class Audit {
     return surface_gap(mesh_, vertices_, primitives_, x, reach);
   }
 
-  /// Gap of each colliding vertex to the surface, see surface_gap.hpp.
-  std::vector<double> vertex_gaps_of(const Positions& x, double reach) const {
-    return vertex_gaps(mesh_, vertices_, x, reach);
-  }
-
   const AuditMesh& mesh() const { return mesh_; }
   const std::vector<int>& vertices() const { return vertices_; }  // those that collide, ascending
   const AuditLedger& ledger() const { return ledger_; }

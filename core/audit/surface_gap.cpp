@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/audit/box_tree.hpp"
 #include "core/audit/closest_point.hpp"
@@ -46,14 +47,15 @@ class GapMeasure {
     return out.gap;
   }
 
-  double between() const {
+  /// Smallest of the vertices' gaps and, in space, of those between edges.
+  double between(const std::vector<double>& of_vertices) const {
     Least out;
-    for (const double gap : of_vertices()) out.take(gap);
+    for (const double gap : of_vertices) out.take(gap);
     if (!mesh_.planar) out.merge(edge_to_edge());
     return out.gap;
   }
 
-  /// One number for each vertex, as vertex_gaps says.
+  /// SurfaceGap::of_vertices.
   std::vector<double> of_vertices() const {
     if (mesh_.planar) {
       return vertex_to_all(mesh_.edges, [this](const Vec3d& p, const auto& e) {
@@ -168,12 +170,9 @@ class GapMeasure {
 SurfaceGap surface_gap(const AuditMesh& mesh, const std::vector<int>& vertices,
                        const ObstaclePrimitives& primitives, const Positions& x, double reach) {
   const GapMeasure measure(mesh, vertices, x, reach);
-  return {measure.to_obstacles(primitives), measure.between()};
-}
-
-std::vector<double> vertex_gaps(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x,
-                                double reach) {
-  return GapMeasure(mesh, vertices, x, reach).of_vertices();
+  std::vector<double> of_vertices = measure.of_vertices();
+  const double between = measure.between(of_vertices);
+  return {measure.to_obstacles(primitives), between, std::move(of_vertices)};
 }
 
 }  // namespace bb::audit

@@ -16,6 +16,9 @@ namespace bb::audit {
 struct SurfaceGap {
   double to_obstacles = std::numeric_limits<double>::infinity();
   double between = std::numeric_limits<double>::infinity();
+  /// Of each colliding vertex the gap to the closest triangle (planar: edge) of which it is no corner and that is not
+  /// prescribed together with it.
+  std::vector<double> of_vertices;
 };
 
 /// Of the state x [3 n_vertices], m. Obstacles: the closest point of every primitive that obstacle_primitives() lists.
@@ -25,11 +28,5 @@ struct SurfaceGap {
 /// @param vertices the colliding vertices
 SurfaceGap surface_gap(const AuditMesh& mesh, const std::vector<int>& vertices,
                        const ObstaclePrimitives& primitives, const Positions& x, double reach);
-
-/// Of each of `vertices` the gap (m, thickness taken off) to the closest triangle (planar: edge) of which it is no
-/// corner and that is not prescribed together with it; infinity: none nearer than `reach`. Infinity for all where there
-/// is no triangle. Cost: that of `between` without its edges.
-std::vector<double> vertex_gaps(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x,
-                                double reach);
 
 }  // namespace bb::audit

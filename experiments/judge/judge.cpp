@@ -1,7 +1,6 @@
 #include "experiments/judge/judge.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "core/audit/audit.hpp"
 #include "core/audit/enclosed.hpp"
 #include "core/math/error.hpp"
+#include "core/record/phase_times.hpp"
 #include "experiments/judge/frame_stream.hpp"
 
 namespace bb::judge {
@@ -18,10 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int bins_a_decade = 4, decades = 6;  // of the histogram of gaps, up to the reach
-
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// null where nothing was within reach, or there is nothing to measure against.
 Json metres(double value) { return std::isfinite(value) ? Json(value) : Json(); }
@@ -35,7 +31,7 @@ class Judge {
         gap_counts_(bins_a_decade * decades + 1, 0) {}
 
   Json frame(const Positions& x) {
-    const double start = seconds();
+    const double start = now_s();
     const int number = static_cast<int>(frames_++);
     Json line = {{"frame", number}};
     add_state(x, number, line);
@@ -45,7 +41,7 @@ class Judge {
       add_sides(x, line);
     }
     last_ = x;
-    seconds_ += seconds() - start;
+    seconds_ += now_s() - start;
     return line;
   }
 
@@ -123,7 +119,7 @@ class Judge {
     line["gap_between_m"] = metres(gap.between);
     line["gap_obstacles_m"] = metres(gap.to_obstacles);
     if (!(subject_.reach_m > 0)) return;
-    for (const double g : audit_.vertex_gaps_of(x, subject_.reach_m)) {
+    for (const double g : gap.of_vertices) {
       if (std::isfinite(g)) ++gap_counts_[bin(g / subject_.reach_m)];
     }
   }

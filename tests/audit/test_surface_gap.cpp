@@ -134,7 +134,7 @@ TEST(SurfaceGap, of_each_vertex_is_that_of_its_closest_triangle) {
   for (int i = 0; i < 100; ++i) {
     const Pair pair = random_pair(random);
     const std::vector<int> all = colliding_vertices(pair.mesh);
-    const std::vector<double> gaps = vertex_gaps(pair.mesh, all, pair.x, 0.8);
+    const std::vector<double> gaps = gap_of(pair, 0.8).of_vertices;
     ASSERT_EQ(gaps.size(), 6u);
     for (const int v : all) {
       double least = 1e9;
