@@ -47,9 +47,10 @@ inline std::vector<IndexPair> pairs_of(const exec::Buffer<exec::Key>& keys) {
 }
 
 inline Candidates lists_of(const resident::ResidentCandidates& c) {
-  return {pairs_of(c.point_point),      pairs_of(c.point_edge), pairs_of(c.point_triangle),
-          pairs_of(c.edge_edge),        pairs_of(c.obstacle),   pairs_of(c.obstacle_edge),
-          pairs_of(c.obstacle_triangle)};
+  return {pairs_of(c.point_point),       pairs_of(c.point_edge),
+          pairs_of(c.point_triangle),    pairs_of(c.edge_edge),
+          pairs_of(c.obstacle),          pairs_of(c.obstacle_edge),
+          pairs_of(c.obstacle_triangle), {}};
 }
 
 inline std::vector<AnalyticSurface<double>> obstacles_of(const Scene& scene) {
