@@ -77,6 +77,8 @@ class Buffer {
     download(out);
     return out;
   }
+  /// The first numbers alone.
+  void download_first(std::span<T> to) const { executor_->download(to.data(), data_, to.size_bytes()); }
   T get(Index i) const {
     T value{};
     executor_->download(&value, data_ + i, sizeof(T));

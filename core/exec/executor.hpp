@@ -27,6 +27,8 @@ class LaunchGraph {
   virtual std::size_t size() const = 0;
 };
 
+class Board;
+
 class Executor {
  public:
   virtual ~Executor() = default;
@@ -83,7 +85,9 @@ class Executor {
   virtual void release_bytes(void* memory) = 0;
 
  private:
+  friend class Board;
   MemoryLedger ledger_;
+  std::weak_ptr<Board> board_;
 };
 
 /// Launches kept as their bytes: the graph of executors without a device.

@@ -117,6 +117,17 @@ BB_HD inline std::uint32_t atomic_add(std::uint32_t* at, std::uint32_t value) {
   return __atomic_fetch_add(at, value, __ATOMIC_ACQ_REL);
 #endif
 }
+/// Called by one thread of each of n blocks, behind what the block wrote: true in the last one, which may read what all
+/// of them wrote. *arrived is 0 before and afterwards.
+BB_HD inline bool last_to_arrive(std::uint32_t* arrived, Index n) {
+  const bool last = static_cast<Index>(atomic_add(arrived, 1)) == n - 1;
+  if (!last) return false;
+  *arrived = 0;
+#ifdef __CUDA_ARCH__
+  __threadfence();
+#endif
+  return true;
+}
 BB_HD inline void atomic_add(Key* at, Key value) {
 #ifdef __CUDA_ARCH__
   atomicAdd(reinterpret_cast<unsigned long long*>(at), static_cast<unsigned long long>(value));

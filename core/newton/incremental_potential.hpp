@@ -92,6 +92,8 @@ class IncrementalPotential {
   virtual void accept() = 0;
 
   // --- what is said of the iterate x
+  /// As StepView::announce.
+  virtual void announce(const Column& /*x*/) {}
   virtual double energy(TermSet set, const Column& x) = 0;
   virtual void report(const Column& x, IterateNumbers& out) = 0;
   virtual void report_end(const Column& x, StepNumbers& out) = 0;

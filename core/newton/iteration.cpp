@@ -79,13 +79,22 @@ IterationReport begin_iteration(StepSystem& system, int step, int iteration) {
   report.iteration = iteration;
   system.clock().lap();
   system.assemble();
+  system.view().announce();
+  return report;
+}
+
+namespace {
+
+// What was announced, read with the direction.
+void report_iterate(const StepSystem& system, IterationReport& report) {
   report.energy_J = system.view().energy();
   report.grad_inf_N = system.view().grad_inf();
   report.pattern_changed = system.view().pattern_changed();
   system.view().report(report);
-  if (iteration == 0) report.forget_changes();
-  return report;
+  if (report.iteration == 0) report.forget_changes();
 }
+
+}  // namespace
 
 void find_direction(StepSystem& system, IterationReport& report, StepObserver& observer) {
   report.solve = system.find_direction();
@@ -94,6 +103,7 @@ void find_direction(StepSystem& system, IterationReport& report, StepObserver& o
   report.dx_beyond_m = size.beyond_m;
   report.dx_rounding_m = size.rounding_m;
   report.decrement_J = -size.slope_J / 2;
+  report_iterate(system, report);
   report.n_free = static_cast<std::size_t>(system.view().n_free());
   report.nnz = system.view().nnz();
   observer.on_matrix(system, report.step, report.iteration);

@@ -8,9 +8,13 @@ namespace bb {
 void NewtonSystem::assemble() {
   state_.potential->linearise(state_.x, state_.g);
   view_.forget_gradient();
+  state_.direction_seen = false;
   state_.shift = 0;
-  const double residual = largest_force();
-  if (served_at_once_) state_.level.lower(residual);
+  // Of the level that is exact already nothing depends on forces.
+  if (!state_.level.exact()) {
+    const double residual = largest_force();
+    if (served_at_once_) state_.level.lower(residual);
+  }
   served_at_once_ = false;
   fill_matrix();
 }
@@ -46,8 +50,9 @@ SolveReport NewtonSystem::find_direction() {
 // dx: the motion of prescribed vertices. Whether there is one.
 bool NewtonSystem::set_right_hand_side() {
   state_.dx.fill_zero();
+  state_.direction_seen = false;
   state_.vectors.set_pin_motion(state_.x, state_.dx);
-  const bool moving = state_.vectors.first_short_pin(state_.x) >= 0;
+  const bool moving = state_.first_short_pin() >= 0;
   if (moving) {
     state_.potential->multiply(state_.dx, state_.work);
     state_.potential->add_given_motion(state_.x, state_.dx, state_.work);
@@ -67,28 +72,40 @@ bool NewtonSystem::find_one_direction(SolveReport& report) {
   state_.potential->solve(state_.b, state_.step, report);
   factored_ = report.linear.factorized;
   if (report.linear.status != LinearStatus::ok) return false;
-  add_solution();
-  return moving || state_.vectors.free_dot(state_.b, state_.step).value() > 0 ||
+  take_solution();
+  return moving || state_.vectors.solution_products().first.value() > 0 ||
          state_.vectors.free_max(state_.b) == 0;
 }
 
-void NewtonSystem::add_solution() {
-  state_.executor.each(state_.dx.size(), resident::AddColumn{state_.step.data(), state_.dx.data()});
+// dx += the solution; what is asked of both next is launched with it.
+void NewtonSystem::take_solution() {
+  state_.vectors.take_solution(state_.step, state_.b, state_.g, state_.dx);
+  look_at_direction();
+}
+
+void NewtonSystem::look_at_direction() {
+  state_.vectors.look_at_direction(state_.dx, state_.x, state_.body_size, value_epsilon(state_.precision));
+  state_.direction_seen = true;
 }
 
 DirectionSize NewtonSystem::direction_size() {
   DirectionSize size;
-  const double epsilon = value_epsilon(state_.precision);
-  const resident::DirectionSizes found = state_.vectors.sizes(state_.dx, state_.x, state_.body_size, epsilon);
+  const bool seen = state_.direction_seen;
+  if (!seen) look_at_direction();
+  const double slope = seen ? state_.vectors.solution_products().second.value()
+                            : state_.vectors.free_dot(state_.g, state_.dx).value();
+  const resident::DirectionSizes found = state_.vectors.direction_sizes();
+  state_.direction_seen = seen;
   size.inf_m = found.largest;
   size.rounding_m = found.within;
   size.beyond_m = found.beyond;
   size.vertex_m = found.vertex;
-  size.slope_J = state_.vectors.free_dot(state_.g, state_.dx).value();
+  size.slope_J = slope;
   return size;
 }
 
 void NewtonSystem::scale_direction(double factor) {
+  state_.direction_seen = false;
   state_.executor.each(state_.dx.size(), resident::ScaleColumn{factor, state_.dx.data()});
 }
 
@@ -129,6 +146,7 @@ void NewtonSystem::aim_at_escape(double length) {
   const double slope = state_.vectors.free_dot(state_.g, state_.aside).value(),
                largest = state_.vectors.free_max(state_.aside);
   state_.dx.swap(state_.aside);
+  state_.direction_seen = false;
   scale_direction((slope > 0 ? -length : length) / largest);
 }
 
@@ -144,7 +162,7 @@ bool NewtonSystem::make_detour(double bound, SolveReport& report) {
   report.add_detour(detour);
   if (detour.linear.status != LinearStatus::ok) return false;
   state_.aside.copy_from(state_.dx);
-  add_solution();
+  take_solution();
   return true;
 }
 

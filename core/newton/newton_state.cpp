@@ -91,4 +91,16 @@ NewtonState::NewtonState(const Scene& of, Method& method, const Plan& with, Phas
   body_size.upload(body_sizes(of));
 }
 
+exec::Index NewtonState::first_short_pin() {
+  if (!pins_seen) vectors.look_at_pins(x);
+  pins_seen = true;
+  return vectors.first_short_pin();
+}
+
+void NewtonState::look_at_trial_pins() {
+  vectors.look_at_pins(trial);
+  pins_seen = false;
+  trial_pins_seen = true;
+}
+
 }  // namespace bb

@@ -39,6 +39,16 @@ struct NewtonState {
   Column aside;      // a direction of negative curvature at the iterate, or dx before its detour
   Column body_size;  // [n] m
   double shift = 0;  // N/m, what add_tikhonov added
+  // What vectors found last is of x, of the trial.
+  bool pins_seen = false, trial_pins_seen = false;
+  // What vectors found last is of dx: its sizes, and with them g . dx.
+  bool direction_seen = false;
+  bool gradient_seen = false;  // its largest entry
+
+  /// The first prescribed vertex (its number) that is not where directions lead it, -1 without one.
+  exec::Index first_short_pin();
+  /// For who will read it of the trial, should it be accepted.
+  void look_at_trial_pins();
 };
 
 /// [3 n] 1 where a degree of freedom is prescribed or, in a planar scene, locked.

@@ -55,6 +55,7 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   state_.x.upload(numbers_of(x_n));
   state_.x_tilde.upload(numbers_of(prediction.x_tilde));
   view_.forget();
+  state_.pins_seen = state_.direction_seen = false;
   dt_ = dt;
   c_ = prediction.c;
   t_end_ = prediction.t_end;
@@ -77,6 +78,7 @@ void NewtonSystem::end_step() { state_.potential->end_step(state_.x); }
 
 void NewtonSystem::set_target(const Positions& target) {
   target_ = target;
+  state_.pins_seen = false;
   state_.vectors.set_targets(target);
 }
 
@@ -102,28 +104,36 @@ double NewtonSystem::bound_motion(IterationReport& report) {
 bool NewtonSystem::try_feasible(double alpha) {
   const ScopedPhase timer(clock(), Phase::line_search);
   move(alpha, state_.trial);
+  state_.trial_pins_seen = false;
   return state_.potential->admits(state_.x, state_.trial);
 }
 
 std::optional<EnergyChange> NewtonSystem::try_motion(double alpha) {
   if (!try_feasible(alpha)) return std::nullopt;
   const ScopedPhase timer(clock(), Phase::line_search);
+  state_.look_at_trial_pins();
   return state_.potential->change(state_.x, state_.trial);
 }
 
 void NewtonSystem::accept() {
   state_.x.swap(state_.trial);
+  state_.pins_seen = state_.trial_pins_seen;
+  state_.direction_seen = false;
   view_.forget();
   state_.potential->accept();
 }
 
-void NewtonSystem::set_direction(const Positions& dx) { state_.dx.upload(numbers_of(dx)); }
+void NewtonSystem::set_direction(const Positions& dx) {
+  state_.dx.upload(numbers_of(dx));
+  state_.direction_seen = false;
+}
 
 void NewtonSystem::go_to(const Positions& x) {
   set_direction(x - view_.x());
   state_.end.upload(numbers_of(x));
   state_.potential->prepare(state_.x, state_.end, state_.dx, false);
   state_.trial.upload(numbers_of(x));
+  state_.trial_pins_seen = false;
   if (!state_.potential->admits(state_.x, state_.trial)) {
     throw std::logic_error("a state that is gone to is not feasible");
   }

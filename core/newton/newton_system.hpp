@@ -43,7 +43,10 @@ class NewtonSystem : public StepSystem {
   void prepare_motion(MotionEnd end, bool to_bound) override;
   double bound_motion(IterationReport& report) override;
   bool make_detour(double bound, SolveReport& report) override;
-  void restore_direction() override { state_.dx.swap(state_.aside); }
+  void restore_direction() override {
+    state_.dx.swap(state_.aside);
+    state_.direction_seen = false;
+  }
   bool try_feasible(double alpha) override;
   std::optional<EnergyChange> try_motion(double alpha) override;
   void accept() override;
@@ -74,7 +77,8 @@ class NewtonSystem : public StepSystem {
   void fill_matrix();
   bool set_right_hand_side();
   bool find_one_direction(SolveReport& report);
-  void add_solution();
+  void take_solution();
+  void look_at_direction();
   void move(double alpha, Column& to);
   HostPotential& host_potential();
 

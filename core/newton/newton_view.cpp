@@ -10,6 +10,7 @@ namespace bb {
 
 void NewtonView::forget() {
   for (HostCopy* each : {&x_, &before_, &gradient_}) each->valid = false;
+  state_.gradient_seen = false;
 }
 
 PositionsView NewtonView::host(const Column& column, HostCopy& to) const {
@@ -20,6 +21,18 @@ PositionsView NewtonView::host(const Column& column, HostCopy& to) const {
     to.valid = true;
   }
   return to.values;
+}
+
+double NewtonView::grad_inf() const {
+  if (!state_.gradient_seen) state_.vectors.look_at_largest(state_.g);
+  state_.gradient_seen = true;
+  return state_.vectors.free_largest();
+}
+
+void NewtonView::announce() const {
+  state_.potential->announce(state_.x);
+  state_.vectors.look_at_largest(state_.g);
+  state_.gradient_seen = true;
 }
 
 void NewtonView::report_overload(bool with_direction, StepNumbers& out) const {

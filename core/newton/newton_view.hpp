@@ -14,7 +14,7 @@ class NewtonView final : public StepView {
   NewtonView(StepSystem& system, NewtonState& state) : system_(system), state_(state) {}
   /// The iterate has changed, and with it the gradient; the gradient alone.
   void forget();
-  void forget_gradient() { gradient_.valid = false; }
+  void forget_gradient() { gradient_.valid = state_.gradient_seen = false; }
 
   const Scene& scene() const override { return state_.scene; }
   Precision precision() const override { return state_.precision; }
@@ -24,14 +24,15 @@ class NewtonView final : public StepView {
   PositionsView x() const override { return host(state_.x, x_); }
   PositionsView x_before() const override { return host(state_.trial, before_); }
   PositionsView gradient() const override { return host(state_.g, gradient_); }
-  double grad_inf() const override { return state_.vectors.free_max(state_.g); }
-  bool at_target() const override { return state_.vectors.first_short_pin(state_.x) < 0; }
+  double grad_inf() const override;
+  bool at_target() const override { return state_.first_short_pin() < 0; }
 
   double energy() const override { return state_.potential->energy(TermSet::all(), state_.x); }
   double energy(TermGroup group) const override { return state_.potential->energy(group, state_.x); }
   bool pattern_changed() const override { return state_.potential->pattern_changed(); }
   std::size_t nnz() const override { return state_.potential->nnz(); }
 
+  void announce() const override;
   void report(IterateNumbers& out) const override { state_.potential->report(state_.x, out); }
   void report_end(StepNumbers& out) const override { state_.potential->report_end(state_.x, out); }
   void report_overload(bool with_direction, StepNumbers& out) const override;

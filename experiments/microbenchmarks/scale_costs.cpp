@@ -7,6 +7,7 @@
 
 #include "core/exec/metered_executor.hpp"
 #include "core/newton/simulation.hpp"
+#include "core/resident/linear/solver_launches.hpp"
 #include "core/resident/system/resident_potential.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
@@ -22,10 +23,11 @@ class Printer final : public StepObserver {
   bool watches_motions() const override { return false; }
   void on_iteration(const IterationReport& report) override {
     const exec::ExecutionCounts& c = executor->counts();
-    const exec::Index launches = c.launches - of_solver(c), candidates = c.items("MarkRows");
+    const exec::Index of_solver = resident::solver_launches(c), launches = c.launches - of_solver,
+                      candidates = c.items("FillRows");
     std::printf("{\"step\": %d, \"iteration\": %d, \"launches\": %lld, \"solver_launches\": %lld, ",
                 report.step, report.iteration, static_cast<long long>(launches),
-                static_cast<long long>(c.replayed + of_solver(c)));
+                static_cast<long long>(c.replayed + of_solver));
     std::printf(
         "\"sorts\": %lld, \"scans\": %lld, \"downloads\": %lld, \"uploads\": %lld, \"graphs\": %lld, "
         "\"allocations\": %lld, ",
@@ -39,19 +41,6 @@ class Printer final : public StepObserver {
   }
 
  private:
-  static exec::Index of_solver(const exec::ExecutionCounts& counts) {
-    exec::Index out = -counts.replayed;
-    for (const auto& [name, of] : counts.by_kernel) out += is_of_solver(name) ? of.launches : 0;
-    return out;
-  }
-  static bool is_of_solver(const std::string& kernel) {
-    for (const char* part : {"::MultiplyDot", "::MagnitudeDot", "::SetResidual", "::FinishSum", "::BeginRun",
-                             "::StepDirection", "BlockJacobi", "::FactorizeDiagonal", "::BlockNorms",
-                             "::CoarseValues", "::UpdateResidual", "::AddLevels", "Clusters"}) {
-      if (kernel.find(part) != std::string::npos) return true;
-    }
-    return false;
-  }
   static void print_kernels(const exec::ExecutionCounts& counts) {
     for (const auto& [name, of] : counts.by_kernel) {
       std::fprintf(stderr, "%4lld %10lld  %s\n", static_cast<long long>(of.launches),

@@ -94,14 +94,16 @@ struct OnExecutor {
   }
   resident::Compensated energy(TermSet set) {
     sum.clear();
-    resident::ResidentEnergy energy{sum};
+    resident::ResidentEnergy energy(sum);
     for (const auto& term : terms) {
       if (set.has(term->group())) term->add_energy(x, energy);
     }
+    energy.launch();
     return sum.get();
   }
   bool evaluate(const Positions& at) {
     trial.upload(numbers_of(at));
+    for (const auto& term : terms) term->look_at(x, trial, clock);
     for (const auto& term : terms) {
       if (!term->admits(x, trial, clock)) return false;
     }
@@ -110,8 +112,9 @@ struct OnExecutor {
   }
   resident::Compensated change() {
     sum.clear();
-    resident::ResidentChange change{sum};
+    resident::ResidentChange change(sum);
     for (const auto& term : terms) term->add_change(x, trial, change);
+    change.launch();
     return sum.get();
   }
   void accept() {
@@ -123,6 +126,7 @@ struct OnExecutor {
     dx.upload(numbers_of(direction));
     IterateNumbers report;
     double smallest = 1;
+    for (const auto& term : terms) term->look_along({x, trial, dx}, clock);
     for (const auto& term : terms) smallest = std::min(smallest, term->bound({x, trial, dx}, report, clock));
     return smallest;
   }

@@ -7,6 +7,7 @@
 
 #include "core/exec/counting_executor.hpp"
 #include "core/exec/metered_executor.hpp"
+#include "core/resident/linear/solver_launches.hpp"
 #include "tests/resident/system_cases.hpp"
 
 namespace bb::resident_memory_test {
@@ -123,35 +124,67 @@ class Meter final : public StepObserver {
  public:
   exec::MeteredExecutor* executor = nullptr;
   std::vector<exec::ExecutionCounts> iterations;
+  std::vector<int> number;  // of each of them within its step
   bool watches_motions() const override { return false; }
   void on_iteration(const IterationReport& report) override {
     contacts += report.contacts.total();
     iterations.push_back(executor->counts());
+    number.push_back(report.iteration);
     executor->clear();
   }
   std::size_t contacts = 0;
 };
 
-// A cloth that lies still: iterates like the last ones need no memory that is not there.
-TEST(ResidentMemory, ASteadyIterationAllocatesNothing) {
+/// States that a line search looked at: each is searched for rows once.
+Index trials(const exec::ExecutionCounts& counts) {
+  Index out = 0;
+  for (const auto& [name, of] : counts.by_kernel) out += name.ends_with("::RankRows") ? of.launches : 0;
+  return out;
+}
+
+/// A cloth with pins and a strain limit that lies still on a plate and a floor, after it fell and found what room it needs.
+void measure_steady_iterations(Meter& meter) {
   const Scene scene = test::cloth_on_plate();
   Method method = resident_method(Index{1} << 40);
-  Meter meter;
   method.make_potential = test::on_executor([&meter] {
     auto executor = std::make_unique<exec::MeteredExecutor>();
     meter.executor = executor.get();
     return executor;
   });
   Simulation simulation(scene, method, 0.01, 24);
-  for (int step = 0; step < 16; ++step) simulation.step(meter);  // falls, and finds what room it needs
-  meter.iterations.clear(), meter.contacts = 0;
+  for (int step = 0; step < 16; ++step) simulation.step(meter);
+  meter.iterations.clear(), meter.number.clear(), meter.contacts = 0;
   for (int step = 16; step < 24; ++step) simulation.step(meter);
   ASSERT_GE(meter.iterations.size(), 8u);
   ASSERT_GT(meter.contacts, 20u);
+}
+
+// Iterates like the last ones need no memory that is not there.
+TEST(ResidentMemory, ASteadyIterationAllocatesNothing) {
+  Meter meter;
+  measure_steady_iterations(meter);
   for (std::size_t i = 0; i < meter.iterations.size(); ++i) {
     EXPECT_EQ(meter.iterations[i].allocations, 0) << "iteration " << i;
     EXPECT_GT(meter.iterations[i].launches, 0) << "iteration " << i;
   }
+}
+
+// A card waits for its host at every launch and read: what an iteration within a step asks for besides conjugate
+// gradients, whose launches and reads of their residual are as many as they need.
+TEST(ResidentMemory, ASteadyIterationLaunchesAndWaitsLittle) {
+  Meter meter;
+  measure_steady_iterations(meter);
+  int n = 0;
+  for (std::size_t i = 0; i < meter.iterations.size(); ++i) {
+    const exec::ExecutionCounts& c = meter.iterations[i];
+    if (meter.number[i] == 0 || trials(c) != 1) continue;
+    ++n;
+    EXPECT_LE(c.launches - resident::solver_launches(c), 74) << "iteration " << i;
+    EXPECT_LE(c.sorts, 8) << "iteration " << i;
+    EXPECT_LE(c.scans, 6) << "iteration " << i;
+    EXPECT_LE(c.waits(), 14) << "iteration " << i << ", graphs " << c.graphs << ", trials " << trials(c);
+  }
+  EXPECT_GE(n, 4);
 }
 
 // The two tables share columns: a trial that was not accepted must not be seen.

@@ -43,30 +43,20 @@ TEST(SystemKernels, Columns) {
   executor.each(b.size(), RightHandSide{g.data(), lifted.data(), b.data()});
   found = b.download();
   for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(found[i], -(a[i] + c[i]));
-  executor.each(b.size(), AddColumn{g.data(), b.data()});
   executor.each(b.size(), ScaleColumn{0.3, b.data()});
   found = b.download();
-  for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(found[i], 0.3 * (-(a[i] + c[i]) + a[i]));
-}
-
-TEST(SystemKernels, TotalsOfManyBlocks) {
-  test::TestedExecutor executor;
-  std::vector<RowTotals> parts(most_partials, RowTotals::zero());
-  for (std::size_t b = 0; b < parts.size(); ++b) parts[b].load.add(static_cast<double>(b) + 0.5);
-  exec::Buffer<RowTotals> partial(executor, "parts"), total(executor, "total");
-  partial.upload(parts), total.upload(std::vector<RowTotals>{RowTotals::zero()});
-  executor.blocks(1, FoldPartials<RowTotals>{partial.data(), most_partials, total.data()});
-  EXPECT_EQ(total.get(0).load.value(), 1024 * 1023 / 2 + 512);
+  for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(found[i], 0.3 * -(a[i] + c[i]));
 }
 
 /// Rows of every kind, some of them mollified, with a stiffness of their own or one for all.
 struct SomeRows {
   static constexpr std::size_t n = 1000;
   std::vector<double> d = positive(3), d_hat = positive(4), kappa = positive(5), push = positive(6),
-                      stretch = positive(7);
+                      stretch = positive(7), energy = positive(10), mollifier;
   std::vector<std::uint8_t> kind;
-  exec::Buffer<double> d_on, d_hat_on, kappa_on, push_on, stretch_on;
+  exec::Buffer<double> d_on, d_hat_on, kappa_on, push_on, stretch_on, energy_on, mollifier_on;
   exec::Buffer<std::uint8_t> kind_on;
+  exec::Buffer<std::uint32_t> mollified_on;
 
   static std::vector<double> positive(unsigned seed) {
     std::vector<double> out = random_numbers(n, seed);
@@ -79,22 +69,43 @@ struct SomeRows {
         kappa_on(on(executor, kappa)),
         push_on(executor, "pushes"),
         stretch_on(on(executor, stretch)),
-        kind_on(executor, "kinds") {
+        energy_on(on(executor, energy)),
+        mollifier_on(executor, "mollifiers"),
+        kind_on(executor, "kinds"),
+        mollified_on(executor, "mollified rows") {
     for (double& x : push) x = -x;  // kappa b' is not positive
     push_on.upload(push);
     for (std::size_t r = 0; r < n; ++r) kind.push_back(static_cast<std::uint8_t>(r % (mollified_kind + 1)));
     kind_on.upload(kind);
+    std::vector<std::uint32_t> list;
+    for (std::size_t r = 0; r < n; ++r) {
+      if (!mollified(r)) continue;
+      list.push_back(static_cast<std::uint32_t>(r));
+      mollifier.push_back(0.5 + 1e-3 * static_cast<double>(r));
+    }
+    mollified_on.upload(list), mollifier_on.upload(mollifier);
   }
   RowView view(bool uniform) {
     RowView out{};
     out.n = n;
     out.d = d_on.data(), out.d_hat = d_hat_on.data(), out.kind = kind_on.data();
-    out.push = push_on.data(), out.stretch = stretch_on.data();
+    out.push = push_on.data(), out.stretch = stretch_on.data(), out.energy = energy_on.data();
     out.kappa = uniform ? nullptr : kappa_on.data();
     out.uniform_kappa = 7;
     return out;
   }
+  RowEnergy energy_of(const RowView& rows) {
+    return {rows, {mollified_on.data(), mollified_on.size(), mollifier_on.data()}};
+  }
   bool mollified(std::size_t r) const { return kind[r] == mollified_kind; }
+  /// Energies of all rows, J, mollifiers included.
+  std::vector<double> energies() const {
+    std::vector<double> out;
+    std::size_t next = 0;
+    for (std::size_t r = 0; r < n; ++r)
+      out.push_back(mollified(r) ? mollifier[next++] * energy[r] : energy[r]);
+    return out;
+  }
   /// Loads of all rows, N; 0 where they are mollified.
   std::vector<double> loads() const {
     std::vector<double> out;
@@ -103,9 +114,9 @@ struct SomeRows {
   }
 };
 
-RowTotals totals(exec::Executor& executor, const RowView& rows) {
+RowTotals totals(exec::Executor& executor, const RowView& rows, const RowEnergy& energy) {
   ResidentSums<RowTotals> sums(executor);
-  sums.add(rows.n, TotalsOfRows{rows});
+  sums.add(rows.n, TotalsOfRows{rows, energy});
   return sums.get();
 }
 
@@ -123,7 +134,8 @@ TEST(SystemKernels, TotalsOfRowsAreThoseOfALoop) {
   test::TestedExecutor executor;
   SomeRows rows(executor);
   for (const bool uniform : {false, true}) {
-    const RowTotals found = totals(executor, rows.view(uniform));
+    const RowView view = rows.view(uniform);
+    const RowTotals found = totals(executor, view, rows.energy_of(view));
     double gap_rel = 1e300, kappa_min = 1e300, kappa_max = 0, curvature = 0;
     for (std::size_t r = 0; r < rows.n; ++r) {
       const double kappa = uniform ? 7 : rows.kappa[r];
@@ -143,6 +155,10 @@ TEST(SystemKernels, TotalsOfRowsAreThoseOfALoop) {
     EXPECT_EQ(found.load.sum, load.sum);
     EXPECT_EQ(found.load.carry, load.carry);
     EXPECT_EQ(found.load.magnitude, load.magnitude);
+    const Compensated energy = product(executor, rows.energies(), std::vector<double>(rows.n, 1));
+    ASSERT_GT(energy.value(), 100);
+    EXPECT_EQ(found.energy.sum, energy.sum);
+    EXPECT_EQ(found.energy.carry, energy.carry);
     for (std::uint8_t kind = 0; kind <= mollified_kind; ++kind) {
       const auto expected = std::count(rows.kind.begin(), rows.kind.end(), kind);
       EXPECT_GT(expected, 0);
@@ -157,7 +173,8 @@ TEST(SystemKernels, TotalsOfRowsAreTheSameInEveryOrder) {
        {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
     test::TestedExecutor executor(order, 5);
     SomeRows rows(executor);
-    found.push_back(totals(executor, rows.view(false)));
+    const RowView view = rows.view(false);
+    found.push_back(totals(executor, view, rows.energy_of(view)));
     EXPECT_EQ(std::memcmp(&found.back(), &found.front(), sizeof(RowTotals)), 0);
   }
   ASSERT_NE(found.front().load.carry, 0);
@@ -166,14 +183,15 @@ TEST(SystemKernels, TotalsOfRowsAreTheSameInEveryOrder) {
 TEST(SystemKernels, TotalsOfNoRowsAndOfNoNumbers) {
   test::TestedExecutor executor;
   RowView none{};
-  const RowTotals empty = totals(executor, none);
+  const RowTotals empty = totals(executor, none, RowEnergy{});
   EXPECT_EQ(smallest_of(empty.kappa_min), std::numeric_limits<double>::infinity());
   EXPECT_EQ(largest_of(empty.kappa_max), 0);
   EXPECT_EQ(empty.load.value(), 0);
   SomeRows rows(executor);
   rows.d_on.set(17, std::numeric_limits<double>::quiet_NaN());
   rows.stretch_on.set(18, -std::numeric_limits<double>::quiet_NaN());
-  const RowTotals bad = totals(executor, rows.view(false));
+  const RowView view = rows.view(false);
+  const RowTotals bad = totals(executor, view, rows.energy_of(view));
   EXPECT_TRUE(std::isnan(smallest_of(bad.gap_rel_min)));
   EXPECT_TRUE(std::isnan(largest_of(bad.curvature_max)));
   EXPECT_FALSE(std::isnan(largest_of(bad.load_max)));

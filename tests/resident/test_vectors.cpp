@@ -42,16 +42,20 @@ TEST(Vectors, MovePutsPinsOnTargetAtTheEndOfAStepOnly) {
   VectorTools tools(v.executor, v.fixed, v.scene.pins);
   tools.set_targets(v.target);
   ASSERT_EQ(v.scene.pins.size(), 3u);
+  const auto short_pin = [&] {
+    tools.look_at_pins(v.out);
+    return tools.first_short_pin();
+  };
   tools.move(v.x, v.dx, 0.3, v.out);
   EXPECT_EQ(v.down(v.out), Positions(v.x_host + 0.3 * v.dx_host));
-  EXPECT_EQ(tools.first_short_pin(v.out), 0);
+  EXPECT_EQ(short_pin(), 0);
   tools.move_to_targets(v.x, v.dx, v.out);
   Positions expected = v.x_host + v.dx_host;
   for (const Pin& pin : v.scene.pins) expected.col(pin.vertex) = v.target.col(pin.vertex);
   EXPECT_EQ(v.down(v.out), expected);
-  EXPECT_EQ(tools.first_short_pin(v.out), -1);
+  EXPECT_EQ(short_pin(), -1);
   v.out.set(3 * v.scene.pins[1].vertex, 0.0);
-  EXPECT_EQ(tools.first_short_pin(v.out), 1);
+  EXPECT_EQ(short_pin(), 1);
   tools.set_pin_motion(v.x, v.dx);
   for (const Pin& pin : v.scene.pins) {
     EXPECT_EQ(v.down(v.dx).col(pin.vertex), Vec3d(v.target.col(pin.vertex) - v.x_host.col(pin.vertex)));
@@ -121,7 +125,8 @@ TEST(Vectors, DirectionsAreSplitAtTheRoundingOfTheirVertex) {
       const bool within = within_coordinate_rounding(dx.data()[i], x, sizes[i / 3], 0x1p-52);
       largest[within] = std::max(largest[within], std::abs(dx.data()[i]));
     }
-    const resident::DirectionSizes found = tools.sizes(v.dx, v.x, body_size, 0x1p-52);
+    tools.look_at_direction(v.dx, v.x, body_size, 0x1p-52);
+    const resident::DirectionSizes found = tools.direction_sizes();
     EXPECT_EQ(found.within, largest[1]) << scale;
     EXPECT_EQ(found.beyond, largest[0]) << scale;
     EXPECT_EQ(found.largest, std::max(largest[0], largest[1])) << scale;
@@ -138,11 +143,30 @@ TEST(Vectors, LongestOfMany) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(static_cast<double>(i));
   values[3 * (n - 2)] = 3, values[3 * (n - 2) + 1] = 4, values[3 * (n - 2) + 2] = 0;
   test::TestedExecutor executor;
-  exec::Buffer<double> column(executor, "many vectors");
-  column.upload(values);
-  ResidentLeast least(executor);
-  least.add(static_cast<Index>(n), ColumnNorms{column.data()});
-  EXPECT_EQ(least.largest(), 5);
+  exec::Buffer<double> column(executor, "many vectors"), zero(executor, "zeros", static_cast<Index>(3 * n));
+  exec::Buffer<FixedMask> fixed(executor, "fixed", static_cast<Index>(n));
+  column.upload(values), zero.fill_zero(), fixed.fill_zero();
+  ResidentSums<DirectionKeys> sizes(executor);
+  sizes.add(static_cast<Index>(n), DirectionParts{column.data(), zero.data(), zero.data(), fixed.data(), 0});
+  EXPECT_EQ(largest_of(sizes.get().vertex), 5);
+  EXPECT_EQ(largest_of(sizes.get().largest), 4);
+}
+
+TEST(Vectors, ASolutionIsAddedWithItsProducts) {
+  Vectors v;
+  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  const Positions step_host = wave(v.scene, 0.7), expected = v.dx_host + step_host;
+  exec::Buffer<double> step(v.executor, "step");
+  step.upload(numbers_of(step_host));
+  tools.take_solution(step, v.x, v.x, v.dx);
+  const TwoSums found = tools.solution_products();
+  EXPECT_EQ(v.down(v.dx), expected);
+  for (const auto& [sum, other] : {std::pair(found.first, &step), std::pair(found.second, &v.dx)}) {
+    const Compensated product = tools.free_dot(v.x, *other);
+    ASSERT_NE(product.value(), 0);
+    EXPECT_EQ(sum.sum, product.sum);
+    EXPECT_EQ(sum.carry, product.carry);
+  }
 }
 
 }  // namespace

@@ -6,14 +6,13 @@
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_planes.hpp"
 #include "core/geometry/accd.hpp"
+#include "core/resident/contact/candidate_lists.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/pair_search.hpp"
 #include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 
-constexpr int n_bound_lists =
-    7;  // the kinds of PairKind in their order, then obstacles with points, edges, triangles
 constexpr Key no_pair = ~Key{0};
 
 /// What the queries of one item counted.
@@ -34,6 +33,14 @@ struct BoundTotal {
     const bool first = its_list != list ? its_list < list : its_pair < pair;
     if (its_sooner < sooner || its_sooner == 0 || (its_sooner == sooner && !first)) return;
     sooner = its_sooner, list = its_list, pair = its_pair;
+  }
+  /// A time of a pair; 1: none.
+  BB_HD void put(double toi, int its_list, Key its_pair) {
+    if (toi < 1) meet(~exec::ordered_bits(toi), static_cast<Key>(its_list), its_pair);
+  }
+  BB_HD void count(const QueryCounts& counted) {
+    queries += counted.queries, probes += counted.probes;
+    capped += counted.capped, at_zero += counted.zero;
   }
   friend BB_HD BoundTotal operator+(const BoundTotal& a, const BoundTotal& b) {
     BoundTotal out = a;
@@ -58,7 +65,7 @@ struct BoundQuery {
 struct LargestCoordinate {
   static constexpr Index a_thread = 8;
   static constexpr Index a_block = a_thread * exec::block_threads;
-  const double* x;
+  const double *x0, *x1;  // [n] each
   Index n;
   Key* largest;  // all ones before
 
@@ -73,8 +80,8 @@ struct LargestCoordinate {
       most[t] = 0;
       for (Index m = 0; m < a_thread; ++m) {
         const Index i = b * a_block + m * exec::block_threads + t;
-        if (i >= k.n) break;
-        const Key bits = exec::ordered_bits(k.x[i]) << 1 >> 1;
+        if (i >= 2 * k.n) break;
+        const Key bits = exec::ordered_bits(i < k.n ? k.x0[i] : k.x1[i - k.n]) << 1 >> 1;
         most[t] = bits > most[t] ? bits : most[t];
       }
     });
@@ -174,45 +181,53 @@ BB_HD double obstacle_time(const BoundQuery& q, Index i, Index o, double enough,
   return toi;
 }
 
-/// The earliest time of each item of a batch, its pair, and what it counted.
-struct BatchTimes {
-  Key *time, *pair;
-  QueryCounts* counts;
-  BB_HD void put(Index i, double toi, Key which, const QueryCounts& counted) const {
-    time[i] = exec::ordered_bits(toi);
-    pair[i] = which;
-    counts[i] = counted;
+/// A time before which a pair of any list of pairs stays above its stop level: proven_time().
+BB_HD inline double proven_time_of(const BoundQuery& q, const CandidateItem& item, double enough) {
+  const Index i = first_of(item.pair), j = second_of(item.pair);
+  const SurfaceView& s = q.surface;
+  switch (item.list) {
+    case 0:
+      return proven_time(q, pair_vertices<PairKind::point_point>(s, i, j), enough);
+    case 1:
+      return proven_time(q, pair_vertices<PairKind::point_edge>(s, i, j), enough);
+    case 2:
+      return proven_time(q, pair_vertices<PairKind::point_triangle>(s, i, j), enough);
+    default:
+      return proven_time(q, pair_vertices<PairKind::edge_edge>(s, i, j), enough);
   }
-};
-
-/// Parts of SumParts: what the items of a batch say.
-struct BatchParts {
-  using Sum = BoundTotal;
-  BatchTimes of;
-  Key list;
-  BB_HD void operator()(Index i, BoundTotal& sum) const {
-    if (of.time[i] < exec::ordered_bits(1.0) && of.pair[i] != no_pair)
-      sum.meet(~of.time[i], list, of.pair[i]);
-    const QueryCounts counted = of.counts[i];
-    sum.queries += counted.queries, sum.probes += counted.probes;
-    sum.capped += counted.capped, sum.at_zero += counted.zero;
+}
+/// The same for time_of().
+BB_HD inline double time_of_item(const BoundQuery& q, const CandidateItem& item, double enough,
+                                 QueryCounts& counts) {
+  const Index i = first_of(item.pair), j = second_of(item.pair);
+  const SurfaceView& s = q.surface;
+  switch (item.list) {
+    case 0:
+      return time_of(q, pair_vertices<PairKind::point_point>(s, i, j), enough, counts);
+    case 1:
+      return time_of(q, pair_vertices<PairKind::point_edge>(s, i, j), enough, counts);
+    case 2:
+      return time_of(q, pair_vertices<PairKind::point_triangle>(s, i, j), enough, counts);
+    default:
+      return time_of(q, pair_vertices<PairKind::edge_edge>(s, i, j), enough, counts);
   }
-};
+}
 
-/// Pair i of a chunk: until when it is proven apart, rounded down, and whether it has to be asked.
-template <PairKind K>
+/// Counts of RankItems: 1 for the pairs of a chunk, items begin and on, that have to be asked; until when a pair is proven
+/// apart, rounded down.
 struct ScreenPairs {
+  static constexpr bool two = false;
   BoundQuery query;
-  const Key* candidate;
+  CandidateLists lists;
+  Index begin;
   float* proven;
   std::uint8_t* keep;
-  BB_HD void operator()(Index i) const {
+  BB_HD int operator()(Index i) const {
     const double known = query.known();
-    const auto pair = pair_vertices<K>(query.surface, first_of(candidate[i]), second_of(candidate[i]));
-    const double until = proven_time<K>(query, pair, known);
-    keep[i] = until > known ? 0 : 1;
+    const double until = proven_time_of(query, lists[begin + i], known);
     const float below = until > 0 ? float_below(until) : 0;
     proven[i] = below > 0 ? below : 0;
+    return keep[i] = until > known ? 0 : 1;
   }
 };
 
@@ -230,36 +245,39 @@ struct KeepPairs {
   }
 };
 
-/// Asks the pairs of a batch that are not proven to be later than what is known.
-template <PairKind K>
+// --- parts of SumParts: what the items of a batch say of the bound
+/// Asks the pairs of a batch that are not proven to be later than what is known. Where n_asked is there: the first batch
+/// of a chunk, whose pairs are not sorted; nothing where one batch does not hold all of them.
 struct AskPairs {
+  using Sum = BoundTotal;
   BoundQuery query;
-  const Key *candidate, *asked;
-  BatchTimes out;
-  BB_HD void operator()(Index i) const {
+  CandidateLists lists;
+  Index begin;       // of the chunk
+  const Key* asked;  // of the batch
+  const Index* n_asked;
+  Index most;
+  BB_HD void operator()(Index i, BoundTotal& sum) const {
+    if (n_asked && (*n_asked > most || i >= *n_asked)) return;
     const std::uint32_t bits = static_cast<std::uint32_t>(asked[i]);
     float proven;
     memcpy(&proven, &bits, sizeof proven);
-    const Key which = candidate[asked[i] >> 32];
     const double known = query.known();
+    if (static_cast<double>(proven) > known) return;
+    const CandidateItem item = lists[begin + static_cast<Index>(asked[i] >> 32)];
     QueryCounts counts;
-    double toi = 1;
-    if (!(static_cast<double>(proven) > known)) {
-      const auto pair = pair_vertices<K>(query.surface, first_of(which), second_of(which));
-      toi = time_of<K>(query, pair, known, counts);
-    }
-    out.put(i, toi, which, counts);
+    sum.put(time_of_item(query, item, known, counts), item.list, item.pair);
+    sum.count(counts);
   }
 };
 
 /// Asks all pairs of the leaves from `place` on without a list of them.
 template <PairKind K>
 struct AskInTree {
+  using Sum = BoundTotal;
   BoundQuery query;
   PairSearch search;
   Index place;
-  BatchTimes out;
-  BB_HD void operator()(Index i) const {
+  BB_HD void operator()(Index i, BoundTotal& sum) const {
     QueryCounts counts;
     double first = 1;
     Key which = no_pair;
@@ -272,31 +290,37 @@ struct AskInTree {
       const Key key = pair_of(a, b);
       if (toi < first || (toi == first && key < which)) first = toi, which = key;
     });
-    out.put(i, first, which, counts);
+    sum.put(first, static_cast<int>(K), which);
+    sum.count(counts);
   }
 };
 
-/// Times of the candidates of primitives with N vertices and obstacles.
-template <int N>
+/// Asks the candidates of obstacles from item `begin` on.
 struct AskObstacles {
+  using Sum = BoundTotal;
   BoundQuery query;
-  const Key* candidate;
-  BatchTimes out;
-  BB_HD void operator()(Index i) const {
+  CandidateLists lists;
+  Index begin;
+  BB_HD void operator()(Index k, BoundTotal& sum) const {
+    const CandidateItem item = lists[begin + k];
+    const Index i = first_of(item.pair), o = second_of(item.pair);
+    const double known = query.known();
     QueryCounts counts;
-    const double toi =
-        obstacle_time<N>(query, first_of(candidate[i]), second_of(candidate[i]), query.known(), counts);
-    out.put(i, toi, candidate[i], counts);
+    const double toi = item.list == first_obstacle_list       ? obstacle_time<1>(query, i, o, known, counts)
+                       : item.list == first_obstacle_list + 1 ? obstacle_time<2>(query, i, o, known, counts)
+                                                              : obstacle_time<3>(query, i, o, known, counts);
+    sum.put(toi, item.list, item.pair);
+    sum.count(counts);
   }
 };
 
 /// The same for all obstacles of surface primitives, without a list.
 template <int N>
 struct AskObstaclesOf {
+  using Sum = BoundTotal;
   BoundQuery query;
   Index first_primitive;
-  BatchTimes out;
-  BB_HD void operator()(Index i) const {
+  BB_HD void operator()(Index i, BoundTotal& sum) const {
     QueryCounts counts;
     double first = 1;
     Key which = no_pair;
@@ -307,7 +331,8 @@ struct AskObstaclesOf {
       const double toi = obstacle_time<N>(query, first_primitive + i, o, enough, counts);
       if (toi < first) first = toi, which = pair_of(first_primitive + i, o);
     }
-    out.put(i, first, which, counts);
+    sum.put(first, obstacle_pairs_of<N>, which);
+    sum.count(counts);
   }
 };
 

@@ -1,12 +1,14 @@
 #include "core/resident/contact/box_tree.hpp"
 
+#include <algorithm>
+
 namespace bb::resident {
 
 namespace {
 
 /// The levels of a tree over n leaves.
-TreeView levels_of(Index n) {
-  TreeView out{nullptr, {}, -1};
+TreePlaces levels_of(Index n) {
+  TreePlaces out{nullptr, {}, -1};
   if (n == 0) return out;
   for (Index size = n;; size = (size + tree_width - 1) / tree_width) {
     ++out.top;
@@ -17,29 +19,35 @@ TreeView levels_of(Index n) {
 
 }  // namespace
 
-template <int N>
-void BoxTree<N>::sort_codes(const PrimitiveView<N>& of, const MotionView& motion, TreeScratch& scratch) {
-  scratch.key.resize(of.n);
-  scratch.order.resize(of.n);
-  executor_->each(of.n, MortonKeys<N>{of, motion, scratch.key.data(), scratch.order.data()});
-  executor_->sort(scratch.key.data(), scratch.order.data(), of.n, morton_bits);
-}
-
-template <int N>
-void BoxTree<N>::fit(const PrimitiveView<N>& of, const MotionView& motion, TreeScratch& scratch) {
-  view_ = levels_of(of.n);
-  if (of.n == 0) return;
-  sort_codes(of, motion, scratch);
-  node_.resize(view_.begin[view_.top + 1]);
-  executor_->each(of.n, TreeLeaves<N>{of, motion, scratch.order.data(), node_.data()});
-  for (int level = 1; level <= view_.top; ++level) {
-    executor_->each(view_.size(level), TreeLevel{node_.data() + view_.begin[level - 1], view_.size(level - 1),
-                                                 node_.data() + view_.begin[level]});
+void BoxTrees::fit(TreeSources of) {
+  const Index size[n_trees] = {of.points.n, of.edges.n, of.triangles.n, of.lone.n};
+  TreeLevels levels{};
+  int top = -1;
+  of.begin[0] = 0;
+  for (int k = 0; k < n_trees; ++k) {
+    of.begin[k + 1] = of.begin[k] + size[k];
+    place_[k] = levels_of(size[k]);
+    node_[k].resize(place_[k].top < 0 ? 0 : place_[k].begin[place_[k].top + 1]);
+    place_[k].node = node_[k].data();
+    levels.tree[k] = place_[k];
+    top = std::max(top, place_[k].top);
+  }
+  const Index n = of.begin[n_trees];
+  Key* const key = keys(n);
+  order_.resize(n);
+  executor_.each(n, MortonKeys{of, key, order_.data()});
+  executor_.sort(key, order_.data(), n, morton_bits + 2);
+  levels.of = of;
+  levels.primitive = order_.data();
+  for (levels.from = 0; levels.from <= std::max(top - 1, 0) && n > 0; levels.from += TreeLevels::levels) {
+    executor_.blocks(levels.n_blocks(), levels);
   }
 }
 
-template class BoxTree<1>;
-template class BoxTree<2>;
-template class BoxTree<3>;
+TreeView BoxTrees::view(int tree) const {
+  TreeView out{node_[tree].data(), {}, place_[tree].top};
+  std::copy(std::begin(place_[tree].begin), std::end(place_[tree].begin), out.begin);
+  return out;
+}
 
 }  // namespace bb::resident

@@ -1,39 +1,43 @@
-// The tree of one kind of primitive of a surface, fitted anew to each motion.
+// The trees of the primitives of a surface, fitted anew to each motion: all of them by the same launches.
 #pragma once
 
 #include "core/resident/contact/tree_kernels.hpp"
 
 namespace bb::resident {
 
-/// What building needs beside the trees; shared by all of them.
-struct TreeScratch {
-  explicit TreeScratch(exec::Executor& executor)
-      : key(executor, "tree Morton codes"), order(executor, "tree order") {}
-  exec::Buffer<Key> key;
-  exec::Buffer<std::uint32_t> order;
-};
-
 /// Built by a sort at every fit: that is 12 B a primitive read and written a few times, less than a search reads, and
 /// the order is then that of the motion itself, never one of an earlier state. 43 B a primitive.
-template <int N>
-class BoxTree {
+class BoxTrees {
  public:
-  BoxTree(exec::Executor& executor, const std::string& name) : executor_(&executor), node_(executor, name) {}
-  void fit(const PrimitiveView<N>& of, const MotionView& motion, TreeScratch& scratch);
-  void free() { node_.free(); }
-  /// Of the last fit.
-  TreeView view() const {
-    TreeView out = view_;
-    out.node = node_.data();
-    return out;
+  BoxTrees(exec::Executor& executor)
+      : executor_(executor),
+        key_(executor, "tree Morton codes"),
+        order_(executor, "tree order"),
+        node_{{executor, "tree of points"},
+              {executor, "tree of edges"},
+              {executor, "tree of triangles"},
+              {executor, "tree of lone edges"}} {}
+  /// of.begin is set here.
+  void fit(TreeSources of);
+  void free() {
+    free_scratch();
+    for (auto& node : node_) node.free();
   }
+  void free_scratch() { key_.free(), order_.free(); }
+  /// Room for keys, until fit().
+  Key* keys(Index n) {
+    if (key_.size() < n) key_.resize(n);
+    return key_.data();
+  }
+  /// Of the last fit.
+  TreeView view(int tree) const;
 
  private:
-  void sort_codes(const PrimitiveView<N>& of, const MotionView& motion, TreeScratch& scratch);
-
-  exec::Executor* executor_;
-  exec::Buffer<TreeNode> node_;
-  TreeView view_{nullptr, {}, -1};
+  exec::Executor& executor_;
+  exec::Buffer<Key> key_;
+  exec::Buffer<std::uint32_t> order_;
+  exec::Buffer<TreeNode> node_[n_trees];
+  TreePlaces place_[n_trees]{};
 };
 
 }  // namespace bb::resident

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/exec/buffer.hpp"
+#include "core/exec/board.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 
 namespace bb::resident {
@@ -14,41 +14,56 @@ inline void scan_counts(exec::Executor& executor, Index* count, Index n) {
   executor.exclusive_scan(count, n + 1);
 }
 
-/// 3 B an item; keeps its buffers.
+/// 2 B an item, 3 where counts are stored; keeps its buffers.
 class Compaction {
  public:
   Compaction(exec::Executor& executor, const std::string& name)
       : executor_(&executor),
         count_(executor, name + " counts"),
         rank_(executor, name + " ranks"),
-        block_(executor, name + " places") {}
+        block_(executor, name + " places"),
+        sum_(executor) {}
   /// Room for the counts of n items; a kernel fills them, at most 255 each.
   std::uint8_t* counts(Index n) {
     count_.fit(n);
     return count_.data();
   }
-  /// Ranks the items. @return the sum of the counts; waits for it. expected: what an executor that only counts buffers
-  /// is to take for it.
+  /// Ranks items by their stored counts. @return the sum of the counts; waits for it. expected: what an executor that only
+  /// counts buffers is to take for it.
   Index rank(Index expected = 0) {
     if (count_.size() == 0) return 0;
-    rank_items();
-    return executor_->counts_only() ? expected : block_.get(block_.size() - 1);
+    rank_by(count_.size(), StoredCounts{count_.data()});
+    return executor_->counts_only() ? expected : sum();
   }
-  /// Ranks the items without waiting; to (of the executor, or null): the sum of the counts.
-  void rank_to(Index* to) {
-    if (count_.size() == 0) {
-      if (to) executor_->fill_bytes(to, 0, sizeof(Index));
+  /// Ranks n items by what counts says of them (RankItems), in one launch and a scan.
+  template <class Counts>
+  void rank_by(Index n, const Counts& counts) {
+    executor_->blocks(blocks_of(n), RankItems<Counts>{counts, room(n)});
+    finish(n);
+  }
+  /// For kernels that rank themselves: room for n items; then finish().
+  RankPlaces room(Index n) {
+    rank_.fit(n);
+    block_.fit(blocks_of(n) + 1);
+    return {rank_.data(), block_.data(), n, blocks_of(n)};
+  }
+  /// After a kernel has ranked n items.
+  void finish(Index n) {
+    if (n == 0) {
+      sum_.fill(0);
       return;
     }
-    rank_items();
-    if (to) executor_->copy(to, block_.data() + block_.size() - 1, sizeof(Index));
+    const Index n_blocks = blocks_of(n);
+    executor_->exclusive_scan(block_.data(), n_blocks + 1);
+    executor_->copy(sum_.to_write(), block_.data() + n_blocks, sizeof(Index));
   }
+  static Index blocks_of(Index n) { return (n + exec::block_threads - 1) / exec::block_threads; }
+  /// The sum of the counts; of two sorts as TwoPlaces has them. Waits.
+  Index sum() const { return sum_.get(); }
+  /// The same for kernels.
+  const Index* sum_on_executor() const { return sum_.data(); }
   Places places() const { return {rank_.data(), block_.data()}; }
-  /// The marked items, ascending, where counts are 0 or 1; n as rank() returned it.
-  void list(Index n, exec::Buffer<std::uint32_t>& out) {
-    out.fit(n);
-    executor_->each(count_.size(), ListMarked{count_.data(), places(), out.data()});
-  }
+  TwoPlaces two_places() const { return {rank_.data(), block_.data()}; }
   void free() {
     count_.free();
     rank_.free();
@@ -56,18 +71,11 @@ class Compaction {
   }
 
  private:
-  void rank_items() {
-    const Index n = count_.size(), n_blocks = (n + exec::block_threads - 1) / exec::block_threads;
-    rank_.fit(n);
-    block_.fit(n_blocks + 1);
-    executor_->blocks(n_blocks, RankItems{count_.data(), rank_.data(), block_.data(), n, n_blocks});
-    executor_->exclusive_scan(block_.data(), n_blocks + 1);
-  }
-
   exec::Executor* executor_;
   exec::Buffer<std::uint8_t> count_;
   exec::Buffer<std::uint16_t> rank_;
   exec::Buffer<Index> block_;
+  exec::Reading<Index> sum_;
 };
 
 }  // namespace bb::resident

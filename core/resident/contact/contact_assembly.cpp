@@ -15,8 +15,6 @@ ContactAssembly::ContactAssembly(exec::Executor& executor, const ResidentSurface
       pattern_(executor, n_vertices, options.pairs_a_chunk),
       mollified_(executor, "mollified gradients"),
       mollifier_(executor, "mollifiers"),
-      dense_(executor, "row Hessians"),
-      dense_rows_(executor, "rows with a Hessian"),
       row_hessians_(executor, "row Hessians"),
       value_(executor, "contact matrix values") {}
 
@@ -28,7 +26,7 @@ void ContactAssembly::set_pattern(ResidentRows& rows, bool blocks) {
   }
 }
 
-const exec::Buffer<double>& ContactAssembly::mollifiers(ResidentRows& rows, const exec::Buffer<double>& x) {
+void ContactAssembly::mollify(ResidentRows& rows, const exec::Buffer<double>& x) {
   const Index n = rows.list.size();
   mollified_.fit(12 * n);
   mollifier_.fit(n);
@@ -37,12 +35,16 @@ const exec::Buffer<double>& ContactAssembly::mollifiers(ResidentRows& rows, cons
                                        n,
                                        mollified_.data(),
                                        mollifier_.data()});
-  return mollifier_;
+}
+
+RowEnergy ContactAssembly::row_energy(ResidentRows& rows, const exec::Buffer<double>& x) {
+  mollify(rows, x);
+  return {rows.view(), {rows.list.data(), rows.list.size(), mollifier_.data()}};
 }
 
 void ContactAssembly::add_gradient(ResidentRows& rows, const exec::Buffer<double>& x,
                                    exec::Buffer<double>& gradient) {
-  mollifiers(rows, x);
+  mollify(rows, x);
   gather(rows, RowPush{}, gradient);
 }
 
@@ -75,37 +77,27 @@ MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double
   value_.fit(value_count(n));
   const BlockSources blocks = pattern_.blocks();
   if (rows.size() > 0) {
-    std::uint8_t* const dense = dense_.counts(rows.size());
-    executor_.each(rows.size(), MarkDense{rows.view(), choice.mode, dense});
-    // expected: all mollified rows, or all
-    dense_.list(dense_.rank(choice.mode == HessianMode::gauss_newton ? rows.list.size() : rows.size()),
-                dense_rows_);
     value_.fill_zero();  // the last plane may be longer than the blocks are
-    executor_.each(
-        n, GatherStreamed{rows.view(), blocks, dense, x.data(), surface_.view(), choice, value_.data()});
-    add_dense(rows, dense, x, choice);
+    executor_.each(n, GatherStreamed{rows.view(), blocks, x.data(), surface_.view(), choice, value_.data()});
+    add_hessians(rows, x, choice);
     executor_.each(n, MirrorBlocks{blocks, pattern_.n_vertices(), value_.data()});
   }
   return {blocks.row_begin, blocks.column, value_.data()};
 }
 
-void ContactAssembly::add_dense(ResidentRows& rows, const std::uint8_t* dense, const exec::Buffer<double>& x,
-                                const HessianChoice& choice) {
-  const Index n = dense_rows_.size(), stride = std::min(options_.hessians_a_chunk, n);
+// Without those of sliding rows a list of the mollified ones is all that there is; with them nearly every row has one.
+void ContactAssembly::add_hessians(ResidentRows& rows, const exec::Buffer<double>& x,
+                                   const HessianChoice& choice) {
+  const bool listed = choice.mode == HessianMode::gauss_newton;
+  const Index n = listed ? rows.list.size() : rows.size(), stride = std::min(options_.hessians_a_chunk, n);
   row_hessians_.fit(row_numbers * stride);
   for (Index first = 0; first < n; first += stride) {
     const Index size = std::min(stride, n - first);
-    const std::uint32_t* const list = dense_rows_.data() + first;
-    const RowHessians to{rows.view(), list, stride, row_hessians_.data(), x.data(), surface_.view(), choice};
+    const RowChunk chunk{listed ? rows.list.data() + first : nullptr, first, size};
+    const RowHessians to{rows.view(), chunk, stride, row_hessians_.data(), x.data(), surface_.view(), choice};
     if (rows.list.size() > 0) executor_.each(size, MollifiedHessians{to});
-    if (choice.mode == HessianMode::projected_full) {
-      executor_.each(size, SlidingHessians<PairKind::point_edge>{to});
-      executor_.each(size, SlidingHessians<PairKind::point_triangle>{to});
-      executor_.each(size, SlidingHessians<PairKind::edge_edge>{to});
-      executor_.each(size, ObstacleHessians<2>{to});
-      executor_.each(size, ObstacleHessians<3>{to});
-    }
-    executor_.each(16 * size, GatherDense{rows.view(), pattern_.blocks(), dense, list, size, stride,
+    if (!listed) executor_.each(size, SlidingHessians{to});
+    executor_.each(16 * size, GatherDense{rows.view(), pattern_.blocks(), chunk, choice.mode, stride,
                                           row_hessians_.data(), value_.data()});
   }
 }

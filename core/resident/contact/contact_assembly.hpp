@@ -3,6 +3,7 @@
 
 #include "core/resident/contact/contact_pattern.hpp"
 #include "core/resident/contact/resident_surface.hpp"
+#include "core/resident/contact/sum_kernels.hpp"
 #include "core/resident/contact/term_kernels.hpp"
 #include "core/resident/linear/resident_matrix.hpp"
 
@@ -33,29 +34,27 @@ class ContactAssembly {
   /// force [3 n_vertices] (N) += how the gradient changes along motion [3 n_vertices] (m, 0 at free vertices).
   void add_given_motion(ResidentRows& rows, const exec::Buffer<double>& x, const exec::Buffer<double>& motion,
                         exec::Buffer<double>& force);
-  /// The mollifiers [mollified rows] that rows.energy lacks, of the last add_gradient() or of rows at x.
-  const exec::Buffer<double>& mollifiers(ResidentRows& rows, const exec::Buffer<double>& x);
+  /// Energies of the rows at x: parts of a sum.
+  RowEnergy row_energy(ResidentRows& rows, const exec::Buffer<double>& x);
 
   /// Gives back values and scratch memory of matrix().
-  void free_matrix() { dense_.free(), dense_rows_.free(), row_hessians_.free(), value_.free(); }
+  void free_matrix() { row_hessians_.free(), value_.free(); }
   /// What an executor that only counts buffers is to take the rows for.
   void expect(const ExpectedContacts& expected) { pattern_.expect(expected); }
 
   const ContactPattern& pattern() const { return pattern_; }
 
  private:
+  void mollify(ResidentRows& rows, const exec::Buffer<double>& x);
   template <class Term>
   void gather(ResidentRows& rows, const Term& term, exec::Buffer<double>& out);
-  void add_dense(ResidentRows& rows, const std::uint8_t* dense, const exec::Buffer<double>& x,
-                 const HessianChoice& choice);
+  void add_hessians(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice);
 
   exec::Executor& executor_;
   const ResidentSurface& surface_;
   AssemblyOptions options_;
   ContactPattern pattern_;
   exec::Buffer<double> mollified_, mollifier_;  // [12][mollified], [mollified]
-  Compaction dense_;
-  exec::Buffer<std::uint32_t> dense_rows_;
   exec::Buffer<double> row_hessians_, value_;
 };
 

@@ -24,23 +24,16 @@ ContactPattern::ContactPattern(exec::Executor& executor, int n_vertices, Index c
     : executor_(executor),
       n_vertices_(n_vertices),
       chunk_(chunk),
-      touched_(executor, "contact counts of vertices", n_vertices),
+      touched_(executor, "contact counts of vertices"),
       slot_begin_(executor, "rows of vertices, starts", n_vertices + 1),
       row_begin_(executor, "contact matrix rows", n_vertices + 1),
       slot_(executor, "rows of vertices"),
       column_(executor, "contact matrix columns"),
       begin_(executor, "contact matrix contributions, starts"),
       code_(executor, "contact matrix contributions"),
-      numbers_(executor, "numbers of the pattern", 1),
       places_(executor, "pattern"),
-      upper_(executor, "pattern upper"),
       key_(executor, "pattern sort keys"),
       value_(executor, "pattern sort values") {}
-
-void ContactPattern::starts(const exec::Buffer<std::uint32_t>& counts, exec::Buffer<Index>& begin) {
-  executor_.each(n_vertices_ + 1, WidenCounts{counts.data(), begin.data(), n_vertices_});
-  executor_.exclusive_scan(begin.data(), n_vertices_ + 1);
-}
 
 Index ContactPattern::slot_begin(int vertex) const {
   if (vertex == 0) return 0;
@@ -67,42 +60,43 @@ int ContactPattern::end_of_chunk(int first, Index most) const {
 }
 
 void ContactPattern::build_slots(ResidentRows& rows) {
-  count(rows, false);
+  count(rows);
   fill_all_slots(rows.view());
 }
 
 /// How many slots there are, and contributions to blocks.
-void ContactPattern::count(ResidentRows& rows, bool blocks) {
+void ContactPattern::count(const ResidentRows& rows) {
   if (rows.size() >= Index{1} << 28) {
     throw std::length_error("contact matrix: " + std::to_string(rows.size()) + " rows; at most " +
                             std::to_string((1 << 28) - 1));
   }
-  const RowView view = rows.view();
+  n_ = {rows.n_slots, rows.n_contributions};
+}
+
+/// Where the slots of each vertex begin, known before there are any.
+void ContactPattern::count_slots(const RowView& rows) {
+  touched_.resize(n_vertices_);
   touched_.fill_zero();
-  executor_.each(view.n, CountTouched{view, touched_.data()});
-  starts(touched_, slot_begin_);
-  executor_.copy(&numbers_.data()->slots, slot_begin_.data() + n_vertices_, sizeof(Index));
-  if (blocks) {
-    executor_.each(view.n, CountUpperPairs{view, places_.counts(view.n)});
-    places_.rank_to(&numbers_.data()->contributions);
-  }
-  n_ = executor_.counts_only() ? Numbers{4 * expected_.rows, 10 * expected_.rows} : numbers_.get(0);
+  executor_.each(rows.n, CountTouched{rows, touched_.data()});
+  executor_.each(n_vertices_ + 1, WidenCounts{touched_.data(), slot_begin_.data(), n_vertices_});
+  executor_.exclusive_scan(slot_begin_.data(), n_vertices_ + 1);
 }
 
 void ContactPattern::fill_all_slots(const RowView& rows) {
   slot_.fit(n_.slots);
-  if (slot_.size() == 0) return;
-  for (int first = 0, last; first < n_vertices_; first = last) {
-    last = end_of_chunk(first, chunk_);
+  const bool one_chunk = n_.slots <= chunk_;
+  if (!one_chunk) count_slots(rows);
+  for (int first = 0, last; first < n_vertices_ && n_.slots > 0; first = last) {
+    last = one_chunk ? n_vertices_ : end_of_chunk(first, chunk_);
     fill_slots(rows, first, last);
   }
+  if (one_chunk) executor_.each(n_vertices_ + 1, SlotStarts{key_.data(), n_.slots, slot_begin_.data()});
 }
 
 void ContactPattern::fill_slots(const RowView& rows, int first, int last) {
-  executor_.each(rows.n, CountSlots{rows, first, last, places_.counts(rows.n)});
-  places_.rank_to(nullptr);
   const Index begin = slot_begin(first), n = slot_begin(last) - begin;
   if (n == 0) return;
+  places_.rank_by(rows.n, CountSlots{rows, first, last});
   key_.fit(n);
   std::uint32_t* const slot = slot_.data() + begin;
   executor_.each(rows.n, FillSlots{rows, first, last, places_.places(), key_.data(), slot});
@@ -110,35 +104,36 @@ void ContactPattern::fill_slots(const RowView& rows, int first, int last) {
 }
 
 void ContactPattern::build(ResidentRows& rows) {
-  count(rows, true);
+  count(rows);
   const RowView view = rows.view();
   fill_all_slots(view);
   code_.fit(n_.contributions);
-  touched_.fill_zero();  // blocks of a row from now on
   column_.resize(0), begin_.fit(1);
-  begin_.fill_zero();
-  if (slot_.size() > 0 && end_of_chunk(0, chunk_ / 4) == n_vertices_) {
+  if (slot_.size() == 0) {
+    begin_.fill_zero(), row_begin_.fill_zero();
+  } else if (end_of_chunk(0, chunk_ / 4) == n_vertices_) {
     const Index n = 2 * n_.contributions - n_.slots;  // of both triangles, less the diagonal's second ones
-    fill_blocks(view, {0, n_vertices_, n, 0}, column_, begin_);
-  } else if (slot_.size() > 0) {
+    fill_blocks(view, {0, n_vertices_, n, 0, 0}, column_, begin_);
+  } else {
     build_in_pieces(view);
   }
-  if (slot_.size() >= exact_from) key_.free(), value_.free(), places_.free(), upper_.free();
-  starts(touched_, row_begin_);
+  if (slot_.size() >= exact_from) key_.free(), value_.free(), places_.free();
 }
 
 void ContactPattern::build_in_pieces(const RowView& rows) {
   std::vector<Piece> pieces;
-  Index n_before = 0;
+  Index n_before = 0, blocks_before = 0;
   for (int first = 0, last; first < n_vertices_; first = last) {
     last = end_of_chunk(first, chunk_ / 4);
     const Index from = slot_begin(first), n_slots = slot_begin(last) - from;
-    if (n_slots == 0) continue;
-    executor_.each(n_slots, CountBlockPairs{rows, slot_.data() + from, places_.counts(n_slots)});
-    const Chunk chunk{first, last, places_.rank(4 * n_slots), n_before};
+    places_.rank_by(n_slots, CountBlockPairs{rows, slot_.data() + from});
+    const Index n_pairs = executor_.counts_only() ? 4 * n_slots : n_slots > 0 ? places_.sum() : 0;
     pieces.push_back(
         {{executor_, "contact matrix columns"}, {executor_, "contact matrix contributions, starts"}});
-    n_before += fill_blocks(rows, chunk, pieces.back().column, pieces.back().begin);
+    Piece& piece = pieces.back();
+    n_before += fill_blocks(rows, {first, last, n_pairs, blocks_before, n_before}, piece.column, piece.begin);
+    blocks_before += piece.column.size();
+    if (n_slots == 0) pieces.pop_back();  // where its rows begin was all that it had
   }
   join(pieces);
 }
@@ -149,29 +144,26 @@ Index ContactPattern::fill_blocks(const RowView& rows, const Chunk& chunk, exec:
   const int first = chunk.first, last = chunk.last;
   const Index from = slot_begin(first), n_slots = slot_begin(last) - from, n = chunk.n_pairs;
   const std::uint32_t* const slot = slot_.data() + from;
-  executor_.each(n_slots, CountBlockPairs{rows, slot, places_.counts(n_slots)});
-  places_.rank_to(nullptr);
+  places_.rank_by(n_slots, CountBlockPairs{rows, slot});
   key_.fit(n), value_.fit(n);
   const int bits = bits_below(n_vertices_);
   executor_.each(n_slots,
                  FillPairKeys{rows, slot, first, bits, places_.places(), key_.data(), value_.data()});
   executor_.sort(key_.data(), value_.data(), n, bits + bits_below(last - first));
 
-  std::uint8_t *const head = places_.counts(n), *const upper = upper_.counts(n);
-  executor_.each(n, MarkBlocks{key_.data(), first, bits, head, upper});
-  places_.rank_to(&numbers_.data()->slots), upper_.rank_to(&numbers_.data()->contributions);
+  const PairKeys keys{key_.data(), first, bits};
+  places_.rank_by(n, CountBlocks{keys});
   const double share = static_cast<double>(last - first) / n_vertices_;
-  const Numbers found =
-      executor_.counts_only()
-          ? Numbers{static_cast<Index>(share * static_cast<double>(expected_.n_blocks(n_vertices_))),
-                    n * 10 / 16}
-          : numbers_.get(0);
-  const Index n_blocks = found.slots;
+  Index n_blocks = static_cast<Index>(share * static_cast<double>(expected_.n_blocks(n_vertices_))),
+        n_contributions = n * 10 / 16;
+  if (!executor_.counts_only()) {
+    n_blocks = TwoPlaces::first_of(places_.sum()), n_contributions = TwoPlaces::second_of(places_.sum());
+  }
   column.fit(n_blocks), begin.fit(n_blocks + 1);
-  executor_.each(n, FillBlocks{key_.data(), value_.data(), n, first, bits, head, upper, places_.places(),
-                               upper_.places(), chunk.n_before, column.data(), begin.data(), code_.data(),
-                               touched_.data()});
-  return found.contributions;
+  executor_.each(n + (last - first) + 1, FillBlocks{keys, value_.data(), n, places_.two_places(), n_blocks,
+                                                    chunk.blocks_before, chunk.n_before, column.data(),
+                                                    begin.data(), code_.data(), row_begin_.data() + first});
+  return n_contributions;
 }
 
 void ContactPattern::join(std::vector<Piece>& pieces) {

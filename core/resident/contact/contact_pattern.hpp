@@ -33,18 +33,18 @@ class ContactPattern {
   static constexpr Index exact_from = Index{1} << 24;
   struct Piece;
   struct Numbers {
-    Index slots, contributions;  // of a chunk of vertices: blocks, contributions
+    Index slots, contributions;
   };
-  /// The vertices [first, last): pairs of points, and contributions to the blocks of those before.
+  /// The vertices [first, last): pairs of points, blocks and contributions of those before.
   struct Chunk {
     int first, last;
-    Index n_pairs, n_before;
+    Index n_pairs, blocks_before, n_before;
   };
   /// The first slot of a vertex, read.
   Index slot_begin(int vertex) const;
   int end_of_chunk(int first, Index most) const;
-  void starts(const exec::Buffer<std::uint32_t>& counts, exec::Buffer<Index>& begin);
-  void count(ResidentRows& rows, bool blocks);
+  void count(const ResidentRows& rows);
+  void count_slots(const RowView& rows);
   void fill_all_slots(const RowView& rows);
   void fill_slots(const RowView& rows, int first, int last);
   void build_in_pieces(const RowView& rows);
@@ -62,9 +62,8 @@ class ContactPattern {
   exec::Buffer<int> column_;
   exec::Buffer<std::uint32_t> begin_;
   exec::Buffer<std::uint32_t> code_;
-  Numbers n_{0, 0};
-  exec::Buffer<Numbers> numbers_;
-  Compaction places_, upper_;
+  Numbers n_{0, 0};  // of all rows
+  Compaction places_;
   exec::Buffer<Key> key_;
   exec::Buffer<std::uint32_t> value_;
 };

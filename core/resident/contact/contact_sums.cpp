@@ -9,10 +9,10 @@ Compensated ContactSums::sum(Index n, const Parts& parts) {
   return sum_.get();
 }
 
-Compensated ContactSums::energy(ResidentRows& rows, const exec::Buffer<double>& x,
-                                ContactAssembly& assembly) {
-  const exec::Buffer<double>& mollifiers = assembly.mollifiers(rows, x);
-  return sum(rows.size(), RowEnergy{rows.view(), {rows.list.data(), rows.list.size(), mollifiers.data()}});
+void ContactSums::look_at_energy(ResidentRows& rows, const exec::Buffer<double>& x,
+                                 ContactAssembly& assembly) {
+  energy_.clear();
+  energy_.add(rows.size(), assembly.row_energy(rows, x));
 }
 
 double ContactSums::product(const exec::Buffer<double>& a, const exec::Buffer<double>& b,

@@ -9,10 +9,16 @@ namespace bb::resident {
 
 class ContactSums {
  public:
-  explicit ContactSums(exec::Executor& executor) : sum_(executor) {}
+  explicit ContactSums(exec::Executor& executor) : sum_(executor), energy_(executor) {}
 
   /// Energy of all rows at x, J. Sums of two tables are compared as sums: rows come and go.
-  Compensated energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly);
+  Compensated energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly) {
+    look_at_energy(rows, x, assembly);
+    return energy();
+  }
+  /// The same in two calls: a launch, and what it found.
+  void look_at_energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly);
+  Compensated energy() const { return energy_.get(); }
   /// a . b over free degrees of freedom; both [3 n_vertices], fixed: 3 bits a vertex.
   double product(const exec::Buffer<double>& a, const exec::Buffer<double>& b,
                  const exec::Buffer<std::uint8_t>& fixed);
@@ -23,7 +29,7 @@ class ContactSums {
   template <class Parts>
   Compensated sum(Index n, const Parts& parts);
 
-  ResidentSum sum_;
+  ResidentSum sum_, energy_;
 };
 
 }  // namespace bb::resident

@@ -75,25 +75,10 @@ struct RowGivenMotion {
   }
 };
 
-/// Marks the rows whose Hessian is computed before it is gathered.
-struct MarkDense {
-  RowView rows;
-  HessianMode mode;
-  std::uint8_t* mark;
-  BB_HD void operator()(Index r) const {
-    const int kind = rows.kind[r];
-    const bool slides =
-        kind != static_cast<int>(ContactKind::point_point) && kind != static_cast<int>(ContactKind::obstacle);
-    const bool full = mode != HessianMode::gauss_newton && slides && rows.push[r] != 0;
-    mark[r] = rows.mollified(r) || full ? 1 : 0;
-  }
-};
-
 /// Values of the upper blocks, from the rows that need no Hessian of their own.
 struct GatherStreamed {
   RowView rows;
   BlockSources blocks;
-  const std::uint8_t* dense;
   const double* x;
   SurfaceView surface;
   HessianChoice choice;
@@ -104,7 +89,7 @@ struct GatherStreamed {
     for (Index i = blocks.begin[j]; i < blocks.begin[j + 1]; ++i) {
       const std::uint32_t code = blocks.code[i];
       const Index r = pair_row_of(code);
-      if (dense[r] != 0) continue;
+      if (has_own_hessian(rows, choice.mode, r)) continue;
       const double wa = rows.weight[pair_a(code) * rows.n + r], wb = rows.weight[pair_b(code) * rows.n + r];
       if (choice.mode == HessianMode::gauss_newton || rows.push[r] == 0) {
         add_stretch(r, wa, wb, sum);
@@ -142,26 +127,28 @@ struct GatherStreamed {
 struct GatherDense {
   RowView rows;
   BlockSources blocks;
-  const std::uint8_t* dense;  // [rows.n] 1: has a Hessian
-  const std::uint32_t* list;  // [n] ascending rows of the chunk
-  Index n, stride;
+  RowChunk chunk;
+  HessianMode mode;
+  Index stride;
   const double* number;  // [row_numbers][stride]
   double* value;
 
   BB_HD void operator()(Index item) const {
-    const std::uint32_t own = list[item >> 4] << 4 | static_cast<std::uint32_t>(item & 15);
+    const Index r = chunk.row(item >> 4);
+    if (!has_own_hessian(rows, mode, r)) return;
+    const std::uint32_t own = static_cast<std::uint32_t>(r) << 4 | static_cast<std::uint32_t>(item & 15);
     const Index j = block_of(own);
     if (j < 0) return;
     const Index end = blocks.begin[j + 1];
     Index i = first_not_below(blocks.code, Index{blocks.begin[j]}, end, own);
     if (!is_first(j, i)) return;
-    const Index last = list[n - 1];
+    const Index last = chunk.last_row();
     double sum[9];
     for (int c = 0; c < 9; ++c) sum[c] = value[value_index(j, c)];
     for (; i < end && pair_row_of(blocks.code[i]) <= last; ++i) {
-      const std::uint32_t code = blocks.code[i], row = code >> 4;
-      const Index at = first_not_below(list, Index{0}, n, row);
-      if (list[at] == row) add(at, pair_a(code), pair_b(code), sum);
+      const std::uint32_t code = blocks.code[i];
+      const Index row = pair_row_of(code);
+      if (has_own_hessian(rows, mode, row)) add(chunk.place(row), pair_a(code), pair_b(code), sum);
     }
     for (int c = 0; c < 9; ++c) value[value_index(j, c)] = sum[c];
   }
@@ -178,9 +165,8 @@ struct GatherDense {
   }
   /// Whether no row of the chunk comes before contribution i of block j.
   BB_HD bool is_first(Index j, Index i) const {
-    while (i > static_cast<Index>(blocks.begin[j]) &&
-           pair_row_of(blocks.code[i - 1]) >= static_cast<Index>(list[0])) {
-      if (dense[pair_row_of(blocks.code[i - 1])] != 0) return false;
+    while (i > static_cast<Index>(blocks.begin[j]) && pair_row_of(blocks.code[i - 1]) >= chunk.first_row()) {
+      if (has_own_hessian(rows, mode, pair_row_of(blocks.code[i - 1]))) return false;
       --i;
     }
     return true;

@@ -1,8 +1,9 @@
 // Broad phase on an executor: the candidate pairs of a motion, those of BroadPhase (core/contact/candidates.hpp).
 #pragma once
 
+#include "core/exec/board.hpp"
 #include "core/resident/contact/box_tree.hpp"
-#include "core/resident/contact/pair_search.hpp"
+#include "core/resident/contact/candidate_kernels.hpp"
 #include "core/scene/contact_plan.hpp"
 
 namespace bb::resident {
@@ -17,12 +18,6 @@ struct CandidateCounts {
   }
   /// Of their lists, with the room to grow that they are given.
   std::size_t bytes() const { return static_cast<std::size_t>(total() + total() / 4) * sizeof(Key); }
-};
-
-/// Where the candidates of a motion come from without a list of them.
-struct CandidateSource {
-  PairSearch point_point, point_edge, point_triangle, edge_edge;
-  bool obstacles;
 };
 
 class ResidentBroadPhase {
@@ -53,45 +48,21 @@ class ResidentBroadPhase {
  private:
   void find_frame(const Column& x0, const Column& x1);
   void fit(const Column& x0, const Column& x1);
-  /// Of one kind of pair: where those of each primitive begin ([n + 1]), and the first of each that are held.
-  struct Found {
-    Found(exec::Executor& executor, const std::string& name)
-        : begin(executor, "places of " + name + " candidates"),
-          held(executor, "held " + name + " candidates") {}
-    void free() { begin.free(), held.free(); }
-    exec::Buffer<Index> begin;
-    exec::Buffer<Key> held;
-  };
-  template <PairKind K>
-  void count_kind(bool needed, Found& found);
-  template <PairKind K>
-  void fill_kind(bool needed, const Found& found, Index total, exec::Buffer<Key>& out);
-  template <int N>
-  void count_obstacles(Found& found);
-  template <int N>
-  void fill_obstacles(const Found& found, Index total, exec::Buffer<Key>& out);
   template <PairKind K>
   PairSearch search() const;
-  void sum_up(Found& found);
+  Askers askers() const;
 
   exec::Executor& executor_;
   const ResidentSurface& surface_;
   const ContactPlan plan_;
   exec::Buffer<int> connected_, opposite_;
   exec::Buffer<MotionFrame> frame_;
-  exec::Buffer<Key> sample_;
-  TreeScratch scratch_;
-  BoxTree<1> points_;
-  BoxTree<2> edges_;
-  BoxTree<3> triangles_;
-  ResidentPrimitives<2>
-      lone_;  // edges without triangles in space, what they are in the surface, and their tree
-  exec::Buffer<int> edge_of_;
-  BoxTree<2> lone_edges_;
-  Found point_points_, point_edges_, point_triangles_, edge_edges_, obstacle_points_, obstacle_edges_,
-      obstacle_triangles_;
-  exec::Buffer<CandidateCounts> total_;
-  int n_counted_ = 0;
+  BoxTrees trees_;
+  ResidentPrimitives<2> lone_;  // edges without triangles in space
+  exec::Buffer<int> edge_of_;   // what they are in the surface
+  exec::Buffer<Index> places_;  // of the candidates of each item of askers()
+  exec::Buffer<Key> held_;      // the first ones of each leaf
+  exec::Reading<CandidateCounts> total_;
   CandidateCounts counts_;
   bool room_ = true;
   const double *x0_ = nullptr, *x1_ = nullptr;

@@ -102,6 +102,7 @@ class ResidentRows {
     vertex_.swap(other.vertex_), pair_.swap(other.pair_), kind_.swap(other.kind_), free_.swap(other.free_);
     list.swap(other.list);
     std::swap(uniform_kappa, other.uniform_kappa), std::swap(min_gap, other.min_gap);
+    std::swap(n_slots, other.n_slots), std::swap(n_contributions, other.n_contributions);
   }
   /// Hands over the columns that only one of two tables needs at a time: those that gradients and matrix read.
   void lend(ResidentRows& other) noexcept {
@@ -151,6 +152,8 @@ class ResidentRows {
   exec::Buffer<std::uint32_t> list;  // numbers of the mollified rows, ascending
   double uniform_kappa = 0;          // N/m
   double min_gap = 0;                // m; infinity without rows
+  Index n_slots = 0;                 // free points of all rows
+  Index n_contributions = 0;         // and pairs a <= b of them, of one row each
 
  private:
   KappaColumns columns_;

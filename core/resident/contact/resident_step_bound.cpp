@@ -13,86 +13,63 @@ ResidentStepBound::ResidentStepBound(exec::Executor& executor, const ResidentSur
       level_(level),
       batches_(batches),
       total_(executor),
-      numbers_(executor, "step bound", 1),
+      largest_(executor),
       proven_(executor, "proven times"),
       places_(executor, "asked pairs"),
-      asked_(executor, "asked pairs"),
-      time_(executor, "times of asked pairs"),
-      pair_(executor, "pairs of those times"),
-      counts_(executor, "counts of those times") {}
+      asked_(executor, "asked pairs") {}
 
 void ResidentStepBound::start(const Column& x0, const Column& x1) {
-  Key* const largest = &numbers_.data()->largest;
-  executor_.fill_bytes(largest, 0xff, sizeof(Key));
-  for (const Column* x : {&x0, &x1}) {
-    const Index n_blocks = (x->size() + LargestCoordinate::a_block - 1) / LargestCoordinate::a_block;
-    executor_.blocks(n_blocks, LargestCoordinate{x->data(), x->size(), largest});
-  }
+  largest_.fill(0xff);
+  const Index n_blocks = (2 * x0.size() + LargestCoordinate::a_block - 1) / LargestCoordinate::a_block;
+  executor_.blocks(n_blocks, LargestCoordinate{x0.data(), x1.data(), x0.size(), largest_.to_write()});
   total_.clear();
   query_ = {surface_.view(), x0.data(), x1.data(), level_.park, level_.max_probes, total_.data()};
 }
 
-/// ask(begin, n, times) for batches of [0, n), one after another.
+/// ask(begin, n) for batches of [0, n), one after another.
 template <class Ask>
-void ResidentStepBound::in_batches(Index n, int list, const Ask& ask) {
-  const Index most = std::min(n, batches_.most_asked);
-  if (time_.size() < most) time_.fit(most), pair_.fit(most), counts_.fit(most);
-  const BatchTimes times{time_.data(), pair_.data(), counts_.data()};
+void ResidentStepBound::in_batches(Index n, const Ask& ask) {
   Index length = batches_.first_asked;
   for (Index begin = 0; begin < n; begin += length) {
     if (begin > 0) length = std::min(2 * length, batches_.most_asked);
     const Index m = std::min(length, n - begin);
-    ask(begin, m, times);
-    total_.add(m, BatchParts{times, static_cast<Key>(list)});
+    total_.add(m, ask(begin));
   }
 }
 
-/// Those of n pairs that have to be asked, early ones first, into asked_. Returns how many.
-template <PairKind K>
-Index ResidentStepBound::screen(const Key* candidates, Index n) {
+Index ResidentStepBound::pairs_of_chunk(Index begin) const {
+  return std::min(batches_.chunk, lists_.begin[first_obstacle_list] - begin);
+}
+
+/// Screens the pairs of a chunk and asks them at once where one batch holds them.
+void ResidentStepBound::look_at_chunk(Index begin) {
+  const Index n = pairs_of_chunk(begin);
   if (proven_.size() < n) proven_.fit(n);
+  if (asked_.size() < n) asked_.fit(n);
   std::uint8_t* const keep = places_.counts(n);
-  executor_.each(n, ScreenPairs<K>{query_, candidates, proven_.data(), keep});
-  const Index m = places_.rank(n);
-  if (asked_.size() < m) asked_.fit(m);
+  places_.rank_by(n, ScreenPairs{query_, lists_, begin, proven_.data(), keep});
   executor_.each(n, KeepPairs{proven_.data(), keep, places_.places(), asked_.data()});
-  executor_.sort(asked_.data(), nullptr, m, 32);
-  return m;
+  const Index most = std::min(n, batches_.first_asked);
+  total_.add(most, AskPairs{query_, lists_, begin, asked_.data(), places_.sum_on_executor(), most});
 }
 
-template <PairKind K>
-void ResidentStepBound::ask_list(const exec::Buffer<Key>& candidates) {
-  for (Index begin = 0; begin < candidates.size(); begin += batches_.chunk) {
-    const Key* const chunk = candidates.data() + begin;
-    const Index m = screen<K>(chunk, std::min(batches_.chunk, candidates.size() - begin));
-    in_batches(m, static_cast<int>(K), [&](Index at, Index n, const BatchTimes& times) {
-      executor_.each(n, AskPairs<K>{query_, chunk, asked_.data() + at, times});
-    });
-  }
+/// What one batch did not hold, early ones first. Waits.
+void ResidentStepBound::ask_rest(Index begin) {
+  const Index n = executor_.counts_only() ? 0 : places_.sum();
+  if (n <= std::min(pairs_of_chunk(begin), batches_.first_asked)) return;
+  executor_.sort(asked_.data(), nullptr, n, 32);
+  in_batches(n, [&](Index at) { return AskPairs{query_, lists_, begin, asked_.data() + at, nullptr, 0}; });
 }
 
 template <PairKind K>
 void ResidentStepBound::ask_tree(const PairSearch& search) {
   const Index n = search.first.top < 0 || search.second.top < 0 ? 0 : search.first.size(0);
-  in_batches(n, static_cast<int>(K), [&](Index at, Index m, const BatchTimes& times) {
-    executor_.each(m, AskInTree<K>{query_, search, at, times});
-  });
-}
-
-template <int N>
-void ResidentStepBound::ask_obstacle_list(const exec::Buffer<Key>& candidates) {
-  const Key* const list = candidates.data();
-  in_batches(candidates.size(), obstacle_pairs_of<N>, [&](Index at, Index n, const BatchTimes& times) {
-    executor_.each(n, AskObstacles<N>{query_, list + at, times});
-  });
+  in_batches(n, [&](Index at) { return AskInTree<K>{query_, search, at}; });
 }
 
 template <int N>
 void ResidentStepBound::ask_all_obstacles() {
-  const Index n_primitives = surface_.view().primitives<N>().n;
-  in_batches(n_primitives, obstacle_pairs_of<N>, [&](Index at, Index n, const BatchTimes& times) {
-    executor_.each(n, AskObstaclesOf<N>{query_, at, times});
-  });
+  in_batches(surface_.view().primitives<N>().n, [&](Index at) { return AskObstaclesOf<N>{query_, at}; });
 }
 
 /// Vertices of a pair, as StepBoundFinder names it.
@@ -125,14 +102,12 @@ ContactKey ResidentStepBound::key_of(int list, Key pair) const {
 StepBound ResidentStepBound::result() {
   StepBound out;
   if (executor_.counts_only()) return out;
-  executor_.copy(&numbers_.data()->total, total_.data(), sizeof(BoundTotal));
-  const Numbers numbers = numbers_.get(0);
-  if (~numbers.largest >= exec::ordered_bits(std::numeric_limits<double>::infinity()) &&
-      numbers.largest != no_pair) {
+  const Key largest = largest_.get();
+  if (~largest >= exec::ordered_bits(std::numeric_limits<double>::infinity()) && largest != no_pair) {
     out.alpha = 0;
     return out;
   }
-  const BoundTotal& total = numbers.total;
+  const BoundTotal total = total_.get();
   out.alpha = total.time();
   out.queries = static_cast<long long>(total.queries);
   out.probes = static_cast<long long>(total.probes);
@@ -144,15 +119,20 @@ StepBound ResidentStepBound::result() {
   return out;
 }
 
-StepBound ResidentStepBound::find(const ResidentCandidates& candidates, const Column& x0, const Column& x1) {
+void ResidentStepBound::look(const ResidentCandidates& candidates, const Column& x0, const Column& x1) {
   start(x0, x1);
-  ask_obstacle_list<1>(candidates.obstacle);
-  ask_obstacle_list<2>(candidates.obstacle_edge);
-  ask_obstacle_list<3>(candidates.obstacle_triangle);
-  ask_list<PairKind::point_point>(candidates.point_point);
-  ask_list<PairKind::point_edge>(candidates.point_edge);
-  ask_list<PairKind::point_triangle>(candidates.point_triangle);
-  ask_list<PairKind::edge_edge>(candidates.edge_edge);
+  lists_ = candidate_lists(candidates);
+  in_batches(lists_.of_obstacles(), [this](Index at) {
+    return AskObstacles{query_, lists_, lists_.begin[first_obstacle_list] + at};
+  });
+  if (lists_.begin[first_obstacle_list] > 0) look_at_chunk(0);
+}
+
+StepBound ResidentStepBound::finish() {
+  for (Index begin = 0; begin < lists_.begin[first_obstacle_list]; begin += batches_.chunk) {
+    if (begin > 0) look_at_chunk(begin);
+    ask_rest(begin);
+  }
   return result();
 }
 

@@ -21,7 +21,7 @@ struct BoundBatches {
 /// Pairs are screened in chunks of their lists: axes and planes prove of most that they come later than the smallest
 /// time known. The rest is asked in batches, in the order of what is proven of it. Counters are the same in any order
 /// of a launch; they differ from the CPU path's, whose batches are others. Keeps its buffers: 7 B a pair of a
-/// chunk, 8 B a pair that has to be asked, 32 B a pair of a batch.
+/// chunk, 8 B a pair that has to be asked.
 class ResidentStepBound {
  public:
   using Column = exec::Buffer<double>;
@@ -31,30 +31,28 @@ class ResidentStepBound {
                     const BoundBatches& batches = {});
 
   /// Of all candidates of x0 -> x1 ([3 n_vertices] m). A motion that is not finite: alpha 0, without a pair.
-  StepBound find(const ResidentCandidates& candidates, const Column& x0, const Column& x1);
+  StepBound find(const ResidentCandidates& candidates, const Column& x0, const Column& x1) {
+    look(candidates, x0, x1);
+    return finish();
+  }
+  /// The same in two calls: what is launched before the second one is read together.
+  void look(const ResidentCandidates& candidates, const Column& x0, const Column& x1);
+  StepBound finish();
   /// The same without lists, for when they would need too much memory: pairs are asked where the search of the trees
   /// finds them. source: of a count of the same motion.
   StepBound find_without_list(const CandidateSource& source, const Column& x0, const Column& x1);
 
  private:
-  /// What is read of a motion, once.
-  struct Numbers {
-    BoundTotal total;
-    Key largest;  // complemented bits of the largest coordinate
-  };
   void start(const Column& x0, const Column& x1);
-  template <PairKind K>
-  void ask_list(const exec::Buffer<Key>& candidates);
-  template <PairKind K>
-  Index screen(const Key* candidates, Index n);
+  void look_at_chunk(Index begin);
+  void ask_rest(Index begin);
   template <PairKind K>
   void ask_tree(const PairSearch& search);
   template <int N>
-  void ask_obstacle_list(const exec::Buffer<Key>& candidates);
-  template <int N>
   void ask_all_obstacles();
   template <class Ask>
-  void in_batches(Index n, int list, const Ask& ask);
+  void in_batches(Index n, const Ask& ask);
+  Index pairs_of_chunk(Index begin) const;
   StepBound result();
   ContactKey key_of(int list, Key pair) const;
 
@@ -64,11 +62,11 @@ class ResidentStepBound {
   const BoundBatches batches_;
   BoundQuery query_{};
   ResidentSums<BoundTotal> total_;
-  exec::Buffer<Numbers> numbers_;
+  exec::Reading<Key> largest_;  // complemented bits of the largest coordinate
   exec::Buffer<float> proven_;
   Compaction places_;
-  exec::Buffer<Key> asked_, time_, pair_;
-  exec::Buffer<QueryCounts> counts_;
+  exec::Buffer<Key> asked_;
+  CandidateLists lists_{};  // of the last look()
 };
 
 }  // namespace bb::resident

@@ -18,7 +18,7 @@ ResidentStiffness::ResidentStiffness(exec::Executor& executor, const StiffnessPo
       known_pair_(executor, "known pairs"),
       known_kappa_(executor, "known kappa"),
       known_per_gap_(executor, "known kappa per gap"),
-      change_(executor, "kappa change", 1) {
+      change_(executor) {
   require_kernel(policy, "/formulation/stiffness_policy/name");
   if (!policy.uniform()) mass_.upload(mass);
 }
@@ -43,19 +43,21 @@ void ResidentStiffness::recall_and_compute(ResidentRows& rows, const KnownPairs&
   compute(rows, missing, at_d_hat, elastic);
 }
 
-double ResidentStiffness::refresh(ResidentRows& rows, const MatrixPart& elastic) {
+void ResidentStiffness::refresh(ResidentRows& rows, const MatrixPart& elastic) {
   rows.uniform_kappa = uniform_kappa_;
-  if (policy_.uniform() || rows.size() == 0) return 0;
+  compares_ = false;
+  if (policy_.uniform() || rows.size() == 0) return;
   if (!rows_are_memory()) {
     recall_and_compute(rows, memory(), false, elastic);
-    keep(rows);
-    return 0;
+    return keep(rows);
   }
   compute(rows, nullptr, false, elastic);
-  executor_.fill_bytes(change_.data(), 0xff, sizeof(Key));  // no change
-  executor_.each(rows.size(), SettleKappa{rows.view(), change_.data()});
-  return executor_.counts_only() ? 0 : exec::from_ordered_bits(~change_.get(0));
+  change_.fill(0xff);  // no change
+  executor_.each(rows.size(), SettleKappa{rows.view(), change_.to_write()});
+  compares_ = !executor_.counts_only();
 }
+
+double ResidentStiffness::change() const { return compares_ ? exec::from_ordered_bits(~change_.get()) : 0; }
 
 void ResidentStiffness::freeze(ResidentRows& trial, ResidentRows& iterate, const MatrixPart& elastic) {
   trial.uniform_kappa = uniform_kappa_;

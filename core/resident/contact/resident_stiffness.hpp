@@ -27,15 +27,18 @@ class ResidentStiffness {
 
   /// N/m, of all rows from now on.
   void set_uniform(double kappa) { uniform_kappa_ = kappa; }
+  double uniform_kappa() const { return uniform_kappa_; }
   /// Step length (s) and inertia weight c.
   void set_time(const StiffnessTime& time) { time_ = time; }
   /// Forgets the kappa of the step before.
   void begin_step() { n_known_ = 0; }
 
   /// kappa of the rows of a Newton iterate. elastic: the elastic matrix H, read where the policy needs it; a potential
-  /// asks for that of the step's first iterate all through the step. @return the largest relative change of a
-  /// row's kappa since its iterate was accepted; 0 where there is one kappa, or kappa is kept for the step.
-  double refresh(ResidentRows& rows, const MatrixPart& elastic);
+  /// asks for that of the step's first iterate all through the step.
+  void refresh(ResidentRows& rows, const MatrixPart& elastic);
+  /// The largest relative change of a row's kappa in the last refresh(), since its iterate was accepted; 0 where there is
+  /// one kappa, or kappa is kept for the step. Waits.
+  double change() const;
   /// kappa of the rows of a trial: known pairs keep theirs, new ones get the policy's at d = d_hat. iterate: rows of
   /// the last refresh, or those accepted since. Of a potential, what is new is known from then on.
   void freeze(ResidentRows& trial, ResidentRows& iterate, const MatrixPart& elastic);
@@ -63,7 +66,8 @@ class ResidentStiffness {
   exec::Buffer<Key> known_pair_;
   exec::Buffer<double> known_kappa_, known_per_gap_;
   Index n_known_ = 0;
-  exec::Buffer<Key> change_;
+  exec::Reading<Key> change_;
+  bool compares_ = false;  // change_ is that of the last refresh()
 };
 
 /// The gaps of pairs at two step ends, for policies that adapt between steps. Keeps the pairs of the last end.

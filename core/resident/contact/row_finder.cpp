@@ -2,90 +2,56 @@
 
 #include <limits>
 
-#include "core/resident/sums/resident_sum.hpp"
-
 namespace bb::resident {
-namespace {
-
-/// f(rows, list) of every list of candidates; rows: what its kernels ask.
-template <class F>
-void for_each_list(const NarrowPhase& phase, const ResidentCandidates& c, const F& f) {
-  f(SurfaceRows<PairKind::point_point>{phase}, c.point_point);
-  f(SurfaceRows<PairKind::point_edge>{phase}, c.point_edge);
-  f(SurfaceRows<PairKind::point_triangle>{phase}, c.point_triangle);
-  f(SurfaceRows<PairKind::edge_edge>{phase}, c.edge_edge);
-  f(ObstacleRows<1>{phase}, c.obstacle);
-  f(ObstacleRows<2>{phase}, c.obstacle_edge);
-  f(ObstacleRows<3>{phase}, c.obstacle_triangle);
-}
-
-Index n_candidates(const ResidentCandidates& c) {
-  return c.point_point.size() + c.point_edge.size() + c.point_triangle.size() + c.edge_edge.size() +
-         c.obstacle.size() + c.obstacle_edge.size() + c.obstacle_triangle.size();
-}
-
-}  // namespace
 
 RowFinder::RowFinder(exec::Executor& executor, const ResidentSurface& surface, bool mollifier)
     : executor_(executor),
       surface_(surface),
       mollifier_(mollifier),
       places_(executor, "narrow phase"),
-      numbers_(executor, "numbers of rows", 1) {}
+      numbers_(executor),
+      differs_(executor) {}
 
-void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& candidates,
-                     ResidentRows& rows) {
-  rows.list.resize(0);
-  numbers_.fill_zero();
-  executor_.each(x.size(), FindNonFinite{x.data(), &numbers_.data()->not_finite});
-  const NarrowPhase phase{surface_.view(), x.data(), mollifier_};
-  std::uint8_t* const mark = places_.counts(n_candidates(candidates));
-  Index first = 0;
-  for_each_list(phase, candidates, [&]<class Rows>(const Rows& of, const exec::Buffer<Key>& list) {
-    executor_.each(list.size(), MarkRows<Rows>{of, list.data(), mark + first});
-    first += list.size();
-  });
-  places_.rank_to(&numbers_.data()->rows);
-  RowNumbers numbers{0, 0, expected_.rows, ~Key{0}, expected_.mollified};
-  if (!executor_.counts_only()) numbers = numbers_.get(0);
-  if (numbers.not_finite != 0) {  // comparisons mean nothing then
-    rows.resize(0);
-    rows.min_gap = -std::numeric_limits<double>::infinity();
-    return;
-  }
-  rows.resize(numbers.rows);
-  const RowView view = rows.view();
-  first = 0;
-  for_each_list(phase, candidates, [&]<class Rows>(const Rows& of, const exec::Buffer<Key>& list) {
-    executor_.each(list.size(), FillRows<Rows>{of, list.data(), mark + first, first, places_.places(), view});
-    first += list.size();
-  });
-  measure(rows);
+void RowFinder::look(const exec::Buffer<double>& x, const ResidentCandidates& candidates) {
+  phase_ = {surface_.view(), x.data(), mollifier_};
+  lists_ = candidate_lists(candidates);
+  const Index n = lists_.size();
+  numbers_.fill(0);
+  executor_.fill_bytes(&numbers_.to_write()->least_gap, 0xff, sizeof(Key));
+  const RankRows rank{phase_, lists_, places_.room(n), places_.counts(n), x.size(), numbers_.to_write()};
+  executor_.blocks(rank.n_blocks(), rank);
+  places_.finish(n);
 }
 
-/// The smallest gap, and which rows are mollified.
-void RowFinder::measure(ResidentRows& rows) {
+void RowFinder::finish(ResidentRows& rows) {
+  RowNumbers numbers{0, 0, ~Key{0}, 4 * static_cast<Key>(expected_.rows),
+                     10 * static_cast<Key>(expected_.rows)};
+  Index n = expected_.rows, n_mollified = expected_.mollified;
+  if (!executor_.counts_only()) {
+    numbers = numbers_.get();
+    n = TwoPlaces::first_of(places_.sum()), n_mollified = TwoPlaces::second_of(places_.sum());
+  }
   rows.min_gap = std::numeric_limits<double>::infinity();
-  if (rows.size() == 0) return;
-  Key* const least = &numbers_.data()->least_gap;
-  const Index n = rows.size(), items = items_a_block(n);
-  executor_.fill_bytes(least, 0xff, sizeof(Key));
-  executor_.blocks((n + items - 1) / items, LeastKey<RowGaps>{{rows.view().d}, n, least});
-  if (mollifier_) {
-    executor_.each(n, MarkMollified{rows.view().kind, places_.counts(n)});
-    places_.rank_to(&numbers_.data()->mollified);
+  if (numbers.not_finite != 0) {  // comparisons mean nothing then
+    n = n_mollified = 0;
+    numbers.slots = numbers.contributions = 0;
+    rows.min_gap = -std::numeric_limits<double>::infinity();
   }
-  RowNumbers numbers{0, 0, 0, ~Key{0}, expected_.mollified};
-  if (!executor_.counts_only()) numbers = numbers_.get(0);
+  rows.resize(n);
+  rows.n_slots = static_cast<Index>(numbers.slots),
+  rows.n_contributions = static_cast<Index>(numbers.contributions);
+  rows.list.fit(n_mollified);
+  if (n == 0) return;
   if (numbers.least_gap != ~Key{0}) rows.min_gap = from_smallest_key(numbers.least_gap);
-  if (mollifier_) places_.list(numbers.mollified, rows.list);
+  executor_.each(lists_.size(), FillRows{phase_, lists_, places_.counts(lists_.size()), places_.two_places(),
+                                         rows.view(), rows.list.data()});
 }
 
-bool RowFinder::same_stencils(ResidentRows& a, ResidentRows& b) {
-  if (a.size() != b.size() || executor_.counts_only()) return false;
-  numbers_.fill_zero();
-  executor_.each(a.size(), CompareStencils{a.view(), b.view(), &numbers_.data()->not_finite});
-  return numbers_.get(0).not_finite == 0;
+void RowFinder::compare(ResidentRows& a, ResidentRows& b) {
+  comparable_ = a.size() == b.size() && !executor_.counts_only();
+  if (!comparable_) return;
+  differs_.fill(0);
+  executor_.each(a.size(), CompareStencils{a.view(), b.view(), differs_.to_write()});
 }
 
 }  // namespace bb::resident

@@ -18,31 +18,38 @@ class RowFinder {
   /// One row a candidate pair with d < d_hat at x [3n] m, sorted by PairId; kappa and the barrier are not set,
   /// kappa_before is 0. Sets min_gap: the smallest gap, infinity without rows; x that is not finite: no rows and
   /// -infinity. Errors: OutOfMemory.
-  void find(const exec::Buffer<double>& x, const ResidentCandidates& candidates, ResidentRows& rows);
+  void find(const exec::Buffer<double>& x, const ResidentCandidates& candidates, ResidentRows& rows) {
+    look(x, candidates);
+    finish(rows);
+  }
+  /// The same in two calls: what is launched before the second one is read together. x and the candidates stay until then.
+  void look(const exec::Buffer<double>& x, const ResidentCandidates& candidates);
+  void finish(ResidentRows& rows);
   /// Gives back what it keeps between two calls.
   void free() { places_.free(); }
   /// What an executor that only counts buffers is to take the rows for.
   void expect(const ExpectedContacts& expected) { expected_ = expected; }
 
   /// Whether two tables have the same stencils and free vertices, so that one pattern serves both.
-  bool same_stencils(ResidentRows& a, ResidentRows& b);
+  bool same_stencils(ResidentRows& a, ResidentRows& b) {
+    compare(a, b);
+    return same();
+  }
+  /// The same in two calls.
+  void compare(ResidentRows& a, ResidentRows& b);
+  bool same() const { return comparable_ && differs_.get() == 0; }
 
  private:
-  /// What is read of a search, at most twice.
-  struct RowNumbers {
-    std::uint32_t not_finite, unused;  // a number that is none; where two tables differ
-    Index rows;
-    Key least_gap;  // smallest_key
-    Index mollified;
-  };
-  void measure(ResidentRows& rows);
-
   exec::Executor& executor_;
   const ResidentSurface& surface_;
   bool mollifier_;
   ExpectedContacts expected_;
   Compaction places_;
-  exec::Buffer<RowNumbers> numbers_;
+  exec::Reading<RowNumbers> numbers_;
+  exec::Reading<std::uint32_t> differs_;
+  bool comparable_ = false;
+  NarrowPhase phase_{};  // of the last look()
+  CandidateLists lists_{};
 };
 
 }  // namespace bb::resident

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/contact/row_rule.hpp"
+#include "core/resident/contact/candidate_lists.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
@@ -41,12 +42,6 @@ struct NarrowPhase {
   }
 };
 
-/// Keys of LeastKey: the smallest gap of rows; what is no number counts for none.
-struct RowGaps {
-  const double* d;
-  BB_HD Key operator()(Index r) const { return d[r] == d[r] ? smallest_key(d[r] + 0.0) : ~Key{0}; }
-};
-
 BB_HD inline void put_row(const RowView& rows, Index at, const FoundRow& row, Key pair) {
   for (int k = 0; k < 4; ++k) {
     rows.vertex[k * rows.n + at] = row.stencil[k];
@@ -61,64 +56,118 @@ BB_HD inline void put_row(const RowView& rows, Index at, const FoundRow& row, Ke
   if (rows.kappa_before) rows.kappa_before[at] = 0;
 }
 
-BB_HD inline Key pair_of(int kind, Key candidate) {
-  return pair_id(kind, candidate >> 32, candidate & 0xffffffffu);
+/// The row of a candidate of any list.
+BB_HD inline bool find_row(const NarrowPhase& phase, const CandidateItem& item, FoundRow& out) {
+  switch (item.list) {
+    case 0:
+      return phase.find<PairKind::point_point>(item.pair, out);
+    case 1:
+      return phase.find<PairKind::point_edge>(item.pair, out);
+    case 2:
+      return phase.find<PairKind::point_triangle>(item.pair, out);
+    case 3:
+      return phase.find<PairKind::edge_edge>(item.pair, out);
+    case 4:
+      return phase.find_obstacle_pair<1>(item.pair, out);
+    case 5:
+      return phase.find_obstacle_pair<2>(item.pair, out);
+    default:
+      return phase.find_obstacle_pair<3>(item.pair, out);
+  }
 }
 
-/// The rows of a list of pairs of surface primitives, and of primitives with N vertices and obstacles: what the two kernels below ask.
-template <PairKind K>
-struct SurfaceRows {
-  static constexpr int kind = static_cast<int>(K);
-  NarrowPhase phase;
-  BB_HD bool find(Key candidate, FoundRow& out) const { return phase.find<K>(candidate, out); }
-};
-template <int N>
-struct ObstacleRows {
-  static constexpr int kind = obstacle_pairs_of<N>;
-  NarrowPhase phase;
-  BB_HD bool find(Key candidate, FoundRow& out) const { return phase.find_obstacle_pair<N>(candidate, out); }
+/// What is read of a search, once.
+struct RowNumbers {
+  std::uint32_t not_finite, unused;  // a number of x that is none
+  Key least_gap;                     // smallest_key(); what is no number counts for none; all ones before
+  Key slots, contributions;          // free points of rows, and pairs a <= b of them
 };
 
-/// mark[i] = 1 where candidate i has a row.
-template <class Rows>
-struct MarkRows {
-  Rows of;
-  const Key* candidate;
-  std::uint8_t* mark;
-  BB_HD void operator()(Index i) const {
+/// Ranks the candidates that have a row, and with them the mollified ones; block b of the candidates, then of x.
+struct RankRows {
+  static constexpr Index coordinates = 8 * exec::block_threads;  // of x, a block
+  struct Shared {
+    RankShared rank;
+    Key least[exec::block_threads];
+    int free[exec::block_threads];  // slots, contributions from bit 16 on
+  };
+  NarrowPhase phase;
+  CandidateLists lists;
+  RankPlaces to;
+  std::uint8_t* mark;  // [n] 1: has a row
+  Index n_coordinates;
+  RowNumbers* numbers;
+
+  Index n_blocks() const { return to.n_blocks + (n_coordinates + coordinates - 1) / coordinates; }
+
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
+    if (b >= to.n_blocks) return check(block, b - to.n_blocks);
+    const auto counts = [&](Index i) {
+      const int t = static_cast<int>(i - b * exec::block_threads);
+      return find(i, shared.least[t], shared.free[t]);
+    };
+    block.threads([&](int t) {
+      shared.least[t] = ~Key{0};
+      shared.free[t] = 0;
+    });
+    rank_block<true>(block, shared.rank, to, b, counts);
+    exec::fold(block, shared.free, exec::block_threads);
+    for (int half = exec::block_threads / 2; half > 0; half /= 2) {
+      block.threads([&](int t) {
+        if (t < half && shared.least[t + half] < shared.least[t]) shared.least[t] = shared.least[t + half];
+      });
+    }
+    block.threads([&](int t) {
+      const int free = shared.free[0];
+      if (t != 0 || free == 0) return;
+      exec::atomic_add(&numbers->slots, static_cast<Key>(free & 0xffff));
+      exec::atomic_add(&numbers->contributions, static_cast<Key>(free >> 16));
+    });
+    block.threads([&](int t) {
+      if (t == 0 && shared.least[0] != ~Key{0}) exec::atomic_min(&numbers->least_gap, shared.least[0]);
+    });
+  }
+
+ private:
+  BB_HD int find(Index i, Key& least, int& free) const {
     FoundRow row;
-    mark[i] = of.find(candidate[i], row) ? 1 : 0;
+    const bool found = find_row(phase, lists[i], row);
+    mark[i] = found ? 1 : 0;
+    if (!found) return 0;
+    if (row.d == row.d) least = smallest_key(row.d + 0.0);
+    const int f = row.free, n = (f & 1) + (f >> 1 & 1) + (f >> 2 & 1) + (f >> 3 & 1);
+    free = n + (n * (n + 1) / 2 << 16);
+    return row.eps > 0 ? 1 + (1 << 16) : 1;
+  }
+  template <class Block>
+  BB_HD void check(Block& block, Index b) const {
+    block.threads([&](int t) {
+      bool found = false;
+      for (Index m = 0; m < coordinates; m += exec::block_threads) {
+        const Index i = b * coordinates + m + t;
+        if (i < n_coordinates) found = found || !(phase.x[i] - phase.x[i] == 0);
+      }
+      if (found) exec::atomic_or(&numbers->not_finite, 1);
+    });
   }
 };
 
-/// The rows of marked candidates at their places; first: what items come before those of this list.
-template <class Rows>
+/// The rows of marked candidates at their places, and the list of those that are mollified.
 struct FillRows {
-  Rows of;
-  const Key* candidate;
+  NarrowPhase phase;
+  CandidateLists lists;
   const std::uint8_t* mark;
-  Index first;
-  Places places;
+  TwoPlaces places;
   RowView rows;
+  std::uint32_t* mollified;
   BB_HD void operator()(Index i) const {
     FoundRow row;
-    if (mark[i] == 0 || !of.find(candidate[i], row)) return;
-    put_row(rows, places.of(first + i), row, pair_of(Rows::kind, candidate[i]));
-  }
-};
-
-struct MarkMollified {
-  const std::uint8_t* kind;
-  std::uint8_t* mark;
-  BB_HD void operator()(Index r) const { mark[r] = kind[r] == mollified_kind ? 1 : 0; }
-};
-
-/// Sets *found when a number is not finite.
-struct FindNonFinite {
-  const double* x;
-  std::uint32_t* found;
-  BB_HD void operator()(Index i) const {
-    if (!(x[i] - x[i] == 0)) exec::atomic_or(found, 1);
+    const CandidateItem item = lists[i];
+    if (mark[i] == 0 || !find_row(phase, item, row)) return;
+    const Index at = places.first(i);
+    put_row(rows, at, row, pair_id(item.list, item.pair >> 32, item.pair & 0xffffffffu));
+    if (row.eps > 0) mollified[places.second(i)] = static_cast<std::uint32_t>(at);
   }
 };
 

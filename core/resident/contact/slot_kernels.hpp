@@ -4,6 +4,7 @@
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 #include "core/resident/contact/stiffness_kernels.hpp"
+#include "core/resident/linear/find_block.hpp"
 
 namespace bb::resident {
 
@@ -35,19 +36,27 @@ struct WidenCounts {
   BB_HD void operator()(Index i) const { to[i] = i < n ? static_cast<Index>(from[i]) : 0; }
 };
 
-/// Free points of every row among the vertices [first, last).
+/// Counts of RankItems: free points of every row among the vertices [first, last).
 struct CountSlots {
+  static constexpr bool two = false;
   RowView rows;
   int first, last;
-  std::uint8_t* count;
-  BB_HD void operator()(Index r) const {
+  BB_HD int operator()(Index r) const {
     int n = 0;
     for (int k = 0; k < 4; ++k) {
       const int v = rows.vertex[k * rows.n + r];
       n += rows.is_free(r, k) && v >= first && v < last ? 1 : 0;
     }
-    count[r] = static_cast<std::uint8_t>(n);
+    return n;
   }
+};
+
+/// begin[v]: the first of n sorted keys that is not below v; behind the last vertex n.
+struct SlotStarts {
+  const Key* key;
+  Index n;
+  Index* begin;
+  BB_HD void operator()(Index v) const { begin[v] = first_not_below(key, Index{0}, n, static_cast<Key>(v)); }
 };
 
 struct FillSlots {
@@ -68,14 +77,12 @@ struct FillSlots {
   }
 };
 
-/// Pairs of points that the slots make with the free points of their rows.
+/// Counts of RankItems: pairs of points that the slots make with the free points of their rows.
 struct CountBlockPairs {
+  static constexpr bool two = false;
   RowView rows;
   const std::uint32_t* slot;
-  std::uint8_t* count;
-  BB_HD void operator()(Index i) const {
-    count[i] = static_cast<std::uint8_t>(rows.n_free(slot_row(slot[i])));
-  }
+  BB_HD int operator()(Index i) const { return rows.n_free(slot_row(slot[i])); }
 };
 
 struct FillPairKeys {
@@ -99,49 +106,52 @@ struct FillPairKeys {
   }
 };
 
-/// Pairs (a <= b) of free points of a row, counted by the upper blocks.
-struct CountUpperPairs {
-  RowView rows;
-  std::uint8_t* count;
-  BB_HD void operator()(Index r) const {
-    const int n = rows.n_free(r);
-    count[r] = static_cast<std::uint8_t>(n * (n + 1) / 2);
-  }
-};
-
-/// In sorted keys: where a block begins, and which belong to the upper triangle.
-struct MarkBlocks {
+/// In sorted keys of pairs: where a block begins, and which belong to the upper triangle.
+struct PairKeys {
   const Key* key;
-  int first, bits;
-  std::uint8_t *head, *upper;
-  BB_HD void operator()(Index i) const {
-    head[i] = i == 0 || key[i] != key[i - 1] ? 1 : 0;
-    const Key row = (key[i] >> bits) + static_cast<Key>(first), column = key[i] & ((Key{1} << bits) - 1);
-    upper[i] = column >= row ? 1 : 0;
+  int first, bits;  // as in FillPairKeys
+  BB_HD bool begins_block(Index i) const { return i == 0 || key[i] != key[i - 1]; }
+  BB_HD int row(Index i) const { return static_cast<int>(key[i] >> bits) + first; }
+  BB_HD int column(Index i) const { return static_cast<int>(key[i] & ((Key{1} << bits) - 1)); }
+  BB_HD bool upper(Index i) const { return column(i) >= row(i); }
+};
+
+/// Counts of RankItems: blocks that begin, and contributions to upper ones.
+struct CountBlocks {
+  static constexpr bool two = true;
+  PairKeys keys;
+  BB_HD int operator()(Index i) const {
+    return (keys.begins_block(i) ? 1 : 0) + (keys.upper(i) ? 1 << 16 : 0);
   }
 };
 
-/// Columns and contributions of the blocks of a chunk, behind those of the chunks before; begin [blocks + 1].
+/// Columns and contributions of the blocks of a chunk of vertices, behind those of the chunks before; begin [blocks + 1].
+/// The items behind the n pairs are the vertices of the chunk: row_begin, that of the next one included.
 struct FillBlocks {
-  const Key* key;
+  PairKeys keys;
   const std::uint32_t* code;
   Index n;
-  int first, bits;
-  const std::uint8_t *head, *upper;
-  Places blocks, contributions;
-  Index n_before;  // contributions of the chunks before
+  TwoPlaces places;
+  Index n_blocks;                 // of the chunk
+  Index blocks_before, n_before;  // blocks and contributions of the chunks before
   int* column;
-  std::uint32_t* begin;
-  std::uint32_t *contribution, *blocks_of_row;
+  std::uint32_t *begin, *contribution;
+  Index* row_begin;  // from the first vertex of the chunk on
   BB_HD void operator()(Index i) const {
-    const Index to = n_before + contributions.of(i);
-    if (upper[i] != 0) contribution[to] = code[i];
-    if (i == n - 1) begin[blocks.of(i) + head[i]] = static_cast<std::uint32_t>(to + upper[i]);
-    if (head[i] == 0) return;
-    const Index j = blocks.of(i);
-    column[j] = static_cast<int>(key[i] & ((Key{1} << bits) - 1));
+    if (i >= n) return start_row(i - n);
+    const Index to = n_before + places.second(i), j = places.first(i);
+    const bool head = keys.begins_block(i), upper = keys.upper(i);
+    if (upper) contribution[to] = code[i];
+    if (i == n - 1) begin[j + (head ? 1 : 0)] = static_cast<std::uint32_t>(to + (upper ? 1 : 0));
+    if (!head) return;
+    column[j] = keys.column(i);
     begin[j] = static_cast<std::uint32_t>(to);
-    exec::atomic_add(&blocks_of_row[(key[i] >> bits) + static_cast<Key>(first)], 1);
+  }
+
+ private:
+  BB_HD void start_row(Index v) const {
+    const Index at = first_not_below(keys.key, Index{0}, n, static_cast<Key>(v) << keys.bits);
+    row_begin[v] = blocks_before + (at < n ? places.first(at) : n_blocks);
   }
 };
 

@@ -10,6 +10,7 @@
 #include "core/contact/row_hessian.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
+#include "core/resident/linear/find_block.hpp"
 
 namespace bb::resident {
 
@@ -137,10 +138,32 @@ struct MollifiedChanges {
   }
 };
 
-/// Where a kernel puts the Hessian of a row of the list.
+/// Rows whose Hessians are kept at a time: those of a list, or neighbours.
+struct RowChunk {
+  const std::uint32_t* list;  // [n] ascending; null: rows from first on
+  Index first, n;
+  BB_HD Index row(Index i) const { return list ? static_cast<Index>(list[i]) : first + i; }
+  BB_HD Index first_row() const { return row(0); }
+  BB_HD Index last_row() const { return row(n - 1); }
+  /// Of a row that is there.
+  BB_HD Index place(Index row) const {
+    return list ? first_not_below(list, Index{0}, n, static_cast<std::uint32_t>(row)) : row - first;
+  }
+};
+
+/// Whether the Hessian of a row is computed before it is gathered.
+BB_HD inline bool has_own_hessian(const RowView& rows, HessianMode mode, Index r) {
+  if (rows.mollified(r)) return true;
+  const int kind = rows.kind[r];
+  const bool slides =
+      kind != static_cast<int>(ContactKind::point_point) && kind != static_cast<int>(ContactKind::obstacle);
+  return mode != HessianMode::gauss_newton && slides && rows.push[r] != 0;
+}
+
+/// Where a kernel puts the Hessian of a row of the chunk.
 struct RowHessians {
   RowView rows;
-  const std::uint32_t* list;  // of the chunk
+  RowChunk chunk;
   Index stride;
   double* number;  // [row_numbers][stride]
   const double* x;
@@ -162,7 +185,7 @@ BB_HD inline Mat<double, 12, 12> to_front(const Mat<double, 12, 12>& full, const
 struct MollifiedHessians {
   RowHessians to;
   BB_HD void operator()(Index i) const {
-    const Index r = to.list[i];
+    const Index r = to.chunk.row(i);
     if (!to.rows.mollified(r)) return;
     int local[4], n = 0, front[4] = {-1, -1, -1, -1};
     for (int k = 0; k < 4; ++k) {
@@ -242,17 +265,6 @@ BB_HD RowShape<double, K == PairKind::point_edge ? 1 : 2> sliding_shape(const Ro
   return shape;
 }
 
-/// Rows of K points whose closest points slide along edges.
-template <PairKind K>
-struct SlidingHessians {
-  RowHessians to;
-  BB_HD void operator()(Index i) const {
-    const Index r = to.list[i];
-    if (to.rows.kind[r] != static_cast<std::uint8_t>(K)) return;
-    store_sliding(to, i, sliding_shape<K>(to.rows, to.surface, r, to.x));
-  }
-};
-
 /// Thickness of the primitive of an obstacle's row: that of an edge may come from a triangle, m.
 BB_HD inline double obstacle_offset(const SurfaceView& surface, Key pair) {
   const bool edge = pair_list(pair) == obstacle_pairs_of<2>;
@@ -281,14 +293,26 @@ BB_HD RowShape<double, N - 1> obstacle_row_shape(const RowView& rows, const Surf
   return shape;
 }
 
-template <int N>
-struct ObstacleHessians {
+/// Rows whose closest points slide; what is to be 0 is not computed.
+struct SlidingHessians {
   RowHessians to;
   BB_HD void operator()(Index i) const {
-    constexpr ContactKind kind = N == 2 ? ContactKind::obstacle_edge : ContactKind::obstacle_triangle;
-    const Index r = to.list[i];
-    if (to.rows.kind[r] != static_cast<std::uint8_t>(kind)) return;
-    store_sliding(to, i, obstacle_row_shape<N>(to.rows, to.surface, r, to.x));
+    const Index r = to.chunk.row(i);
+    if (!has_own_hessian(to.rows, to.choice.mode, r)) return;
+    switch (static_cast<ContactKind>(to.rows.kind[r])) {
+      case ContactKind::point_edge:
+        return store_sliding(to, i, sliding_shape<PairKind::point_edge>(to.rows, to.surface, r, to.x));
+      case ContactKind::point_triangle:
+        return store_sliding(to, i, sliding_shape<PairKind::point_triangle>(to.rows, to.surface, r, to.x));
+      case ContactKind::edge_edge:
+        return store_sliding(to, i, sliding_shape<PairKind::edge_edge>(to.rows, to.surface, r, to.x));
+      case ContactKind::obstacle_edge:
+        return store_sliding(to, i, obstacle_row_shape<2>(to.rows, to.surface, r, to.x));
+      case ContactKind::obstacle_triangle:
+        return store_sliding(to, i, obstacle_row_shape<3>(to.rows, to.surface, r, to.x));
+      default:
+        return;  // mollified
+    }
   }
 };
 

@@ -27,12 +27,10 @@ void ElementTerm::add_matrix(const Column& x, const HessianRequest& request) {
 }
 
 void ElementTerm::add_change(const Column&, const Column&, ResidentChange& out) {
-  out.parts.add(size(), ColumnChange{energy_.data(), trial_energy_.data()});
+  out.add(size(), energy_.data(), trial_energy_.data());
 }
 
-void ElementTerm::add_energy(const Column&, ResidentEnergy& out) {
-  out.parts.add(size(), ColumnSum{energy_.data()});
-}
+void ElementTerm::add_energy(const Column&, ResidentEnergy& out) { out.add(size(), nullptr, energy_.data()); }
 
 Index ElementTerm::first_not_finite(ResidentLeast& least) {
   least.clear();

@@ -37,6 +37,9 @@ class ElementTerm : public ResidentTerm {
   /// hess [lower numbers, piece.n], N/m.
   virtual void hessians(Piece piece, const HessianRequest& request, const double* x, double* hess) = 0;
 
+  double* energies() { return energy_.data(); }
+  double* trial_energies() { return trial_energy_.data(); }
+
   exec::Executor& executor_;
 
  private:

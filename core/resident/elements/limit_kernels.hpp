@@ -45,20 +45,22 @@ struct Limit : LimitColumns {
 using SpaceLimit = Limit<3>;
 using PlanarLimit = Limit<2>;
 
-/// Singular values and pseudo-gaps at x.
+/// Singular values and pseudo-gaps of an element at x.
+template <int R>
+BB_HD void measure_stretch(const LimitColumns& limit, const double* x, Index e) {
+  Vec3d p[3];
+  limit.points(x, e, p);
+  const Vec2d sigma = signed_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
+  for (int k = 0; k < 2; ++k) {
+    limit.sigma[k * limit.n + e] = sigma[k];
+    limit.gap[k * limit.n + e] = strain_gap(sigma[k], limit.band(e));
+  }
+}
 template <int R>
 struct MeasureStretch {
   LimitColumns limit;
   const double* x;
-  BB_HD void operator()(Index e) const {
-    Vec3d p[3];
-    limit.points(x, e, p);
-    const Vec2d sigma = signed_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
-    for (int k = 0; k < 2; ++k) {
-      limit.sigma[k * limit.n + e] = sigma[k];
-      limit.gap[k * limit.n + e] = strain_gap(sigma[k], limit.band(e));
-    }
-  }
+  BB_HD void operator()(Index e) const { measure_stretch<R>(limit, x, e); }
 };
 
 /// Barrier terms at the measured pseudo-gaps, one an item of [2, n]; infinite at or beyond the limit.
@@ -83,6 +85,23 @@ struct LimitShape {
     limit.b[i] = inside ? terms.b : infinity;
     limit.db[i] = inside ? terms.db : -infinity;
     limit.d2b[i] = inside ? terms.d2b : infinity;
+  }
+};
+
+/// Both, and energies and the first element at or beyond its limit, or without a number: of a state whose kappa is known.
+template <int R, class S>
+struct MeasureLimit {
+  LimitShape<S> shape;
+  const double* x;
+  double* energy;  // [n] J
+  Key* beyond;
+  BB_HD void operator()(Index e) const {
+    const LimitColumns& limit = shape.limit;
+    measure_stretch<R>(limit, x, e);
+    shape(e);
+    shape(limit.n + e);
+    energy[e] = limit.kappa[e] * (limit.b[e] + limit.b[limit.n + e]);
+    if (!(limit.smaller_gap(e) > 0)) exec::atomic_min(beyond, static_cast<Key>(e));
   }
 };
 
@@ -137,20 +156,23 @@ struct ElementKappa {
   }
 };
 
-/// Least of the elements' step bounds, as ordered bits. R as in Limit.
+/// Least of the elements' step bounds below `alpha`, as ordered bits. R as in Limit.
 template <int R>
 struct StretchBound {
   LimitColumns limit;
   const double *x, *dx;
   double alpha, park;
+  const Key* before;  // the bits of alpha instead, all ones where this is no bound; or null
   Key* smallest;
   BB_HD void operator()(Index e) const {
+    if (before && *before == ~Key{0}) return;
+    const double most = before ? exec::from_ordered_bits(*before) : alpha;
     Vec3d p[3], step[3];
     limit.points(x, e, p);
     limit.points(dx, e, step);
     const double bound =
-        strain_step_bound<R, double>(limit.rest.at(e, limit.n), p, step, limit.band(e), alpha, park);
-    if (bound < alpha) exec::atomic_min(smallest, exec::ordered_bits(bound));
+        strain_step_bound<R, double>(limit.rest.at(e, limit.n), p, step, limit.band(e), most, park);
+    if (bound < most) exec::atomic_min(smallest, exec::ordered_bits(bound));
   }
 };
 
@@ -164,32 +186,30 @@ struct LimitKappaChange {
     return largest_key(active ? relative_change(before[e], limit.kappa[e]) : 0.0);
   }
 };
-/// Largest force of an active element over its rest area, N/m; item of [2, n].
-struct LimitLoad {
-  LimitColumns limit;
-  BB_HD Key operator()(Index i) const {
-    using std::abs;
-    const Index e = i < limit.n ? i : i - limit.n;
-    const bool active = limit.gap[i] < limit.band_width[e];
-    return largest_key(active ? abs(limit.kappa[e] * limit.db[i]) / limit.rest.area[e] : 0.0);
+/// What is said of a state: complements of keys (sum_kernels.hpp) of the largest singular value, of the largest force of
+/// an active element over its rest area, N/m, and of the smallest pseudo-gap in units of the width.
+struct LimitNumbers {
+  Key stretch, load, gap;
+  BB_HD static LimitNumbers zero() { return {0, 0, 0}; }
+  friend BB_HD LimitNumbers operator+(const LimitNumbers& a, const LimitNumbers& b) {
+    LimitNumbers out = a;
+    raise_key(out.stretch, b.stretch), raise_key(out.load, b.load), raise_key(out.gap, b.gap);
+    return out;
   }
 };
-/// Largest singular value.
-struct LimitStretch {
+struct LimitParts {
+  using Sum = LimitNumbers;
   LimitColumns limit;
-  BB_HD Key operator()(Index e) const { return largest_key(limit.sigma[e]); }
-};
-/// Smallest pseudo-gap in units of the width.
-struct LimitRelativeGap {
-  LimitColumns limit;
-  BB_HD Key operator()(Index e) const { return smallest_key(limit.smaller_gap(e) / limit.band_width[e]); }
-};
-/// First element at or beyond its limit, or without a number.
-struct FirstBeyondLimit {
-  LimitColumns limit;
-  Key* first;
-  BB_HD void operator()(Index e) const {
-    if (!(limit.smaller_gap(e) > 0)) exec::atomic_min(first, static_cast<Key>(e));
+  BB_HD double load(Index i, Index e) const {
+    using std::abs;
+    const bool active = limit.gap[i] < limit.band_width[e];
+    return active ? abs(limit.kappa[e] * limit.db[i]) / limit.rest.area[e] : 0.0;
+  }
+  BB_HD void operator()(Index e, LimitNumbers& sum) const {
+    raise_key(sum.stretch, ~largest_key(limit.sigma[e]));
+    raise_key(sum.load, ~largest_key(load(e, e)));
+    raise_key(sum.load, ~largest_key(load(limit.n + e, e)));
+    raise_key(sum.gap, ~smallest_key(limit.smaller_gap(e) / limit.band_width[e]));
   }
 };
 

@@ -43,10 +43,10 @@ class LoadTerm final : public ResidentTerm {
   }
   void evaluate(const Column&) override {}
   void add_change(const Column& x, const Column& trial, ResidentChange& out) override {
-    out.parts.add(n_vertices_, LoadChanges{loads_, x.data(), trial.data()});
+    out.lead(n_vertices_, LoadChanges{loads_, x.data(), trial.data()});
   }
   void add_energy(const Column& x, ResidentEnergy& out) override {
-    out.parts.add(n_vertices_, LoadEnergies{loads_, x.data()});
+    out.lead(n_vertices_, LoadEnergies{loads_, x.data()});
   }
 
  private:

@@ -10,6 +10,7 @@
 #include "core/exec/buffer.hpp"
 #include "core/record/phase_times.hpp"
 #include "core/resident/elements/element_kernels.hpp"
+#include "core/resident/elements/load_kernels.hpp"
 #include "core/resident/linear/resident_matrix.hpp"
 #include "core/resident/sums/resident_sum.hpp"
 #include "core/terms/report.hpp"
@@ -46,15 +47,35 @@ struct ResidentContext {
   PhaseClock& clock;
 };
 
-/// E(trial) - E(iterate): parts of elements that stay are compared one by one; where rows come and go, their energies
-/// are compared as sums.
-struct ResidentChange {
-  ResidentSum& parts;
-  Compensated before = Compensated::zero(), after = Compensated::zero();
+/// Energies of terms whose elements stay, one column after the other; several terms are one launch.
+template <class Lead>
+class EnergySeries {
+ public:
+  explicit EnergySeries(ResidentSum& sum) : sum_(sum) {}
+  /// The loads, before anything else.
+  void lead(Index n, const Lead& lead) { series_.lead = lead, series_.n_lead = n; }
+  /// from: null where the column itself is summed.
+  void add(Index n, const double* from, const double* to) {
+    if (series_.n_columns == SumSeries<Lead>::most_columns) launch();
+    series_.column[series_.n_columns] = {from, to};
+    series_.n[series_.n_columns++] = n;
+  }
+  void launch() {
+    sum_.add(series_);
+    series_ = {};
+  }
+
+ private:
+  ResidentSum& sum_;
+  SumSeries<Lead> series_{};
 };
-struct ResidentEnergy {
-  ResidentSum& parts;
-  Compensated rows = Compensated::zero();
+/// E(trial) - E(iterate) of elements that stay: compared one by one.
+using ResidentChange = EnergySeries<LoadChanges>;
+using ResidentEnergy = EnergySeries<LoadEnergies>;
+
+/// Energies, J, where rows come and go: compared as sums.
+struct RowEnergies {
+  Compensated before = Compensated::zero(), after = Compensated::zero();
 };
 
 /// The matrix of a term whose stencils come and go, both triangles.
@@ -100,7 +121,9 @@ class ResidentTerm {
 
   // --- a motion
   virtual void prepare(const ResidentMotion&, PhaseClock&) {}
-  /// As Term::bound.
+  /// What bound() reads is launched: for all terms before it is read of one.
+  virtual void look_along(const ResidentMotion&, PhaseClock&) {}
+  /// As Term::bound; after look_along().
   virtual double bound(const ResidentMotion&, IterateNumbers&, PhaseClock&) { return 1; }
   /// What held the last bound() below 1.
   virtual std::string describe_bound() const { return {}; }
@@ -112,12 +135,16 @@ class ResidentTerm {
   // --- a trial state; x: the iterate
   /// Whether admits() refuses a state with a number that is not finite.
   virtual bool sees_non_finite() const { return false; }
+  /// What admits() reads is launched: for all terms before it is read of one.
+  virtual void look_at(const Column& /*x*/, const Column& /*trial*/, PhaseClock&) {}
   virtual bool admits(const Column& /*x*/, const Column& /*trial*/, PhaseClock&) { return true; }
   /// All terms admit the trial: as Term::freeze.
   virtual void freeze() {}
   /// Energies at the trial, after freeze(), where they are asked for.
   virtual void evaluate(const Column& trial) = 0;
   virtual void add_change(const Column& x, const Column& trial, ResidentChange& out) = 0;
+  /// Adds what add_change() launched besides.
+  virtual void add_rows(RowEnergies&) {}
   /// The trial becomes the iterate. take_energies() comes next where it was evaluated.
   virtual void accept() {}
   /// The energies of the trial are those of the iterate.
@@ -127,6 +154,10 @@ class ResidentTerm {
 
   // --- what is said of it, at the iterate x
   virtual void add_energy(const Column& x, ResidentEnergy& out) = 0;
+  /// What add_energy() launched besides, J.
+  virtual Compensated row_energy() { return Compensated::zero(); }
+  /// What report() reads is launched.
+  virtual void announce(const Column& /*x*/) {}
   virtual void report(const Column& /*x*/, IterateNumbers&, PhaseClock&) {}
   virtual void report_end(const Column& /*x*/, StepNumbers&) {}
   /// First element with an energy that is not finite; -1 without one.

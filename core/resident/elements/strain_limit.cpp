@@ -12,17 +12,36 @@
 namespace bb::resident {
 namespace {
 
-using LaunchShape = void (*)(exec::Executor&, const LimitColumns&, const BarrierFunction&, const KappaParts*);
+/// Where kappa is known: the state x is measured, with its energies.
+struct MeasureAt {
+  const double* x;
+  double* energy;
+  Key* beyond;
+};
+struct ShapeLaunches {
+  void (*shape)(exec::Executor&, const LimitColumns&, const BarrierFunction&, const KappaParts*);
+  void (*measure[2])(exec::Executor&, const LimitColumns&, const BarrierFunction&, const KappaParts*,
+                     const MeasureAt&);  // in the plane, in space
+};
 
 template <class S>
 void launch_shape(exec::Executor& executor, const LimitColumns& limit, const BarrierFunction& barrier,
                   const KappaParts* parts) {
   executor.each(2 * limit.n, LimitShape<S>{limit, barrier.argument, barrier.literal, parts});
 }
+template <int R, class S>
+void launch_measure(exec::Executor& executor, const LimitColumns& limit, const BarrierFunction& barrier,
+                    const KappaParts* parts, const MeasureAt& at) {
+  executor.each(limit.n, MeasureLimit<R, S>{
+                             {limit, barrier.argument, barrier.literal, parts}, at.x, at.energy, at.beyond});
+}
 
-LaunchShape shape_kernel(const BarrierFunction& barrier) {
-#define SHAPE(id, Struct) \
-  if (barrier.shape.name == #id && !barrier.shape.self) return &launch_shape<shapes::Struct>;
+ShapeLaunches shape_kernels(const BarrierFunction& barrier) {
+#define SHAPE(id, Struct)                                                              \
+  if (barrier.shape.name == #id && !barrier.shape.self) {                              \
+    return {&launch_shape<shapes::Struct>,                                             \
+            {&launch_measure<2, shapes::Struct>, &launch_measure<3, shapes::Struct>}}; \
+  }
   BB_FOR_EACH_SHAPE(SHAPE)
 #undef SHAPE
   throw ConfigError("shape", barrier.shape.name,
@@ -55,24 +74,37 @@ class LimitTerm final : public TermOf<Limit<R>> {
     Base::add_matrix(x, request);
   }
 
+  void look_along(const ResidentMotion& motion, PhaseClock& clock) override;
   double bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) override;
   std::string describe_bound() const override { return "the strain limit"; }
+  void look_at(const Column&, const Column& trial, PhaseClock&) override {
+    measure(trial, Base::trial_energies(), State::trial);
+  }
   bool admits(const Column& x, const Column& trial, PhaseClock& clock) override;
   void evaluate(const Column& trial) override {
-    if (measured_ != State::trial) measure_trial(trial);  // the iterate was asked for since
-    Base::evaluate(trial);
+    if (measured_ != State::trial)
+      measure(trial, Base::trial_energies(), State::trial);  // the iterate was asked for since
   }
   void evaluate_iterate(const Column& x) override {
     measure_iterate(x);
     Base::evaluate_iterate(x);
   }
-  void accept() override { measured_ = measured_ == State::trial ? State::iterate : State::none; }
+  void accept() override {
+    announced_ = false;
+    accepted_ = measured_ == State::trial;
+    measured_ = accepted_ ? State::iterate : State::none;
+  }
 
+  void announce(const Column& x) override;
   void report(const Column& x, IterateNumbers& out, PhaseClock& clock) override;
   void report_end(const Column& x, StepNumbers& out) override;
 
  private:
   enum class State { none, iterate, trial };
+  /// Ordered bits of the smallest bound, and of the smallest of a second look that begins with it; all ones: none.
+  struct Bounds {
+    Key first, second;
+  };
   struct Numbers {
     double max_stretch, load_max, gap_min_rel;  // 1, N/m, 1: of the width
   };
@@ -85,31 +117,33 @@ class LimitTerm final : public TermOf<Limit<R>> {
   Numbers numbers(const Column& x);
   void measure_stretch(const Column& x) { executor_.each(size(), MeasureStretch<R>{elements_, x.data()}); }
   /// Barrier terms at the measured pseudo-gaps.
-  void fill_barrier() { launch_shape_(executor_, elements_, options_.limit, parts()); }
+  void fill_barrier() { launches_.shape(executor_, elements_, options_.limit, parts()); }
   void measure_iterate(const Column& x) {
-    if (measured_ == State::iterate) return;
-    measure_stretch(x);
-    fill_barrier();
-    measured_ = State::iterate;
+    if (measured_ != State::iterate) measure(x, Base::energies(), State::iterate);
   }
-
-  void measure_trial(const Column& trial) {
-    measure_stretch(trial);
-    fill_barrier();
-    measured_ = State::trial;
+  /// Stretches, barrier terms and energies at x, with the kappa that there is.
+  void measure(const Column& x, double* energy, State state) {
+    beyond_.clear();
+    launches_.measure[R - 2](executor_, elements_, options_.limit, parts(),
+                             {x.data(), energy, beyond_.data()});
+    measured_ = state;
+    announced_ = false;
   }
 
   const TermOptions& options_;
   const Buffer<double>& vertex_mass_;
-  LaunchShape launch_shape_;
+  ShapeLaunches launches_;
   TriangleColumns triangles_;
   Buffer<double> band_, mass_, state_, kappa_, before_;
   Buffer<KappaParts> parts_;
-  ResidentLeast least_;
-  ResidentLeasts<3> numbers_;
+  ResidentLeast least_, beyond_;
+  exec::Reading<Bounds> bounds_;
+  ResidentSums<LimitNumbers> numbers_;
   StiffnessTime time_;
   const double* x_n_ = nullptr;
   State measured_ = State::none;
+  bool accepted_ = false;              // the iterate was a trial, and was not linearised yet
+  bool announced_ = false;             // numbers_ is of the iterate
   bool fresh_ = false, first_ = true;  // kappa is that of this step; no iterate of the step was refreshed
   double kappa_change_ = 0;            // of the last linearise()
 };
@@ -121,7 +155,7 @@ LimitTerm<R>::LimitTerm(const ResidentInputs& inputs, const StrainLimitBatch& ba
     : Base(inputs, "strain_limit", batch.vertices(), TermGroup::limit, Phase::strain_limit),
       options_(inputs.options),
       vertex_mass_(inputs.mass),
-      launch_shape_(shape_kernel(options_.limit)),
+      launches_(shape_kernels(options_.limit)),
       triangles_(executor_, "limit", batch.vertices(), batch.rests()),
       band_(executor_, "limit bands"),
       mass_(executor_, "limit element masses"),
@@ -130,6 +164,8 @@ LimitTerm<R>::LimitTerm(const ResidentInputs& inputs, const StrainLimitBatch& ba
       before_(executor_, "limit stiffness before"),
       parts_(executor_, "limit stiffness parts"),
       least_(executor_),
+      beyond_(executor_),
+      bounds_(executor_),
       numbers_(executor_) {
   const StrainLimitPart& part = inputs.scene.limit;
   upload_pair(part.onset, part.width, band_);
@@ -161,10 +197,18 @@ template <int R>
 void LimitTerm<R>::refresh(const Column& x, const MatrixPart& elastic) {
   const bool first = first_, keep = fresh_ && policy().frozen_in_step();
   first_ = false, fresh_ = true;
-  measure_stretch(x);
-  if (!keep) fill_kappa(elastic);
-  fill_barrier();
-  measured_ = State::iterate;
+  announced_ = false;
+  const bool measured = accepted_ && measured_ == State::iterate;  // as the trial that became it
+  accepted_ = false;
+  if (!measured) measured_ = State::none;
+  if (keep) {
+    measure_iterate(x);
+  } else {
+    if (!measured) measure_stretch(x);
+    fill_kappa(elastic);
+    if (!measured || parts()) fill_barrier();
+    measured_ = State::iterate;
+  }
   kappa_change_ = 0;
   if (keep || first || policy().uniform() || policy().has_potential()) return;
   least_.clear();
@@ -181,40 +225,53 @@ void LimitTerm<R>::fill_kappa(const MatrixPart& elastic) {
   });
 }
 
+// A second look: one element's bound may, by rounding alone, be beyond another's limit.
+template <int R>
+void LimitTerm<R>::look_along(const ResidentMotion& motion, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::strain_bound);
+  bounds_.fill(0xff);
+  StretchBound<R> look{
+      elements_, motion.x0.data(),          motion.dx.data(), 1, options_.contact_options.ccd_park,
+      nullptr,   &bounds_.to_write()->first};
+  executor_.each(size(), look);
+  look.before = &bounds_.data()->first, look.smallest = &bounds_.to_write()->second;
+  executor_.each(size(), look);
+}
+
 template <int R>
 double LimitTerm<R>::bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_bound);
   if (executor_.counts_only()) return out.alpha_strain = 1;
-  // A second look: one element's bound may, by rounding alone, be beyond another's limit.
-  for (double alpha = 1;;) {
+  const Bounds found = bounds_.get();
+  if (found.first == ResidentLeast::none) return out.alpha_strain = 1;
+  double alpha = exec::from_ordered_bits(found.first);
+  for (Key key = found.second; key != ResidentLeast::none && alpha != 0; key = least_.get()) {
+    alpha = exec::from_ordered_bits(key);
     least_.clear();
     executor_.each(size(), StretchBound<R>{elements_, motion.x0.data(), motion.dx.data(), alpha,
-                                           options_.contact_options.ccd_park, least_.data()});
-    const Key key = least_.get();
-    if (key == ResidentLeast::none) return out.alpha_strain = alpha;
-    alpha = exec::from_ordered_bits(key);
-    if (alpha == 0) return out.alpha_strain = 0;
+                                           options_.contact_options.ccd_park, nullptr, least_.data()});
   }
+  return out.alpha_strain = alpha;
 }
 
 template <int R>
-bool LimitTerm<R>::admits(const Column&, const Column& trial, PhaseClock&) {
-  measure_trial(trial);
-  if (options_.limit.literal) return true;
-  least_.clear();
-  executor_.each(size(), FirstBeyondLimit{elements_, least_.data()});
-  return least_.first() < 0;
+bool LimitTerm<R>::admits(const Column&, const Column&, PhaseClock&) {
+  return options_.limit.literal || beyond_.first() < 0;
+}
+
+template <int R>
+void LimitTerm<R>::announce(const Column& x) {
+  measure_iterate(x);
+  numbers_.clear();
+  numbers_.add(size(), LimitParts{elements_});
+  announced_ = true;
 }
 
 template <int R>
 typename LimitTerm<R>::Numbers LimitTerm<R>::numbers(const Column& x) {
-  measure_iterate(x);
-  numbers_.clear();
-  numbers_.add(0, size(), LimitStretch{elements_});
-  numbers_.add(1, 2 * size(), LimitLoad{elements_});
-  numbers_.add(2, size(), LimitRelativeGap{elements_});
-  const auto least = numbers_.get();
-  return {least.largest(0) - 1, least.largest(1), least.smallest(2)};
+  if (!announced_) announce(x);
+  const LimitNumbers found = numbers_.get();
+  return {largest_of(found.stretch) - 1, largest_of(found.load), smallest_of(found.gap)};
 }
 
 template <int R>
@@ -237,7 +294,7 @@ void LimitTerm<R>::report_end(const Column& x, StepNumbers& out) {
 }  // namespace
 
 void require_limit_kernels(const TermOptions& options) {
-  shape_kernel(options.limit);
+  shape_kernels(options.limit);
   LimitPolicies::require(*options.limit_stiffness, "stiffness_policy/name");
 }
 

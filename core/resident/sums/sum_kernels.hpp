@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "core/resident/linear/resident_matrix.hpp"
 
@@ -53,51 +54,77 @@ struct SumOf<Parts> {
   using type = typename Parts::Sum;
 };
 
-/// One partial sum a block. Parts: a struct whose call (Index i, Sum& sum) adds what item i has.
+/// What sums in blocks write: partial sums, how many of their blocks are done (0 between two launches), and the sum.
+template <class Sum>
+struct SumPlaces {
+  Sum* partial;
+  std::uint32_t* arrived;
+  Sum* total;
+};
+
+/// What threads of a block share where sums meet.
+template <class Sum>
+struct SumShared {
+  Sum at[exec::block_threads];
+  bool last;
+};
+
+/// Block b of a sum of n items: the sum of its items becomes partial[b]. Parts: as in SumParts.
+template <class Block, class Sum, class Parts>
+BB_HD void sum_block(Block& block, SumShared<Sum>& shared, const Parts& parts, Index n, Index b,
+                     Sum* partial) {
+  const Index items = items_a_block(n), end = (b + 1) * items < n ? (b + 1) * items : n;
+  block.threads([&](int t) {
+    Sum sum = Sum::zero();
+    for (Index i = b * items + t; i < end; i += exec::block_threads) parts(i, sum);
+    shared.at[t] = sum;
+  });
+  exec::fold(block, shared.at, exec::block_threads);
+  block.threads([&](int t) {
+    if (t == 0) partial[b] = shared.at[0];
+  });
+}
+
+/// *total += the sum of partial [n]: every thread adds each 256th, then a tree.
+template <class Block, class Sum>
+BB_HD void add_partials(Block& block, SumShared<Sum>& shared, const Sum* partial, Index n, Sum* total) {
+  block.threads([&](int t) {
+    Sum sum = Sum::zero();
+    for (Index i = t; i < n; i += exec::block_threads) sum = sum + partial[i];
+    shared.at[t] = sum;
+  });
+  exec::fold(block, shared.at, exec::block_threads);
+  block.threads([&](int t) {
+    if (t == 0) *total = *total + shared.at[0];
+  });
+}
+
+/// Whether this block is the last one of n; what all of them wrote may be read then.
+template <class Block, class Sum>
+BB_HD bool is_last_block(Block& block, SumShared<Sum>& shared, std::uint32_t* arrived, Index n) {
+  block.threads([&](int t) {
+    if (t == 0) shared.last = exec::last_to_arrive(arrived, n);
+  });
+  return shared.last;
+}
+
+BB_HD inline Index blocks_of_sum(Index n) { return (n + items_a_block(n) - 1) / items_a_block(n); }
+
+/// *total += what the items have; the last block adds up the partial sums. Parts: a struct whose call (Index i, Sum& sum)
+/// adds what item i has; it may read the total as it was before the launch.
 template <class Parts>
 struct SumParts {
   using Sum = typename SumOf<Parts>::type;
-  struct Shared {
-    Sum at[exec::block_threads];
-  };
+  using Shared = SumShared<Sum>;
   Parts parts;
   Index n;
-  Sum* partial;
+  SumPlaces<Sum> to;
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index b) const {
-    const Index items = items_a_block(n), end = (b + 1) * items < n ? (b + 1) * items : n;
-    block.threads([&](int t) {
-      Sum sum = Sum::zero();
-      for (Index i = b * items + t; i < end; i += exec::block_threads) parts(i, sum);
-      shared.at[t] = sum;
-    });
-    exec::fold(block, shared.at, exec::block_threads);
-    block.threads([&](int t) {
-      if (t == 0) partial[b] = shared.at[0];
-    });
-  }
-};
-
-/// *total += the partial sums; one block.
-template <class Sum>
-struct FoldPartials {
-  struct Shared {
-    Sum at[exec::block_threads];
-  };
-  const Sum* partial;
-  Index n;
-  Sum* total;
-  template <class Block>
-  BB_HD void operator()(Block& block, Shared& shared, Index) const {
-    block.threads([&](int t) {
-      Sum sum = Sum::zero();
-      for (Index i = t; i < n; i += exec::block_threads) sum = sum + partial[i];
-      shared.at[t] = sum;
-    });
-    exec::fold(block, shared.at, exec::block_threads);
-    block.threads([&](int t) {
-      if (t == 0) *total = *total + shared.at[0];
-    });
+    sum_block(block, shared, parts, n, b, to.partial);
+    const Index n_blocks = blocks_of_sum(n);
+    if (is_last_block(block, shared, to.arrived, n_blocks))
+      add_partials(block, shared, to.partial, n_blocks, to.total);
   }
 };
 
@@ -116,6 +143,15 @@ BB_HD inline double from_largest_key(Key key) { return exec::from_ordered_bits(~
 BB_HD inline double from_smallest_key(Key key) {
   const Key sign = Key{1} << 63;
   return exec::from_ordered_bits((key & sign) != 0 ? key & ~sign : ~key);
+}
+
+/// Numbers of a sum whose + is the greatest of two keys: complements of keys, so that 0 is none.
+BB_HD inline void raise_key(Key& most, Key key) { most = key > most ? key : most; }
+/// Of complements of largest_key; 0 where nothing came.
+BB_HD inline double largest_of(Key most) { return most == 0 ? 0 : from_largest_key(~most); }
+/// Of complements of smallest_key; infinity where nothing came.
+BB_HD inline double smallest_of(Key most) {
+  return most == 0 ? std::numeric_limits<double>::infinity() : from_smallest_key(~most);
 }
 
 /// *least = min(*least, keys(i) of n items).
@@ -160,6 +196,63 @@ struct ColumnChange {
   BB_HD void operator()(Index i, Compensated& sum) const {
     using std::abs;
     sum.add(to[i] - from[i], abs(from[i]) + abs(to[i]));
+  }
+};
+
+/// Sums over one column after the other: of Lead, then of columns; each is a sum of its own (SumParts), and they are added
+/// in their order. So the result is that of one launch each.
+template <class Lead>
+struct SumSeries {
+  static constexpr int most_columns = 8;
+  using Shared = SumShared<Compensated>;
+  Lead lead;
+  Index n_lead;
+  ColumnChange column[most_columns];  // from: null where the column itself is summed
+  Index n[most_columns];
+  int n_columns;
+  SumPlaces<Compensated> to;  // partial: [n_blocks()]
+
+  BB_HD Index n_blocks() const {
+    Index out = blocks_of_sum(n_lead);
+    for (int k = 0; k < n_columns; ++k) out += blocks_of_sum(n[k]);
+    return out;
+  }
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
+    Index first = blocks_of_sum(n_lead);
+    if (b < first) sum_block(block, shared, lead, n_lead, b, to.partial);
+    for (int k = 0; k < n_columns; ++k) {
+      const Index size = blocks_of_sum(n[k]);
+      if (b >= first && b < first + size) sum_column(block, shared, k, b - first, to.partial + first);
+      first += size;
+    }
+    if (!is_last_block(block, shared, to.arrived, first)) return;
+    first = blocks_of_sum(n_lead);
+    if (first > 0) add_partials(block, shared, to.partial, first, to.total);
+    for (int k = 0; k < n_columns; ++k) {
+      const Index size = blocks_of_sum(n[k]);
+      if (size > 0) add_partials(block, shared, to.partial + first, size, to.total);
+      first += size;
+    }
+  }
+
+ private:
+  template <class Block>
+  BB_HD void sum_column(Block& block, Shared& shared, int k, Index b, Compensated* partial) const {
+    if (column[k].from) {
+      sum_block(block, shared, column[k], n[k], b, partial);
+    } else {
+      sum_block(block, shared, ColumnSum{column[k].to}, n[k], b, partial);
+    }
+  }
+};
+
+/// Two products over the same degrees of freedom.
+struct TwoSums {
+  Compensated first, second;
+  BB_HD static TwoSums zero() { return {Compensated::zero(), Compensated::zero()}; }
+  friend BB_HD TwoSums operator+(const TwoSums& a, const TwoSums& b) {
+    return {a.first + b.first, a.second + b.second};
   }
 };
 /// Over the degrees of freedom whose bit is clear in fixed [n / 3].

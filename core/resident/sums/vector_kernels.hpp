@@ -71,19 +71,52 @@ struct ForceNorm {
   }
 };
 
-/// Size of one part of the free entries of dx: those within the rounding of their vertex, or the others.
-struct RoundingSize {
+/// Of a direction: complements of keys (sum_kernels.hpp) of the largest |dx| over free entries, over those within the
+/// rounding of their vertex, over the others, and of the largest length of a vertex's.
+struct DirectionKeys {
+  Key largest, within, beyond, vertex;
+  BB_HD static DirectionKeys zero() { return {0, 0, 0, 0}; }
+  friend BB_HD DirectionKeys operator+(const DirectionKeys& a, const DirectionKeys& b) {
+    DirectionKeys out = a;
+    raise_key(out.largest, b.largest), raise_key(out.within, b.within);
+    raise_key(out.beyond, b.beyond), raise_key(out.vertex, b.vertex);
+    return out;
+  }
+};
+
+/// Parts of SumParts, one vertex an item.
+struct DirectionParts {
+  using Sum = DirectionKeys;
   const double *dx, *x;     // [3 n] m
   const double* body_size;  // [n] m
   const FixedMask* fixed;
   double epsilon;  // relative rounding of a coordinate
-  bool within;
-  BB_HD Key operator()(Index i) const {
-    const Index v = i / 3;
-    if (is_fixed(fixed[v], static_cast<int>(i % 3))) return largest_key(0);
-    const bool rounding = within_coordinate_rounding(dx[i], x + 3 * v, body_size[v], epsilon);
+  BB_HD void operator()(Index v, DirectionKeys& sum) const {
     using std::abs;
-    return largest_key(rounding == within ? abs(dx[i]) : 0);
+    using std::sqrt;
+    const double* const step = dx + 3 * v;
+    for (int c = 0; c < 3; ++c) {
+      if (is_fixed(fixed[v], c)) continue;
+      const Key key = ~largest_key(abs(step[c]));
+      const bool rounding = within_coordinate_rounding(step[c], x + 3 * v, body_size[v], epsilon);
+      raise_key(sum.largest, key);
+      raise_key(rounding ? sum.within : sum.beyond, key);
+    }
+    raise_key(sum.vertex, ~largest_key(sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2])));
+  }
+};
+
+/// Parts of SumParts: dx += step, and b . step and g . dx over the free degrees of freedom.
+struct TakeSolution {
+  using Sum = TwoSums;
+  const double *step, *b, *g;
+  const FixedMask* fixed;
+  double* dx;
+  BB_HD void operator()(Index i, TwoSums& sum) const {
+    dx[i] += step[i];
+    if (is_fixed(fixed[i / 3], static_cast<int>(i % 3))) return;
+    sum.first.add(b[i] * step[i]);
+    sum.second.add(g[i] * dx[i]);
   }
 };
 
@@ -94,27 +127,11 @@ struct RightHandSide {
   BB_HD void operator()(Index i) const { b[i] = -(lifted ? g[i] + lifted[i] : g[i]); }
 };
 
-/// y += x.
-struct AddColumn {
-  const double* x;
-  double* y;
-  BB_HD void operator()(Index i) const { y[i] += x[i]; }
-};
-
 /// y *= factor.
 struct ScaleColumn {
   double factor;
   double* y;
   BB_HD void operator()(Index i) const { y[i] *= factor; }
-};
-
-/// Largest length of a column of three numbers.
-struct ColumnNorms {
-  const double* x;
-  BB_HD Key operator()(Index v) const {
-    using std::sqrt;
-    return largest_key(sqrt(x[3 * v] * x[3 * v] + x[3 * v + 1] * x[3 * v + 1] + x[3 * v + 2] * x[3 * v + 2]));
-  }
 };
 
 /// First number of a column that is not finite.

@@ -18,7 +18,10 @@ VectorTools::VectorTools(exec::Executor& executor, std::span<const std::uint8_t>
       pin_target_(executor, "prescribed positions", 3 * static_cast<Index>(pins.size())),
       sum_(executor),
       least_(executor),
-      sizes_(executor) {
+      short_pin_(executor),
+      largest_(executor),
+      sizes_(executor),
+      products_(executor) {
   fixed_.upload(fixed_bits(fixed));
   for (const Pin& pin : pins) pins_.push_back(pin.vertex);
   pin_vertex_.upload(pins_);
@@ -45,32 +48,36 @@ void VectorTools::set_pin_motion(const Buffer<double>& x, Buffer<double>& dx) {
   executor_.each(pin_vertex_.size(), PinMotion{pin_vertex_.data(), pin_target_.data(), x.data(), dx.data()});
 }
 
-Index VectorTools::first_short_pin(const Buffer<double>& x) {
-  if (pins_.empty()) return -1;
-  least_.clear();
+void VectorTools::look_at_pins(const Buffer<double>& x) {
+  if (pins_.empty()) return;
+  short_pin_.clear();
   executor_.each(pin_vertex_.size(),
-                 FirstShortPin{pin_vertex_.data(), pin_target_.data(), x.data(), least_.data()});
-  return least_.first();
+                 FirstShortPin{pin_vertex_.data(), pin_target_.data(), x.data(), short_pin_.data()});
 }
 
-double VectorTools::free_max(const Buffer<double>& column) {
-  least_.clear();
-  least_.add(column.size(), FreeSize{column.data(), fixed_.data()});
-  return least_.largest();
+Index VectorTools::first_short_pin() const { return pins_.empty() ? -1 : short_pin_.first(); }
+
+void VectorTools::look_at_largest(const Buffer<double>& column) {
+  largest_.clear();
+  largest_.add(column.size(), FreeSize{column.data(), fixed_.data()});
 }
 
-DirectionSizes VectorTools::sizes(const Buffer<double>& dx, const Buffer<double>& x,
-                                  const Buffer<double>& body_size, double epsilon) {
-  const RoundingSize within{dx.data(), x.data(), body_size.data(), fixed_.data(), epsilon, true};
-  RoundingSize beyond = within;
-  beyond.within = false;
+void VectorTools::take_solution(const Buffer<double>& step, const Buffer<double>& b, const Buffer<double>& g,
+                                Buffer<double>& dx) {
+  products_.clear();
+  products_.add(dx.size(), TakeSolution{step.data(), b.data(), g.data(), fixed_.data(), dx.data()});
+}
+
+void VectorTools::look_at_direction(const Buffer<double>& dx, const Buffer<double>& x,
+                                    const Buffer<double>& body_size, double epsilon) {
   sizes_.clear();
-  sizes_.add(0, dx.size(), FreeSize{dx.data(), fixed_.data()});
-  sizes_.add(1, dx.size(), within);
-  sizes_.add(2, dx.size(), beyond);
-  sizes_.add(3, dx.size() / 3, ColumnNorms{dx.data()});
-  const auto least = sizes_.get();
-  return {least.largest(0), least.largest(1), least.largest(2), least.largest(3)};
+  sizes_.add(n_vertices(), DirectionParts{dx.data(), x.data(), body_size.data(), fixed_.data(), epsilon});
+}
+
+DirectionSizes VectorTools::direction_sizes() const {
+  const DirectionKeys keys = sizes_.get();
+  return {largest_of(keys.largest), largest_of(keys.within), largest_of(keys.beyond),
+          largest_of(keys.vertex)};
 }
 
 double VectorTools::max(const Buffer<double>& column) {

@@ -34,14 +34,28 @@ class VectorTools {
   void move(const Buffer<double>& x, const Buffer<double>& dx, double alpha, Buffer<double>& trial);
   /// dx of prescribed vertices = target - x.
   void set_pin_motion(const Buffer<double>& x, Buffer<double>& dx);
+  // --- in two calls: a launch, and what it found, which is read with the findings of other launches (core/exec/board.hpp)
+  void look_at_pins(const Buffer<double>& x);
   /// The first pin (its number) that is not at its target, -1 without one.
-  Index first_short_pin(const Buffer<double>& x);
-
-  /// Largest |value| over free degrees of freedom; NaN where one is no number.
-  double free_max(const Buffer<double>& column);
+  Index first_short_pin() const;
+  /// dx += step.
+  void take_solution(const Buffer<double>& step, const Buffer<double>& b, const Buffer<double>& g,
+                     Buffer<double>& dx);
+  /// Over free degrees of freedom: b . step and g . dx.
+  TwoSums solution_products() const { return products_.get(); }
   /// body_size: [n] m. epsilon: relative rounding of a coordinate.
-  DirectionSizes sizes(const Buffer<double>& dx, const Buffer<double>& x, const Buffer<double>& body_size,
-                       double epsilon);
+  void look_at_direction(const Buffer<double>& dx, const Buffer<double>& x, const Buffer<double>& body_size,
+                         double epsilon);
+  DirectionSizes direction_sizes() const;
+  void look_at_largest(const Buffer<double>& column);
+  /// Largest |value| over free degrees of freedom; NaN where one is no number.
+  double free_largest() const { return largest_.largest(); }
+
+  // --- at once
+  double free_max(const Buffer<double>& column) {
+    look_at_largest(column);
+    return free_largest();
+  }
   /// Largest |value| over all.
   double max(const Buffer<double>& column);
   /// Over free degrees of freedom: value() is a . b.
@@ -62,8 +76,9 @@ class VectorTools {
   Buffer<int> pin_vertex_;
   Buffer<double> pin_target_;
   ResidentSum sum_;
-  ResidentLeast least_;
-  ResidentLeasts<4> sizes_;
+  ResidentLeast least_, short_pin_, largest_;
+  ResidentSums<DirectionKeys> sizes_;
+  ResidentSums<TwoSums> products_;
 };
 
 }  // namespace bb::resident

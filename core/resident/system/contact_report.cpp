@@ -47,15 +47,8 @@ void fill_numbers(const RowTotals& rows, Numbers& out) {
 
 }  // namespace
 
-RowTotals ResidentContact::totals(const Column& x) {
-  const RowView view = rows(x).view();
-  totals_.clear();
-  totals_.add(view.n, TotalsOfRows{view});
-  return totals_.get();
-}
-
 void ResidentContact::report(const Column& x, IterateNumbers& out, PhaseClock&) {
-  out.kappa_change_rel = kappa_change_;
+  out.kappa_change_rel = says_change_ ? stiffness_.change() : 0;
   if (rows(x).size() == 0) return;
   const RowTotals found = totals(x);
   fill_numbers(found, out);

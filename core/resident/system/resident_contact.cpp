@@ -53,11 +53,13 @@ void ResidentContact::begin_step(const ResidentFrame& frame) {
 }
 
 void ResidentContact::take_trial() {
-  has_pattern_ = has_pattern_ && finder_.same_stencils(rows_, trial_);
+  if (has_pattern_ && !compared_) finder_.compare(rows_, trial_);
+  has_pattern_ = has_pattern_ && finder_.same();
+  compared_ = false;
   rows_.swap(trial_);
-  evaluated_ = trial_evaluated_;
+  evaluated_ = taken_ = trial_evaluated_;
   lent_ = false;
-  energy_.reset();
+  looked_ = false;
 }
 
 void ResidentContact::prepare(const ResidentMotion& motion, PhaseClock& clock) {
@@ -88,16 +90,21 @@ void ResidentContact::fill_lists() {
   executor_.trim();
 }
 
-// Rows of a state of the motion, in the trial's table.
-void ResidentContact::find_rows(const Column& x) {
+// Rows of a state of the motion, in the trial's table: look_for_rows(), then finder_.finish().
+void ResidentContact::look_for_rows(const Column& x) {
   lend_columns();
   if (!listed_) {
     in_trees_ = false;
     broad_phase_.count(x, x);
     fill_lists();
   }
-  finder_.find(x, candidates_, trial_);
-  trial_evaluated_ = false;
+  finder_.look(x, candidates_);
+  trial_evaluated_ = compared_ = false;
+}
+
+void ResidentContact::find_rows(const Column& x) {
+  look_for_rows(x);
+  finder_.finish(trial_);
 }
 
 void ResidentContact::lend_columns() {
@@ -119,12 +126,13 @@ void ResidentContact::settle(const Column& x) {
   evaluated_ = true;
 }
 
-Compensated ResidentContact::energy(const Column& x) {
-  if (!energy_) {
-    settle(x);
-    energy_ = sums_.energy(rows_, x, assembly_);
-  }
-  return *energy_;
+void ResidentContact::look_at_rows(const Column& x) {
+  if (looked_) return;
+  settle(x);
+  const RowEnergy energy = assembly_.row_energy(rows_, x);
+  totals_.clear();
+  totals_.add(rows_.size(), TotalsOfRows{rows_.view(), energy});
+  looked_ = true;
 }
 
 void ResidentContact::change_frame(const ResidentFrame& frame) {
@@ -153,7 +161,7 @@ void ResidentContact::keep_elastic(const ResidentContext& context) {
 void ResidentContact::linearise(const Column& x, const ResidentContext& context, Column& g) {
   keep_elastic(context);
   take_back(x);
-  energy_.reset();
+  looked_ = false;
   if (frugal()) give_back_motion();
   pattern_changed_ = !has_pattern_;
   if (!has_pattern_) assembly_.set_pattern(rows_);
@@ -161,12 +169,16 @@ void ResidentContact::linearise(const Column& x, const ResidentContext& context,
   has_pattern_ = true;
   start_policy(x, g);
   use_policy_kappa();
-  const double change = stiffness_.refresh(rows_, elastic_);
-  kappa_change_ = first_iterate_ ? 0 : change;
+  const bool same = taken_ && evaluated_ && options_.stiffness->uniform() &&
+                    rows_.uniform_kappa == stiffness_.uniform_kappa();  // as in the trial that was accepted
+  stiffness_.refresh(rows_, elastic_);
+  says_change_ = !first_iterate_;
   first_iterate_ = false;
-  barrier_.evaluate(executor_, rows_);
+  if (!same) barrier_.evaluate(executor_, rows_);
   evaluated_ = true;
+  taken_ = false;
   assembly_.add_gradient(rows_, x, g);
+  look_at_rows(x);
 }
 
 void ResidentContact::add_matrix(const Column& x, const HessianRequest& request) {
@@ -187,6 +199,7 @@ void ResidentContact::start_policy(const Column& x, const Column& others) {
   stiffness_.set_uniform(1);
   stiffness_.refresh(rows_, {});
   barrier_.evaluate(executor_, rows_);
+  evaluated_ = false;  // with another kappa
   part_.resize(others.size());
   part_.fill_zero();
   assembly_.add_gradient(rows_, x, part_);
@@ -196,19 +209,17 @@ void ResidentContact::start_policy(const Column& x, const Column& others) {
   policy_start_.start(policy, scene_, options_.contact, sums, time_);
 }
 
-void ResidentContact::find_bound(const Column& x0, const Column& x1) {
-  if (listed_) {
-    bound_ = step_bound_.find(candidates_, x0, x1);
-    return;
-  }
-  if (!in_trees_) broad_phase_.count(x0, x1);  // a state was looked at since
+void ResidentContact::look_along(const ResidentMotion& motion, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::step_bound);
+  if (listed_) return step_bound_.look(candidates_, motion.x0, motion.x1);
+  if (!in_trees_) broad_phase_.count(motion.x0, motion.x1);  // a state was looked at since
   in_trees_ = true;
-  bound_ = step_bound_.find_without_list(broad_phase_.source(), x0, x1);
 }
 
 double ResidentContact::bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::step_bound);
-  find_bound(motion.x0, motion.x1);
+  bound_ = listed_ ? step_bound_.finish()
+                   : step_bound_.find_without_list(broad_phase_.source(), motion.x0, motion.x1);
   out.bound = bound_;
   return out.alpha_ccd = bound_.alpha;
 }
@@ -231,10 +242,15 @@ bool ResidentContact::make_room(const Column& x, const Column& dx, double bound,
 
 std::string ResidentContact::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
-bool ResidentContact::admits(const Column& x, const Column& trial, PhaseClock& clock) {
+void ResidentContact::look_at(const Column& x, const Column& trial, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
-  energy(x);  // while its rows have all columns
-  find_rows(trial);
+  if (!lent_) look_at_rows(x);  // while its rows have all columns
+  look_for_rows(trial);
+}
+
+bool ResidentContact::admits(const Column&, const Column&, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::contact_rows);
+  finder_.finish(trial_);
   return trial_.feasible();
 }
 
@@ -248,9 +264,17 @@ void ResidentContact::evaluate(const Column&) {
   trial_evaluated_ = true;
 }
 
-void ResidentContact::add_change(const Column& x, const Column& trial, ResidentChange& out) {
-  out.before = out.before + energy(x);
-  out.after = out.after + sums_.energy(trial_, trial, assembly_);
+// Where the trial is accepted its stencils are compared with those of the iterate, so that is launched here.
+void ResidentContact::add_change(const Column& x, const Column& trial, ResidentChange&) {
+  look_at_rows(x);
+  sums_.look_at_energy(trial_, trial, assembly_);
+  if (has_pattern_) finder_.compare(rows_, trial_);
+  compared_ = has_pattern_;
+}
+
+void ResidentContact::add_rows(RowEnergies& out) {
+  out.before = out.before + totals_.get().energy;
+  out.after = out.after + sums_.energy();
 }
 
 void ResidentContact::accept() {

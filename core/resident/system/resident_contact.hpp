@@ -48,21 +48,25 @@ class ResidentContact final : public ResidentTerm {
 
   // --- a motion, and states on it
   void prepare(const ResidentMotion& motion, PhaseClock& clock) override;
+  void look_along(const ResidentMotion& motion, PhaseClock& clock) override;
   double bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) override;
   std::string describe_bound() const override;
   /// Where it is frugal the lists of the motion are gone after that.
   bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
   bool sees_non_finite() const override { return true; }
+  void look_at(const Column& x, const Column& trial, PhaseClock& clock) override;
   bool admits(const Column& x, const Column& trial, PhaseClock& clock) override;
   /// kappa of the trial.
   void freeze() override;
   /// Its barrier.
   void evaluate(const Column& trial) override;
   void add_change(const Column& x, const Column& trial, ResidentChange& out) override;
+  void add_rows(RowEnergies& out) override;
   void accept() override;
 
   // --- what is said of it
-  void add_energy(const Column& x, ResidentEnergy& out) override { out.rows = out.rows + energy(x); }
+  void add_energy(const Column& x, ResidentEnergy&) override { look_at_rows(x); }
+  Compensated row_energy() override { return totals_.get().energy; }
   void report(const Column& x, IterateNumbers& out, PhaseClock& clock) override;
   void report_end(const Column& x, StepNumbers& out) override;
   void add_known(KnownStiffness& out) const override;
@@ -83,21 +87,24 @@ class ResidentContact final : public ResidentTerm {
   bool frugal() const { return rows_.size() >= frugal_from_; }
   std::size_t list_budget() const;
   void fill_lists();
+  void look_for_rows(const Column& x);
   void find_rows(const Column& x);
   void lend_columns();
   void settle(const Column& x);
   void take_back(const Column& x);
   void take_trial();
-  void find_bound(const Column& x0, const Column& x1);
   void keep_elastic(const ResidentContext& context);
   /// Of the iterate x.
   ResidentRows& rows(const Column& x) {
     settle(x);
     return rows_;
   }
-  /// Of the rows of the iterate, as linearise() or accept() left them.
-  Compensated energy(const Column& x);
-  RowTotals totals(const Column& x);
+  /// Launches the sums over the rows of the iterate, as linearise() or accept() left them.
+  void look_at_rows(const Column& x);
+  RowTotals totals(const Column& x) {
+    look_at_rows(x);
+    return totals_.get();
+  }
   void start_policy(const Column& x, const Column& others);
   void use_policy_kappa();
   void give_back_motion();
@@ -122,7 +129,9 @@ class ResidentContact final : public ResidentTerm {
   ResidentRows rows_, trial_;
   bool lent_ = false;                                // the trial has the columns that the two share
   bool evaluated_ = true, trial_evaluated_ = false;  // the rows have a barrier; those of the trial
-  std::optional<Compensated> energy_;
+  bool taken_ = false;     // the rows have the barrier of an accepted trial, and were not linearised
+  bool looked_ = false;    // totals_ is of the iterate
+  bool compared_ = false;  // the finder has compared the trial with the iterate
   Index frugal_from_ = default_frugal_from;
   std::size_t list_budget_ = default_list_budget;
   bool listed_ = false;    // the candidate lists are those of the motion
@@ -137,7 +146,7 @@ class ResidentContact final : public ResidentTerm {
   StepBound bound_;
   StiffnessTime time_;
   PolicyStart policy_start_;
-  double kappa_change_ = 0;
+  bool says_change_ = false;  // of kappa in the last linearise()
   bool first_iterate_ = true, pattern_changed_ = false;
   bool has_pattern_ = false;  // that of the rows
 };

@@ -21,6 +21,7 @@ void ResidentPotential::linearise(const Column& x, Column& g) {
     term->linearise(x, context, g);
   }
   energies_known_ = true;
+  announced_ = false;
   if (pattern_changed()) ++pattern_id_;
 }
 

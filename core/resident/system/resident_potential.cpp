@@ -44,6 +44,7 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
       max_pcg_iterations_(integer(linear_parameters(method), "max_iterations")),
       product_partial_(*executor_, "partial products", Partition::most_blocks),
       sum_(*executor_),
+      energy_(*executor_),
       least_(*executor_) {
   require_double(method);
   mass_.upload(scene.mass);
@@ -57,12 +58,12 @@ ResidentPotential::~ResidentPotential() = default;
 
 void ResidentPotential::begin_step(const StepColumns& step) {
   forcing_.begin_step();
-  energies_known_ = trial_evaluated_ = false;
+  energies_known_ = trial_evaluated_ = announced_ = false;
   for (const auto& term : terms_) term->begin_step(frame(step));
 }
 
 void ResidentPotential::change_step(const StepColumns& step) {
-  energies_known_ = false;
+  energies_known_ = announced_ = false;
   for (const auto& term : terms_) term->change_frame(frame(step));
 }
 
@@ -88,6 +89,7 @@ double ResidentPotential::bound(const Column& x0, const Column& x1, const Column
                                 IterationReport& report) {
   double smallest = 1;
   holder_ = nullptr;
+  for (const auto& term : terms_) term->look_along({x0, x1, dx}, clock());
   for (const auto& term : terms_) {
     const double said = term->bound({x0, x1, dx}, report, clock());
     const double alpha = said >= 0 ? said : 0;  // what is no number proves nothing
@@ -116,6 +118,7 @@ bool ResidentPotential::is_finite(const Column& trial) {
 bool ResidentPotential::admits(const Column& x, Column& trial) {
   trial_evaluated_ = false;
   if (!is_finite(trial)) return false;
+  for (const auto& term : terms_) term->look_at(x, trial, clock());
   for (const auto& term : terms_) {
     if (!term->admits(x, trial, clock())) return false;
   }
@@ -128,9 +131,13 @@ EnergyChange ResidentPotential::change(const Column& x, const Column& trial) {
   for (const auto& term : terms_) term->evaluate(trial);
   trial_evaluated_ = true;
   sum_.clear();
-  ResidentChange change{sum_};
+  ResidentChange change(sum_);
   for (const auto& term : terms_) term->add_change(x, trial, change);
-  const Compensated parts = sum_.get(), &before = change.before, &after = change.after;
+  change.launch();
+  const Compensated parts = sum_.get();
+  RowEnergies rows;
+  for (const auto& term : terms_) term->add_rows(rows);
+  const Compensated &before = rows.before, &after = rows.after;
   return EnergyChange{(parts.sum + (after.sum - before.sum)) + (parts.carry + (after.carry - before.carry)),
                       parts.magnitude + before.magnitude + after.magnitude};
 }
@@ -140,6 +147,7 @@ void ResidentPotential::accept() {
     term->accept();
     if (trial_evaluated_) term->take_energies();
   }
+  announced_ = false;
   energies_known_ = trial_evaluated_;
   trial_evaluated_ = false;
 }
@@ -152,14 +160,31 @@ void ResidentPotential::know_energies(const Column& x) {
   energies_known_ = true;
 }
 
-double ResidentPotential::energy(TermSet set, const Column& x) {
+void ResidentPotential::sum_energies(TermSet set, const Column& x, ResidentSum& sum) {
   know_energies(x);
-  sum_.clear();
-  ResidentEnergy energy{sum_};
+  sum.clear();
+  ResidentEnergy energy(sum);
   for (const auto& term : terms_) {
     if (set.has(term->group())) term->add_energy(x, energy);
   }
-  return sum_.get().value() + energy.rows.value();
+  energy.launch();
+}
+
+void ResidentPotential::announce(const Column& x) {
+  sum_energies(TermSet::all(), x, energy_);
+  announced_ = true;
+  for (const auto& term : terms_) term->announce(x);
+}
+
+double ResidentPotential::energy(TermSet set, const Column& x) {
+  const bool announced = announced_ && set == TermSet::all();
+  if (!announced) sum_energies(set, x, sum_);
+  Compensated rows = Compensated::zero();
+  const double parts = (announced ? energy_ : sum_).get().value();
+  for (const auto& term : terms_) {
+    if (set.has(term->group())) rows = rows + term->row_energy();
+  }
+  return parts + rows.value();
 }
 
 void ResidentPotential::report(const Column& x, IterateNumbers& out) {

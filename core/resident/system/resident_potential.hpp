@@ -56,6 +56,7 @@ class ResidentPotential final : public IncrementalPotential {
   EnergyChange change(const Column& x, const Column& trial) override;
   void accept() override;
 
+  void announce(const Column& x) override;
   double energy(TermSet set, const Column& x) override;
   void report(const Column& x, IterateNumbers& out) override;
   void report_end(const Column& x, StepNumbers& out) override;
@@ -86,6 +87,7 @@ class ResidentPotential final : public IncrementalPotential {
   void fill_elastic(const Column& x);
   bool is_finite(const Column& trial);
   void know_energies(const Column& x);
+  void sum_energies(TermSet set, const Column& x, ResidentSum& sum);
 
   std::unique_ptr<exec::Executor> executor_;
   Method& method_;
@@ -99,7 +101,8 @@ class ResidentPotential final : public IncrementalPotential {
   int max_pcg_iterations_;
 
   Buffer<double> product_partial_;
-  ResidentSum sum_;
+  ResidentSum sum_, energy_;
+  bool announced_ = false;  // energy_ is E at the iterate
   ResidentLeast least_;
   Filled level_;                                           // of the last fill_matrix()
   std::uint64_t pattern_id_ = 1;                           // of the matrix

@@ -1,0 +1,31 @@
+#include "core/exec/board.hpp"
+
+#include <algorithm>
+
+namespace bb::exec {
+
+std::size_t Board::take(std::size_t bytes) {
+  const auto same =
+      std::find_if(free_.begin(), free_.end(), [=](const Place& p) { return p.bytes == bytes; });
+  if (same != free_.end()) {
+    const std::size_t at = same->at;
+    free_.erase(same);
+    return at;
+  }
+  const std::size_t at = used_;
+  if (at + bytes > capacity) throw std::logic_error("more numbers are read than there is room for");
+  used_ = (at + bytes + 15) / 16 * 16;
+  written();
+  return at;
+}
+
+const std::byte* Board::read(std::size_t at) {
+  if (!fresh_) {
+    here_.resize(used_);
+    memory_.download_first(here_);
+    fresh_ = true;
+  }
+  return here_.data() + at;
+}
+
+}  // namespace bb::exec
