@@ -19,7 +19,7 @@ from .record_file import RecordError, read_record
 from .whole_file import write_whole
 
 SCHEMA = "barrierbench.gpu_evidence/1"
-SCENES = ("drape_82k", "drape_1m", "dense_184m")
+SCENES = ("drape_82k", "drape_82k.cpu", "drape_1m", "dense_184m")
 RECORDS = ROOT / "results/gpu"
 
 
@@ -83,7 +83,30 @@ def scene_numbers(folder: Path) -> dict | None:
         "pcg_ms": per(solve, pcg),
         "linear_solver": run["labels"]["linear_solver"],
         "run_id": run["ids"]["run_id"],
+        "state_hash": summary.get("state_hash"),
     }
+
+
+def same_runs(folder: Path) -> list[dict]:
+    """Runs on the card beside those of the host executor; what has no record on one side is left out."""
+    rows = []
+    for path in sorted(folder.glob("same/*.cuda")):
+        name = path.name.removesuffix(".cuda")
+        card, host = (scene_numbers(path.with_name(f"{name}.{device}")) for device in ("cuda", "host"))
+        if card is None or host is None:
+            continue
+        keys = ("outcome", "newton_iterations", "pcg_iterations", "contacts", "wall_s", "state_hash")
+        rows.append(
+            {
+                "name": name,
+                "vertices": card["vertices"],
+                "steps": card["steps"],
+                "same_bits": card["state_hash"] == host["state_hash"],
+                "card": {key: card[key] for key in keys},
+                "host": {key: host[key] for key in keys},
+            }
+        )
+    return rows
 
 
 def functor(kernel: str) -> str:
@@ -133,7 +156,11 @@ def kernels_of(folder: Path) -> list[dict]:
 
 
 def collect(folder: Path, commit: str, seconds: int) -> dict:
-    """The record. Errors: UserError."""
+    """The record; commit and seconds of a bundle are in its raw files. Errors: UserError."""
+    if not commit and (folder / "commit").exists():
+        commit = (folder / "commit").read_text().strip()
+    if seconds == 0 and (folder / "seconds").exists():
+        seconds = int((folder / "seconds").read_text())
     device = read_object(folder / "device.json")
     if not device.get("usable") or not device.get("copy"):
         raise UserError(f"{folder}/device.json: no usable card with a measured copy")
@@ -146,6 +173,7 @@ def collect(folder: Path, commit: str, seconds: int) -> dict:
         "card": card_state(folder),
         "parts": parts_of(folder),
         "scenes": {name: scene_numbers(folder / name) for name in SCENES},
+        "same": same_runs(folder),
         "kernels": kernels_of(folder),
     }
 

@@ -25,7 +25,15 @@ from .whole_file import write_whole
 NEVER = "Correct by emulation, never timed."
 LARGE = "drape_1m"
 MOST_KERNELS = 12
-CHECKS = ("device_tests", "memcheck", "racecheck", "initcheck")
+ROOMS = ("sums", "linear", "elements", "contact", "system", "runs")
+CHECKS = (
+    "device_tests",
+    *(f"card_{room}" for room in ROOMS),
+    "memcheck",
+    "racecheck",
+    "initcheck",
+    "synccheck",
+)
 WORDS = {"passed": "passed", "failed": "**failed**", "timed_out": "**timed out**", "left_out": "not run"}
 
 
@@ -68,14 +76,6 @@ def card_rows(records: list[dict]) -> list[list[str]]:
     rows = []
     for record in records:
         device, card = record["device"], record["card"]
-        checks = ", ".join(
-            (
-                f"{name.replace('_', ' ')} {WORDS[record['parts'][name]['status']]}"
-                if name in record["parts"]
-                else f"{name} not run"
-            )
-            for name in CHECKS
-        )
         rows.append(
             [
                 device["card"],
@@ -84,13 +84,45 @@ def card_rows(records: list[dict]) -> list[list[str]]:
                 card.get("clocks.max.sm", "not known"),
                 record["git_commit"][:10] or "not known",
                 _number(1e-9 * device["copy"]["on_the_card_Bps"]),
-                checks,
+                check_text(record),
                 *(
                     _number(_scene(record, scene, key))
                     for scene in ("drape_82k", LARGE)
                     for key in ("pcg_ms", "newton_ms")
                 ),
                 _memory_run(record),
+            ]
+        )
+    return rows
+
+
+def check_text(record: dict) -> str:
+    """Every check with its verdict, those with the same one together; what failed comes first."""
+    of_word: dict[str, list[str]] = {}
+    for name in CHECKS:
+        part = record["parts"].get(name, {"status": "left_out"})
+        of_word.setdefault(WORDS[part["status"]], []).append(name.replace("_", " "))
+    order = ("**failed**", "**timed out**", "passed", "not run")
+    return "; ".join(f"{', '.join(of_word[word])} {word}" for word in order if word in of_word)
+
+
+def _both(run: dict, key: str) -> str:
+    card, host = run["card"][key], run["host"][key]
+    return f"{card}" if card == host else f"{card}, host {host}"
+
+
+def same_rows(record: dict) -> list[list[str]]:
+    """Runs of a card beside the host executor's."""
+    rows = []
+    for run in record.get("same", []):
+        rows.append(
+            [
+                run["name"],
+                f"{run['vertices']:,}",
+                str(run["steps"]),
+                *(_both(run, key) for key in ("outcome", "newton_iterations", "pcg_iterations", "contacts")),
+                "yes" if run["same_bits"] else "no",
+                *(_number(run[device]["wall_s"]) for device in ("card", "host")),
             ]
         )
     return rows
@@ -171,6 +203,29 @@ def _cards(records: list[dict]) -> list[str]:
         card_rows(records),
     )
     for record in records:
+        if record.get("same"):
+            text += [
+                f"## Runs on {record['device']['card']} beside the host executor, {record['date_utc'][:10]}",
+                "",
+                "Kernels that call `log` or `atan2` may differ in the last place, and a scene that buckles"
+                " then goes another way; all others have the same bits. Both were timed on one machine.",
+                "",
+                *_table(
+                    [
+                        "run",
+                        "vertices",
+                        "steps",
+                        "outcome",
+                        "Newton iterations",
+                        "PCG iterations",
+                        "most contacts",
+                        "same bits",
+                        "card, s",
+                        "host executor, s",
+                    ],
+                    same_rows(record),
+                ),
+            ]
         text += [f"## Kernels on {record['device']['card']}, {record['date_utc'][:10]}", ""]
         text += (
             _table(["kernel", "launches", "us a launch", "GB/s", "of the copy"], kernel_rows(record))

@@ -1,48 +1,75 @@
 #!/usr/bin/env bash
-# Evidence from a card, in one run of under ten minutes behind the build: device tests, compute-sanitizer, rates of copies
-# and kernels, the drape at 82 thousand and a million vertices, the memory run of 184 million contacts. One JSON.
+# Evidence from a card: tests of every kernel beside the host, compute-sanitizer, runs beside the host executor's, rates of
+# copies and kernels, the drape at 82 thousand and a million vertices, the memory run of 184 million contacts. One JSON.
 # All talk goes to stderr, the name of the JSON to stdout. Exit codes: 0 a record was written (what failed is in it), 2 wrong
-# usage, 3 no usable card, 70 the program does not build.
+# usage, 5 no usable card, 70 the program does not build.
 set -euo pipefail
 
 usage() {
-  cat <<'EOF'
-usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER]
+  cat <<'HELP'
+usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER] [--only GROUPS]
+       experiments/gpu_evidence.sh --bundle FOLDER
 
   --out FOLDER       where the raw files go (default: results/runs/gpu_evidence/<UTC time>)
   --records FOLDER   where the record goes (default: results/gpu)
+  --only GROUPS      of: tests, sanitizer, same, scenes, memory, kernels; separated by commas (default: all)
+  --bundle FOLDER    builds, and puts all that the evidence needs into FOLDER: this script, programs, their libraries,
+                     configs. FOLDER/gpu_evidence.sh then runs on a machine that has a card and a driver and nothing else
+                     of ours; it leaves the raw files, and `python -m analysis.gpu_evidence RAW` makes the record here.
 
-The record is kept as results/gpu/<card>-<day>.json; commit it, and ./bench gpu-report makes results/GPU.md of all of them.
+The record is kept as results/gpu/<card>-<day>.json; commit it, and ./bench gpu-report makes results/GPU.md of all records.
 Found by themselves and left out with a word where they are not: compute-sanitizer, ncu (Nsight Compute), nvidia-smi.
-EOF
+HELP
 }
 
-root="$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)"
+here="$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)"
+if [ -e "$here/bin/barrierbench" ]; then  # a bundle
+  root="$here" bench="$here/bench" tests="$here/bin"
+else
+  root="$(dirname "$here")" bench="$root/bench" tests="$root/build/release/tests"
+fi
 out="$root/results/runs/gpu_evidence/$(date -u +%Y-%m-%dT%H%M%SZ)"
 records="$root/results/gpu"
+only=tests,sanitizer,same,scenes,memory,kernels
+bundle=""
 while [ "$#" -gt 0 ]; do
   case "$1" in
-    --out)
+    --out | --records | --only | --bundle)
       [ "$#" -ge 2 ] || { usage >&2; exit 2; }
-      out="$2"
-      shift 2
-      ;;
-    --records)
-      [ "$#" -ge 2 ] || { usage >&2; exit 2; }
-      records="$2"
+      declare "${1#--}=$2"
       shift 2
       ;;
     -h | --help) usage && exit 0 ;;
     *) usage >&2 && exit 2 ;;
   esac
 done
+bench="${BARRIERBENCH_BENCH:-$bench}"
+tests="${BARRIERBENCH_DEVICE_TESTS:-$tests}"
 
 say() { printf 'gpu_evidence: %s\n' "$*" >&2; }
-bench="${BARRIERBENCH_BENCH:-$root/bench}"
-build="$root/build/release"
-tests="${BARRIERBENCH_DEVICE_TESTS:-$build/tests/standin/test_device}"
+rooms="sums linear elements contact system runs"
+
+if [ -n "$bundle" ]; then
+  "$bench" build release >&2 || exit 70
+  build="$root/build/release"
+  mkdir -p "$bundle/bin" "$bundle/lib" "$bundle/configs"
+  for program in experiments/barrierbench tests/standin/test_device $(printf 'tests/card/test_card_%s ' $rooms); do
+    strip -o "$bundle/bin/$(basename "$program")" "$build/$program"
+  done
+  ldd "$bundle"/bin/* | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
+    grep -Ev '/(libc|libm|libdl|librt|libpthread|ld-linux[^/]*)\.so' | xargs -I{} cp -L {} "$bundle/lib/"
+  cp -r "$root/configs/." "$bundle/configs/"
+  cp "${BASH_SOURCE[0]}" "$bundle/gpu_evidence.sh"
+  git -C "$root" rev-parse HEAD >"$bundle/commit" 2>/dev/null || true
+  printf '#!/bin/sh\nhere="$(dirname "$(readlink -f "$0")")"\nLD_LIBRARY_PATH="$here/lib" exec "$here/bin/barrierbench" "$@"\n' >"$bundle/bench"
+  chmod +x "$bundle/bench"
+  say "$(du -sh "$bundle" | cut -f 1) in $bundle"
+  exit 0
+fi
+if [ -d "$root/lib" ]; then export LD_LIBRARY_PATH="$root/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"; fi
+wanted() { [[ ",$only," == *",$1,"* ]]; }
 mkdir -p "$out/logs"
-: >"$out/parts.tsv"
+touch "$out/parts.tsv"
 
 # part NAME SECONDS COMMAND...: runs it with a time limit; its output is kept and its verdict written to parts.tsv.
 part() {
@@ -51,7 +78,7 @@ part() {
   say "$name"
   timeout --kill-after=10 "$limit" "$@" >"$out/logs/$name.out" 2>"$out/logs/$name.err" || code="$?"
   case "$code" in 0) ;; 124 | 137) status=timed_out ;; *) status=failed ;; esac
-  [ "$status" = passed ] || say "  $status (exit code $code): $(tail -n 1 "$out/logs/$name.err")"
+  [ "$status" = passed ] || say "  $name: $status (exit code $code): $(tail -n 1 "$out/logs/$name.err")"
   printf '%s\t%s\t%s\t%s\n' "$name" "$status" "$code" "$((SECONDS - start))" >>"$out/parts.tsv"
 }
 # without NAME WHY: a part that cannot be run here.
@@ -60,10 +87,12 @@ without() {
   printf '%s\tleft_out\t%s\t0\n' "$1" "$2" >>"$out/parts.tsv"
 }
 tool() { command -v "$1" 2>/dev/null || { [ -x "/usr/local/cuda/bin/$1" ] && printf '/usr/local/cuda/bin/%s\n' "$1"; }; }
+# test_of ROOM: the program of its tests.
+test_of() { find "$tests" -name "test_card_$1" -type f | head -n 1; }
 
 # ---------------------------------------------------------------- the card
 
-if [ -z "${BARRIERBENCH_BENCH:-}" ]; then
+if [ -z "${BARRIERBENCH_BENCH:-}" ] && [ "$bench" = "$root/bench" ] && [ ! -e "$root/bin" ]; then
   "$bench" build release >&2 || exit 70
 fi
 verdict=0
@@ -79,36 +108,76 @@ fi
 
 # ---------------------------------------------------------------- correctness
 
-part device_tests 30 "$tests"
-if sanitizer="$(tool compute-sanitizer)"; then
-  for check in memcheck racecheck initcheck; do
-    part "$check" 40 "$sanitizer" --tool "$check" --error-exitcode 9 "$tests"
+if wanted tests; then
+  part device_tests 60 "$(find "$tests" -name test_device -type f | head -n 1)" &
+  for room in $rooms; do part "card_$room" 240 "$(test_of "$room")" & done
+  wait
+fi
+if wanted sanitizer; then
+  if sanitizer="$(tool compute-sanitizer)"; then
+    for check in memcheck racecheck initcheck synccheck; do
+      part "$check" 120 "$sanitizer" --tool "$check" --error-exitcode 9 "$(test_of runs)" --gtest_filter='*HaveTheBitsOfTheHost/0' &
+    done
+    wait
+  else
+    for check in memcheck racecheck initcheck synccheck; do without "$check" "compute-sanitizer was not found"; done
+  fi
+fi
+
+# ---------------------------------------------------------------- the same run on card and host
+
+# same_run NAME CONFIG [ARGUMENTS]: on the card and by the kernels of the host executor; the record compares the two.
+same_run() {
+  local name="$1" config="$2" device
+  shift 2
+  for device in cuda host; do
+    part "same_$name.$device" 100 "$bench" run "$root/configs/$config" --set "/device=\"$device\"" --set '/linear_solver={"name": "pcg_resident"}' \
+      --set '/passes={"time": true, "audit": true}' --out "$out/same/$name.$device" --progress none "$@"
   done
-else
-  for check in memcheck racecheck initcheck; do without "$check" "compute-sanitizer was not found"; done
+}
+if wanted same; then
+  for formulation in log cubic quadratic cubic_dynamic_lagged ipc2020; do
+    same_run "drape_$formulation" scenes/drape.json --set /scene/n=16 --set /time/steps=30 --set "/formulation=\"$formulation\"" &
+  done
+  for scene in strip_on_disk sphere_on_sheet sheets_on_ball noodle solid_ball solid_stack twist_cloth hang; do
+    same_run "$scene" "scenes/$scene.json" --set /time/steps=20 &
+  done
+  same_run dense_patch gpu/dense_patch.json &
+  wait
 fi
 
 # ---------------------------------------------------------------- scenes and kernels
 
-# run_scene NAME SECONDS [ARGUMENTS]
+# run_scene NAME SECONDS [ARGUMENTS]: configs/gpu/NAME.json, NAME up to a point.
 run_scene() {
   local name="$1" limit="$2"
   shift 2
   part "$name" "$((limit + 10))" "$bench" run "$root/configs/gpu/${name%%.*}.json" --set '/device="cuda"' --out "$out/$name" \
     --time-limit "$limit" --progress none "$@"
 }
-run_scene drape_82k 40
-run_scene drape_1m 60
-run_scene dense_184m 120
-export BARRIERBENCH_KERNEL_TIMES="$out/kernel_times.json"
-run_scene drape_82k.timed 40 --set /time/steps=1
-unset BARRIERBENCH_KERNEL_TIMES
-if ncu="$(tool ncu)"; then
-  part kernels 60 "$ncu" --csv --print-units base --metrics gpu__time_duration.sum,dram__bytes.sum --launch-count 500 \
-    "$bench" run "$root/configs/gpu/drape_82k.json" --set '/device="cuda"' --set /time/steps=1 --out "$out/drape_82k.ncu" --progress none
-else
-  without kernels "ncu was not found"
+if wanted scenes; then
+  run_scene drape_82k 40
+  run_scene drape_82k.cpu 60 --set '/device="cpu"' --set '/linear_solver={"name": "pcg"}'
+  run_scene drape_1m 60
+fi
+if wanted memory; then run_scene dense_184m 120; fi
+if wanted kernels; then
+  export BARRIERBENCH_KERNEL_TIMES="$out/kernel_times.json"
+  run_scene drape_82k.timed 40 --set /time/steps=1
+  unset BARRIERBENCH_KERNEL_TIMES
+  if ncu="$(tool ncu)"; then
+    part kernels 60 "$ncu" --csv --print-units base --clock-control none --metrics gpu__time_duration.sum,dram__bytes.sum --launch-count 500 \
+      "$bench" run "$root/configs/gpu/drape_82k.json" --set '/device="cuda"' --set /time/steps=1 --out "$out/drape_82k.ncu" --progress none
+  else
+    without kernels "ncu was not found"
+  fi
 fi
 
+if [ "$root" = "$here" ]; then
+  cp "$root/commit" "$out/commit" 2>/dev/null || true
+  printf '%s\n' "$SECONDS" >"$out/seconds"
+  printf '%s\n' "$out"
+  exit 0
+fi
 "$root/.venv/bin/python" -m barrierbench_analysis.gpu_evidence "$out" --commit "$(git -C "$root" rev-parse HEAD 2>/dev/null || true)" \
   --seconds "$SECONDS" --records "$records"

@@ -54,6 +54,14 @@ bool lives_elsewhere(const fs::path& path) {
 
 std::string lock_holder(const fs::path& folder) { return holder(folder / "bench.lock"); }
 
+void remove_dead_lock(const fs::path& folder) noexcept {
+  const fs::path path = folder / "bench.lock";
+  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) return;
+  if (::flock(fd, LOCK_EX | LOCK_NB) == 0 && !lives_elsewhere(path)) ::unlink(path.c_str());
+  ::close(fd);
+}
+
 FolderLock::FolderLock(const fs::path& folder, double wait_s)
     : folder_(folder), path_(folder / "bench.lock") {
   std::error_code unreachable;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "core/record/folder_lock.hpp"
 #include "core/record/run_folder.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
@@ -56,6 +57,7 @@ int run(const RunVerb& verb, const CommonOptions& common) {
   options.resume = verb.limits.resume ? Resume::yes : Resume::no;
   options.time_limit_s = verb.limits.time_limit_s;
   if (verb.limits.resume && is_over(config, options)) {
+    remove_dead_lock(options.folder);  // of a process that was killed with its record in place
     fmt::print("already there\n{}\n", (options.folder / "run.json").string());
     return exit_ok;
   }

@@ -94,6 +94,7 @@ class SweepRun {
         const auto record =
             sweep_.spec.budget.core_s > 0 ? read_run(sweep_.folder(i) / "run.json") : std::nullopt;
         keep(record ? core_seconds(*record) : 0);
+        remove_dead_lock(sweep_.folder(i));
         print(fmt::format("{:<44} already there", sweep_.note(i)));
         return false;
       }

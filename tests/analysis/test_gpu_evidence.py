@@ -27,7 +27,7 @@ NCU = '''==PROF== Connected to process 1
 def run_json(outcome="ok"):
     return {"schema": {"name": "barrierbench.run", "version": "3.9.0"}, "status": {"outcome": outcome, "valid": outcome == "ok"}, "scene": {"vertices": 1048576},
             "ids": {"run_id": "1"}, "labels": {"scene": "drape", "formulation": "log", "dt_s": 0.01, "linear_solver": "pcg"}, "steps": [],
-            "summary": {"steps": 2, "newton_iterations": 10, "linear_iterations": 500, "wall_s": 4.0, "time": {"linear_solve_s": 2.5}, "contacts": {"max": 7e6}}}
+            "summary": {"steps": 2, "newton_iterations": 10, "linear_iterations": 500, "wall_s": 4.0, "time": {"linear_solve_s": 2.5}, "contacts": {"max": 7e6}, "state_hash": "0f"}}
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def page(raw, tmp_path, capsys):
 def test_the_page_has_a_row_a_card(raw, tmp_path, capsys):
     text = page(raw, tmp_path, capsys)
     row = next(line for line in text.splitlines() if line.startswith("| NVIDIA X100"))
-    for part in ("580.1", "3,000", "memcheck **failed**", "racecheck not run", "abcdef0123", "| 5 | 400 | 5 | 400 |", "no memory for matrix values"):
+    for part in ("580.1", "3,000", "memcheck **failed**; device tests passed", "racecheck", "abcdef0123", "| 5 | 400 | 5 | 400 |", "no memory for matrix values"):
         assert part in row
     assert "| `bb::resident::SpmvDot` | 2 | 2 | 1,500 | 50 % |" in text
     assert gpu_report.NEVER not in text
@@ -136,13 +136,16 @@ esac
 '''
 
 
-def script(raw, tmp_path, **more):
-    bench, tests = tmp_path / "bench", tmp_path / "test_device"
+def script(raw, tmp_path, only="tests,sanitizer,same,scenes,memory,kernels", **more):
+    bench, tests = tmp_path / "bench", tmp_path / "tests"
     bench.write_text(FAKE_BENCH)
-    tests.write_text("#!/bin/sh\necho no such kernel >&2\nexit 1\n")
-    bench.chmod(0o755), tests.chmod(0o755)
+    tests.mkdir()
+    for name in ("test_device", *(f"test_card_{room}" for room in ("sums", "linear", "elements", "contact", "system", "runs"))):
+        (tests / name).write_text(f"#!/bin/sh\n{'echo no such kernel >&2; exit 1' if name == 'test_device' else 'exit 0'}\n")
+        (tests / name).chmod(0o755)
+    bench.chmod(0o755)
     environment = {**os.environ, "BARRIERBENCH_BENCH": str(bench), "BARRIERBENCH_DEVICE_TESTS": str(tests), "RAW": str(raw), **more}
-    return subprocess.run([ROOT / "experiments/gpu_evidence.sh", "--out", tmp_path / "out", "--records", tmp_path / "kept"], capture_output=True, text=True, check=False, env=environment)
+    return subprocess.run([ROOT / "experiments/gpu_evidence.sh", "--only", only, "--out", tmp_path / "out", "--records", tmp_path / "kept"], capture_output=True, text=True, check=False, env=environment)
 
 
 def test_the_script_makes_a_record_of_what_passed_and_what_failed(raw, tmp_path):
@@ -151,6 +154,33 @@ def test_the_script_makes_a_record_of_what_passed_and_what_failed(raw, tmp_path)
     record = json.loads(Path(done.stdout.strip()).read_text())
     assert record["parts"]["device_tests"] == {"status": "failed", "seconds": record["parts"]["device_tests"]["seconds"], "why": "no such kernel"}
     assert record["parts"]["drape_82k"]["status"] == "passed" and record["scenes"]["dense_184m"]["vertices"] == 1048576
+    assert all(record["parts"][f"card_{room}"]["status"] == "passed" for room in ("contact", "elements", "linear", "runs", "sums", "system"))
+    same = {run["name"]: run for run in record["same"]}
+    assert len(same) > 10 and same["drape_cubic"]["same_bits"] and same["drape_cubic"]["card"]["newton_iterations"] == 10
+
+
+def test_runs_that_differ_are_not_the_same(raw):
+    for device, state in (("cuda", "a"), ("host", "b")):
+        (raw / f"same/sheet.{device}").mkdir(parents=True)
+        run = run_json()
+        run["summary"]["state_hash"] = state
+        (raw / f"same/sheet.{device}/run.json").write_text(json.dumps(run))
+    (raw / "same/alone.cuda").mkdir()
+    (raw / "same/alone.cuda/run.json").write_text(json.dumps(run_json()))
+    found = gpu_evidence.collect(raw, "", 1)["same"]
+    assert [(run["name"], run["same_bits"]) for run in found] == [("sheet", False)]
+
+
+def test_a_bundle_says_its_commit_and_its_seconds(raw):
+    (raw / "commit").write_text("abc\n"), (raw / "seconds").write_text("77\n")
+    record = gpu_evidence.collect(raw, "", 0)
+    assert (record["git_commit"], record["seconds"]) == ("abc", 77)
+
+
+def test_parts_that_no_group_asks_for_are_left_out(raw, tmp_path):
+    done = script(raw, tmp_path, only="tests")
+    assert done.returncode == 0, done.stderr
+    assert set(json.loads(Path(done.stdout.strip()).read_text())["parts"]) == {"device_tests"} | {f"card_{room}" for room in ("contact", "elements", "linear", "runs", "sums", "system")}
 
 
 def test_the_script_says_why_there_is_no_card(raw, tmp_path):

@@ -1,18 +1,17 @@
-// Runs every launch twice, compiled by g++ and as nvcc's PTX, from the same memory, and compares all memory afterwards:
-// the tests of a pipeline, run on it, also prove that host and device agree bit for bit, launch by launch.
+// Runs every launch twice, compiled by g++ and as nvcc's PTX, from the same memory, and compares all memory afterwards
+// (tests/resident/lockstep.hpp).
 #pragma once
 
 #include "tests/ptx/ptx_executor.hpp"
+#include "tests/resident/lockstep.hpp"
 
 namespace ptx {
 
 class LockstepExecutor : public PtxExecutor {
  public:
   using PtxExecutor::PtxExecutor;
-  /// Of kernels that call a library (log, atan2): parts of their names, and what the numbers of an allocation may differ
-  /// by, relative to the largest of them.
-  static std::vector<std::string>& library_kernels();
-  static constexpr double library_tolerance = 1e-13;
+  /// Whether the numbers of a kernel may differ by library_tolerance, by its name.
+  std::function<bool(const std::string&)> calls_a_library = bb::test::calls_a_library;
 
  protected:
   /// Errors: ExecutionError, also where the results differ; it names the kernel and the first number that does.

@@ -124,16 +124,31 @@ TEST_F(RunFolder, AFolderThatWasThereOrIsNotEmptyOutlivesItsLock) {
   EXPECT_FALSE(fs::exists(folder_ / "made" / "bench.lock"));
 }
 
-TEST_F(RunFolder, TheLockOfAKilledProcessIsFree) {
+/// A process takes the lock and ends without giving it back.
+void leave_a_dead_lock(const fs::path& folder) {
   const ::pid_t child = ::fork();
   if (child == 0) {
-    const FolderLock lock(folder_);
+    const FolderLock lock(folder);
     ::_exit(0);  // no destructor
   }
   int status = 0;
   ::waitpid(child, &status, 0);
-  ASSERT_TRUE(fs::exists(folder_ / "bench.lock"));
+  ASSERT_TRUE(fs::exists(folder / "bench.lock"));
+}
+
+TEST_F(RunFolder, TheLockOfAKilledProcessIsFree) {
+  leave_a_dead_lock(folder_);
   const FolderLock lock(folder_);
+}
+
+TEST_F(RunFolder, ADeadLockIsRemovedAndALivingOneStays) {
+  leave_a_dead_lock(folder_);
+  remove_dead_lock(folder_);
+  EXPECT_FALSE(fs::exists(folder_ / "bench.lock"));
+  remove_dead_lock(folder_);
+  const FolderLock lock(folder_);
+  remove_dead_lock(folder_);
+  EXPECT_TRUE(fs::exists(folder_ / "bench.lock"));
 }
 
 }  // namespace

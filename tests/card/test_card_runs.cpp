@@ -1,0 +1,42 @@
+// Whole runs on a card: memory of the card, streams, graphs, CUB's sort and scan. Scenes whose kernels call no library end
+// with the bits of the host executor; of the others the states are close.
+#include <gtest/gtest.h>
+
+#include "core/cuda/device_executor.hpp"
+#include "tests/card/launched.hpp"
+#include "tests/resident/same_runs.hpp"
+
+namespace bb {
+namespace {
+
+class CountedExecutor final : public cuda::DeviceExecutor {
+ protected:
+  void launch(const exec::KernelInfo& kernel, exec::Index n, const void* f) override {
+    ++test::launched_kernels()[kernel.name()].launches;
+    DeviceExecutor::launch(kernel, n, f);
+  }
+};
+
+const std::vector<test::MakeExecutor> on_card = {[] { return std::make_unique<CountedExecutor>(); }};
+
+class CardRuns : public testing::TestWithParam<const char*> {};
+
+TEST_P(CardRuns, HaveTheBitsOfTheHost) {
+  test::expect_same_runs(test::cloth_on_floor(), GetParam(), 20, on_card);
+  test::expect_same_runs(test::touching(test::two_sheets(), 0.01), GetParam(), 10, on_card);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, CardRuns, testing::Values("cubic", "quadratic"));
+
+TEST(CardRuns, StayCloseWhereALibraryIsCalled) {
+  for (const Scene& scene : {test::cloth_on_plate(), test::cloth_on_balls_and_bar()}) {
+    const auto run = [&](const test::MakeExecutor& make) { return test::run_on(scene, "log", 20, make); };
+    const test::RunEnd host = run([] { return std::make_unique<exec::HostExecutor>(); });
+    const test::RunEnd card = run(on_card.front());
+    EXPECT_GT((host.x - scene.x0).cwiseAbs().maxCoeff(), 1e-3);
+    test::expect_same_end(card, host, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace bb

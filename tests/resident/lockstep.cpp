@@ -1,0 +1,100 @@
+#include "tests/resident/lockstep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+namespace bb::test {
+namespace {
+
+using Memory = std::vector<std::vector<unsigned char>>;
+
+Memory copy_of(const Allocations& allocations) {
+  Memory out;
+  for (const auto& [begin, bytes] : allocations) out.emplace_back(begin, begin + bytes);
+  return out;
+}
+void restore(const Allocations& allocations, const Memory& values) {
+  std::size_t i = 0;
+  for (const auto& [begin, bytes] : allocations) std::memcpy(begin, values[i++].data(), bytes);
+}
+
+double number(const unsigned char* p) {
+  double x;
+  std::memcpy(&x, p, sizeof x);
+  return x;
+}
+
+/// Two floats, each the same or on both sides what a compiler makes of an operation without a number: the processor sets the
+/// sign of such a NaN, a card all other bits.
+bool same_floats(const unsigned char* a, const unsigned char* b) {
+  constexpr std::uint32_t of_host = 0xffc00000, of_card = 0x7fffffff;
+  for (std::size_t k = 0; k < 8; k += 4) {
+    std::uint32_t x, y;
+    std::memcpy(&x, a + k, sizeof x), std::memcpy(&y, b + k, sizeof y);
+    if (x != y && !(x == of_host && y == of_card)) return false;
+  }
+  return true;
+}
+
+/// Doubles that agree up to the tolerance, NaN as one value. False for anything else.
+bool near(const unsigned char* a, const unsigned char* b, std::size_t bytes, double tolerance) {
+  if (bytes % 8 != 0) return false;
+  double largest = 0, worst = 0;
+  for (std::size_t k = 0; k < bytes; k += 8) {
+    const double x = number(a + k), y = number(b + k);
+    if (same_floats(a + k, b + k) || (std::isnan(x) && std::isnan(y))) {
+      if (std::isfinite(x)) largest = std::max(largest, std::fabs(x));
+      continue;
+    }
+    if (!std::isfinite(x) || !std::isfinite(y)) return false;
+    largest = std::max(largest, std::fabs(x)), worst = std::max(worst, std::fabs(x - y));
+  }
+  return worst <= tolerance * largest;
+}
+
+std::string where(const unsigned char* expected, const unsigned char* found, std::size_t bytes) {
+  std::size_t k = 0;
+  while (expected[k] == found[k]) ++k;
+  k -= k % 8;
+  char text[160] = "";
+  if (k + 8 <= bytes) {
+    std::snprintf(text, sizeof text, ", as doubles %.17g and %.17g", number(expected + k), number(found + k));
+  }
+  return "host and device differ at byte " + std::to_string(k) + " of " + std::to_string(bytes) + text;
+}
+
+}  // namespace
+
+bool calls_a_library(const std::string& kernel) {
+  constexpr std::string_view parts[] = {
+#include "tests/resident/library_kernels.inc"
+  };
+  return std::any_of(std::begin(parts), std::end(parts),
+                     [&](std::string_view part) { return kernel.find(part) != std::string::npos; });
+}
+
+std::string difference(const Allocations& memory, double tolerance, const std::function<void()>& here,
+                       const std::function<void()>& there) {
+  const Memory before = copy_of(memory);
+  here();
+  const Memory host = copy_of(memory);
+  restore(memory, before);
+  there();
+  std::size_t i = 0;
+  for (const auto& [found, bytes] : memory) {
+    const unsigned char* expected = host[i++].data();
+    if (bytes == 0 || std::memcmp(expected, found, bytes) == 0) continue;
+    if (near(expected, found, bytes, tolerance)) continue;
+    const std::string text = where(expected, found, bytes);
+    restore(memory, host);
+    return text;
+  }
+  return "";
+}
+
+}  // namespace bb::test
