@@ -14,4 +14,6 @@ std::unique_ptr<exec::Executor> make_device_executor() {
   throw ConfigError("/device", "\"cuda\"", "no card here: " + probe_device().why);
 }
 
+std::size_t local_memory_of_kernels() { return 0; }
+
 }  // namespace bb::cuda

@@ -27,6 +27,10 @@ DeviceProbe probe_device();
 /// the sums by kernel of all executors of the process so far are written to that file. Errors: ConfigError with the reason of the probe where no card is usable.
 std::unique_ptr<exec::Executor> make_device_executor();
 
+/// Bytes that a card keeps beside all buffers, once the kernel that needs the most local memory was launched. Requires that
+/// the probe found it usable; 0 without device code.
+std::size_t local_memory_of_kernels();
+
 /// "13.0" of 13000.
 std::string version_text(int version);
 

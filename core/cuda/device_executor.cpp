@@ -2,6 +2,9 @@
 
 #include <cuda_runtime_api.h>
 
+#include <algorithm>
+
+#include "core/cuda/device.hpp"
 #include "core/cuda/kernel_table.hpp"
 
 namespace bb::cuda {
@@ -10,6 +13,7 @@ using exec::ExecutionError;
 using exec::Index;
 
 constexpr std::size_t remembered = 8;  // kernels that a message names
+const std::string local_memory = "local memory of kernels";
 
 KernelTable& kernel_table() {
   static KernelTable table = [] {
@@ -18,6 +22,30 @@ KernelTable& kernel_table() {
     return all;
   }();
   return table;
+}
+
+namespace {
+
+/// Bytes of the card that a kernel's local memory takes; 0 where it cannot be asked.
+std::size_t local_memory_of(const DeviceKernel& kernel) {
+  cudaFuncAttributes of{};
+  int processors = 0, threads = 0;
+  if (cudaFuncGetAttributes(&of, kernel.function) != cudaSuccess ||
+      cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0) != cudaSuccess ||
+      cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, 0) != cudaSuccess) {
+    cudaGetLastError();  // the launch tells what is wrong
+    return 0;
+  }
+  return of.localSizeBytes * static_cast<std::size_t>(processors) * static_cast<std::size_t>(threads);
+}
+
+}  // namespace
+
+std::size_t local_memory_of_kernels() {
+  std::size_t most = 0;
+  kernel_table().for_each(
+      [&](const DeviceKernel& kernel) { most = std::max(most, local_memory_of(kernel)); });
+  return most;
 }
 
 class DeviceExecutor::Graph final : public exec::LaunchGraph {
@@ -80,9 +108,11 @@ void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void*
     throw ExecutionError(kernel.name() + ": " + std::to_string(kernel.bytes) + " bytes on the host, " +
                          std::to_string(found->bytes) + " on the device");
   }
+  count_local_memory(*found);
   const auto call = [&] {
     const auto code = found->launch(f, n, stream_);
     if (code == cudaSuccess) return;
+    if (code == cudaErrorMemoryAllocation) refuse_local_memory(kernel);
     check(code, kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));
   };
   if (recording_) return recording_->add(kernel, n, f);
@@ -96,6 +126,22 @@ void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void*
     call();
   }
   remember(kernel);
+}
+
+// From its first launch on the driver keeps the local memory of the kernel that needs the most, for as many threads as the
+// card holds at a time.
+void DeviceExecutor::count_local_memory(const DeviceKernel& kernel) {
+  if (!counted_.insert(&kernel).second) return;
+  const std::size_t bytes = local_memory_of(kernel);
+  if (bytes <= local_bytes_) return;
+  count_memory(local_memory, bytes - local_bytes_);
+  local_bytes_ = bytes;
+}
+
+void DeviceExecutor::refuse_local_memory(const exec::KernelInfo& kernel) const {
+  cudaGetLastError();  // it is told here; the next launch shall not report it
+  throw exec::OutOfMemory(memory().refusal(local_memory, local_bytes_) + "; " + kernel.name() +
+                          " cannot be launched; " + memory_state());
 }
 
 void DeviceExecutor::timed(const exec::KernelInfo& kernel, const std::function<void()>& call) {

@@ -4,11 +4,14 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <unordered_set>
 
 #include "core/cuda/library.hpp"
 #include "core/exec/buffer.hpp"
 
 namespace bb::cuda {
+
+struct DeviceKernel;
 
 /// Time of the launches of a kernel (profile()).
 struct KernelTime {
@@ -58,6 +61,8 @@ class DeviceExecutor : public exec::Executor {
   void wait(const std::string& what);
   void timed(const exec::KernelInfo& kernel, const std::function<void()>& call);
   void remember(const exec::KernelInfo& kernel);
+  void count_local_memory(const DeviceKernel& kernel);
+  [[noreturn]] void refuse_local_memory(const exec::KernelInfo& kernel) const;
 
   CUstream_st* stream_ = nullptr;
   bool capturing_ = false, timed_ = false;
@@ -65,6 +70,8 @@ class DeviceExecutor : public exec::Executor {
   std::vector<const exec::KernelInfo*> captured_;
   std::deque<const exec::KernelInfo*> unfinished_;  // the last ones since the last synchronisation
   std::map<std::string, KernelTime> times_;
+  std::unordered_set<const DeviceKernel*> counted_;  // kernels whose local memory is
+  std::size_t local_bytes_ = 0;                      // of the one that needs the most
   exec::Index scan_part_;
   exec::Buffer<exec::Key> other_keys_;
   exec::Buffer<std::uint32_t> other_values_;

@@ -16,7 +16,8 @@ using LaunchKernel = int (*)(const void* f, exec::Index n, CUstream_st* stream);
 
 struct DeviceKernel {
   LaunchKernel launch;
-  std::size_t bytes;  // of the functor as the device compiler lays it out
+  std::size_t bytes;     // of the functor as the device compiler lays it out
+  const void* function;  // as the run time knows it
 };
 
 class KernelTable {
@@ -28,6 +29,11 @@ class KernelTable {
     return found == kernels_.end() ? nullptr : &found->second;
   }
   std::size_t size() const { return kernels_.size(); }
+  /// call(kernel), in any order.
+  template <class Call>
+  void for_each(const Call& call) const {
+    for (const auto& [type, kernel] : kernels_) call(kernel);
+  }
 
  private:
   std::unordered_map<std::type_index, DeviceKernel> kernels_;

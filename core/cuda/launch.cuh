@@ -25,11 +25,11 @@ int launch_blocks(const void* f, exec::Index n, CUstream_st* stream) {
 
 template <class F>
 void add_each(KernelTable& table) {
-  table.add(typeid(F), {&launch_each<F>, sizeof(F)});
+  table.add(typeid(F), {&launch_each<F>, sizeof(F), reinterpret_cast<const void*>(&exec::run_each<F>)});
 }
 template <class F>
 void add_blocks(KernelTable& table) {
-  table.add(typeid(F), {&launch_blocks<F>, sizeof(F)});
+  table.add(typeid(F), {&launch_blocks<F>, sizeof(F), reinterpret_cast<const void*>(&exec::run_blocks<F>)});
 }
 
 }  // namespace bb::cuda

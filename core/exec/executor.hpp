@@ -80,6 +80,8 @@ class Executor {
 
  protected:
   virtual void launch(const KernelInfo& kernel, Index n, const void* f) = 0;
+  /// Memory that is taken and no buffer: from now on of `name`. Errors: OutOfMemory when the limit is passed.
+  void count_memory(const std::string& name, std::size_t bytes) { ledger_.add(name, bytes); }
   /// Null when there is no room.
   virtual void* allocate_bytes(std::size_t bytes) = 0;
   virtual void release_bytes(void* memory) = 0;

@@ -90,18 +90,23 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
 void print_card(std::size_t total) {
   const cuda::DeviceProbe probe = cuda::probe_device();
   if (!probe.usable) {
-    fmt::print("  no card to ask: {}\n", probe.why);
+    fmt::print("  no card to ask: {}; local memory of kernels comes on top (docs/device.md, Memory)\n",
+               probe.why);
     return;
   }
+  const std::size_t local = cuda::local_memory_of_kernels();
+  fmt::print("  {:<40} {:>12}\n", "local memory of kernels, at most", exec::bytes_text(local));
+  total += local;
   fmt::print(
       "  {}: {} free of {}: {}\n", probe.card, exec::bytes_text(probe.free), exec::bytes_text(probe.memory),
       total <= probe.free ? "it fits"
                           : "it does not fit, " + exec::bytes_text(total - probe.free) + " are missing");
 }
 
-void print_memory(const DeviceMemory& memory) {
+void print_memory(const DeviceMemory& memory, const ContactDemand& demand) {
   fmt::print("\nmemory of the device at the peak of a step, buffer by buffer\n");
-  fmt::print("  {:.6g} contacts ({})\n", memory.contacts, memory.source);
+  fmt::print("  {:.6g} contacts ({}), each with {:.4g} candidates and {:.4g} stored blocks\n", memory.contacts,
+             memory.source, demand.candidates_a_contact, demand.upper_blocks_a_contact);
   std::size_t rest = 0;
   for (const auto& [name, bytes] : memory.buffers) {
     if (200 * bytes < memory.total) {
@@ -159,7 +164,7 @@ int explain(const RunVerb& verb, const ContactDemand& demand) {
     }
   }
   print_collisions(scene);
-  if (config.device != Device::cpu) print_memory(count_device_memory(config, scene, plan, demand));
+  if (config.device != Device::cpu) print_memory(count_device_memory(config, scene, plan, demand), demand);
   print_settings(verb, config);
   return exit_ok;
 }
@@ -169,10 +174,10 @@ void demand_arguments(CLI::App& app, ContactDemand& demand) {
                  "with a device: so many contacts are expected (default: estimated from the scene)")
       ->check(finite_number(0, 1e12));
   app.add_option("--blocks-per-contact", demand.upper_blocks_a_contact,
-                 "stored 3x3 blocks on and above the diagonal that a contact has (default 0.49)")
+                 "stored 3x3 blocks on and above the diagonal that a contact has (default 1.738, of configs/gpu/dense_patch.json)")
       ->check(finite_number(0, 10));
   app.add_option("--candidates-per-contact", demand.candidates_a_contact,
-                 "pairs of the broad phase that a contact has (default 2)")
+                 "pairs of the broad phase that a contact has (default 6.145, of configs/gpu/dense_patch.json)")
       ->check(finite_number(0, 1e3));
 }
 

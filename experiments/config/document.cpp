@@ -251,6 +251,10 @@ void apply_override(json& document, const std::string& text, const std::string& 
         {where, '"' + shortened(text) + '"', "/pointer=value, for example /time/dt_s=0.005"});
     return;
   }
+  if (text.starts_with("/extends=")) {  // what a config is laid over is read before its settings
+    violations.push_back({where, "/extends", "a setting: what a config extends stands in its file"});
+    return;
+  }
   bool placed = false;
   try {
     json value = override_value(text.substr(equals + 1), where);

@@ -11,7 +11,7 @@ import pytest
 
 from analysis.errors import UserError
 from analysis import render
-from analysis.frames import Frame, frame_paths, read_frame, read_scene
+from analysis.frames import Frame, frame_paths, read_frame, read_scene, without_bodies
 from analysis.obstacle_rays import hits, primitive_gaps, signed_gap
 from analysis.picture import picture
 from analysis.rasterizer import Camera, DepthBuffer
@@ -200,6 +200,20 @@ def test_a_still_is_written_with_its_caption_and_is_the_same_twice(run, tmp_path
     assert "inside an obstacle" in " ".join(caption.split()).lower() and "end of step 4, t = 0.05 s" in caption and "d_hat_m 0.005" in caption and "Machine:" in caption
     image = plt.imread(one)[..., :3]
     assert image.std() > 0.05  # not one colour
+
+
+def test_a_body_that_is_hidden_is_not_drawn_and_the_caption_says_so(run, tmp_path):
+    record, scene, paths = opened(run)
+    name = scene["bodies"][0]
+    drawn = render.render(run, out=tmp_path / "drawn.png", look=render.Look(size=SMALL))
+    hidden = render.render(run, out=tmp_path / "hidden.png", look=render.Look(size=SMALL, hidden=(name,)))
+    frame = read_frame(paths[-1])
+    left = without_bodies(frame, scene, (name,))
+    assert len(frame.triangles) > 0 and len(left.triangles) == 0 and len(left.vertices) == len(frame.vertices)
+    assert np.abs(plt.imread(drawn) - plt.imread(hidden)).max() > 0.2
+    assert f"not drawn: {name}" in " ".join(hidden.with_suffix(".txt").read_text().split())
+    with pytest.raises(UserError, match=f"body 'nobody': one of {name}"):
+        render.render(run, out=tmp_path / "no.png", look=render.Look(size=SMALL, hidden=("nobody",)))
 
 
 def test_colours_follow_the_field(run):

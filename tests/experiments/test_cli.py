@@ -142,6 +142,16 @@ def test_a_wrong_config_is_refused_before_anything_is_written(program, tmp_path,
     assert not (tmp_path / "out").exists()
 
 
+def test_what_a_config_extends_is_no_setting(program, tmp_path):
+    """It is read before the settings: as one of them it would say nothing."""
+    other = write(tmp_path / "other.json", {"schema": "barrierbench.config/1", "time": {"steps": 7}})
+    refused(bench(program, "check", BLOCK, "--set", f'/extends="{other}"'), "/extends", "stands in its file")
+    axis = {"cases": [{"label": "a", "set": {"/extends": str(other)}}, {"label": "b", "set": {"/time/steps": 2}}]}
+    spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "x", "base": BLOCK, "axes": [axis]})
+    refused(bench(program, "sweep", spec, "--out", tmp_path / "out"), "[a]", "/extends", "stands in its file")
+    assert not (tmp_path / "out").exists()
+
+
 def test_files_that_are_not_there_or_not_json(program, tmp_path):
     for verb in ("run", "check", "explain", "sweep"):
         refused(bench(program, verb, tmp_path / "nowhere.json"), "nowhere.json")

@@ -89,4 +89,7 @@ def test_explain_counts_the_memory(program, tmp_path):
         assert part in done.stdout
     few = bench(program, "explain", config)
     assert "estimated" in few.stdout and "total" in few.stdout
+    measured = json.loads((Path(__file__).parents[2] / "results/gpu_model_inputs.json").read_text())["dense_patch"]
+    assert f"each with {measured['candidates_a_contact']:.4g} candidates and {measured['blocks_a_contact']:.4g} stored blocks" in few.stdout
+    assert "each with 6.145 candidates and 0.5 stored blocks" in done.stdout
     assert "memory of the device" not in bench(program, "explain", config, "--set", '/device="cpu"').stdout

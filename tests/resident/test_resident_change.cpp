@@ -12,21 +12,28 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 
 struct Pair {
   Scene scene;
-  TermOptions options = element_options();
+  TermOptions options;
   StepFrame frame;
   Positions x;
   CpuElements cpu;
   test::TestedExecutor executor;
   OnExecutor resident;
 
-  explicit Pair(bool planar, const char* model = "stable_neo_hookean")
+  explicit Pair(bool planar, const char* model = "stable_neo_hookean", const char* limit = "cubic",
+                Argument argument = Argument::gap, bool literal = false)
       : scene(cloth_scene(model, planar)),
+        options(with_form(element_options(limit), argument, literal)),
         frame(step_frame(scene)),
         x(strained(scene)),
         cpu(scene, options, frame),
         resident(executor, scene, options, frame) {
     cpu.linearise(x, StepHessian::clamped);
     resident.linearise(x);
+  }
+  static TermOptions with_form(TermOptions options, Argument argument, bool literal) {
+    options.limit.argument = argument;
+    options.limit.literal = literal;
+    return options;
   }
   /// The parts of all terms.
   EnergyParts parts(const Positions& to) {
@@ -81,6 +88,54 @@ TEST(ResidentChange, IsThatOfTheTermsForEveryMembrane) {
     }
   }
   EXPECT_GE(n_pairs, 8);
+}
+
+/// Of the change from pair.x to a state: that of all terms on both sides, and of the limit alone.
+void expect_change_of_limit(Pair& pair, const Positions& to, const std::string& what) {
+  ASSERT_TRUE(pair.resident.evaluate(to)) << what;
+  const resident::Compensated found = pair.resident.change();
+  double change = 0, magnitude = 0, of_limit = 0;
+  for (const auto& term : pair.cpu.terms) {
+    EnergyParts parts;
+    EXPECT_TRUE(term->admits(to, pair.cpu.clock));
+    term->evaluate(to);
+    term->change(pair.x, to, parts);
+    for (const EnergyPart& part : parts) {
+      change += part.change, magnitude += part.magnitude;
+      if (term->group() == TermGroup::limit) of_limit += part.change;
+    }
+  }
+  EXPECT_GT(std::abs(of_limit), 1e-6) << what;
+  EXPECT_NEAR(found.value(), change, 1e-13 * magnitude) << what;
+}
+
+// The kernel that measures a trial has the shape in it, once for the plane and once for space. Stretched one way, then both,
+// so that the smaller singular value acts too.
+TEST(ResidentChange, IsThatOfTheTermsForEveryShapeOfTheLimit) {
+  struct Form {
+    Argument argument;
+    bool literal;
+  };
+  int n_pairs = 0;
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
+    for (const Form form : {Form{Argument::gap, false}, Form{Argument::squared_gap, false},
+                            Form{Argument::gap, true}, Form{Argument::squared_gap, true}}) {
+      for (const bool planar : {false, true}) {
+        Pair pair(planar, "arap", shape, form.argument, form.literal);
+        ASSERT_GT(pair.resident.energy(TermGroup::limit).value(), 1e-6) << shape;
+        Positions both_ways = pair.x;
+        both_ways.row(0) *= 1.1;
+        const std::string what = std::string(shape) + (planar ? ", planar" : ", in space");
+        expect_change_of_limit(pair, pair.x + wave(pair.scene, 2e-3), what);
+        expect_change_of_limit(pair, both_ways, what + ", both ways");
+        Positions beyond = both_ways;
+        beyond.topRows(2) *= 1.3;
+        EXPECT_EQ(pair.resident.evaluate(beyond), form.literal) << what;
+        ++n_pairs;
+      }
+    }
+  }
+  EXPECT_EQ(n_pairs, 48);
 }
 
 // Free fall of vertices far from their prediction: the change of their loads is known in closed form.

@@ -17,10 +17,12 @@ struct Settings {
   int count = 1, driver = 13000, runtime = 13000;
   int major = 9, minor = 0;
   std::size_t memory = std::size_t{1} << 32;  // bytes of the card
-  int refuse_launch = -1;      // the launch of this number fails at once, for want of registers
-  int break_launch = -1;       // this one runs into an illegal address
-  bool wrong_numbers = false;  // every kernel writes nothing
-  bool forget_a_node = false;  // graphs have a node less than was captured
+  std::size_t local_bytes = 0;  // of a thread of every kernel; the card holds two processors of 1024 threads
+  int refuse_launch = -1;       // the launch of this number fails at once
+  cudaError_t refuse_code = cudaErrorLaunchOutOfResources;  // with this
+  int break_launch = -1;                                    // this one runs into an illegal address
+  bool wrong_numbers = false;                               // every kernel writes nothing
+  bool forget_a_node = false;                               // graphs have a node less than was captured
 };
 
 /// What happened since reset().

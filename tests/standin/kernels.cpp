@@ -71,7 +71,8 @@ cudaError_t launch(const void* stub, dim3 grid, dim3 block, void** arguments, st
   }
   Launch out{kernel, grid.x, block.x, std::vector<unsigned char>(kernel->param_bytes),
              standin::counts().launches++};
-  if (out.number == standin::settings().refuse_launch) return standin::result(cudaErrorLaunchOutOfResources);
+  if (out.number == standin::settings().refuse_launch)
+    return standin::result(standin::settings().refuse_code);
   for (std::size_t i = 0; i < kernel->params.size(); ++i) {
     memcpy(out.parameters.data() + kernel->params[i].offset, arguments[i], kernel->params[i].bytes);
   }

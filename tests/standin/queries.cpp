@@ -27,6 +27,18 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp* card, int) {
   card->minor = settings().minor;
   return result(cudaSuccess);
 }
+cudaError_t cudaFuncGetAttributes(cudaFuncAttributes* of, const void*) {
+  *of = {};
+  of->localSizeBytes = settings().local_bytes;
+  return result(cudaSuccess);
+}
+cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
+  if (attribute != cudaDevAttrMultiProcessorCount && attribute != cudaDevAttrMaxThreadsPerMultiProcessor) {
+    return result(cudaErrorInvalidValue);
+  }
+  *value = attribute == cudaDevAttrMultiProcessorCount ? 2 : 1024;
+  return result(cudaSuccess);
+}
 const char* cudaGetErrorString(cudaError_t code) {
   switch (code) {
     case cudaErrorInvalidValue:

@@ -89,6 +89,21 @@ TEST_F(Standin, OutOfMemoryNamesTheBufferAndTheCard) {
   EXPECT_EQ(rows.get(999), 0);
 }
 
+TEST_F(Standin, LocalMemoryOfKernelsIsCountedOnceAndRefusedByName) {
+  standin::settings().local_bytes = 1000;
+  cuda::DeviceExecutor device;
+  Buffer<double> x(device, "x", 256), y(device, "y", 2);
+  x.fill_zero();
+  for (int again = 0; again < 2; ++again) device.each(2, Square{x.data()});
+  device.blocks(1, BlockSums{x.data(), y.data()});
+  EXPECT_EQ(device.memory().by_name().at("local memory of kernels"), std::size_t{2} * 1024 * 1000);
+  EXPECT_EQ(cuda::local_memory_of_kernels(), std::size_t{2} * 1024 * 1000);
+  standin::settings().refuse_launch = standin::counts().launches;
+  standin::settings().refuse_code = cudaErrorMemoryAllocation;
+  const std::string said = message<OutOfMemory>([&] { device.each(2, Square{x.data()}); });
+  expect_parts(said, {"local memory of kernels", "Square", "free on the card"});
+}
+
 TEST_F(Standin, AFailedLaunchNamesTheKernel) {
   cuda::DeviceExecutor executor;
   Buffer<double> x(executor, "x", 4);
