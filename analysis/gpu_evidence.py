@@ -19,7 +19,15 @@ from .record_file import RecordError, read_record
 from .whole_file import write_whole
 
 SCHEMA = "barrierbench.gpu_evidence/1"
-SCENES = ("drape_82k", "drape_82k.cpu", "drape_1m", "dense_184m")
+SCENES = (
+    "drape_20k",
+    "drape_20k.cpu",
+    "drape_82k",
+    "drape_82k.cpu",
+    "drape_1m",
+    "dense_500k",
+    "dense_184m",
+)
 RECORDS = ROOT / "results/gpu"
 
 

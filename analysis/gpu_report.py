@@ -106,6 +106,28 @@ def check_text(record: dict) -> str:
     return "; ".join(f"{', '.join(of_word[word])} {word}" for word in order if word in of_word)
 
 
+def scene_rows(record: dict) -> list[list[str]]:
+    """The timed scenes of a record, `.cpu` on the processor of the same machine."""
+    rows = []
+    for name, scene in record["scenes"].items():
+        if scene is None:
+            continue
+        rows.append(
+            [
+                name.removesuffix(".cpu"),
+                f"processor, {scene['linear_solver']}" if name.endswith(".cpu") else "card",
+                scene["outcome"],
+                f"{scene['vertices']:,}",
+                _number(scene["contacts"]),
+                str(scene["steps"]),
+                str(scene["newton_iterations"]),
+                str(scene["pcg_iterations"]),
+                *(_number(scene[key]) for key in ("step_s", "newton_ms", "pcg_ms")),
+            ]
+        )
+    return rows
+
+
 def _both(run: dict, key: str) -> str:
     card, host = run["card"][key], run["host"][key]
     return f"{card}" if card == host else f"{card}, host {host}"
@@ -203,6 +225,23 @@ def _cards(records: list[dict]) -> list[str]:
         card_rows(records),
     )
     for record in records:
+        text += [f"## Scenes on {record['device']['card']}, {record['date_utc'][:10]}", ""]
+        text += _table(
+            [
+                "scene",
+                "where",
+                "outcome",
+                "vertices",
+                "most contacts",
+                "steps",
+                "Newton iterations",
+                "PCG iterations",
+                "s a step",
+                "ms a Newton iteration",
+                "ms a PCG iteration",
+            ],
+            scene_rows(record),
+        )
         if record.get("same"):
             text += [
                 f"## Runs on {record['device']['card']} beside the host executor, {record['date_utc'][:10]}",

@@ -127,9 +127,13 @@ std::string state_hash(const Positions& x) {
 std::string config_id(std::string_view config_json) {
   nlohmann::json j = nlohmann::json::parse(config_json, nullptr, false);  // sorts keys
   if (j.is_discarded()) throw std::invalid_argument("config_id: not JSON");
-  if (j.is_object()) j.erase("threads");  // no bit of a result depends on it
-  drop_places(j);
-  return sha256_hex(j.dump());
+  return config_id_of(std::move(j));
+}
+
+std::string config_id_of(nlohmann::json config) {
+  if (config.is_object()) config.erase("threads");  // no bit of a result depends on it
+  drop_places(config);
+  return sha256_hex(config.dump());
 }
 
 }  // namespace bb

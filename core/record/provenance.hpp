@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,6 +63,8 @@ std::string state_hash(std::span<const double> values);
 /// and without the places of files: an object with `file` and `sha256` counts with its hash and its suffix.
 /// Errors: std::invalid_argument when it is not JSON.
 std::string config_id(std::string_view config_json);
+/// The same of the document itself.
+std::string config_id_of(nlohmann::json config);
 
 /// Peak resident memory of this process, bytes.
 std::uint64_t peak_rss_bytes();

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "core/math/error.hpp"
 #include "experiments/cli/options.hpp"
@@ -58,9 +59,10 @@ int plan(const PlanVerb& verb, const CommonOptions& common) {
     book.add_records(folder);
   }
   std::vector<RunSize> sizes;
-  Sweep sweep = open_sweep(verb.sweep, common, [&](const SweepCase&, const RunConfig& config) {
-    sizes.push_back(book.size_of(config));
-  });
+  Sweep sweep = open_sweep(
+      verb.sweep, common, [&](const SweepCase& one, const RunConfig& config, const nlohmann::json& document) {
+        sizes.push_back(book.size_of(config, document, one.config_id));
+      });
   sweep.options.argv = common.argv;
   sweep.options.plugins = common.loaded;
   if (verb.records.empty()) book.add_records(sweep.out);

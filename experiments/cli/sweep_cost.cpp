@@ -61,13 +61,12 @@ void CostBook::add_records(const fs::path& folder) {
   }
 }
 
-RunSize CostBook::size_of(const RunConfig& config) {
+RunSize CostBook::size_of(const RunConfig& config, const json& document, const std::string& config_id) {
   RunSize out;
-  const std::string text = resolved_json(config);
-  out.config_id = config_id(std::string_view(text));
+  out.config_id = config_id;
   out.scene = config.scene.name;
   out.formulation = label_of(config.formulation);
-  out.of_scene = json::parse(text).value("scene", json()).dump();
+  out.of_scene = document.value("scene", json()).dump();
   out.steps = config.time.steps;
   out.passes = (config.passes.time ? 1 : 0) + (has_observed_run(config) ? 1 : 0) +
                (config.matching.rule != MatchingRule::as_given ? 1 : 0);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ class CostBook {
   /// Every run.json below a folder; what cannot be read is passed over. Cost: reading them.
   void add_records(const std::filesystem::path& folder);
   /// Sizes are made from configs; scenes of the same settings are built once. Errors: ConfigError, as build_scene.
-  RunSize size_of(const RunConfig& config);
+  /// document: resolved_document of the config; config_id: of it.
+  RunSize size_of(const RunConfig& config, const nlohmann::json& document, const std::string& config_id);
   /// A record of the same config as it stands; else the median over records of the same scene of their core seconds a step and
   /// unknown, those with the same settings of it before others, then those of the same formulation.
   ExpectedCost expected(const RunSize& size) const;

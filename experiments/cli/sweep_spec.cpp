@@ -1,6 +1,10 @@
 #include "experiments/cli/sweep_spec.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "core/input/names.hpp"
 #include "core/input/read_file.hpp"
@@ -38,20 +42,35 @@ void append_violations(const std::string& path, const SweepCase& one, const Conf
   }
 }
 
-/// Reads the config of one case: its id, and the key that no other case may have, to which the number of threads belongs
-/// and the repetition.
-std::string resolve(const SweepSpec& spec, SweepCase& one, const SeenCase& seen) {
-  const RunConfig config = resolved(spec, one);
-  if (spec.seeded && config.seeds.jitter == 0) {
-    throw ConfigError("#/seeds/jitter_m", "0",
-                      "a number above 0 beside `seed` in the sweep file: nothing else reads the seed");
+/// What one case is: its config, or what is wrong with it.
+struct Resolved {
+  RunConfig config;
+  nlohmann::json document;
+  std::string key;  // that no other case may have: the number of threads belongs to it, and the repetition
+  std::optional<ConfigError> error;
+};
+
+Resolved resolve(const SweepSpec& spec, SweepCase& one) {
+  Resolved out;
+  try {
+    out.config = resolved(spec, one);
+    if (spec.seeded && out.config.seeds.jitter == 0) {
+      throw ConfigError("#/seeds/jitter_m", "0",
+                        "a number above 0 beside `seed` in the sweep file: nothing else reads the seed");
+    }
+  } catch (const ConfigError& error) {
+    out.error = error;
+    return out;
   }
-  const std::string text = resolved_json(config);
-  one.config_id = config_id(std::string_view(text));
-  if (seen) seen(one, config);
+  out.document = resolved_document(out.config);
+  one.config_id = config_id_of(out.document);
   const auto repetition = one.swept.find("repetition");
-  return sha256_hex(text) + (repetition == one.swept.end() ? "" : " " + repetition->second);
+  out.key = sha256_hex(out.document.dump()) + (repetition == one.swept.end() ? "" : " " + repetition->second);
+  return out;
 }
+
+/// Cases that are resolved side by side before the next are begun: a document has tens of kilobytes.
+constexpr std::size_t side_by_side = 256;
 
 }  // namespace
 
@@ -64,18 +83,29 @@ SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& ov
   std::vector<Violation> violations;
   check_overrides(out, overrides, violations);
   std::map<std::string, const std::string*> label_of;  // key of a run -> the first case that is it
-  for (std::size_t i = 0; i < out.cases.size() && violations.size() < max_violations; ++i) {
-    SweepCase& one = out.cases[i];
-    one.set.insert(one.set.end(), overrides.begin(), overrides.end());
-    if (only && *only != i) continue;
-    check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
-    try {
-      const auto [first, is_new] = label_of.emplace(resolve(out, one, seen), &one.label);
+  std::vector<std::size_t> asked;
+  for (std::size_t i = 0; i < out.cases.size(); ++i) {
+    out.cases[i].set.insert(out.cases[i].set.end(), overrides.begin(), overrides.end());
+    if (!only || *only == i) asked.push_back(i);
+  }
+  std::vector<Resolved> found;
+  for (std::size_t begin = 0; begin < asked.size() && violations.size() < max_violations;
+       begin += side_by_side) {
+    found.resize(std::min(side_by_side, asked.size() - begin));
+    oneapi::tbb::parallel_for(std::size_t{0}, found.size(),
+                              [&](std::size_t k) { found[k] = resolve(out, out.cases[asked[begin + k]]); });
+    for (std::size_t k = 0; k < found.size() && violations.size() < max_violations; ++k) {
+      const SweepCase& one = out.cases[asked[begin + k]];
+      check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
+      if (found[k].error) {
+        append_violations(path, one, *found[k].error, violations);
+        continue;
+      }
+      if (seen) seen(one, found[k].config, found[k].document);
+      const auto [first, is_new] = label_of.emplace(std::move(found[k].key), &one.label);
       if (is_new) continue;
       violations.push_back({path + " [" + one.label + "]", "the same run as [" + *first->second + "]",
                             "cases that differ in a setting"});
-    } catch (const ConfigError& error) {
-      append_violations(path, one, error, violations);
     }
   }
   if (!violations.empty()) throw ConfigError(violations);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +44,8 @@ struct SweepSpec {
 /// The config of one case. Errors: ConfigError, as load_run.
 RunConfig resolved(const SweepSpec& spec, const SweepCase& one);
 
-using SeenCase = std::function<void(const SweepCase&, const RunConfig&)>;
+/// A case as it is resolved: its config, and that as a document (resolved_document).
+using SeenCase = std::function<void(const SweepCase&, const RunConfig&, const nlohmann::json&)>;
 
 /// Reads a sweep file (configs/schema/sweep.schema.json) and resolves every case, so that a mistake in the
 /// last one is found before the first one runs. A case of an axis with "reference": true (one an axis at

@@ -114,7 +114,7 @@ RunConfig load_config(const std::string& path, std::span<const std::string> over
 
 /// A scene without pressure, or without stitches that have a length, has no choice of their Hessian, and the id that it had
 /// before there was one.
-std::string resolved_json(const RunConfig& config) {
+json resolved_document(const RunConfig& config) {
   json out = settings_of<RunConfig>().write(config);
   const auto presses = [](const BodyConfig& body) {
     return body.spec.pressure != 0 || !body.spec.pressure_keys.empty();
@@ -126,9 +126,11 @@ std::string resolved_json(const RunConfig& config) {
   if (std::none_of(config.scene.stitches.begin(), config.scene.stitches.end(), has_length)) {
     out["hessian"].erase("stitch");
   }
-  return out.dump(2);
+  return out;
 }
 
-std::string config_id(const RunConfig& config) { return config_id(std::string_view(resolved_json(config))); }
+std::string resolved_json(const RunConfig& config) { return resolved_document(config).dump(2); }
+
+std::string config_id(const RunConfig& config) { return config_id_of(resolved_document(config)); }
 
 }  // namespace bb

@@ -2,6 +2,7 @@
 // file#/json/pointer, the value found and the values allowed.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,8 +28,10 @@ RunConfig parse_config(const std::string& text, const std::string& source, const
 /// Canonical JSON of a config: every default filled in, presets expanded, keys sorted, doubles that read back
 /// bit for bit, two-space indent. parse_config(resolved_json(c)) gives the same text.
 std::string resolved_json(const RunConfig& config);
+/// The document that it is the text of.
+nlohmann::json resolved_document(const RunConfig& config);
 
-/// Identity of a run: config_id of core/record applied to resolved_json.
+/// Identity of a run: config_id of core/record applied to it.
 std::string config_id(const RunConfig& config);
 
 /// The scene of a config: procedural, or from its bodies. Jitter applied. Deterministic.

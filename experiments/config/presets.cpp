@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/input/json.hpp"
 #include "core/parameters/registry.hpp"
@@ -16,8 +19,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-json load_preset(const std::string& name) {
-  const std::string path = configs_folder() + "/formulations/" + name + ".json";
+json read_preset(const std::string& path) {
   json preset = read_json_file(path, config_file);
   if (!preset.is_object() || !preset.contains("formulation") || !preset["formulation"].is_object()) {
     throw ConfigError(path, "no formulation", "an object with name, doc and formulation");
@@ -31,14 +33,50 @@ json load_preset(const std::string& name) {
   return preset;
 }
 
-std::vector<std::string> preset_names() {
+std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
-  for (const auto& file : fs::directory_iterator(configs_folder() + "/formulations", error)) {
+  for (const auto& file : fs::directory_iterator(folder, error)) {
     if (file.path().extension() == ".json") names.push_back(file.path().stem().string());
   }
   std::sort(names.begin(), names.end());
   return names;
+}
+
+/// What was read of a file or a folder, read again only when that has changed: a sweep resolves its presets for every case.
+template <class T>
+class ReadOnce {
+ public:
+  template <class Read>
+  T get(const std::string& path, const Read& read) {
+    std::error_code error;
+    const fs::file_time_type changed = fs::last_write_time(path, error);
+    {
+      const std::lock_guard lock(mutex_);
+      const auto found = kept_.find(path);
+      if (!error && found != kept_.end() && found->second.first == changed) return found->second.second;
+    }
+    T value = read(path);
+    const std::lock_guard lock(mutex_);
+    kept_[path] = {changed, value};
+    return value;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::pair<fs::file_time_type, T>> kept_;
+};
+
+std::string presets_folder() { return configs_folder() + "/formulations"; }
+
+json load_preset(const std::string& name) {
+  static ReadOnce<json> presets;
+  return presets.get(presets_folder() + "/" + name + ".json", read_preset);
+}
+
+std::vector<std::string> preset_names() {
+  static ReadOnce<std::vector<std::string>> names;
+  return names.get(presets_folder(), names_in);
 }
 
 /// A policy of another name replaces the preset's; a new kappa replaces the old one whatever its convention.
