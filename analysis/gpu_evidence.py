@@ -109,7 +109,7 @@ def same_runs(folder: Path) -> list[dict]:
                 "name": name,
                 "vertices": card["vertices"],
                 "steps": card["steps"],
-                "same_bits": card["state_hash"] == host["state_hash"],
+                "same_bits": card["state_hash"] == host["state_hash"] if card["state_hash"] else None,
                 "card": {key: card[key] for key in keys},
                 "host": {key: host[key] for key in keys},
             }
@@ -202,7 +202,7 @@ def main(arguments: list[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
     try:
         record = collect(asked.folder, asked.commit, asked.seconds)
-    except (UserError, OSError, KeyError) as error:
+    except (UserError, OSError, KeyError, ValueError) as error:
         print(f"gpu_evidence: {asked.folder}: {error}", file=sys.stderr)
         return 2
     path = asked.records / file_name(record)

@@ -96,6 +96,15 @@ def card_rows(records: list[dict]) -> list[list[str]]:
     return rows
 
 
+def fallen(record: dict) -> list[str]:
+    """Parts that failed, with what they said last; checks have a column of their own."""
+    return [
+        f"- {name}: {WORDS[part['status']]}: {part['why']}"
+        for name, part in record["parts"].items()
+        if part["status"] in ("failed", "timed_out")
+    ]
+
+
 def check_text(record: dict) -> str:
     """Every check with its verdict, those with the same one together; what failed comes first."""
     of_word: dict[str, list[str]] = {}
@@ -129,8 +138,11 @@ def scene_rows(record: dict) -> list[list[str]]:
 
 
 def _both(run: dict, key: str) -> str:
-    card, host = run["card"][key], run["host"][key]
-    return f"{card}" if card == host else f"{card}, host {host}"
+    card, host = (
+        f"{value:,.0f}" if isinstance(value, (int, float)) else str(value)
+        for value in (run["card"][key], run["host"][key])
+    )
+    return card if card == host else f"{card}, host {host}"
 
 
 def same_rows(record: dict) -> list[list[str]]:
@@ -143,8 +155,7 @@ def same_rows(record: dict) -> list[list[str]]:
                 f"{run['vertices']:,}",
                 str(run["steps"]),
                 *(_both(run, key) for key in ("outcome", "newton_iterations", "pcg_iterations", "contacts")),
-                "yes" if run["same_bits"] else "no",
-                *(_number(run[device]["wall_s"]) for device in ("card", "host")),
+                {True: "yes", False: "no", None: "not known"}[run["same_bits"]],
             ]
         )
     return rows
@@ -198,6 +209,45 @@ def cost_rows(records: list[dict], prices: dict) -> list[list[str]]:
     return rows
 
 
+SCENE_HEAD = [
+    "scene",
+    "where",
+    "outcome",
+    "vertices",
+    "most contacts",
+    "steps",
+    "Newton iterations",
+    "PCG iterations",
+    "s a step",
+    "ms a Newton iteration",
+    "ms a PCG iteration",
+]
+SAME_HEAD = ["run", "vertices", "steps", "outcome", "Newton iterations", "PCG iterations", "most contacts"]
+
+
+def _of_card(record: dict) -> list[str]:
+    """What failed, the scenes, the runs beside the host and the kernels of one record."""
+    on = f"on {record['device']['card']}"
+    day = record["date_utc"][:10]
+    text = []
+    if lines := fallen(record):
+        text += [f"## What failed {on}, {day}", "", *lines, ""]
+    text += [f"## Scenes {on}, {day}", "", *_table(SCENE_HEAD, scene_rows(record))]
+    if record.get("same"):
+        text += [
+            f"## Runs {on} beside the host executor, {day}",
+            "",
+            "Kernels that call `log` or `atan2` may differ in the last place, and a scene that buckles"
+            " then goes another way; the `plain` ones have no such kernel.",
+            "",
+            *_table([*SAME_HEAD, "same bits"], same_rows(record)),
+        ]
+    text += [f"## Kernels {on}, {day}", ""]
+    if not record["kernels"]:
+        return [*text, "Not measured.", ""]
+    return text + _table(["kernel", "launches", "us a launch", "GB/s", "of the copy"], kernel_rows(record))
+
+
 def _cards(records: list[dict]) -> list[str]:
     """The table of cards, and one of kernels for each."""
     text = [
@@ -225,52 +275,7 @@ def _cards(records: list[dict]) -> list[str]:
         card_rows(records),
     )
     for record in records:
-        text += [f"## Scenes on {record['device']['card']}, {record['date_utc'][:10]}", ""]
-        text += _table(
-            [
-                "scene",
-                "where",
-                "outcome",
-                "vertices",
-                "most contacts",
-                "steps",
-                "Newton iterations",
-                "PCG iterations",
-                "s a step",
-                "ms a Newton iteration",
-                "ms a PCG iteration",
-            ],
-            scene_rows(record),
-        )
-        if record.get("same"):
-            text += [
-                f"## Runs on {record['device']['card']} beside the host executor, {record['date_utc'][:10]}",
-                "",
-                "Kernels that call `log` or `atan2` may differ in the last place, and a scene that buckles"
-                " then goes another way; all others have the same bits. Both were timed on one machine.",
-                "",
-                *_table(
-                    [
-                        "run",
-                        "vertices",
-                        "steps",
-                        "outcome",
-                        "Newton iterations",
-                        "PCG iterations",
-                        "most contacts",
-                        "same bits",
-                        "card, s",
-                        "host executor, s",
-                    ],
-                    same_rows(record),
-                ),
-            ]
-        text += [f"## Kernels on {record['device']['card']}, {record['date_utc'][:10]}", ""]
-        text += (
-            _table(["kernel", "launches", "us a launch", "GB/s", "of the copy"], kernel_rows(record))
-            if record["kernels"]
-            else ["Not measured.", ""]
-        )
+        text += _of_card(record)
     return text
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Evidence from a card: tests of every kernel beside the host, compute-sanitizer, runs beside the host executor's, rates of
-# copies and kernels, the drape at 82 thousand and a million vertices, the memory run of 184 million contacts. One JSON.
+# copies and kernels, timed scenes, the memory run of 184 million contacts. One JSON.
 # All talk goes to stderr, the name of the JSON to stdout. Exit codes: 0 a record was written (what failed is in it), 2 wrong
 # usage, 5 no usable card, 70 the program does not build.
 set -euo pipefail
@@ -10,7 +10,8 @@ usage() {
 usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER] [--only GROUPS]
        experiments/gpu_evidence.sh --bundle FOLDER
 
-  --out FOLDER       where the raw files go (default: results/runs/gpu_evidence/<UTC time>)
+  --out FOLDER       where the raw files go (default: results/runs/gpu_evidence/<UTC time>); calls with the same folder and
+                     other --only add to it, if they are of the same commit
   --records FOLDER   where the record goes (default: results/gpu)
   --only GROUPS      of: tests, sanitizer, same, scenes, memory, kernels; separated by commas (default: all)
   --bundle FOLDER    builds, and puts all that the evidence needs into FOLDER: this script, programs, their libraries,
@@ -43,6 +44,20 @@ while [ "$#" -gt 0 ]; do
     *) usage >&2 && exit 2 ;;
   esac
 done
+for group in ${only//,/ } ""; do
+  case "$group" in
+    tests | sanitizer | same | scenes | memory | kernels) ;;
+    "") [ -n "${only//,/}" ] || { usage >&2; exit 2; } ;;
+    *)
+      printf 'gpu_evidence: --only %s: of tests, sanitizer, same, scenes, memory, kernels\n' "$group" >&2
+      exit 2
+      ;;
+  esac
+done
+if [ "$here" = "$root" ] && [ -n "$bundle" ]; then
+  printf 'gpu_evidence: --bundle: this is a bundle; one is made in a checkout\n' >&2
+  exit 2
+fi
 bench="${BARRIERBENCH_BENCH:-$bench}"
 tests="${BARRIERBENCH_DEVICE_TESTS:-$tests}"
 
@@ -61,7 +76,7 @@ if [ -n "$bundle" ]; then
   cp -r "$root/configs/." "$bundle/configs/"
   cp "${BASH_SOURCE[0]}" "$bundle/gpu_evidence.sh"
   git -C "$root" rev-parse HEAD >"$bundle/commit" 2>/dev/null || true
-  printf '#!/bin/sh\nhere="$(dirname "$(readlink -f "$0")")"\nLD_LIBRARY_PATH="$here/lib" exec "$here/bin/barrierbench" "$@"\n' >"$bundle/bench"
+  printf '#!/bin/sh\nhere="$(dirname "$(readlink -f "$0")")"\nexport LD_LIBRARY_PATH="$here/lib" BARRIERBENCH_CONFIGS="$here/configs"\nexec "$here/bin/barrierbench" "$@"\n' >"$bundle/bench"
   chmod +x "$bundle/bench"
   say "$(du -sh "$bundle" | cut -f 1) in $bundle"
   exit 0
@@ -69,6 +84,12 @@ fi
 if [ -d "$root/lib" ]; then export LD_LIBRARY_PATH="$root/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"; fi
 wanted() { [[ ",$only," == *",$1,"* ]]; }
 mkdir -p "$out/logs"
+commit="$(cat "$root/commit" 2>/dev/null || git -C "$root" rev-parse HEAD 2>/dev/null || true)"
+if [ -e "$out/commit" ] && [ "$(cat "$out/commit")" != "$commit" ]; then
+  say "$out has raw files of commit $(cat "$out/commit"): another folder for $commit"
+  exit 2
+fi
+printf '%s\n' "$commit" >"$out/commit"
 touch "$out/parts.tsv"
 
 # part NAME SECONDS COMMAND...: runs it with a time limit; its output is kept and its verdict written to parts.tsv.
@@ -182,11 +203,9 @@ if wanted kernels; then
   fi
 fi
 
+printf '%s\n' "$((SECONDS + $(cat "$out/seconds" 2>/dev/null || echo 0)))" >"$out/seconds"
 if [ "$root" = "$here" ]; then
-  cp "$root/commit" "$out/commit" 2>/dev/null || true
-  printf '%s\n' "$SECONDS" >"$out/seconds"
   printf '%s\n' "$out"
   exit 0
 fi
-"$root/.venv/bin/python" -m barrierbench_analysis.gpu_evidence "$out" --commit "$(git -C "$root" rev-parse HEAD 2>/dev/null || true)" \
-  --seconds "$SECONDS" --records "$records"
+"$root/.venv/bin/python" -m barrierbench_analysis.gpu_evidence "$out" --records "$records"

@@ -131,11 +131,13 @@ void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void*
 // From its first launch on the driver keeps the local memory of the kernel that needs the most, for as many threads as the
 // card holds at a time.
 void DeviceExecutor::count_local_memory(const DeviceKernel& kernel) {
-  if (!counted_.insert(&kernel).second) return;
+  if (counted_.contains(&kernel)) return;
   const std::size_t bytes = local_memory_of(kernel);
-  if (bytes <= local_bytes_) return;
-  count_memory(local_memory, bytes - local_bytes_);
-  local_bytes_ = bytes;
+  if (bytes > local_bytes_) {
+    count_memory(local_memory, bytes - local_bytes_);
+    local_bytes_ = bytes;
+  }
+  counted_.insert(&kernel);
 }
 
 void DeviceExecutor::refuse_local_memory(const exec::KernelInfo& kernel) const {

@@ -1,6 +1,7 @@
 #include "core/exec/board.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace bb::exec {
 
@@ -10,6 +11,7 @@ std::size_t Board::take(std::size_t bytes) {
   if (same != free_.end()) {
     const std::size_t at = same->at;
     free_.erase(same);
+    written();
     return at;
   }
   const std::size_t at = used_;

@@ -20,10 +20,10 @@ bool within_rounding(const EnergyChange& change, Precision precision = Precision
 /// Ends a step whose direction was of no use.
 void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report);
 
-/// Begins a lap of the system's clock, assembles at system.x() and fills what is known before the solve.
+/// Begins a lap of the system's clock and assembles at system.x(). What is said of the iterate comes with its direction.
 IterationReport begin_iteration(StepSystem& system, int step, int iteration);
-/// Solves for the direction, fills |dx|_inf and the decrement -g . dx / 2 over free degrees of freedom, and lets the
-/// observer look at the matrices.
+/// Solves for the direction, fills |dx|_inf, the decrement -g . dx / 2 over free degrees of freedom, and E, gradient, pattern
+/// and the terms' numbers of the iterate (one wait for all of them), and lets the observer look at the matrices.
 void find_direction(StepSystem& system, IterationReport& report, StepObserver& observer);
 /// The status that ends the step when the direction is of no use. must_descend: E has to decrease along it.
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend);

@@ -92,7 +92,10 @@ NewtonState::NewtonState(const Scene& of, Method& method, const Plan& with, Phas
 }
 
 exec::Index NewtonState::first_short_pin() {
-  if (!pins_seen) vectors.look_at_pins(x);
+  if (!pins_seen) {
+    vectors.look_at_pins(x);
+    trial_pins_seen = false;  // there is one number of both
+  }
   pins_seen = true;
   return vectors.first_short_pin();
 }

@@ -38,6 +38,14 @@ std::string holder(const fs::path& path) {
   return text.empty() ? "another process" : text;
 }
 
+/// Whether the open file is the one that lies there: its holder may have removed it, and another one made a new one.
+bool is_still(int fd, const fs::path& path) {
+  struct stat ours {
+  }, there{};
+  return ::fstat(fd, &ours) == 0 && ::stat(path.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
+         ours.st_dev == there.st_dev;
+}
+
 /// Whether the lock names another host that has given a sign of life of late.
 bool lives_elsewhere(const fs::path& path) {
   const std::string text = text_of(path);
@@ -54,11 +62,12 @@ bool lives_elsewhere(const fs::path& path) {
 
 std::string lock_holder(const fs::path& folder) { return holder(folder / "bench.lock"); }
 
-void remove_dead_lock(const fs::path& folder) noexcept {
+void remove_dead_lock(const fs::path& folder) {
   const fs::path path = folder / "bench.lock";
   const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (fd < 0) return;
-  if (::flock(fd, LOCK_EX | LOCK_NB) == 0 && !lives_elsewhere(path)) ::unlink(path.c_str());
+  if (::flock(fd, LOCK_EX | LOCK_NB) == 0 && is_still(fd, path) && !lives_elsewhere(path))
+    ::unlink(path.c_str());
   ::close(fd);
 }
 
@@ -129,12 +138,7 @@ bool FolderLock::try_once() {
     ::close(fd_);
     throw FolderInUse(folder_.string() + ": in use by " + holder(path_) + "; try again when it has ended");
   }
-  struct stat ours {
-  }, there{};
-  if (::fstat(fd_, &ours) == 0 && ::stat(path_.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
-      ours.st_dev == there.st_dev) {
-    return true;
-  }
+  if (is_still(fd_, path_)) return true;
   ::close(fd_);
   return false;
 }

@@ -22,8 +22,8 @@ struct FolderInUse : RecordError {
 /// Who holds the lock of a folder, or did: "process 7 on HOST since TIME", "another process" where that is not known.
 std::string lock_holder(const std::filesystem::path& folder);
 
-/// Removes the lock that a process left when it was killed; that of a living one stays. Never fails.
-void remove_dead_lock(const std::filesystem::path& folder) noexcept;
+/// Removes the lock that a process left when it was killed; that of a living one stays, and one that may not be removed.
+void remove_dead_lock(const std::filesystem::path& folder);
 
 /// Holds `folder` (made when missing) until destroyed, by flock on `bench.lock` in it; the file says which
 /// process on which host, gets a new time of change every heartbeat_s seconds, and goes with the lock. A folder that was made

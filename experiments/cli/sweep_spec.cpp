@@ -53,20 +53,26 @@ struct Resolved {
 Resolved resolve(const SweepSpec& spec, SweepCase& one) {
   Resolved out;
   try {
-    out.config = resolved(spec, one);
+    out.config = load_config(spec.base, one.set);
     if (spec.seeded && out.config.seeds.jitter == 0) {
       throw ConfigError("#/seeds/jitter_m", "0",
                         "a number above 0 beside `seed` in the sweep file: nothing else reads the seed");
     }
   } catch (const ConfigError& error) {
     out.error = error;
-    return out;
   }
-  out.document = resolved_document(out.config);
-  one.config_id = config_id_of(out.document);
-  const auto repetition = one.swept.find("repetition");
-  out.key = sha256_hex(out.document.dump()) + (repetition == one.swept.end() ? "" : " " + repetition->second);
   return out;
+}
+
+/// The rest, one case after the other: the choice of `auto` orders a matrix by METIS, whose random numbers are the process's.
+void identify(Resolved& found, SweepCase& one, const SeenCase& seen) {
+  decide_linear_solver(found.config);
+  found.document = resolved_document(found.config);
+  one.config_id = config_id_of(found.document);
+  const auto repetition = one.swept.find("repetition");
+  found.key =
+      sha256_hex(found.document.dump()) + (repetition == one.swept.end() ? "" : " " + repetition->second);
+  if (seen) seen(one, found.config, found.document);
 }
 
 /// Cases that are resolved side by side before the next are begun: a document has tens of kilobytes.
@@ -95,13 +101,15 @@ SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& ov
     oneapi::tbb::parallel_for(std::size_t{0}, found.size(),
                               [&](std::size_t k) { found[k] = resolve(out, out.cases[asked[begin + k]]); });
     for (std::size_t k = 0; k < found.size() && violations.size() < max_violations; ++k) {
-      const SweepCase& one = out.cases[asked[begin + k]];
+      SweepCase& one = out.cases[asked[begin + k]];
       check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
-      if (found[k].error) {
-        append_violations(path, one, *found[k].error, violations);
+      try {
+        if (found[k].error) throw ConfigError(*found[k].error);
+        identify(found[k], one, seen);
+      } catch (const ConfigError& error) {
+        append_violations(path, one, error, violations);
         continue;
       }
-      if (seen) seen(one, found[k].config, found[k].document);
       const auto [first, is_new] = label_of.emplace(std::move(found[k].key), &one.label);
       if (is_new) continue;
       violations.push_back({path + " [" + one.label + "]", "the same run as [" + *first->second + "]",

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -89,8 +90,10 @@ def page(raw, tmp_path, capsys):
 def test_the_page_has_a_row_a_card(raw, tmp_path, capsys):
     text = page(raw, tmp_path, capsys)
     row = next(line for line in text.splitlines() if line.startswith("| NVIDIA X100"))
-    for part in ("580.1", "3,000", "memcheck **failed**; device tests passed", "racecheck", "abcdef0123", "| 5 | 400 | 5 | 400 |", "no memory for matrix values"):
+    for part in ("580.1", "3,000", "memcheck **failed**; device tests passed", "racecheck, initcheck, synccheck not run", "abcdef0123", "| 5 | 400 | 5 | 400 |", "no memory for matrix values"):
         assert part in row
+    assert "| drape_1m | card | ok | 1,048,576 | 7,000,000 | 2 | 10 | 500 | 2 | 400 | 5 |" in text
+    assert "- dense_184m: **failed**: no memory for matrix values: 9 GiB" in text
     assert "| `bb::resident::SpmvDot` | 2 | 2 | 1,500 | 50 % |" in text
     assert gpu_report.NEVER not in text
     # 2 s a step of 0.01 s: 200 s for a second of the scene, at 3 USD an hour.
@@ -169,6 +172,19 @@ def test_runs_that_differ_are_not_the_same(raw):
     (raw / "same/alone.cuda/run.json").write_text(json.dumps(run_json()))
     found = gpu_evidence.collect(raw, "", 1)["same"]
     assert [(run["name"], run["same_bits"]) for run in found] == [("sheet", False)]
+    for device in ("cuda", "host"):
+        run["summary"]["state_hash"] = ""
+        (raw / f"same/sheet.{device}/run.json").write_text(json.dumps(run))
+    assert gpu_evidence.collect(raw, "", 1)["same"][0]["same_bits"] is None  # two unknown states are not the same
+
+
+def test_the_page_has_a_row_a_run_beside_the_host(raw, tmp_path, capsys):
+    for device, steps in (("cuda", 10), ("host", 12)):
+        (raw / f"same/sheet.{device}").mkdir(parents=True)
+        run = run_json()
+        run["summary"]["newton_iterations"] = steps
+        (raw / f"same/sheet.{device}/run.json").write_text(json.dumps(run))
+    assert "| sheet | 1,048,576 | 2 | ok | 10, host 12 | 500 | 7,000,000 | yes |" in page(raw, tmp_path, capsys)
 
 
 def test_a_bundle_says_its_commit_and_its_seconds(raw):
@@ -181,6 +197,21 @@ def test_parts_that_no_group_asks_for_are_left_out(raw, tmp_path):
     done = script(raw, tmp_path, only="tests")
     assert done.returncode == 0, done.stderr
     assert set(json.loads(Path(done.stdout.strip()).read_text())["parts"]) == {"device_tests"} | {f"card_{room}" for room in ("contact", "elements", "linear", "runs", "sums", "system")}
+
+
+@pytest.mark.parametrize("words", ["test", "tests,,scene", ""])
+def test_groups_that_are_none_are_refused(raw, tmp_path, words):
+    done = script(raw, tmp_path, only=words)
+    assert done.returncode == 2 and done.stdout == "" and ("of tests, sanitizer, same" in done.stderr or "usage" in done.stderr)
+    assert not (tmp_path / "out").exists() and not (tmp_path / "kept").exists()
+
+
+def test_raw_files_of_another_commit_are_not_mixed(raw, tmp_path):
+    assert script(raw, tmp_path, only="tests").returncode == 0
+    (tmp_path / "out/commit").write_text("another\n")
+    (tmp_path / "bench").unlink(), shutil.rmtree(tmp_path / "tests")
+    done = script(raw, tmp_path, only="scenes")
+    assert done.returncode == 2 and "of commit another" in done.stderr
 
 
 def test_the_script_says_why_there_is_no_card(raw, tmp_path):

@@ -1,6 +1,6 @@
 // The executor of the tests of the resident rooms. Which one is decided when a test is linked, so that the cases are
 // compiled once: test_resident_ROOM runs them on the host (host_tested_executor.cpp), test_ptx_ROOM also as nvcc's PTX
-// (tests/ptx/ptx_tested_executor.cpp).
+// (tests/ptx/ptx_tested_executor.cpp), test_card_ROOM also on a card (tests/card/card_tested_executor.cpp).
 #pragma once
 
 #include <memory>

@@ -20,10 +20,9 @@ class BoxTrees {
   /// of.begin is set here.
   void fit(TreeSources of);
   void free() {
-    free_scratch();
+    key_.free(), order_.free();
     for (auto& node : node_) node.free();
   }
-  void free_scratch() { key_.free(), order_.free(); }
   /// Room for keys, until fit().
   Key* keys(Index n) {
     if (key_.size() < n) key_.resize(n);

@@ -59,6 +59,7 @@ class LimitTerm final : public TermOf<Limit<R>> {
 
   void begin_step(const ResidentFrame& frame) override {
     fresh_ = false, first_ = true;
+    announced_ = accepted_ = false;
     measured_ = State::none;
     x_n_ = frame.x_n->data();
     change_frame(frame);
