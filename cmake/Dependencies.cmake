@@ -1,5 +1,6 @@
 # Every library we use, from Debian's packages. Imported targets are SYSTEM includes, so their warnings stay theirs.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+include(LeanEigen)
 find_package(CHOLMOD 3 REQUIRED)
 find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)

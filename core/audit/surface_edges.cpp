@@ -39,7 +39,9 @@ void set_edges(const std::vector<TriangleVertices>& triangles, const std::vector
 
 void set_points(const std::vector<int>& vertices, int n_vertices, AuditMesh& mesh) {
   std::vector<char> covered(static_cast<std::size_t>(n_vertices), 0);
-  for (const int v : mesh.edges.reshaped()) covered[static_cast<std::size_t>(v)] = 1;
+  for (Eigen::Index i = 0; i < mesh.edges.cols(); ++i) {
+    for (const int v : {mesh.edges(0, i), mesh.edges(1, i)}) covered[static_cast<std::size_t>(v)] = 1;
+  }
   mesh.points.clear();
   for (const int v : vertices) {
     if (!covered[static_cast<std::size_t>(v)]) mesh.points.push_back(v);

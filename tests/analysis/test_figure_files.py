@@ -13,6 +13,7 @@ from analysis.records import load
 from synthetic import bind, write_run, write_set
 
 
+@pytest.mark.usefixtures("unpainted")
 @pytest.mark.parametrize("module", [condition, iterations, gaps, barrier_shapes])
 def test_a_caption_stands_beside_every_figure(records, program, tmp_path, monkeypatch, module):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)

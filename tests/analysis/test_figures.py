@@ -39,6 +39,7 @@ def test_pdf_fonts_are_truetype(records, tmp_path):
     assert b"CIDFontType2" in pdf
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_condition_numbers_beside_the_figure_are_the_traces(records, tmp_path):
     table = pd.read_csv(condition.figure(records, "strip", tmp_path)[2])
 
@@ -50,6 +51,7 @@ def test_condition_numbers_beside_the_figure_are_the_traces(records, tmp_path):
             assert list(ours[field]) == list(theirs[field])
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_gaps_and_iterations_beside_the_figures_are_the_steps(records, tmp_path):
     gap = pd.read_csv(gaps.figure(records, "strip", tmp_path)[2])
     work = pd.read_csv(iterations.figure(records, "strip", tmp_path)[2])
@@ -61,6 +63,7 @@ def test_gaps_and_iterations_beside_the_figures_are_the_steps(records, tmp_path)
     assert list(pcg["count"]) == [10, 10, 11, 11, 12, 12]
 
 
+@pytest.mark.usefixtures("unpainted")
 @pytest.mark.parametrize(("whose", "word"), [("", "contacts"), ("limit_", "strain limit")])
 def test_the_kappa_that_does_not_settle_is_drawn_in_its_step_over_its_own_gap(tmp_path, monkeypatch, whose, word):
     titles, save = [], style.save
@@ -121,6 +124,7 @@ def version(root: Path, name: str, number: str) -> None:
     path.write_text(json.dumps(record))
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_verdicts_of_an_earlier_rule_are_marked_and_the_rule_is_stated(tmp_path, capsys):
     """cubic and cubic_dynamic were judged by the smallest gap of the run; quadratic failed, which means the same in every version."""
     write_set(tmp_path / "runs")
@@ -176,6 +180,7 @@ def test_table_takes_medians_of_the_logarithm_over_sure_values(records):
     assert "1.00e+02" in text
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_barrier_shapes_come_from_the_program(program, tmp_path, monkeypatch):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
     table = pd.read_csv(barrier_shapes.figure(tmp_path)[2])
@@ -190,6 +195,7 @@ def test_barrier_shapes_come_from_the_program(program, tmp_path, monkeypatch):
     np.testing.assert_allclose(squared["b"], -((squared["u"] ** 2 - 1) ** 2) * np.log(squared["u"] ** 2), rtol=1e-12)
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_shape_of_a_plugin_is_drawn_while_its_file_is_there(program, tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
     library = tmp_path / "inverse.so"

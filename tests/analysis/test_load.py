@@ -42,6 +42,7 @@ def test_a_torn_record_is_left_out_and_named(tmp_path, capsys, torn):
     assert said.count(str(path)) == 1 and "1 of 4 records left out" in said
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_figures_end_well_beside_a_torn_record_and_not_without_any(tmp_path, capsys):
     write_set(tmp_path / "runs")
     path = tmp_path / "runs" / "cubic" / "run.json"

@@ -38,16 +38,19 @@ def test_the_caption_says_which_jump_it_is_and_why(tmp_path):
     assert (tmp_path / "s.csv").read_text().count("True") == 1
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_jump_after_a_direction_below_the_tolerance_leaves_a_saddle(tmp_path):
     said = caption(tmp_path, data(dx_inf_m=[1e-2, 1e-7, 5e-3, 1e-7]))
     assert "the step goes on from a saddle" in said and "has become positive definite again" not in said
 
 
+@pytest.mark.usefixtures("unpainted")
 @pytest.mark.parametrize("edit", [{"dx_inf_m": [1e-2, 1e-3, 5e-3, 1e-7]}, {"hessian": "progressive", "dx_inf_m": [1e-2, 1e-3]}])
 def test_without_a_jump_nothing_is_said(tmp_path, edit):
     assert "Rings" not in caption(tmp_path, data(**edit))
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_choices_that_take_the_same_directions_are_named(tmp_path):
     found = data(dx_inf_m=[1e-2, 1e-3, 9e-3, 1e-7])
     assert "One line: exact_or_clamped, blend in step 11." in caption(tmp_path, found) and "One line" not in caption(tmp_path, data())

@@ -49,6 +49,7 @@ def test_other_points_and_other_errors_are_no_repetition():
     assert constant(Panel("a", WAVE, errors), Panel("b", WAVE, errors[::-1].set_axis(errors.index))) is None
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_eigenvalues_that_repeat_the_condition_number_have_no_figure(tmp_path):
     """In the made records the smallest eigenvalue is 2 and the largest is twice the condition number."""
     write_set(tmp_path / "runs")

@@ -43,6 +43,7 @@ def test_no_figure_has_more_than_five_and_none_is_lost(count, sizes):
     assert {name for part in found for name in part.names} == set(names) and len({part.suffix for part in found}) == len(found)
 
 
+@pytest.mark.usefixtures("unpainted")
 @pytest.mark.parametrize("module", [condition, iterations, gaps])
 def test_every_figure_of_a_large_group_keeps_to_it(tmp_path, monkeypatch, module):
     for k, name in enumerate(NAMES):

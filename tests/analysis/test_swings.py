@@ -53,6 +53,7 @@ def test_the_cycle_of_a_run_is_a_band_that_the_caption_names(tmp_path):
     assert "(gap, contacts, quadratic from iteration 1 on, 0.1 to 0.6 at the end)" in said
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_other_runs_stand_in_their_step_of_the_same_time(tmp_path):
     """The cycle is in step 3, 0.03 to 0.04 s; a run with other steps is there in its step 2."""
     write_set(tmp_path / "runs")

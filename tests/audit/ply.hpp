@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -42,7 +43,7 @@ inline Ply read_ply(const std::filesystem::path& path) {
     if (first == "property" && third == "x") wide = second == "double";
   }
   Ply out{Positions(3, n_vertices), Eigen::Matrix3Xi(3, n_faces)};
-  for (double& v : out.x.reshaped()) {
+  for (double& v : std::span(out.x.data(), static_cast<std::size_t>(out.x.size()))) {
     v = wide ? read_value<double>(in, big_endian) : static_cast<double>(read_value<float>(in, big_endian));
   }
   for (Eigen::Index f = 0; f < n_faces; ++f) {

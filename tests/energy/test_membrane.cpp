@@ -27,11 +27,12 @@ struct Density {
 template <class Model, class T, int R>
 Density density() {
   const auto value = [](const VecXl& f) -> Long {
-    return Model::template value<T, R>(f.reshaped(R, 2).cast<T>(), lame_mu, lame_lambda);
+    return Model::template value<T, R>(unstacked<R, 2>(f).template cast<T>(), lame_mu, lame_lambda);
   };
   const auto terms = [](const VecXl& f, Projection projection) {
-    const auto at = Model::template terms<T, R>(f.reshaped(R, 2).cast<T>(), lame_mu, lame_lambda, projection);
-    return Terms{at.psi, at.pk1.reshaped().template cast<Long>(), at.hess.template cast<double>()};
+    const auto at =
+        Model::template terms<T, R>(unstacked<R, 2>(f).template cast<T>(), lame_mu, lame_lambda, projection);
+    return Terms{at.psi, stacked(at.pk1).template cast<Long>(), at.hess.template cast<double>()};
   };
   return {value, terms};
 }
@@ -68,8 +69,8 @@ VecXl random_gradient(int rows, double s0, double s1, std::mt19937& random) {
   const Eigen::Rotation2Dd v(std::uniform_real_distribution<double>(-3, 3)(random));
   const Eigen::Rotation2Dd u(std::uniform_real_distribution<double>(-3, 3)(random));
   const Mat<double, 2, 2> middle = Vec2d(s0, s1).asDiagonal() * v.toRotationMatrix();
-  if (rows == 2) return (u.toRotationMatrix() * middle).reshaped().cast<Long>();
-  return (random_rotation(random).leftCols<2>() * middle).reshaped().cast<Long>();
+  if (rows == 2) return stacked(u.toRotationMatrix() * middle).cast<Long>();
+  return stacked(random_rotation(random).leftCols<2>() * middle).cast<Long>();
 }
 
 struct State {
@@ -189,7 +190,7 @@ TEST(Membrane, ClosedForms) {
   }
 }
 
-const VecXl identity = Mat<Long, 3, 2>::Identity().reshaped();
+const VecXl identity = stacked(Mat<Long, 3, 2>::Identity());
 
 TEST(Membrane, RestIsAStressFreeMinimum) {
   for (const Model& m : models(3)) {

@@ -39,12 +39,13 @@ Mat3d gradient_of(const Vec3d& sigma, std::mt19937& random) {
 
 template <class Model, class T>
 DensityTerms<T, 3, 3> terms_at(const VecXl& f, Projection projection) {
-  return Model::template terms<T, 3, 3>(f.reshaped(3, 3).cast<T>(), T(lame_mu), T(lame_lambda), projection);
+  return Model::template terms<T, 3, 3>(unstacked<3, 3>(f).template cast<T>(), T(lame_mu), T(lame_lambda),
+                                        projection);
 }
 
 /// psi written in F, its signed singular values from the eigenvalues of F^T F.
-Long closed_form(const std::string& name, const VecXl& stacked) {
-  const Mat<Long, 3, 3> f = stacked.reshaped(3, 3), c = f.transpose() * f;
+Long closed_form(const std::string& name, const VecXl& columns) {
+  const Mat<Long, 3, 3> f = unstacked<3, 3>(columns), c = f.transpose() * f;
   const Long mu = lame_mu, lambda = lame_lambda, j = f.determinant();
   const Vec<Long, 3> squares = eigenvalues(MatXl(c));
   const Long largest = std::sqrt(squares[2]), middle = std::sqrt(squares[1]);
@@ -65,10 +66,10 @@ void check_derivatives(const std::string& name, const VecXl& f, double tolerance
   const auto value = [&](const VecXl& x) { return closed_form(name, x); };
   EXPECT_NEAR(terms.psi, static_cast<double>(value(f)), 1e-13 * std::max(1.0, terms.psi));
   if (terms.pk1.cwiseAbs().maxCoeff() > 1e-7) {
-    EXPECT_LT(gradient_error(value, f, terms.pk1.reshaped()), tolerance);
+    EXPECT_LT(gradient_error(value, f, stacked(terms.pk1)), tolerance);
   }
   const auto gradient = [&](const VecXl& x) -> VecXl {
-    return terms_at<Model, Long>(x, Projection::none).pk1.reshaped();
+    return stacked(terms_at<Model, Long>(x, Projection::none).pk1);
   };
   EXPECT_LT(jacobian_error(gradient, f, terms.hess), tolerance);
   EXPECT_EQ(terms.hess, terms.hess.transpose());
@@ -79,7 +80,7 @@ TEST(Solid, derivatives_in_F_are_those_of_the_closed_form_inverted_states_includ
     std::mt19937 random(1);
     for (const Vec3d& sigma : all_states()) {
       SCOPED_TRACE(name + " " + std::to_string(sigma[0]) + " " + std::to_string(sigma[2]));
-      check_derivatives<Model>(name, gradient_of(sigma, random).reshaped().cast<Long>(), 1e-8);
+      check_derivatives<Model>(name, stacked(gradient_of(sigma, random)).cast<Long>(), 1e-8);
     }
   });
 }
@@ -90,7 +91,7 @@ TEST(Solid, projections_are_those_of_the_dense_matrix) {
     int indefinite = 0;
     for (const Vec3d& sigma : all_states()) {
       SCOPED_TRACE(name + " " + std::to_string(sigma[0]) + " " + std::to_string(sigma[2]));
-      const VecXl f = gradient_of(sigma, random).reshaped().cast<Long>();
+      const VecXl f = stacked(gradient_of(sigma, random)).cast<Long>();
       const auto exact = terms_at<Model, double>(f, Projection::none);
       const auto psd = terms_at<Model, double>(f, Projection::psd);
       const auto absolute = terms_at<Model, double>(f, Projection::absolute);
@@ -108,7 +109,7 @@ TEST(Solid, projections_are_those_of_the_dense_matrix) {
 
 TEST(Solid, rest_is_a_stress_free_state_with_the_moduli_that_are_documented) {
   for_each_solid([]<class Model>(const std::string& name) {
-    const VecXl identity = Mat<Long, 3, 3>::Identity().reshaped();
+    const VecXl identity = stacked(Mat<Long, 3, 3>::Identity());
     const auto terms = terms_at<Model, double>(identity, Projection::none);
     EXPECT_EQ(terms.psi, 0);
     EXPECT_TRUE(terms.pk1.isZero(0));
@@ -126,7 +127,7 @@ TEST(Solid, collapsed_states_are_finite_and_positive_semidefinite) {
     for (const Vec3d& sigma : {Vec3d(0, 0, 0), Vec3d(1.5, 0, 0), Vec3d(1.5, 0.7, 0), Vec3d(1.2, 0.7, -0.7)}) {
       SCOPED_TRACE(name);
       const Mat3d f = sigma.asDiagonal();
-      const auto terms = terms_at<Model, double>(f.reshaped().cast<Long>(), Projection::psd);
+      const auto terms = terms_at<Model, double>(stacked(f).cast<Long>(), Projection::psd);
       ASSERT_TRUE(std::isfinite(terms.psi) && terms.pk1.allFinite() && terms.hess.allFinite());
       const VecXd values = eigenvalues(MatXd(terms.hess));
       EXPECT_GE(values[0], -1e-12 * std::max(1.0, values[8]));

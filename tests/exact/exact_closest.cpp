@@ -111,7 +111,8 @@ ExactPair exact_pair(const Eigen::Ref<const Mat<double, 3, Eigen::Dynamic>>& x, 
   ExactPair out;
   out.split = split;
   long least = 4000;
-  for (const double c : x.reshaped()) {
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double c = x(i % 3, i / 3);
     if (c != 0) least = std::min(least, integer_of(c).second);
   }
   out.exponent = least == 4000 ? 0 : least;

@@ -52,7 +52,7 @@ def test_every_solver_and_preconditioner_of_the_registry_is_a_case(program):
 def test_a_checkpoint_changes_no_number(program, config, tmp_path, name):
     found = {}
     for every in (0, 1, 3):
-        more = settings({**SOLVERS[name], "/output/checkpoint_every": every})
+        more = settings({**SOLVERS[name], "/output/checkpoint_every": every, "/time/steps": 7})
         done = bench(program, "run", config, "--out", tmp_path / str(every), *more)
         assert done.returncode == 0, done.stderr
         found[every] = {part: value for part, value in result(tmp_path / str(every)).items() if part not in ("ids", "config")}
@@ -96,11 +96,11 @@ def stop_again_and_again(program: str, config: Path, folder: Path, more: list[st
 @pytest.mark.parametrize("name", ["cholmod", "lagged_cholesky", "pcg schwarz", "pcg_resident schwarz", "device host schwarz"])
 def test_a_run_that_time_stops_goes_on_where_it_was(program, config, tmp_path, name):
     """Without any checkpoint but those that the time limit itself leaves."""
-    more = settings({**GIVEN, **SOLVERS[name], "/output/checkpoint_every": 0, "/output/frames_every": 5, "/time/steps": 30})
+    more = settings({**GIVEN, **SOLVERS[name], "/output/checkpoint_every": 0, "/output/frames_every": 5, "/time/steps": 20})
     assert bench(program, "run", config, "--out", tmp_path / "whole", *more).returncode == 0
     assert stop_again_and_again(program, config, tmp_path / "stopped", more) >= 2
     expected, found = result(tmp_path / "whole"), result(tmp_path / "stopped")
-    assert expected["outcome"] == "ok" and len(expected["artifacts"]) == 2 + 6 + 1 + 1
+    assert expected["outcome"] == "ok" and len(expected["artifacts"]) == 2 + 4 + 1 + 1
     for part, value in expected.items():
         assert found[part] == value, part
     assert record_of(tmp_path / "stopped")["status"]["resumed_from_step"] > 0
@@ -129,7 +129,7 @@ def test_a_longer_record_of_the_same_run_stays(program, config, tmp_path):
 
 def test_a_sweep_goes_on_from_what_time_stopped(program, config, tmp_path):
     spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "formulations", "base": str(config),
-                                           "set": {**GIVEN, "/time/steps": 100}, "axes": [{"pointer": "/formulation/stiffness_policy/kappa_N_per_m", "values": [50, 60]}]})
+                                           "set": {**GIVEN, "/time/steps": 50}, "axes": [{"pointer": "/formulation/stiffness_policy/kappa_N_per_m", "values": [50, 60]}]})
     out = tmp_path / "out"
     assert bench(program, "sweep", spec, "--out", out, "--time-limit", "0.5").returncode == 0
     stopped = [json.loads(p.read_text())["status"]["outcome"] for p in sorted(out.glob("*/run.json"))]
@@ -145,7 +145,7 @@ def test_a_sweep_goes_on_from_what_time_stopped(program, config, tmp_path):
 def test_a_sweep_begins_anew_where_the_checkpoint_is_of_another_run(program, config, tmp_path):
     """And what it then writes is no mixture of both."""
     spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "one", "base": str(config),
-                                           "set": {**GIVEN, "/time/steps": 100}, "axes": [{"pointer": "/time/dt_s", "values": [0.01]}]})
+                                           "set": {**GIVEN, "/time/steps": 50}, "axes": [{"pointer": "/time/dt_s", "values": [0.01]}]})
     out = tmp_path / "out"
     stopped = ["sweep", spec, "--out", out, "--time-limit"]
     assert bench(program, *stopped, "0.5").returncode == 0
@@ -154,7 +154,7 @@ def test_a_sweep_begins_anew_where_the_checkpoint_is_of_another_run(program, con
     assert begun.returncode == 0 and "checkpoint.bin goes" in begun.stderr and "threads" in begun.stderr
     assert record_of(folder)["status"]["outcome"] == "timeout" and len(record_of(folder)["steps"]) > 0
     assert bench(program, "sweep", spec, "--out", out, "--set", "/threads=2").returncode == 0
-    assert bench(program, "run", config, "--out", tmp_path / "whole", *settings({**GIVEN, "/time/steps": 100, "/time/dt_s": 0.01, "/threads": 2})).returncode == 0
+    assert bench(program, "run", config, "--out", tmp_path / "whole", *settings({**GIVEN, "/time/steps": 50, "/time/dt_s": 0.01, "/threads": 2})).returncode == 0
     whole, found = record_of(tmp_path / "whole"), record_of(folder)
     assert found["status"]["resumed_from_step"] > 0 and found["summary"]["state_hash"] == whole["summary"]["state_hash"]
     assert [s["t_s"] for s in found["steps"]] == [s["t_s"] for s in whole["steps"]]

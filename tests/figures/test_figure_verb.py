@@ -154,11 +154,17 @@ def pixels(png: Path) -> int:
     return struct.unpack(">I", png.read_bytes()[16:20])[0]
 
 
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory) -> Path:
+    """Where the runs of figures are kept for all tests of this file: what is there is not run again."""
+    return tmp_path_factory.mktemp("runs")
+
+
 @pytest.mark.parametrize(("name", "inches"), [("barrier_shapes", 7.0), ("friction_slope", 7.0)])
-def test_a_rebuild_has_the_same_bytes_and_the_width_of_a_journal(program, tmp_path, monkeypatch, name, inches):
+def test_a_rebuild_has_the_same_bytes_and_the_width_of_a_journal(program, runs, tmp_path, monkeypatch, name, inches):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
     for out in ("a", "b"):
-        assert rebuild.main([name, "--quick", "--runs", str(tmp_path / "runs"), "--out", str(tmp_path / out)]) == 0
+        assert rebuild.main([name, "--quick", "--runs", str(runs), "--out", str(tmp_path / out)]) == 0
 
     files = sorted(path.name for path in (tmp_path / "a").iterdir())
     assert files == sorted(f"{name}{suffix}" for suffix in SUFFIXES)
@@ -170,10 +176,11 @@ def test_a_rebuild_has_the_same_bytes_and_the_width_of_a_journal(program, tmp_pa
     assert all(word in caption for word in ("N: ", "Statistic: ", "Reference: ", "Slice: "))
 
 
-def test_friction_beside_its_closed_form(program, tmp_path, monkeypatch):
+@pytest.mark.usefixtures("unpainted")
+def test_friction_beside_its_closed_form(program, runs, tmp_path, monkeypatch):
     """Records of the program, not of this file: what slides keeps to g (sin - mu cos) within 1 %, what sticks creeps below eps_v."""
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
-    assert rebuild.main(["friction_slope", "--quick", "--runs", str(tmp_path / "runs"), "--out", str(tmp_path)]) == 0
+    assert rebuild.main(["friction_slope", "--quick", "--runs", str(runs), "--out", str(tmp_path)]) == 0
     found = pd.read_csv(tmp_path / "friction_slope.csv")
     slides, sticks = found[found["mu"] < 0.35], found[found["mu"] > 0.5]
 

@@ -31,7 +31,7 @@ def test_kappa_times_4(gate, defective, answer):
 def test_ccd_slack_off(gate, defective, answer):
     """A real run: a binding bound is taken whole, so that steps end at the stop level."""
     defective({"/step_solver/cap_fraction": 1})
-    assert gate("gate", "--case", "sphere-log", "--case", "drape-log") == 1
+    assert gate("gate", "--case", "sphere-log") == 1
     assert red(answer)["IV"] & {"linear_solves", "line_search_trials"}
 
 

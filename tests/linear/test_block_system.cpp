@@ -9,6 +9,7 @@
 #include "core/math/error.hpp"
 #include "tests/linear/counting_new.hpp"
 #include "tests/linear/systems.hpp"
+#include "tests/oracle/dense.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
 namespace bb::block_system_test {
@@ -136,11 +137,10 @@ TEST_F(BlockSystemTest, MeetsDenseAssemblyWithFixedDegreesOfFreedom) {
   EXPECT_LT((g - g_expected).cwiseAbs().maxCoeff(), 1e-13);
   EXPECT_GT(g.norm(), 1);
 
-  const Positions v = random_vector(3 * kN, 9).reshaped(3, kN);
+  const Positions v = test::unstacked<3, Eigen::Dynamic>(random_vector(3 * kN, 9));
   Positions y = Positions::Constant(3, kN, 0.5);
   s.multiply_add(s.values(), v, y);
-  EXPECT_LT((y.reshaped() - (a * v.reshaped()).array().matrix() - VecXd::Constant(3 * kN, 0.5)).norm(),
-            1e-11);
+  EXPECT_LT((test::stacked(y) - a * test::stacked(v) - VecXd::Constant(3 * kN, 0.5)).norm(), 1e-11);
 }
 
 TEST_F(BlockSystemTest, SubmatrixIsThatOfTheDenseMatrix) {
@@ -308,7 +308,7 @@ TEST_F(BlockSystemTest, NothingIsAllocatedWhileThePatternStays) {
 TEST_F(BlockSystemTest, VectorsAreRestrictedAndExpanded) {
   const auto fixed = some_fixed(kN);
   BlockSystem s(kN, fixed);
-  const Positions full = random_vector(3 * kN, 3).reshaped(3, kN);
+  const Positions full = test::unstacked<3, Eigen::Dynamic>(random_vector(3 * kN, 3));
   VecXd reduced;
   s.restrict_vector(full, reduced);
   ASSERT_EQ(reduced.size(), s.n_free());

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/newton/buckling_step.hpp"
+#include "tests/oracle/dense.hpp"
 
 namespace bb::hessian_modes_test {
 namespace {
@@ -69,7 +70,7 @@ TEST(BucklingStep, exact_curvature_sees_the_saddle_that_the_clamped_matrix_hides
     }
     system.set_direction(dx);
     const double exact = system.direction_curvature();
-    const VecXd reduced = dx.reshaped();
+    const VecXd reduced = stacked(dx);
     const double clamped =
         reduced.dot(system.diagnosis().clamped().lower.selfadjointView<Eigen::Lower>() * reduced);
     EXPECT_GE(clamped, 0);

@@ -13,6 +13,18 @@ using MatXd = Eigen::MatrixXd;
 using VecXl = Eigen::Matrix<Long, Eigen::Dynamic, 1>;
 using MatXl = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
 
+/// The columns of a matrix below each other.
+template <class M>
+Vec<typename M::Scalar, Eigen::Dynamic> stacked(const M& matrix) {
+  const typename M::PlainObject plain = matrix;
+  return Eigen::Map<const Vec<typename M::Scalar, Eigen::Dynamic>>(plain.data(), plain.size());
+}
+/// The matrix whose stacked() columns are v.
+template <int R, int C, class T>
+Mat<T, R, C> unstacked(const Vec<T, Eigen::Dynamic>& v) {
+  return Eigen::Map<const Mat<T, R, C>>(v.data(), R, v.size() / R);
+}
+
 /// Eigenvalues of a symmetric matrix, ascending.
 VecXd eigenvalues(const MatXd& a);
 VecXl eigenvalues(const MatXl& a);

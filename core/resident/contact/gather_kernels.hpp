@@ -3,21 +3,12 @@
 #pragma once
 
 #include "core/contact/obstacle.hpp"
+#include "core/resident/contact/mollified_column.hpp"
 #include "core/resident/contact/pattern_view.hpp"
 #include "core/resident/contact/slot_kernels.hpp"
 #include "core/resident/contact/term_kernels.hpp"
 
 namespace bb::resident {
-
-/// Numbers of mollified rows by row.
-struct MollifiedColumn {
-  const std::uint32_t* list;  // ascending rows
-  Index n;
-  const double* number;  // [12][n]
-  BB_HD Index of(Index row) const {
-    return first_not_below(list, Index{0}, n, static_cast<std::uint32_t>(row));
-  }
-};
 
 /// Adds to out [3 n_vertices] what the rows of each vertex have for it: of mollified rows their numbers, of the others
 /// term.add(rows, row, weight of the vertex, sum).

@@ -1,7 +1,8 @@
 // What is summed over rows.
 #pragma once
 
-#include "core/resident/contact/gather_kernels.hpp"
+#include "core/resident/contact/mollified_column.hpp"
+#include "core/resident/contact/resident_rows.hpp"
 #include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
