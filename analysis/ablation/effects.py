@@ -90,7 +90,11 @@ def values_of(table: Table, scene: str, metric: str) -> list[tuple[dict, float]]
 
 
 def fitted(
-    levels: list[tuple[int, ...]], y: list[float], terms: list[Term], wanted: list[Term], freedom: int = LEAST_FREEDOM
+    levels: list[tuple[int, ...]],
+    y: list[float],
+    terms: list[Term],
+    wanted: list[Term],
+    freedom: int = LEAST_FREEDOM,
 ) -> dict[Term, float]:
     """Coefficients of `wanted` that the rows determine, with a constant. Empty where fewer than `freedom`
     degrees are left for the residual.

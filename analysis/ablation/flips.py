@@ -1,6 +1,6 @@
-"""Sign-flip test of the mean over scenes (Fisher 1935, The Design of Experiments, section 21): if a level does
-nothing, the value of a scene is as likely above zero as below by as much, so each pattern of signs is as likely.
-It assumes neither a distribution nor one spread for all scenes, and it tests the mean that is reported.
+"""Sign-flip test of the mean over scenes (Fisher 1935, The Design of Experiments, section 21): if a level
+does nothing, the value of a scene is as likely above zero as below by as much, so each pattern of signs is as
+likely. It assumes neither a distribution nor one spread for all scenes, and tests the mean that is reported.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ def _patterns(n: int) -> np.ndarray:
 
 
 def sign_flip(values: np.ndarray) -> float:
-    """Two-sided p: the share of patterns whose mean is at least as far from zero as that of the values. 1 where
-    all values are nothing; at least 2^(1 - n) for n values. Exact up to EXACT values.
+    """Two-sided p: the share of patterns whose mean is at least as far from zero as that of the values. 1
+    where all values are nothing; at least 2^(1 - n) for n values. Exact up to EXACT values.
     """
     values = np.where(np.abs(values) < NOTHING, 0.0, values)
     sums = np.abs(_patterns(len(values)) @ values)

@@ -1,4 +1,4 @@
-"""The page of an ablation: results/ABLATION.md. Its sentences are made of numbers; the first names the slice."""
+"""The page of an ablation: results/ABLATION.md. Sentences are made of numbers; the first names the slice."""
 
 from __future__ import annotations
 
@@ -80,11 +80,11 @@ def lead(factorial: Factorial, table: Table) -> str:
     runs, through = len(table.rows), sum(map(got_through, table.rows))
     common, scenes = sum(not row["failed"] for row in table.rows), len({row["scene"] for row in table.rows})
     return (
-        f"All of this is over {scenes} scenes {SLICE}. {through} of {runs} runs end `ok` and valid, {common} with"
-        " the common success; ratios are of the former alone, shares of all runs. An effect is that of a level"
-        " against the first level of its factor, the other factors equal: the mean over scenes with its 95%"
-        f" interval. It is decided when the sign-flip test of that mean has p < {LEVEL:g} after Holm. What is not"
-        " decided is not shown to be absent; its interval, in the tables below, says what it may still be."
+        f"All of this is over {scenes} scenes {SLICE}. {through} of {runs} runs end `ok` and valid, {common}"
+        " with the common success; ratios are of the former alone, shares of all runs. An effect is that of a"
+        " level against the first level of its factor, the other factors equal: the mean over scenes with its"
+        f" 95% interval. It is decided when the sign-flip test of that mean has p < {LEVEL:g} after Holm."
+        " What is not decided is not shown to be absent; its interval, in a table below, says what it may be."
     )
 
 
@@ -93,7 +93,9 @@ def sentences(factorial: Factorial, table: Table, study: Study) -> list[str]:
     said = [_of_number(factorial, study.main[metric], words) for metric, words in WORDS.items()]
     pairs = [e for metric in WORDS for e in study.pairs[metric]]
     tested, decided = [e for e in pairs if e.p is not None], _largest(pairs)
-    last = f"Interactions: of {len(tested)} of two levels on these numbers that at least {LEAST_SCENES} scenes"
+    last = (
+        f"Interactions: of {len(tested)} of two levels on these numbers that at least {LEAST_SCENES} scenes"
+    )
     return [*said, f"{last} tell, {len(decided)} are decided; they are listed at the end."]
 
 
@@ -172,7 +174,7 @@ def _what_was_run(factorial: Factorial, table: Table) -> list[str]:
             f" has {spec['combinations']} in each scene; the rarest allowed pair of levels of two factors is"
             f" in {min(rarest)} to {max(rarest)} of them. {len(table.rows)} of {asked} runs are there"
             + (f"; {missing} are not run yet, and `./bench ablation` goes on with them" if missing else "")
-            + f". Holm's factor counts all main effects of a number, or all its interactions."
+            + ". Holm's factor counts all main effects of a number, or all its interactions."
         ),
         "",
         (
@@ -208,8 +210,8 @@ def page(factorial: Factorial, table: Table, study: Study) -> str:
         "",
         (
             f"Written by `./bench ablation`. {about['date']}, {about['machine']}; commit {about['commit']},"
-            f" build {about['build']}. Rules: docs/laboratory.md, Ablation, which also lists what was changed and"
-            " when."
+            f" build {about['build']}. Rules: docs/laboratory.md, Ablation, which also lists what was changed"
+            " and when."
         ),
         "",
         lead(factorial, table),

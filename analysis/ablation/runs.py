@@ -49,8 +49,8 @@ def run_shard(factorial: Factorial, scene: str, shard: int, folder: Path) -> Non
 
 
 def run_all(factorial: Factorial, shards: int, jobs: int, folder: Path) -> None:
-    """The first shards of every scene, shard after shard, `jobs` processes at a time. Errors: as run_shard; what
-    has not begun then is not begun.
+    """The first shards of every scene, shard after shard, `jobs` processes at a time. Errors: as run_shard;
+    what has not begun then is not begun.
     """
     todo = [(scene, shard) for shard in range(1, shards + 1) for scene in factorial.scenes.labels]
     with ThreadPoolExecutor(jobs) as pool:

@@ -2,6 +2,7 @@
 
 import json
 import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -189,7 +190,9 @@ def test_a_shard_that_fails_ends_the_rest(small, tmp_path, monkeypatch):
 
     def shard(factorial, scene, number, folder):
         seen.append(scene)
-        raise UserError(f"{scene} failed")
+        if len(seen) == 1:
+            raise UserError(f"{scene} failed")
+        time.sleep(0.3)
 
     monkeypatch.setattr(runs, "run_shard", shard)
     with pytest.raises(UserError, match="one failed"):
