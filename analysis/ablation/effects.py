@@ -14,13 +14,13 @@ import numpy as np
 
 from ..claims.estimate import sign_test, student
 from .factors import Factorial
+from .flips import sign_flip
 from .table import METRICS, Table, got_through, levels_of
 
-LEAST_SCENES = 5
-LEAST_FREEDOM = 10
+LEAST_SCENES = 10  # with fewer no effect out of 19 can be decided: 19 * 2^(1 - 9) = 0.074
+LEAST_FREEDOM = 10  # of the residual of a scene: with few its value hangs on one or two runs
 LEVEL = 0.05
 SHARES = {"ok": got_through, "common": lambda row: not row["failed"]}
-ROUNDING = 1e-12  # of a spread over scenes that is none
 TESTED = 1e-8  # of a column: how much of it the rows may leave undetermined
 
 
@@ -36,8 +36,8 @@ class Term:
 
 @dataclass(frozen=True)
 class Effect:
-    """scenes: name -> logarithm of a ratio, or difference of shares. holm: p times Holm's factor among the
-    effects of its number; None below LEAST_SCENES scenes.
+    """scenes: name -> logarithm of a ratio, or difference of shares. p: of the sign-flip test of their mean.
+    holm: p times Holm's factor among the effects of its number; None below LEAST_SCENES scenes.
     """
 
     metric: str
@@ -90,7 +90,11 @@ def values_of(table: Table, scene: str, metric: str) -> list[tuple[dict, float]]
 
 
 def fitted(
-    levels: list[tuple[int, ...]], y: list[float], terms: list[Term], wanted: list[Term], freedom: int = 0
+    levels: list[tuple[int, ...]],
+    y: list[float],
+    terms: list[Term],
+    wanted: list[Term],
+    freedom: int = LEAST_FREEDOM,
 ) -> dict[Term, float]:
     """Coefficients of `wanted` that the rows determine, with a constant. Empty where fewer than `freedom`
     degrees are left for the residual.
@@ -110,16 +114,12 @@ def fitted(
 
 
 def over_scenes(metric: str, term: Term, scenes: dict[str, float]) -> Effect:
-    """Mean and interval of the scene values. Where all are the same there is nothing to test."""
+    """Mean, Student's interval and p of the scene values."""
     values = np.array(list(scenes.values()))
     if len(values) < 2:
         return Effect(metric, term, scenes, float(values[0]) if len(values) else None)
     low, high = student(values)
-    p, spread, middle = None, values.std(ddof=1), abs(values.mean())
-    if len(values) >= LEAST_SCENES and spread > ROUNDING * (1 + middle):
-        from scipy.stats import t
-
-        p = float(2 * t.sf(middle * np.sqrt(len(values)) / spread, len(values) - 1))
+    p = sign_flip(values) if len(values) >= LEAST_SCENES else None
     return Effect(metric, term, scenes, float(values.mean()), float(low), float(high), p)
 
 
@@ -133,14 +133,14 @@ def with_holm(effects: list[Effect]) -> list[Effect]:
     return [Effect(*(getattr(e, n) for n in Effect.__match_args__[:-1]), holm.get(e.term)) for e in effects]
 
 
-def _of(factorial: Factorial, table: Table, metric: str, wanted: list[Term], freedom: int) -> list[Effect]:
+def _of(factorial: Factorial, table: Table, metric: str, wanted: list[Term]) -> list[Effect]:
     mains = main_terms(factorial)
     terms = mains + [term for term in wanted if term not in mains]
     found: dict[Term, dict[str, float]] = {term: {} for term in wanted}
     for scene in factorial.scenes.labels:
         pairs = values_of(table, scene, metric)
         levels = [levels_of(factorial, row) for row, _ in pairs]
-        for term, value in fitted(levels, [y for _, y in pairs], terms, wanted, freedom).items():
+        for term, value in fitted(levels, [y for _, y in pairs], terms, wanted).items():
             found[term][scene] = value
     return [over_scenes(metric, term, scenes) for term, scenes in found.items()]
 
@@ -149,11 +149,11 @@ def study(factorial: Factorial, table: Table) -> Study:
     """Every number's main effects, and its interactions pair of factors by pair."""
     out = Study()
     for metric in (*METRICS, *SHARES):
-        out.main[metric] = with_holm(_of(factorial, table, metric, main_terms(factorial), 0))
+        out.main[metric] = with_holm(_of(factorial, table, metric, main_terms(factorial)))
         pairs = [
             effect
             for a, b in combinations(range(len(factorial.factors)), 2)
-            for effect in _of(factorial, table, metric, pair_terms(factorial, a, b), LEAST_FREEDOM)
+            for effect in _of(factorial, table, metric, pair_terms(factorial, a, b))
         ]
         out.pairs[metric] = with_holm(pairs)
     return out

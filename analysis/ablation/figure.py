@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import style
 from ..whole_file import write_whole
-from .effects import SHARES, Study
+from .effects import LEAST_SCENES, SHARES, Study
 from .factors import Factorial
 from .report import SLICE, name_of
 from .table import Table
@@ -20,12 +20,12 @@ TITLES = {"ok": "share ok and valid", "newton": "Newton iterations", "bj_p95": "
 DECIDED, OPEN = "#0072B2", "#999999"
 CAPTION = (
     "Ablation, {runs} runs in {scenes} scenes {slice}. Left three panels: effect of each level against the"
-    " first of its factor, mean and 95% interval over scenes; filled and blue: decided (p < 0.05 after Holm);"
-    " hollow: not decided. Right: largest mean of an interaction of two levels of each pair of factors on"
-    " Newton iterations, as a factor up or down, of those that at least five scenes tell; a dot where one is"
-    " decided; white where none is told.{untold}\n"
+    " first of its factor, mean and 95% interval over scenes; filled and blue: decided (sign-flip test over"
+    " scenes, p < 0.05 after Holm); hollow: not decided. Right: largest mean of an interaction of two levels"
+    " of each pair of factors on Newton iterations, as a factor up or down, of those that at least {least}"
+    " scenes tell; a dot where one is decided; white where none is told.{untold}\n"
 )
-UNTOLD = " Here five scenes tell no interaction on Newton iterations, so the right panel is left out."
+UNTOLD = " Here so many scenes tell no interaction on Newton iterations, so the right panel is left out."
 
 
 def _panel(axis, factorial: Factorial, study: Study, metric: str) -> None:
@@ -88,5 +88,7 @@ def draw(factorial: Factorial, table: Table, study: Study, path: Path) -> None:
     fig.savefig(path, metadata={"Software": None})
     plt.close(fig)
     scenes = len({row["scene"] for row in table.rows})
-    text = CAPTION.format(runs=len(table.rows), scenes=scenes, slice=SLICE, untold="" if told else UNTOLD)
+    text = CAPTION.format(
+        runs=len(table.rows), scenes=scenes, slice=SLICE, least=LEAST_SCENES, untold="" if told else UNTOLD
+    )
     write_whole(path.with_suffix(".txt"), text)

@@ -1,4 +1,4 @@
-"""The page of an ablation: results/ABLATION.md. Every sentence is made of numbers and names its slice."""
+"""The page of an ablation: results/ABLATION.md. Sentences are made of numbers; the first names the slice."""
 
 from __future__ import annotations
 
@@ -42,56 +42,61 @@ def value_of(effect: Effect) -> str:
     return f"{one(effect.mean)} [{one(effect.low)}, {one(effect.high)}]"
 
 
-def _verdict(effect: Effect) -> str:
+def verdict_of(effect: Effect) -> str:
     if not effect.decided:
         return "not decided" if len(effect.scenes) >= LEAST_SCENES else f"{len(effect.scenes)} scenes"
     return "**decided**"
 
 
-def _largest(effects: list[Effect], n: int) -> list[Effect]:
+def _largest(effects: list[Effect], n: int | None = None) -> list[Effect]:
+    """Those that are decided, the largest first."""
     return sorted((e for e in effects if e.decided), key=lambda e: -abs(e.mean))[:n]
 
 
 def _named(factorial: Factorial, effects: list[Effect]) -> str:
-    return "; ".join(
-        f"`{name_of(factorial, e.term)}` {value_of(e)} times `{against(factorial, e.term)}`"
-        if e.metric not in SHARES
-        else f"`{name_of(factorial, e.term)}` {value_of(e)} beside `{against(factorial, e.term)}`"
+    return ", ".join(
+        f"`{name_of(factorial, e.term)}` {value_of(e)}"
+        f" {'beside' if e.metric in SHARES else 'times'} `{against(factorial, e.term)}`"
         for e in effects
     )
 
 
-def _untested(effects: list[Effect]) -> str:
-    """How many effects have too few scenes to be tested at all."""
-    count = sum(effect.p is None for effect in effects)
-    return f" ({count} have fewer than {LEAST_SCENES} scenes, and no test)" if count else ""
+def _of_number(factorial: Factorial, effects: list[Effect], words: str) -> str:
+    """What is decided of a number, what is not, and what has too few scenes to be tested."""
+    found = _largest(effects)
+    said = f"{words[0].upper()}{words[1:]}: {len(found)} of {len(effects)} main effects are decided"
+    said += f": {_named(factorial, found)}." if found else "."
+    for open_, what in (
+        ([e for e in effects if not e.decided and e.p is not None], "Not decided"),
+        ([e for e in effects if e.p is None], f"Not tested, with fewer than {LEAST_SCENES} scenes"),
+    ):
+        if open_:
+            said += f" {what}: {', '.join(f'`{name_of(factorial, e.term)}`' for e in open_)}."
+    return said
+
+
+def lead(factorial: Factorial, table: Table) -> str:
+    """The slice, what got through, and what an effect is."""
+    runs, through = len(table.rows), sum(map(got_through, table.rows))
+    common, scenes = sum(not row["failed"] for row in table.rows), len({row["scene"] for row in table.rows})
+    return (
+        f"All of this is over {scenes} scenes {SLICE}. {through} of {runs} runs end `ok` and valid, {common}"
+        " with the common success; ratios are of the former alone, shares of all runs. An effect is that of a"
+        " level against the first level of its factor, the other factors equal: the mean over scenes with its"
+        f" 95% interval. It is decided when the sign-flip test of that mean has p < {LEVEL:g} after Holm."
+        " What is not decided is not shown to be absent; its interval, in a table below, says what it may be."
+    )
 
 
 def sentences(factorial: Factorial, table: Table, study: Study) -> list[str]:
-    """Three: who gets through, what the work depends on, and which interactions there are."""
-    runs, through = len(table.rows), sum(map(got_through, table.rows))
-    scenes = len({row["scene"] for row in table.rows})
-    where = f"Over {scenes} scenes {SLICE}"
-    shares, ok = study.main["ok"], _largest(study.main["ok"], 3)
-    first = (
-        f"{where}, {through} of {runs} runs end `ok` and valid, and {sum(e.decided for e in shares)} of"
-        f" {len(shares)} main effects on that share are decided"
-        + (f" ({_named(factorial, ok)})." if ok else ": no level is told from the first one of its factor.")
+    """One a number, and one on interactions."""
+    said = [_of_number(factorial, study.main[metric], words) for metric, words in WORDS.items()]
+    pairs = [e for metric in WORDS for e in study.pairs[metric]]
+    tested, decided = [e for e in pairs if e.p is not None], _largest(pairs)
+    last = (
+        f"Interactions: of {len(tested)} of two levels on these numbers that at least {LEAST_SCENES} scenes"
     )
-    parts = []
-    for metric in ("newton", "bj_p95"):
-        effects, found = study.main[metric], _largest(study.main[metric], 3)
-        parts.append(
-            f"of the {WORDS[metric]} {len([e for e in effects if e.decided])} of {len(effects)} main effects"
-            " are decided" + (f" ({_named(factorial, found)})" if found else "") + _untested(effects)
-        )
-    second = f"{where}, in runs that end `ok` and valid, {', and '.join(parts)}; the others are not decided."
-    pairs = [e for metric in ("newton", "bj_p95", "ok") for e in study.pairs[metric]]
-    tested, decided = [e for e in pairs if e.p is not None], _largest(pairs, 3)
-    third = f"{where}, of {len(tested)} interactions of two levels on these three numbers that at least"
-    third += f" {LEAST_SCENES} scenes tell, {sum(e.decided for e in tested)} are decided"
-    third += f" ({_named(factorial, decided)})" if decided else ""
-    return [first, second, third + "; what is not decided is not shown to be absent."]
+    return [*said, f"{last} tell, {len(decided)} are decided; they are listed at the end."]
 
 
 def _main_table(factorial: Factorial, study: Study, metric: str) -> list[str]:
@@ -105,11 +110,11 @@ def _main_table(factorial: Factorial, study: Study, metric: str) -> list[str]:
                 value_of(effect),
                 f"{up} up, {down} down, p {effect.sign_p:.2g}",
                 "" if effect.holm is None else f"{effect.holm:.2g}",
-                _verdict(effect),
+                verdict_of(effect),
             ]
         )
     kind = "difference" if metric in SHARES else "ratio"
-    head = ["factor", "level", f"{kind} [95%]", "scenes, sign test", "p (Holm)", ""]
+    head = ["factor", "level", f"{kind} [95%]", "scenes, sign test beside it", "p (Holm)", ""]
     return [f"### {WORDS[metric]}", "", *markdown(head, rows), ""]
 
 
@@ -169,7 +174,7 @@ def _what_was_run(factorial: Factorial, table: Table) -> list[str]:
             f" has {spec['combinations']} in each scene; the rarest allowed pair of levels of two factors is"
             f" in {min(rarest)} to {max(rarest)} of them. {len(table.rows)} of {asked} runs are there"
             + (f"; {missing} are not run yet, and `./bench ablation` goes on with them" if missing else "")
-            + f". An effect is decided at p < {LEVEL:g} after Holm over all effects of a number."
+            + ". Holm's factor counts all main effects of a number, or all its interactions."
         ),
         "",
         (
@@ -205,9 +210,11 @@ def page(factorial: Factorial, table: Table, study: Study) -> str:
         "",
         (
             f"Written by `./bench ablation`. {about['date']}, {about['machine']}; commit {about['commit']},"
-            f" build {about['build']}. Rules: docs/laboratory.md, Ablation; what was changed after the first"
-            " runs is listed there."
+            f" build {about['build']}. Rules: docs/laboratory.md, Ablation, which also lists what was changed"
+            " and when."
         ),
+        "",
+        lead(factorial, table),
         "",
         *(f"{k}. {sentence}" for k, sentence in enumerate(sentences(factorial, table, study), 1)),
         "",

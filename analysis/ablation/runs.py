@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from ..errors import UserError
@@ -45,6 +46,21 @@ def run_shard(factorial: Factorial, scene: str, shard: int, folder: Path) -> Non
         first = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
         raise UserError(f"{file}: shard {shard}/{shards} ended with {done.returncode}: {first}")
     print(f"ablation: {scene}, shard {shard} of {shards}", file=sys.stderr, flush=True)
+
+
+def run_all(factorial: Factorial, shards: int, jobs: int, folder: Path) -> None:
+    """The first shards of every scene, shard after shard, `jobs` processes at a time. Errors: as run_shard;
+    what has not begun then is not begun.
+    """
+    todo = [(scene, shard) for shard in range(1, shards + 1) for scene in factorial.scenes.labels]
+    with ThreadPoolExecutor(jobs) as pool:
+        running = [pool.submit(run_shard, factorial, scene, shard, folder) for scene, shard in todo]
+        try:
+            for one in running:
+                one.result()
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
 
 
 def records_of(folder: Path) -> dict[str, dict]:

@@ -22,7 +22,7 @@ from . import figure
 from .effects import study
 from .factors import Factorial, read_factorial
 from .report import page
-from .runs import records_of, run_shard
+from .runs import records_of, run_all
 from .table import FILE, Table, read, row_of, write
 
 DEFAULT = ROOT / "configs/ablation/default.json"
@@ -36,9 +36,13 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--no-run", action="store_true", help="judge the rows that are kept")
     parser.add_argument("--gather", action="store_true", help="run nothing, but take rows from the records")
     parser.add_argument("--shards", type=int, metavar="N", help="the first N shards of every scene alone")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="shards at a time (default 1)")
     parser.add_argument("--plan", action="store_true", help="ask ./bench plan for the cost of the whole")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the records")
-    return parser.parse_args(argv)
+    args = parser.parse_args(argv)
+    if args.jobs < 1:
+        raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
+    return args
 
 
 def _cost(factorial: Factorial, runs: Path) -> str:
@@ -73,9 +77,7 @@ def main(argv: list[str]) -> int:
     plan = kept.about.get("plan", "") if kept and kept.digest == factorial.digest else ""
     if not args.no_run:
         shards = 0 if args.gather else args.shards or factorial.spec["shards"]
-        for shard in range(1, shards + 1):
-            for scene in factorial.scenes.labels:
-                run_shard(factorial, scene, shard, args.runs)
+        run_all(factorial, shards, args.jobs, args.runs)
         plan = _cost(factorial, args.runs) if args.plan else plan
         kept = gathered(factorial, args.runs, plan)
         write(kept)

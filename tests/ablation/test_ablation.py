@@ -1,6 +1,8 @@
 """The draw of the fraction, and what effects are made of: known answers on made tables."""
 
 import json
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -12,19 +14,19 @@ from analysis.errors import UserError
 
 ROOT = Path(__file__).resolve().parents[2]
 DEFAULT = ROOT / "configs/ablation/default.json"
-SCENES = ("one", "two", "three", "four", "five", "six")
+SCENES = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
 @pytest.fixture(scope="module")
 def small(tmp_path_factory) -> factors.Factorial:
-    """Six scenes, three factors of 3, 2 and 2 levels; c with y is excluded."""
+    """Ten scenes, three factors of 3, 2 and 5 levels; c with y is excluded."""
     folder = tmp_path_factory.mktemp("small")
 
     def axis(pointer, labels):
         return {"cases": [{"label": label, "set": {pointer: label}} for label in labels]}
 
     sweep = {"schema": "barrierbench.sweep/1", "name": "small", "base": "b.json", "set": {}, "budget": {"run_s": 9}, "exclude": [{"labels": ["c", "y"]}],
-             "axes": [axis("/scene", SCENES), axis("/shape", "abc"), axis("/solver", "xy"), axis("/precision", ["double", "float"])]}
+             "axes": [axis("/scene", SCENES), axis("/shape", "abc"), axis("/solver", "xy"), axis("/precision", ["double", "float", "half", "tenth", "none"])]}
     (folder / "sweep.json").write_text(json.dumps(sweep))
     spec = {"schema": "barrierbench.ablation/1", "name": "small", "sweep": "sweep.json", "factors": ["scene", "shape", "solver", "precision"],
             "excluded": ["it means nothing"], "left_out": {}, "seed": 3, "combinations": 8, "shards": 2}
@@ -48,7 +50,7 @@ def effect(found, small, name) -> effects.Effect:
 
 
 def test_exclusions_leave_what_they_do_not_name(small):
-    assert small.sizes == (3, 2, 2) and len(small.allowed()) == 10
+    assert small.sizes == (3, 2, 5) and len(small.allowed()) == 25
     assert (2, 1, 0) not in small.allowed() and (2, 0, 0) in small.allowed() and (1, 1, 0) in small.allowed()
     assert small.settings_of("two", (1, 0, 1)) == {"/scene": "two", "/shape": "b", "/solver": "x", "/precision": "float"}
 
@@ -63,7 +65,7 @@ def test_the_fraction_tells_every_main_effect():
     """Of each scene: no level is a combination of others. Integrator and step solver exclude each other in part."""
     whole = factors.read_factorial(DEFAULT)
     terms = effects.main_terms(whole)
-    assert len(terms) == 19 and len(whole.allowed()) * len(whole.scenes.levels) == 31680
+    assert len(terms) == 19 and len(whole.allowed()) * len(whole.scenes.levels) == 95040
     for scene in whole.scenes.labels:
         array = drawn(whole, scene)
         found = effects.fitted(array, [float(k) for k in range(len(array))], terms, terms)
@@ -75,21 +77,36 @@ def test_main_effects_are_ratios_with_the_other_factors_equal(small):
     found = effects.study(small, made(small, lambda k, v: (10 + k) * 2.0 ** (v[0] == 1) * 3.0 ** v[1] * (1 + 0.001 * k) ** v[1])).main["newton"]
     b, y, single = (effect(found, small, name) for name in ("b", "y", "float"))
     assert np.exp(b.mean) == pytest.approx(2) and np.exp(y.mean) == pytest.approx(3, rel=0.01) and single.mean == pytest.approx(0, abs=1e-12)
-    assert y.decided and y.signs == (6, 0) and y.sign_p == pytest.approx(2 / 64)
+    assert y.decided and y.signs == (10, 0) and y.sign_p == y.p == pytest.approx(2 / 1024)
     assert np.exp(y.low) < np.exp(y.mean) < np.exp(y.high)
 
 
 def test_scenes_are_the_samples(small):
-    """An effect that one scene has sixfold and five have not is not decided, however many runs each has."""
-    found = effects.study(small, made(small, lambda k, v: 10 * (6.0 if k == 0 else 1.0 + 0.01 * k) ** v[1])).main["newton"]
+    """An effect that one scene has sixfold and nine have not is not decided, however many runs each has."""
+    found = effects.study(small, made(small, lambda k, v: 10 * (6.0 if k == 0 else 1.0 + 0.01 * k * (-1) ** k) ** v[1])).main["newton"]
     y = effect(found, small, "y")
     assert y.mean > 0 and not y.decided and y.low < 0 < y.high
+
+
+def test_a_scene_that_is_far_out_does_not_hide_what_all_scenes_have(small):
+    """Its interval reaches over nothing, the sign-flip test does not ask for one spread."""
+    found = effects.study(small, made(small, lambda k, v: 10 * (50.0 if k == 0 else 1.02 + 0.01 * k) ** v[1])).main["newton"]
+    y = effect(found, small, "y")
+    assert y.low < 0 < y.high and y.decided and y.p == pytest.approx(2 / 1024)
+
+
+def test_a_scene_with_too_few_runs_has_no_value(small):
+    """Eight parameters and 17 runs leave nine degrees of freedom."""
+    every = made(small, lambda k, v: (10 + k) * 3.0 ** v[1])
+    few = [row for row in every.rows if row["scene"] != "one"] + [row for row in every.rows if row["scene"] == "one"][-17:]
+    y = effect(effects.study(small, table.Table(small.digest, every.about, few)).main["newton"], small, "y")
+    assert set(y.scenes) == set(SCENES) - {"one"} and y.p is None and not y.decided and report.verdict_of(y) == "9 scenes"
 
 
 def test_failures_are_counted_in_the_share_and_in_no_ratio(small):
     found = effects.study(small, made(small, lambda k, v: 1000.0 if v[0] == 1 and v[1] else 10.0 + k, lambda v: not (v[0] == 1 and v[1])))
     share = effect(found.main["ok"], small, "b")
-    assert share.mean < -0.2 and all(abs(e.mean or 0) < 1e-9 for e in found.main["newton"])
+    assert share.mean < -0.2 and share.decided and all(abs(e.mean) < 1e-9 and not e.decided for e in found.main["newton"])
 
 
 def test_an_interaction_is_no_main_effect():
@@ -107,17 +124,24 @@ def test_what_no_run_tells_apart_has_no_value(small):
     assert y.mean is None and y.scenes == {} and report.value_of(y) == "no scene tells it"
 
 
-def test_sentences_name_the_slice_and_what_is_not_decided(small):
-    flat = made(small, lambda k, v: 10.0 + k)
-    said = report.sentences(small, flat, effects.study(small, flat))
-    assert len(said) == 3 and all("without a strain limit" in sentence and "6 scenes" in sentence for sentence in said)
-    assert "60 of 60 runs end `ok`" in said[0] and "0 of 4 main effects" in said[1]
+def test_the_page_says_what_is_decided_and_what_is_not(small):
+    found = made(small, lambda k, v: (10.0 + k) * 3.0 ** v[1] * (1 + 0.01 * (-1) ** k) ** v[0])
+    lead, said = report.lead(small, found), report.sentences(small, found, effects.study(small, found))
+    assert "over 10 scenes without a strain limit" in lead and "250 of 250 runs end `ok`" in lead
+    assert said[0].startswith("Newton iterations of a run: 1 of 7 main effects are decided: `y` 3 [") and "Not decided: `b`, `c`, `float`" in said[0]
+    assert len(said) == len(report.WORDS) + 1 and said[1].count("decided: `") == 1 and "0 of 7" in said[1]
+
+
+def test_the_page_says_what_was_not_tested(small):
+    every = made(small, lambda k, v: 10.0 + k)
+    few = table.Table(small.digest, every.about, [row for row in every.rows if row["scene"] != "ten"])
+    assert "Not tested, with fewer than 10 scenes: `b`, `c`, `y`" in report.sentences(small, few, effects.study(small, few))[0]
 
 
 @pytest.mark.parametrize(("edit", "said"), [
     (lambda d: d["factors"].pop(), "#/factors: 3 names for 4 axes"),
     (lambda d: d.update(excluded=[]), "#/excluded: 0 reasons for 1 exclusions"),
-    (lambda d: d.update(combinations=500), "#/combinations: found 500; at most 10")])
+    (lambda d: d.update(combinations=500), "#/combinations: found 500; at most 25")])
 def test_a_spec_that_does_not_fit_its_sweep(small, edit, said):
     data = json.loads(small.path.read_text())
     edit(data)
@@ -146,3 +170,31 @@ def test_a_sweep_of_a_scene_has_a_case_a_combination(small, tmp_path):
     (axis,) = data["axes"]
     assert len(axis["cases"]) == 8 and all(case["set"]["/scene"] == "two" for case in axis["cases"])
     assert len({case["label"] for case in axis["cases"]}) == 8
+
+
+def test_shards_run_side_by_side_and_in_their_order(small, tmp_path, monkeypatch):
+    """Two at a time: either waits for the other. All first shards come before the second ones."""
+    both, seen = threading.Barrier(2, timeout=20), []
+
+    def shard(factorial, scene, number, folder):
+        seen.append((number, scene))
+        both.wait()
+
+    monkeypatch.setattr(runs, "run_shard", shard)
+    runs.run_all(small, 2, 2, tmp_path)
+    assert len(seen) == 20 and [number for number, _ in seen] == sorted(number for number, _ in seen)
+
+
+def test_a_shard_that_fails_ends_the_rest(small, tmp_path, monkeypatch):
+    seen = []
+
+    def shard(factorial, scene, number, folder):
+        seen.append(scene)
+        if len(seen) == 1:
+            raise UserError(f"{scene} failed")
+        time.sleep(0.3)
+
+    monkeypatch.setattr(runs, "run_shard", shard)
+    with pytest.raises(UserError, match="one failed"):
+        runs.run_all(small, 2, 1, tmp_path)
+    assert len(seen) < 20
