@@ -3,24 +3,24 @@
 namespace bb::resident {
 
 template <class Parts>
-Compensated ContactSums::sum(Index n, const Parts& parts) {
+Compensated RowSums::sum(Index n, const Parts& parts) {
   sum_.clear();
   sum_.add(n, parts);
   return sum_.get();
 }
 
-void ContactSums::look_at_energy(ResidentRows& rows, const exec::Buffer<double>& x,
+void RowSums::look_at_energy(ResidentRows& rows, const exec::Buffer<double>& x,
                                  ContactAssembly& assembly) {
   energy_.clear();
   energy_.add(rows.size(), assembly.row_energy(rows, x));
 }
 
-double ContactSums::product(const exec::Buffer<double>& a, const exec::Buffer<double>& b,
+double RowSums::product(const exec::Buffer<double>& a, const exec::Buffer<double>& b,
                             const exec::Buffer<std::uint8_t>& fixed) {
   return sum(a.size(), FreeDot{a.data(), b.data(), fixed.data()}).value();
 }
 
-double ContactSums::mean_mass(ResidentRows& rows, const exec::Buffer<double>& mass) {
+double RowSums::mean_mass(ResidentRows& rows, const exec::Buffer<double>& mass) {
   const RowView view = rows.view();
   return sum(view.n, RowMass{view, mass.data()}).value() / sum(view.n, RowPoints{view}).value();
 }

@@ -7,9 +7,9 @@
 
 namespace bb::resident {
 
-class ContactSums {
+class RowSums {
  public:
-  explicit ContactSums(exec::Executor& executor) : sum_(executor), energy_(executor) {}
+  explicit RowSums(exec::Executor& executor) : sum_(executor), energy_(executor) {}
 
   /// Energy of all rows at x, J. Sums of two tables are compared as sums: rows come and go.
   Compensated energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly) {

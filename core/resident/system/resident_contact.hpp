@@ -123,7 +123,7 @@ class ResidentContact final : public ResidentTerm {
   ResidentStiffness stiffness_;
   ResidentBarrier barrier_;
   ContactAssembly assembly_;
-  ContactSums sums_;
+  RowSums sums_;
   ResidentLeast curved_, straight_;  // HoldTimes
   StepEndGaps gaps_;
   ResidentRows rows_, trial_;
