@@ -13,7 +13,7 @@ namespace bb::test {
 
 using resident::AssemblyOptions;
 using resident::ContactAssembly;
-using resident::ContactSums;
+using resident::RowSums;
 using resident::HessianChoice;
 using resident::MatrixPart;
 using resident::ResidentBarrier;

@@ -155,7 +155,7 @@ TEST(ResidentAssembly, RefusesAProjectionWithoutAKernel) {
   }
 }
 
-TEST(ContactSums, AreExactToRoundingAndTheSameInAnyOrder) {
+TEST(RowSums, AreExactToRoundingAndTheSameInAnyOrder) {
   constexpr Index n = 3 * 70001;
   std::vector<double> a(n), b(n);
   std::vector<std::uint8_t> fixed(n / 3);
@@ -174,14 +174,14 @@ TEST(ContactSums, AreExactToRoundingAndTheSameInAnyOrder) {
     exec::Buffer<double> x(executor, "a"), y(executor, "b");
     exec::Buffer<std::uint8_t> mask(executor, "fixed");
     x.upload(a), y.upload(b), mask.upload(fixed);
-    const double got = ContactSums(executor).product(x, y, mask);
+    const double got = RowSums(executor).product(x, y, mask);
     EXPECT_NEAR(got, static_cast<double>(expected), 1e-15 * std::abs(static_cast<double>(expected)) + 1e-9);
     if (first == 0) first = got;
     EXPECT_EQ(got, first);
   }
 }
 
-TEST(ContactSums, GiveTheMeanMassOfTheRows) {
+TEST(RowSums, GiveTheMeanMassOfTheRows) {
   const Scene scene = full_scene(2);
   TestedExecutor executor;
   OnExecutor on(executor, scene, scene.x0);
@@ -198,7 +198,7 @@ TEST(ContactSums, GiveTheMeanMassOfTheRows) {
   ASSERT_GT(count, 500);
   exec::Buffer<double> masses(executor, "masses");
   masses.upload(scene.mass);
-  EXPECT_NEAR(ContactSums(executor).mean_mass(on.rows, masses), mass / count, 1e-14);
+  EXPECT_NEAR(RowSums(executor).mean_mass(on.rows, masses), mass / count, 1e-14);
 }
 
 }  // namespace
