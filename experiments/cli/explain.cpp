@@ -105,8 +105,8 @@ void print_card(std::size_t total) {
 
 void print_memory(const DeviceMemory& memory, const ContactDemand& demand) {
   fmt::print("\nmemory of the device at the peak of a step, buffer by buffer\n");
-  fmt::print("  {:.6g} contacts ({}), each with {:.4g} candidates and {:.4g} stored blocks\n", memory.contacts,
-             memory.source, demand.candidates_a_contact, demand.upper_blocks_a_contact);
+  fmt::print("  {:.6g} contacts ({}), each with {:.4g} candidates and {:.4g} stored blocks\n",
+             memory.contacts, memory.source, demand.candidates_a_contact, demand.upper_blocks_a_contact);
   std::size_t rest = 0;
   for (const auto& [name, bytes] : memory.buffers) {
     if (200 * bytes < memory.total) {
@@ -174,10 +174,12 @@ void demand_arguments(CLI::App& app, ContactDemand& demand) {
                  "with a device: so many contacts are expected (default: estimated from the scene)")
       ->check(finite_number(0, 1e12));
   app.add_option("--blocks-per-contact", demand.upper_blocks_a_contact,
-                 "stored 3x3 blocks on and above the diagonal that a contact has (default 1.738, of configs/gpu/dense_patch.json)")
+                 "stored 3x3 blocks on and above the diagonal that a contact has (default 1.738, of "
+                 "configs/gpu/dense_patch.json)")
       ->check(finite_number(0, 10));
-  app.add_option("--candidates-per-contact", demand.candidates_a_contact,
-                 "pairs of the broad phase that a contact has (default 6.145, of configs/gpu/dense_patch.json)")
+  app.add_option(
+         "--candidates-per-contact", demand.candidates_a_contact,
+         "pairs of the broad phase that a contact has (default 6.145, of configs/gpu/dense_patch.json)")
       ->check(finite_number(0, 1e3));
 }
 
