@@ -13,10 +13,10 @@ namespace bb::test {
 
 using resident::AssemblyOptions;
 using resident::ContactAssembly;
-using resident::RowSums;
 using resident::HessianChoice;
 using resident::MatrixPart;
 using resident::ResidentBarrier;
+using resident::RowSums;
 using Matrix = Eigen::MatrixXd;
 
 inline constexpr double kappa = 350;
@@ -142,7 +142,7 @@ inline Assembled assemble(exec::Executor& executor, const Scene& scene, const Po
   out.n_blocks = assembly.n_blocks(), out.n_rows = on.rows.size();
   assembly.add_given_motion(on.rows, on.x, moved, force);
   out.force = Positions::Map(force.data(), 3, n);
-  ContactSums sums(executor);
+  RowSums sums(executor);
   out.energy = sums.energy(on.rows, on.x, assembly).value();
 
   const auto add = [&out](const void* data, std::size_t bytes) {

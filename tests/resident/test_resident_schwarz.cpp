@@ -147,8 +147,14 @@ Eigen::MatrixXd dense_schwarz(const Eigen::MatrixXd& a, const Eigen::MatrixXd& s
         p(rows.back(), 3 * k + c) = 1 - fixed[rows.back()];
       }
     }
-    const Eigen::MatrixXd local = whole(rows, rows), inverse_local = test::inverse(local);
-    out(rows, rows) = inverse_local;
+    const auto size = static_cast<Eigen::Index>(rows.size());
+    const auto row = [&rows](Eigen::Index i) { return rows[static_cast<std::size_t>(i)]; };
+    Eigen::MatrixXd local(size, size);
+    for (Eigen::Index i = 0; i < size; ++i)
+      for (Eigen::Index j = 0; j < size; ++j) local(i, j) = whole(row(i), row(j));
+    const Eigen::MatrixXd inverse_local = test::inverse(local);
+    for (Eigen::Index i = 0; i < size; ++i)
+      for (Eigen::Index j = 0; j < size; ++j) out(row(i), row(j)) = inverse_local(i, j);
   }
   if (clusters.size() == n) return out;
   VecXd coarse_fixed(p.cols());
