@@ -28,7 +28,8 @@ CAPTION = (
     " first of its factor, mean and 95% interval over scenes; filled and blue: decided (sign-flip test over"
     " scenes, p < 0.05 after Holm); hollow: not decided, or taken back. Right: largest mean of an"
     " interaction of two levels of each pair of factors on Newton iterations, as a factor up or down, of"
-    " those that at least {least} scenes tell; a dot where one is decided; white where none is told.{untold}\n"
+    " those that at least {least} scenes tell; a dot where one is decided; white where none is told."
+    "{untold}\n"
 )
 UNTOLD = " Here so many scenes tell no interaction on Newton iterations, so the right panel is left out."
 

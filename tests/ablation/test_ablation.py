@@ -125,6 +125,12 @@ def test_what_is_bound_is_what_the_exclusions_name(small):
     assert [bound.is_bound(allowed, part) for part in ((0, 1), (0, 2), (1, 1), (2, 3))] == [False, True, True, False]
 
 
+def test_a_direct_effect_takes_off_the_others(small):
+    allowed, levels = bound.contexts(small), [(0, 0, 0), (0, 0, 1), (2, 0, 1)]
+    assert bound.direct(allowed, (0, 2), levels, [1.0, 3.0, 7.0], {(2, 1): 2.0}) == 4.0
+    assert bound.direct(allowed, (0, 2), levels, [1.0, 3.0, 7.0], {}) is None
+
+
 def test_a_direct_effect_needs_runs_of_both_levels(small):
     allowed, levels = bound.contexts(small), [(0, 0, 0), (2, 0, 0), (0, 1, 0)]
     assert bound.direct(allowed, (0, 2), levels, [1.0, 4.0, 9.0], {(1, 1): 0.0}) == 3.0
