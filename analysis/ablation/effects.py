@@ -7,12 +7,13 @@ has no value there: its column is no combination of rows.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
 
 from ..claims.estimate import sign_test, student
+from .bound import Contexts, contexts, direct, is_bound
 from .factors import Factorial
 from .flips import sign_flip
 from .table import METRICS, Table, got_through, levels_of
@@ -37,7 +38,8 @@ class Term:
 @dataclass(frozen=True)
 class Effect:
     """scenes: name -> logarithm of a ratio, or difference of shares. p: of the sign-flip test of their mean.
-    holm: p times Holm's factor among the effects of its number; None below LEAST_SCENES scenes.
+    holm: p times Holm's factor among the effects of its number; None below LEAST_SCENES scenes. direct: of a
+    level that exclusions bind, which has to agree (bound.py).
     """
 
     metric: str
@@ -48,10 +50,22 @@ class Effect:
     high: float | None = None
     p: float | None = None
     holm: float | None = None
+    direct: Effect | None = None
+
+    @property
+    def passes(self) -> bool:
+        """The test, whatever the direct effect says."""
+        return self.holm is not None and self.holm < LEVEL
+
+    @property
+    def agrees(self) -> bool:
+        """The direct effect has its sign, and p < LEVEL by itself."""
+        one = self.direct
+        return one is None or (one.p is not None and one.p < LEVEL and one.mean * self.mean > 0)
 
     @property
     def decided(self) -> bool:
-        return self.holm is not None and self.holm < LEVEL
+        return self.passes and self.agrees
 
     @property
     def signs(self) -> tuple[int, int]:
@@ -130,7 +144,7 @@ def with_holm(effects: list[Effect]) -> list[Effect]:
     for k, effect in enumerate(tested):
         least = max(least, min(1.0, effect.p * (len(tested) - k)))
         holm[effect.term] = least
-    return [Effect(*(getattr(e, n) for n in Effect.__match_args__[:-1]), holm.get(e.term)) for e in effects]
+    return [replace(effect, holm=holm.get(effect.term)) for effect in effects]
 
 
 def _of(factorial: Factorial, table: Table, metric: str, wanted: list[Term]) -> list[Effect]:
@@ -145,11 +159,28 @@ def _of(factorial: Factorial, table: Table, metric: str, wanted: list[Term]) -> 
     return [over_scenes(metric, term, scenes) for term, scenes in found.items()]
 
 
+def _beside(factorial: Factorial, table: Table, allowed: Contexts, effect: Effect) -> Effect:
+    """With its direct effect, where exclusions bind its level."""
+    part = effect.term.parts[0]
+    if not is_bound(allowed, part):
+        return effect
+    mains, found = main_terms(factorial), {}
+    for scene in effect.scenes:
+        pairs = values_of(table, scene, effect.metric)
+        levels, y = [levels_of(factorial, row) for row, _ in pairs], [value for _, value in pairs]
+        others = {term.parts[0]: value for term, value in fitted(levels, y, mains, mains).items()}
+        value = direct(allowed, part, levels, y, others)
+        if value is not None:
+            found[scene] = value
+    return replace(effect, direct=over_scenes(effect.metric, effect.term, found))
+
+
 def study(factorial: Factorial, table: Table) -> Study:
     """Every number's main effects, and its interactions pair of factors by pair."""
-    out = Study()
+    out, allowed = Study(), contexts(factorial)
     for metric in (*METRICS, *SHARES):
-        out.main[metric] = with_holm(_of(factorial, table, metric, main_terms(factorial)))
+        mains = with_holm(_of(factorial, table, metric, main_terms(factorial)))
+        out.main[metric] = [_beside(factorial, table, allowed, effect) for effect in mains]
         pairs = [
             effect
             for a, b in combinations(range(len(factorial.factors)), 2)

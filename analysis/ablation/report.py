@@ -43,6 +43,8 @@ def value_of(effect: Effect) -> str:
 
 
 def verdict_of(effect: Effect) -> str:
+    if effect.passes and not effect.agrees:
+        return f"taken back: {value_of(effect.direct)} directly"
     if not effect.decided:
         return "not decided" if len(effect.scenes) >= LEAST_SCENES else f"{len(effect.scenes)} scenes"
     return "**decided**"
@@ -67,7 +69,8 @@ def _of_number(factorial: Factorial, effects: list[Effect], words: str) -> str:
     said = f"{words[0].upper()}{words[1:]}: {len(found)} of {len(effects)} main effects are decided"
     said += f": {_named(factorial, found)}." if found else "."
     for open_, what in (
-        ([e for e in effects if not e.decided and e.p is not None], "Not decided"),
+        ([e for e in effects if e.passes and not e.agrees], "Taken back"),
+        ([e for e in effects if not e.passes and e.p is not None], "Not decided"),
         ([e for e in effects if e.p is None], f"Not tested, with fewer than {LEAST_SCENES} scenes"),
     ):
         if open_:
@@ -84,6 +87,8 @@ def lead(factorial: Factorial, table: Table) -> str:
         " with the common success; ratios are of the former alone, shares of all runs. An effect is that of a"
         " level against the first level of its factor, the other factors equal: the mean over scenes with its"
         f" 95% interval. It is decided when the sign-flip test of that mean has p < {LEVEL:g} after Holm."
+        " Where exclusions bind a level, its effect in the runs that both levels may have has to agree (same"
+        f" sign, p < {LEVEL:g} by itself); otherwise it is taken back: it is not told from an interaction."
         " What is not decided is not shown to be absent; its interval, in a table below, says what it may be."
     )
 
@@ -132,10 +137,9 @@ def _outcomes(table: Table) -> list[str]:
                 str(len(mine)),
                 ", ".join(f"{word} {n}" for word, n in words.most_common()),
                 str(sum(not row["failed"] for row in mine)),
-                f"{sum(row['core_s'] for row in mine):.0f}",
             ]
         )
-    head = ["scene", "runs", "outcomes", "common success", "core s"]
+    head = ["scene", "runs", "outcomes", "common success"]
     return ["## Outcomes", "", *markdown(head, rows), ""]
 
 
@@ -163,8 +167,7 @@ def _what_was_run(factorial: Factorial, table: Table) -> list[str]:
     missing = asked - len(table.rows)
     axes = ", ".join(f"{f.name} ({', '.join(f.levels)})" for f in factorial.factors)
     rarest = [seldom(factorial, drawn(factorial, scene)) for scene in factorial.scenes.labels]
-    core = sum(row["core_s"] for row in table.rows)
-    mean, plan = core / max(len(table.rows), 1), table.about.get("plan")
+    plan = table.about.get("plan")
     return [
         "## What was run",
         "",
@@ -177,14 +180,7 @@ def _what_was_run(factorial: Factorial, table: Table) -> list[str]:
             + ". Holm's factor counts all main effects of a number, or all its interactions."
         ),
         "",
-        (
-            f"Cost: {core:.0f} core seconds for these {len(table.rows)} runs, {mean:.2f} each, from start to"
-            " end of a run on a machine that did many other things at the same time. At that mean the"
-            f" {allowed} allowed combinations take {mean * allowed / 3600:.1f} core hours"
-            + (f"; `./bench plan` says {plan}" if plan else "")
-            + "."
-        ),
-        "",
+        *([f"All allowed combinations, by `./bench plan`: {plan}.", ""] if plan else []),
     ]
 
 

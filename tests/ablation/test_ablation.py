@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.ablation import effects, factors, report, runs, table
+from analysis.ablation import bound, effects, factors, report, runs, table
 from analysis.ablation.design import drawn, seldom
 from analysis.errors import UserError
 
@@ -107,6 +107,34 @@ def test_failures_are_counted_in_the_share_and_in_no_ratio(small):
     found = effects.study(small, made(small, lambda k, v: 1000.0 if v[0] == 1 and v[1] else 10.0 + k, lambda v: not (v[0] == 1 and v[1])))
     share = effect(found.main["ok"], small, "b")
     assert share.mean < -0.2 and share.decided and all(abs(e.mean) < 1e-9 and not e.decided for e in found.main["newton"])
+
+
+def test_an_effect_that_exclusions_make_of_an_interaction_is_taken_back(small):
+    """c stands with x alone, and with x all shapes are alike; b with y costs nine times as much. Additive effects
+    put the others lower at x than they are, so c seems to cost more.
+    """
+    found = effects.study(small, made(small, lambda k, v: (10.0 + k) * 9.0 ** (v[:2] == (1, 1)) * (1 + 0.001 * k * (-1) ** k) ** v[2])).main["newton"]
+    c, y = (effect(found, small, name) for name in ("c", "y"))
+    assert c.mean > 0.4 and c.passes and not c.agrees and not c.decided and abs(c.direct.mean) < 1e-9
+    assert report.verdict_of(c).startswith("taken back: 1 [") and y.direct is not None and y.decided
+    assert "Taken back: `c`. Not decided: `float`" in report._of_number(small, found, "iterations")
+
+
+def test_what_is_bound_is_what_the_exclusions_name(small):
+    allowed = bound.contexts(small)
+    assert [bound.is_bound(allowed, part) for part in ((0, 1), (0, 2), (1, 1), (2, 3))] == [False, True, True, False]
+
+
+def test_a_direct_effect_takes_off_the_others(small):
+    allowed, levels = bound.contexts(small), [(0, 0, 0), (0, 0, 1), (2, 0, 1)]
+    assert bound.direct(allowed, (0, 2), levels, [1.0, 3.0, 7.0], {(2, 1): 2.0}) == 4.0
+    assert bound.direct(allowed, (0, 2), levels, [1.0, 3.0, 7.0], {}) is None
+
+
+def test_a_direct_effect_needs_runs_of_both_levels(small):
+    allowed, levels = bound.contexts(small), [(0, 0, 0), (2, 0, 0), (0, 1, 0)]
+    assert bound.direct(allowed, (0, 2), levels, [1.0, 4.0, 9.0], {(1, 1): 0.0}) == 3.0
+    assert bound.direct(allowed, (0, 2), levels[:1], [1.0], {}) is None
 
 
 def test_an_interaction_is_no_main_effect():
