@@ -118,11 +118,11 @@ def same_runs(folder: Path) -> list[dict]:
 
 
 def functor(kernel: str) -> str:
-    """bb::resident::SpmvDot of `void bb::exec::run_each<bb::resident::SpmvDot>(long, T1)`; another name as it
-    is.
+    """bb::resident::SpmvDot of `void bb::exec::run_each<bb::resident::SpmvDot>(long, T1)`; of a library's
+    kernel its name without what it is a template of.
     """
     found = re.search(r"run_(?:each|blocks)<(.*)>\(", kernel)
-    return found.group(1) if found else kernel
+    return found.group(1) if found else re.sub(r"[<(].*", "", kernel.removeprefix("void "))
 
 
 def measured_kernels(folder: Path) -> dict[str, dict]:

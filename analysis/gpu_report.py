@@ -6,6 +6,7 @@ One row a card. Without a record the page says that nothing was timed. Prices ar
 
 from __future__ import annotations
 
+import re
 import tempfile
 from pathlib import Path
 
@@ -337,7 +338,7 @@ def draw(records: list[dict], stem: Path) -> list[Path]:
     for axis, (record, kernels) in zip(axes[:, 0], shown):
         copy = record["device"]["copy"]["on_the_card_Bps"]
         shares = [kernel["Bps"] / copy for kernel in kernels]
-        axis.barh([kernel["name"].rsplit("::", 1)[-1] for kernel in kernels], shares, color="#0072B2")
+        axis.barh([re.sub(r"\w+::", "", kernel["name"]) for kernel in kernels], shares, color="#0072B2")
         axis.axvline(1, color="#666666", linewidth=0.6, gid=style.REFERENCE)
         axis.invert_yaxis()
         axis.set_xlabel("rate of a kernel / rate of a copy")

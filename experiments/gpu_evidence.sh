@@ -188,7 +188,7 @@ if wanted scenes; then
   run_scene drape_1m 60
   run_scene dense_500k 60
   run_scene drape_20k 60
-  on_cpu drape_20k 120 auto
+  on_cpu drape_20k 120 cholmod
 fi
 if wanted memory; then run_scene dense_184m 150; fi
 if wanted kernels; then

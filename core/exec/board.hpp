@@ -17,7 +17,10 @@ class Board {
  public:
   static constexpr std::size_t capacity = 32768;  // B
 
-  explicit Board(Executor& executor) : memory_(executor, "numbers that are read", capacity) {}
+  /// Places that nothing was written to come down with the others: so they have a value.
+  explicit Board(Executor& executor) : memory_(executor, "numbers that are read", capacity) {
+    memory_.fill_zero();
+  }
   /// The board of an executor, which lives as long as somebody holds it.
   static std::shared_ptr<Board> of(Executor& executor) {
     std::shared_ptr<Board> board = executor.board_.lock();

@@ -60,6 +60,11 @@ def test_a_record_has_what_the_script_saw(raw):
     assert record["kernels"][1] == {"name": "bb::resident::SpmvDot", "launches": 2, "seconds": pytest.approx(4e-6), "bytes": 6e6, "Bps": pytest.approx(1.5e12)}
 
 
+def test_kernels_of_a_library_are_named_without_what_they_are_templates_of():
+    assert gpu_evidence.functor("void radix_sort::Onesweep<policy<unsigned, cub::Null>, int>(T7 *, int)") == "radix_sort::Onesweep"
+    assert gpu_evidence.functor("void bb::exec::run_each<bb::A<bb::B>>(long, T1)") == "bb::A<bb::B>"
+
+
 def test_without_counters_kernels_have_times_and_no_rates(raw):
     (raw / "logs/kernels.out").write_text("==ERROR== ERR_NVGPUCTRPERM - The user does not have permission\n")
     (raw / "kernel_times.json").write_text('{"schema": "barrierbench.kernel_times/1", "kernels": {"bb::A": {"launches": 4, "seconds": 0.5}}}')

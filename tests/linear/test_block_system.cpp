@@ -75,7 +75,12 @@ Eigen::MatrixXd free_part(const Eigen::MatrixXd& a, const std::vector<std::uint8
   for (int i = 0; i < a.rows(); ++i) {
     if (!fixed[static_cast<std::size_t>(i)]) keep.push_back(i);
   }
-  return a(keep, keep);
+  const auto n = static_cast<Eigen::Index>(keep.size());
+  Eigen::MatrixXd out(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      out(i, j) = a(keep[static_cast<std::size_t>(i)], keep[static_cast<std::size_t>(j)]);
+  return out;
 }
 
 struct Assembled {
