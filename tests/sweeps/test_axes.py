@@ -99,3 +99,19 @@ def test_a_run_longer_than_its_budget_ends_as_timeout_and_a_spent_budget_begins_
     assert done.returncode == 0, done.stderr
     assert [record["status"]["outcome"] for record in records(tmp_path / "out").values()] == ["timeout"]
     assert "1 of 2 runs were not begun: the budget of 0.1 core s is spent" in done.stdout
+
+
+def test_plan_names_every_case_whose_scene_cannot_be_built(program, tmp_path):
+    """Such a scene is found when its size is asked for, after the config was read."""
+    pins = {"box_m": [[-9, -9, -9], [9, 0, 9]]}
+    body = {"name": "cloth", "mesh": {"generator": "grid", "n_x": 3, "n_y": 3}, "material": {"youngs_N_per_m": 100}, "pins": [pins]}
+    base = tmp_path / "base.json"
+    base.write_text(json.dumps({"schema": "barrierbench.config/1", "scene": {"name": "bodies", "bodies": [body]},
+                                "formulation": {"name": "log", "d_hat_m": 0.01}, "time": {"dt_s": 0.01, "steps": 2}}))
+    nowhere = [{"label": f"at {x}", "set": {"/scene/bodies/0/pins/0/box_m": [[x, x, x], [x + 1, x + 1, x + 1]]}} for x in (50, 60)]
+    file = tmp_path / "pins.json"
+    axis = {"cases": [{"label": "some", "set": {"/time/steps": 3}}, *nowhere]}
+    file.write_text(json.dumps({"schema": "barrierbench.sweep/1", "name": "pins", "base": str(base), "axes": [axis]}))
+    done = bench(program, "plan", file)
+    refused(done, "[at 50]", "[at 60]", "no vertex selected")
+    assert "[some]" not in done.stderr and done.stdout == ""
