@@ -45,10 +45,16 @@ def parts_of(folder: Path) -> dict[str, dict]:
         except ValueError:
             raise UserError(f"{folder}/parts.tsv: not a part: {line!r}") from None
         if status in ("failed", "timed_out"):
-            log = folder / "logs" / f"{name}.err"
-            said = log.read_text(errors="replace").strip().splitlines() if log.exists() else []
+            said = _lines(folder / "logs" / f"{name}.err")
             parts[name]["why"] = said[-1] if said else f"exit code {more}"
+        judged = [line for line in _lines(folder / "logs" / f"{name}.out") if " kernels in " in line]
+        if judged:  # a test of the rooms: kernels and launches
+            parts[name]["judged"] = judged[-1]
     return parts
+
+
+def _lines(log: Path) -> list[str]:
+    return log.read_text(errors="replace").strip().splitlines() if log.exists() else []
 
 
 def card_state(folder: Path) -> dict:
@@ -89,6 +95,7 @@ def scene_numbers(folder: Path) -> dict | None:
         "step_s": wall / steps if wall is not None else None,
         "newton_ms": per(wall, newton),
         "pcg_ms": per(solve, pcg),
+        "end_check_s": summary["time"].get("end_check_s") if wall is not None else None,
         "linear_solver": run["labels"]["linear_solver"],
         "run_id": run["ids"]["run_id"],
         "state_hash": summary.get("state_hash"),

@@ -18,24 +18,23 @@ from .errors import UserError, tells
 from .figure_files import copy_to_page
 from .front.arguments import parser_of
 from .gpu_evidence import RECORDS, SCHEMA
+from .gpu_tables import (
+    LARGE,
+    MOST_KERNELS,
+    card_rows,
+    cost_rows,
+    fallen,
+    judged,
+    kernel_rows,
+    same_rows,
+    scene_rows,
+)
 from .json_file import read_object
 from .places import ROOT
 from .text_table import markdown as table_lines
 from .whole_file import write_whole
 
 NEVER = "Correct by emulation, never timed."
-LARGE = "drape_1m"
-MOST_KERNELS = 12
-ROOMS = ("sums", "linear", "elements", "contact", "system", "runs")
-CHECKS = (
-    "device_tests",
-    *(f"card_{room}" for room in ROOMS),
-    "memcheck",
-    "racecheck",
-    "initcheck",
-    "synccheck",
-)
-WORDS = {"passed": "passed", "failed": "**failed**", "timed_out": "**timed out**", "left_out": "not run"}
 
 
 def read_records(folder: Path) -> list[dict]:
@@ -55,161 +54,6 @@ def _table(head: list[str], rows: list[list[str]]) -> list[str]:
     return [*table_lines(head, rows), ""]
 
 
-def _number(value: float | None, digits: int = 3) -> str:
-    return (
-        "not measured" if value is None else f"{value:,.{digits}g}" if abs(value) < 1000 else f"{value:,.0f}"
-    )
-
-
-def _scene(record: dict, name: str, key: str) -> float | None:
-    scene = record["scenes"].get(name)
-    return scene[key] if scene and scene["outcome"] == "ok" else None
-
-
-def _memory_run(record: dict) -> str:
-    scene = record["scenes"].get("dense_184m")
-    if scene is None:
-        return record["parts"].get("dense_184m", {}).get("why") or "not run"
-    return f"{scene['outcome']}, {scene['vertices']:,} vertices, {_number(scene['contacts'])} contacts"
-
-
-def card_rows(records: list[dict]) -> list[list[str]]:
-    rows = []
-    for record in records:
-        device, card = record["device"], record["card"]
-        rows.append(
-            [
-                device["card"],
-                record["date_utc"][:10],
-                card.get("driver_version") or device["driver"],
-                card.get("clocks.max.sm", "not known"),
-                record["git_commit"][:10] or "not known",
-                _number(1e-9 * device["copy"]["on_the_card_Bps"]),
-                check_text(record),
-                *(
-                    _number(_scene(record, scene, key))
-                    for scene in ("drape_82k", LARGE)
-                    for key in ("pcg_ms", "newton_ms")
-                ),
-                _memory_run(record),
-            ]
-        )
-    return rows
-
-
-def fallen(record: dict) -> list[str]:
-    """Parts that failed, with what they said last; checks have a column of their own."""
-    return [
-        f"- {name}: {WORDS[part['status']]}: {part['why']}"
-        for name, part in record["parts"].items()
-        if part["status"] in ("failed", "timed_out")
-    ]
-
-
-def check_text(record: dict) -> str:
-    """Every check with its verdict, those with the same one together; what failed comes first."""
-    of_word: dict[str, list[str]] = {}
-    for name in CHECKS:
-        part = record["parts"].get(name, {"status": "left_out"})
-        of_word.setdefault(WORDS[part["status"]], []).append(name.replace("_", " "))
-    order = ("**failed**", "**timed out**", "passed", "not run")
-    return "; ".join(f"{', '.join(of_word[word])} {word}" for word in order if word in of_word)
-
-
-def scene_rows(record: dict) -> list[list[str]]:
-    """The timed scenes of a record, `.cpu` on the processor of the same machine."""
-    rows = []
-    for name, scene in record["scenes"].items():
-        if scene is None:
-            continue
-        rows.append(
-            [
-                name.removesuffix(".cpu"),
-                f"processor, {scene['linear_solver']}" if name.endswith(".cpu") else "card",
-                scene["outcome"],
-                f"{scene['vertices']:,}",
-                _number(scene["contacts"]),
-                str(scene["steps"]),
-                str(scene["newton_iterations"]),
-                str(scene["pcg_iterations"]),
-                *(_number(scene[key]) for key in ("step_s", "newton_ms", "pcg_ms")),
-            ]
-        )
-    return rows
-
-
-def _both(run: dict, key: str) -> str:
-    card, host = (
-        f"{value:,.0f}" if isinstance(value, (int, float)) else str(value)
-        for value in (run["card"][key], run["host"][key])
-    )
-    return card if card == host else f"{card}, host {host}"
-
-
-def same_rows(record: dict) -> list[list[str]]:
-    """Runs of a card beside the host executor's."""
-    rows = []
-    for run in record.get("same", []):
-        rows.append(
-            [
-                run["name"],
-                f"{run['vertices']:,}",
-                str(run["steps"]),
-                *(_both(run, key) for key in ("outcome", "newton_iterations", "pcg_iterations", "contacts")),
-                {True: "yes", False: "no", None: "not known"}[run["same_bits"]],
-            ]
-        )
-    return rows
-
-
-def kernel_rows(record: dict) -> list[list[str]]:
-    copy, rows = record["device"]["copy"]["on_the_card_Bps"], []
-    for kernel in record["kernels"][:MOST_KERNELS]:
-        rate = kernel["Bps"]
-        rows.append(
-            [
-                f"`{kernel['name']}`",
-                str(kernel["launches"]),
-                _number(1e6 * kernel["seconds"] / max(kernel["launches"], 1)),
-                _number(None if rate is None else 1e-9 * rate),
-                "not measured" if rate is None else f"{100 * rate / copy:.0f} %",
-            ]
-        )
-    return rows
-
-
-def cost_rows(records: list[dict], prices: dict) -> list[list[str]]:
-    """One row a kind of card; the newest record of it that ran the scene."""
-    rows = []
-    for card in prices["cards"]:
-        of_card = [
-            record
-            for record in records
-            if any(word in record["device"]["card"] for word in card["match"])
-            and _scene(record, LARGE, "step_s")
-        ]
-        step_s = (
-            _scene(max(of_card, key=lambda record: record["date_utc"]), LARGE, "step_s") if of_card else None
-        )
-        dt = _scene(max(of_card, key=lambda record: record["date_utc"]), LARGE, "dt_s") if of_card else None
-        price = card["price_per_hour"]
-        known = price is not None and card["as_of"] and card["source"]
-        said = (
-            f"{price:g} {prices['currency']} ({card['as_of']}, {card['source']})"
-            if known
-            else "enter yours, with date and source, in results/gpu/prices.json"
-        )
-        a_second = (
-            _number(step_s / dt / 3600 * price) + f" {prices['currency']}"
-            if step_s and known
-            else "not measured"
-            if step_s is None
-            else "no price"
-        )
-        rows.append([card["name"], said, _number(None if step_s is None else 3600 / step_s), a_second])
-    return rows
-
-
 SCENE_HEAD = [
     "scene",
     "where",
@@ -222,6 +66,7 @@ SCENE_HEAD = [
     "s a step",
     "ms a Newton iteration",
     "ms a PCG iteration",
+    "proof of the minimum",
 ]
 SAME_HEAD = ["run", "vertices", "steps", "outcome", "Newton iterations", "PCG iterations", "most contacts"]
 
@@ -233,6 +78,8 @@ def _of_card(record: dict) -> list[str]:
     text = []
     if lines := fallen(record):
         text += [f"## What failed {on}, {day}", "", *lines, ""]
+    if lines := judged(record):
+        text += [f"## Kernels and launches of the tests {on}, {day}", "", *lines, ""]
     text += [f"## Scenes {on}, {day}", "", *_table(SCENE_HEAD, scene_rows(record))]
     if record.get("same"):
         text += [
@@ -254,7 +101,8 @@ def _cards(records: list[dict]) -> list[str]:
     text = [
         (
             "Times are means: of a PCG iteration the linear solves over their iterations, of a Newton"
-            " iteration the steps over theirs. The copy is read and written."
+            " iteration the steps over theirs. The last column of scenes is the share of the wall time that"
+            " shows that a step ends in a minimum. The copy is read and written."
         ),
         "",
     ]

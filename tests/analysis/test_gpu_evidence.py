@@ -28,7 +28,7 @@ NCU = '''==PROF== Connected to process 1
 def run_json(outcome="ok"):
     return {"schema": {"name": "barrierbench.run", "version": "3.9.0"}, "status": {"outcome": outcome, "valid": outcome == "ok"}, "scene": {"vertices": 1048576},
             "ids": {"run_id": "1"}, "labels": {"scene": "drape", "formulation": "log", "dt_s": 0.01, "linear_solver": "pcg"}, "steps": [],
-            "summary": {"steps": 2, "newton_iterations": 10, "linear_iterations": 500, "wall_s": 4.0, "time": {"linear_solve_s": 2.5}, "contacts": {"max": 7e6}, "state_hash": "0f"}}
+            "summary": {"steps": 2, "newton_iterations": 10, "linear_iterations": 500, "wall_s": 4.0, "time": {"linear_solve_s": 2.5, "end_check_s": 2.0}, "contacts": {"max": 7e6}, "state_hash": "0f"}}
 
 
 @pytest.fixture
@@ -42,6 +42,7 @@ def raw(tmp_path):
     (folder / "logs/memcheck.err").write_text("a line\n========= ERROR SUMMARY: 3 errors\n")
     (folder / "logs/dense_184m.err").write_text("no memory for matrix values: 9 GiB\n")
     (folder / "logs/kernels.out").write_text(NCU)
+    (folder / "logs/device_tests.out").write_text("[  PASSED  ]\nX100: 3 kernels in 9 launches, 9 compared with the host, 0 kernels differ\n")
     for scene, outcome in (("drape_82k", "ok"), ("drape_1m", "ok")):
         (folder / scene).mkdir()
         (folder / scene / "run.json").write_text(json.dumps(run_json(outcome)))
@@ -97,7 +98,8 @@ def test_the_page_has_a_row_a_card(raw, tmp_path, capsys):
     row = next(line for line in text.splitlines() if line.startswith("| NVIDIA X100"))
     for part in ("580.1", "3,000", "memcheck **failed**; device tests passed", "racecheck, initcheck, synccheck not run", "abcdef0123", "| 5 | 400 | 5 | 400 |", "no memory for matrix values"):
         assert part in row
-    assert "| drape_1m | card | ok | 1,048,576 | 7,000,000 | 2 | 10 | 500 | 2 | 400 | 5 |" in text
+    assert "| drape_1m | card | ok | 1,048,576 | 7,000,000 | 2 | 10 | 500 | 2 | 400 | 5 | 50 % |" in text
+    assert "- device_tests: X100: 3 kernels in 9 launches, 9 compared with the host, 0 kernels differ" in text
     assert "- dense_184m: **failed**: no memory for matrix values: 9 GiB" in text
     assert "| `bb::resident::SpmvDot` | 2 | 2 | 1,500 | 50 % |" in text
     assert gpu_report.NEVER not in text
@@ -202,6 +204,15 @@ def test_parts_that_no_group_asks_for_are_left_out(raw, tmp_path):
     done = script(raw, tmp_path, only="tests")
     assert done.returncode == 0, done.stderr
     assert set(json.loads(Path(done.stdout.strip()).read_text())["parts"]) == {"device_tests"} | {f"card_{room}" for room in ("contact", "elements", "linear", "runs", "sums", "system")}
+
+
+def test_a_plain_run_without_the_bits_of_the_host_has_failed(raw, tmp_path, capsys):
+    for device, state in (("cuda", "a"), ("host", "b")):
+        (raw / f"same/plain_sheet.{device}").mkdir(parents=True)
+        run = run_json()
+        run["summary"]["state_hash"] = state
+        (raw / f"same/plain_sheet.{device}/run.json").write_text(json.dumps(run))
+    assert "- plain_sheet: **not the bits of the host**" in page(raw, tmp_path, capsys)
 
 
 @pytest.mark.parametrize("words", ["test", "tests,,scene", ""])

@@ -43,7 +43,7 @@ void TestedExecutor::run(const exec::KernelInfo& kernel, exec::Index n, const vo
         device_->card.launch(kernel, n, f);
         device_->card.synchronize();
       });
-  ++count.launches;
+  ++count.launches, ++count.compared;
   if (!found.empty() && count.differences++ == 0) ADD_FAILURE() << name << ", n = " << n << ": " << found;
 }
 

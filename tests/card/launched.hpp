@@ -7,7 +7,7 @@
 namespace bb::test {
 
 struct Launched {
-  long launches = 0, differences = 0;
+  long launches = 0, compared = 0, differences = 0;
 };
 
 /// By the name of the kernel.

@@ -16,15 +16,15 @@ int main(int argc, char** argv) {
     return BB_SKIPPED;
   }
   const int failed = RUN_ALL_TESTS();
-  long launches = 0;
+  long launches = 0, compared = 0;
   std::size_t differ = 0;
   for (const auto& [name, count] : bb::test::launched_kernels()) {
-    launches += count.launches;
+    launches += count.launches, compared += count.compared;
     if (count.differences == 0) continue;
     ++differ;
     std::printf("%ld of %ld launches differ: %s\n", count.differences, count.launches, name.c_str());
   }
-  std::printf("%s: %zu kernels in %ld launches beside the host, %zu kernels differ\n", probe.card.c_str(),
-              bb::test::launched_kernels().size(), launches, differ);
+  std::printf("%s: %zu kernels in %ld launches, %ld compared with the host, %zu kernels differ\n",
+              probe.card.c_str(), bb::test::launched_kernels().size(), launches, compared, differ);
   return failed != 0 || launches == 0 ? 1 : 0;
 }
