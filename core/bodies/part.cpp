@@ -30,12 +30,7 @@ void require_kernels(std::span<const PartEntry> entries, const Scene& scene, con
   }
   for (const PartEntry& entry : entries) {
     const std::size_t n = entry.part.size(scene);
-    if (n == 0) continue;
-    if (const std::string_view lacks = entry.part.lacks_kernels(scene); !lacks.empty()) {
-      throw ConfigError(where, fmt::format("{} with {}, which has no kernels", entry.part.elements(), lacks),
-                        fmt::format("{} without it", entry.part.elements()));
-    }
-    if (entry.has_kernels) continue;
+    if (n == 0 || entry.has_kernels) continue;
     throw ConfigError(where, fmt::format("{} {}, a part without kernels", n, entry.part.elements()),
                       fmt::format("elements of {}", fmt::join(with_kernels, ", ")));
   }

@@ -73,8 +73,6 @@ class Part {
   virtual std::string_view no_elements() const = 0;
   /// One batch a term of E; none without elements.
   virtual void add_batches(const Scene&, Precision, std::vector<std::unique_ptr<EnergyBatch>>& out) const = 0;
-  /// What of the elements of this scene there are no kernels for, where there are some for others; empty: nothing.
-  virtual std::string_view lacks_kernels(const Scene&) const { return {}; }
   virtual void add_frame_fields(const Scene&, const Positions& /*x*/, FrameFields&) const {}
 
   // --- a single element, as `eval` asks for it

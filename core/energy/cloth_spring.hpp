@@ -1,6 +1,7 @@
 // A spring that resists tension and compression differently, each with a linear part and one that grows exponentially.
 #pragma once
 
+#include "core/energy/creep.hpp"
 #include "core/energy/stiffening.hpp"
 #include "core/energy/terms.hpp"
 
@@ -20,6 +21,16 @@ BB_HD Stiffened<T> spring_profile(T elongation, T rest_length, const SpringLaw<T
   const bool shorter = elongation < T(0);
   return stiffened<T>(elongation, shorter ? law.compression : law.tension,
                       shorter ? law.compression_growing : law.tension_growing, law.exponent / rest_length);
+}
+
+/// How many times its given length (m, already shrunk) a spring rests at after it has crept at x; `ratio` is what it was. Host-device: yes.
+/// @param rest_length  m, before     @param yield, kept  as those of crept()
+template <class T>
+BB_HD T crept_ratio(const Vec<T, 3> (&x)[2], T rest_length, T given, T yield, T kept, T ratio) {
+  const T length = (x[1] - x[0]).norm(), elongation = length / rest_length - 1;
+  const T left = crept(elongation, yield, kept), next = length / (1 + left) / given;
+  const bool is_number = next - next == T(0);
+  return left != elongation && is_number && next > T(0) ? next : ratio;
 }
 
 /// Energy, J. Host-device: yes.

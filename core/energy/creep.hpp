@@ -20,6 +20,9 @@ BB_HD T crept(T deviation, T yield, T kept) {
 }
 
 /// The part of an excess that is left after dt (s) at `rate` (1/s).
-inline double kept_after(double rate, double dt) { return std::exp(-rate * dt); }
+BB_HD inline double kept_after(double rate, double dt) {
+  using std::exp;
+  return exp(-rate * dt);
+}
 
 }  // namespace bb

@@ -42,6 +42,31 @@ BB_HD inline MotionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const Ve
   return out;
 }
 
+/// A law of core/energy/friction_laws with its eps, m.
+template <class Law, class T>
+struct LawWithEps {
+  T eps;
+  BB_HD FrictionProfile<T> operator()(T y) const { return Law::template eval<T>(y, eps); }
+};
+
+/// friction_terms with the length of the slide and its profile. law(y): FrictionProfile<T>. Host-device.
+template <class T, class Law>
+BB_HD inline MotionTerms<T> friction_of_slide(const Vec<T, 3>& slide, const Vec<T, 3>& normal, T strength,
+                                              const Law& law) {
+  const T y = slide.norm();
+  return friction_terms<T>(slide, y, normal, strength, law(y));
+}
+/// Its energy alone, J.
+template <class T, class Law>
+BB_HD inline T friction_value(const Vec<T, 3>& slide, T strength, const Law& law) {
+  return strength * law(slide.norm()).f0;
+}
+/// Work of the force along a slide of length y, J: what is dissipated.
+template <class T, class Law>
+BB_HD inline T friction_work(T y, T strength, const Law& law) {
+  return strength * law(y).f1_over_y * y * y;
+}
+
 /// The same in N points, of whose motions sum w_i dx_i is the relative one: gradient w_i g, blocks w_i w_j H. Host-device.
 template <class T, int N>
 BB_HD inline ElementTerms<T, 3 * N> motion_in_points(const MotionTerms<T>& terms, const Vec<T, N>& weights) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/energy/creep.hpp"
 #include "core/energy/stiffening.hpp"
 #include "core/energy/terms.hpp"
 #include "core/math/psd.hpp"
@@ -124,6 +125,21 @@ template <class T>
 BB_HD T hinge_value(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle) {
   const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
   return stiffness / T(2) * deviation * deviation;
+}
+
+/// The same with a stiffness that grows (stiffening.hpp): `exponential` J at rest, `exponent` 1/rad.
+template <class T>
+BB_HD T hinge_value(const Vec<T, 3> (&x)[4], T stiffness, T exponential, T exponent, T rest_angle) {
+  return stiffened<T>(hinge_deviation<T>(hinge_angle<T>(x), rest_angle), stiffness, exponential, exponent)
+      .energy;
+}
+
+/// The rest angle of a hinge after it has crept at x, rad. Host-device: yes.
+/// @param rest_angle  rad, before     @param yield, kept  as those of crept()
+template <class T>
+BB_HD T crept_rest_angle(const Vec<T, 3> (&x)[4], T rest_angle, T yield, T kept) {
+  const T turned = hinge_deviation<T>(hinge_angle<T>(x), rest_angle), left = crept(turned, yield, kept);
+  return left != turned && left - left == T(0) ? rest_angle + (turned - left) : rest_angle;
 }
 
 /// Terms of a hinge whose energy w(theta) has been taken: `energy` w, `stiffness` w'' > 0 or 0, `deviation` w'/w''. Lanes: yes.

@@ -1,7 +1,6 @@
 // Loops over hinges.
 #include "core/energy/hinge_batch.hpp"
 
-#include "core/energy/creep.hpp"
 #include "core/energy/element_loop.hpp"
 #include "core/energy/hinge.hpp"
 #include "core/math/lanes.hpp"
@@ -118,9 +117,7 @@ void HingeBatch::set_memory(std::span<const double> memory) {
 void HingeBatch::flow(const PositionsView& x, double dt, std::span<double> memory) const {
   for_each_element(rate_.size(), [&](std::size_t e) {
     const Points<4> p(x, vertices_, e);
-    const double turned = hinge_deviation<double>(hinge_angle<double>(p.x), rest_angle_[e]);
-    const double left = crept(turned, yield_[e], kept_after(rate_[e], dt));
-    if (left != turned && std::isfinite(left)) memory[e] += turned - left;
+    memory[e] = crept_rest_angle<double>(p.x, rest_angle_[e], yield_[e], kept_after(rate_[e], dt));
   });
 }
 

@@ -1,11 +1,8 @@
 // Loops over membrane triangles.
 #include "core/energy/membrane_batch.hpp"
 
-#include <cmath>
-
-#include "core/energy/creep.hpp"
 #include "core/energy/element_loop.hpp"
-#include "core/math/svd.hpp"
+#include "core/energy/membrane_rest.hpp"
 #include "core/scene/motion.hpp"
 
 namespace bb {
@@ -105,16 +102,9 @@ void MembraneBatch::set_time(double t) {
 
 /// The rest triangle of e from what was given, the factor of the time and what has crept.
 void MembraneBatch::place(std::size_t e) {
-  TriangleRest<double>& rest = rests_[e];
-  rest = given_[e];
   const int list = shrink_.list.empty() ? -1 : shrink_.list[e];
-  if (list >= 0) {
-    const double factor = factor_[static_cast<std::size_t>(list)];
-    rest.dm_inv /= factor;
-    rest.area *= factor * factor;
-  }
-  if (!plastic_inv_.empty())
-    rest.dm_inv = (rest.dm_inv * Mat<double, 2, 2>::Map(&plastic_inv_[4 * e])).eval();
+  const double factor = list < 0 ? 1 : factor_[static_cast<std::size_t>(list)];
+  rests_[e] = placed_rest<double>(given_[e], factor, plastic_inv_.empty() ? nullptr : &plastic_inv_[4 * e]);
 }
 
 void MembraneBatch::set_memory(std::span<const double> memory) {
@@ -122,20 +112,10 @@ void MembraneBatch::set_memory(std::span<const double> memory) {
   for (std::size_t e = 0; e < given_.size(); ++e) place(e);
 }
 
-// F V diag(crept/sigma) V^T has the singular values that are left.
 void MembraneBatch::flow(const PositionsView& x, double dt, std::span<double> memory) const {
   for_each_element(yield_.size(), [&](std::size_t e) {
     const Points<3> p(x, vertices_, e);
-    const auto svd = svd_3x2<double>(deformation_gradient<3>(rests_[e], p.x));
-    Vec2d factor;
-    for (int k = 0; k < 2; ++k) {
-      const double stretch = svd.sigma[k] - 1, left = crept(stretch, yield_[e], kept_after(rate_[e], dt));
-      factor[k] = left == stretch ? 1 : (1 + left) / svd.sigma[k];
-    }
-    if (factor == Vec2d(1, 1) || !factor.allFinite() || !(factor.minCoeff() > 0)) return;
-    const Mat<double, 2, 2> more = svd.V * factor.asDiagonal() * svd.V.transpose();
-    Eigen::Map<Mat<double, 2, 2>> plastic(&memory[4 * e]);
-    plastic = (plastic * more).eval();
+    creep_plastic<double>(rests_[e], p.x, yield_[e], kept_after(rate_[e], dt), &memory[4 * e]);
   });
 }
 

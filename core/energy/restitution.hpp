@@ -1,8 +1,11 @@
-// Restitution: how much a contact has to damp so that two bodies part with a given share of the speed at which they met.
+// Restitution: how much a contact has to damp so that two bodies part with a given share of the speed at which they met, and the
+// damping itself.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+
+#include "core/energy/friction.hpp"
 
 namespace bb {
 
@@ -21,6 +24,21 @@ inline double restitution_damping(double e) {
     (excess(middle) > 0 ? low : high) = middle;
   }
   return low;
+}
+
+/// k/2 (n . motion)^2 of a relative motion (m): k = load a/h, N/m, n unit. Convex. Host-device. Total.
+template <class T>
+BB_HD inline MotionTerms<T> damping_terms(const Vec<T, 3>& motion, const Vec<T, 3>& n, T k) {
+  const T way = motion.dot(n);
+  MotionTerms<T> terms{k / T(2) * way * way, k * way * n, k * n * n.transpose()};
+  mirror_lower<T, 3>(terms.hess);
+  return terms;
+}
+/// Its energy alone, J.
+template <class T>
+BB_HD inline T damping_value(const Vec<T, 3>& motion, const Vec<T, 3>& n, T k) {
+  const T way = motion.dot(n);
+  return k / T(2) * way * way;
 }
 
 }  // namespace bb

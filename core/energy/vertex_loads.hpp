@@ -1,4 +1,4 @@
-// Energies that belong to single vertices: inertia and the work of a given force.
+// Energies that belong to single vertices: inertia, the work of a given force, and what pulls a vertex to a place.
 #pragma once
 
 #include <cmath>
@@ -46,6 +46,23 @@ BB_HD ValueChange<T> work_change(const Vec<T, 3>& force, const Vec<T, 3>& step) 
   using std::abs;
   const T work = force.dot(step);
   return {-work, abs(work)};
+}
+
+// Of 1/2 off^T K off: off from a place (m), K symmetric without negative eigenvalues (N/m).
+
+/// J.
+template <class T>
+BB_HD T quadratic_value(const Mat<T, 3, 3>& k, const Vec<T, 3>& off) {
+  const Vec<T, 3> force = k * off;
+  return T(0.5) * off.dot(force);
+}
+
+/// Its change from `from` to `to`, step = to - from: a square of differences, not a difference of squares.
+template <class T>
+BB_HD ValueChange<T> quadratic_change(const Mat<T, 3, 3>& k, const Vec<T, 3>& from, const Vec<T, 3>& to,
+                                      const Vec<T, 3>& step) {
+  const Vec<T, 3> sum = from + to, along = k * sum, k_from = k * from, k_to = k * to;
+  return {T(0.5) * step.dot(along), T(0.5) * (from.dot(k_from) + to.dot(k_to))};
 }
 
 }  // namespace bb

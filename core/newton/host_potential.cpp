@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "core/archive/archive.hpp"
-#include "core/contact/kappa_memory.hpp"
 #include "core/newton/element_name.hpp"
 #include "core/solvers/linear_solvers.hpp"
+#include "core/terms/known_step.hpp"
 
 namespace bb {
 
@@ -91,7 +91,7 @@ void HostPotential::drop_caches() {
   blocks_->set_contacts({});
 }
 
-void HostPotential::adopt(const KnownStiffness& known) {
+void HostPotential::adopt(const KnownStep& known) {
   for (const auto& term : terms_) term->adopt(known);
 }
 
@@ -186,6 +186,6 @@ void HostPotential::report_overload(const Column& x, const Column& g, const Colu
 
 std::string HostPotential::describe_non_finite() { return broken_element_name(scene_, terms_); }
 
-KnownStiffness HostPotential::known_stiffness() const { return {}; }
+KnownStep HostPotential::known_step() const { return {}; }
 
 }  // namespace bb

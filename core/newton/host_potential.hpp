@@ -36,8 +36,8 @@ class HostPotential final : public IncrementalPotential {
   void keep(Archive& archive) override;
   void keep_solver(Archive& archive) override;
   void drop_caches() override;
-  /// The step that has begun is that of another potential: stiffness that is frozen there is known here.
-  void adopt(const KnownStiffness& known);
+  /// The step that has begun is that of another potential: what is frozen there is known here.
+  void adopt(const KnownStep& known);
   void adopt(const HostPotential& other);
 
   void linearise(const Column& x, Column& g) override;
@@ -64,7 +64,7 @@ class HostPotential final : public IncrementalPotential {
   void report(const Column& x, IterateNumbers& out) override;
   void report_end(const Column& x, StepNumbers& out) override;
   std::string describe_non_finite() override;
-  KnownStiffness known_stiffness() const override;
+  KnownStep known_step() const override;
   /// How many times the largest force of a bounded barrier the loads of a step without progress are. dx: the Newton
   /// direction at x, or 0.
   void report_overload(const Column& x, const Column& g, const Column& dx, StepNumbers& out);

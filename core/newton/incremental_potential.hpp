@@ -17,7 +17,7 @@ namespace bb {
 
 class Archive;
 class Diagnosis;
-struct KnownStiffness;
+struct KnownStep;
 
 using Column = exec::Buffer<double>;
 
@@ -99,8 +99,8 @@ class IncrementalPotential {
   virtual void report_end(const Column& x, StepNumbers& out) = 0;
   /// The first element with a number that is not finite; empty without one.
   virtual std::string describe_non_finite() = 0;
-  /// Stiffness of pairs that is frozen for the step, for the copy on the host.
-  virtual KnownStiffness known_stiffness() const = 0;
+  /// What is frozen for the step, for the copy on the host.
+  virtual KnownStep known_step() const = 0;
 
  protected:
   PhaseClock& clock() const { return clock_; }

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "core/archive/archive.hpp"
-#include "core/contact/kappa_memory.hpp"
 #include "core/newton/host_potential.hpp"
+#include "core/terms/known_step.hpp"
 
 namespace bb {
 namespace {
@@ -171,7 +171,7 @@ NewtonSystem& NewtonSystem::on_host() {
   Archive again(memory.bytes());
   host_->keep(again);
   host_->begin_step(copy_of(state_.x_n), {c_, copy_of(state_.x_tilde), t_end_}, dt_, load_factor_);
-  dynamic_cast<HostPotential&>(host_->potential()).adopt(state_.potential->known_stiffness());
+  dynamic_cast<HostPotential&>(host_->potential()).adopt(state_.potential->known_step());
   host_->mirror(target_, state_.level, view_.x());
   host_->set_direction(copy_of(state_.dx));
   return *host_;

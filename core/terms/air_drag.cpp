@@ -1,15 +1,14 @@
 // Drag of the air on triangles: every corner of a triangle of area A bears -A/3 (c_n u_n + c_t u_t), u_n and u_t the parts of its
 // velocity relative to the wind along and across the triangle's normal. Areas and normals are those of the start of the step,
 // the velocity is (x - x_n)/h: the term is 1/(2 h) u^T C u with u = x - x_n - h wind, and convex.
-#include <Eigen/Geometry>
+#include "core/terms/air_drag.hpp"
 
+#include "core/energy/air_drag.hpp"
 #include "core/terms/registry.hpp"
 #include "core/terms/vertex_quadratic.hpp"
 
 namespace bb {
-namespace {
 
-/// Corners with mass of the triangles of the surface, ascending.
 std::vector<int> corners_in_air(const Scene& scene) {
   std::vector<std::uint8_t> met(scene.mass.size(), 0);
   for (const auto& t : scene.surface_triangles) {
@@ -21,6 +20,12 @@ std::vector<int> corners_in_air(const Scene& scene) {
   }
   return out;
 }
+
+Vec3d wind_at(const Air& air, double t) {
+  return air.wind_keys.empty() ? air.wind : value_at(air.wind_keys, t);
+}
+
+namespace {
 
 class AirDrag final : public VertexQuadratic {
  public:
@@ -42,8 +47,7 @@ class AirDrag final : public VertexQuadratic {
     change_frame(frame);
   }
   void change_frame(const StepFrame& frame) override {
-    const Air& air = scene_.air;
-    const Vec3d wind = air.wind_keys.empty() ? air.wind : value_at(air.wind_keys, frame.t_end);
+    const Vec3d wind = wind_at(scene_.air, frame.t_end);
     for (std::size_t e = 0; e < n_elements(); ++e) {
       set(e, x_n_.col(vertex(e)) + frame.dt * wind, coefficient_[e] / frame.dt);
     }
@@ -51,15 +55,8 @@ class AirDrag final : public VertexQuadratic {
 
  private:
   void add_triangle(const std::array<int, 3>& t) {
-    const Vec3d a = x_n_.col(t[0]), b = x_n_.col(t[1]), c = x_n_.col(t[2]);
-    const Vec3d twice = (b - a).cross(c - a);
-    const double length = twice.norm();
-    if (!(length > 0)) return;
-    const Vec3d n = twice / length;
-    const Air& air = scene_.air;
-    const Mat3d part =
-        length / 6 *
-        (air.tangential * Mat3d::Identity() + (air.normal - air.tangential) * (n * n.transpose()));
+    const Vec3d x[3] = {x_n_.col(t[0]), x_n_.col(t[1]), x_n_.col(t[2])};
+    const Mat3d part = drag_of_corner<double>(x, scene_.air.normal, scene_.air.tangential);
     for (const int v : t) {
       const int e = element_[static_cast<std::size_t>(v)];
       if (e >= 0) coefficient_[static_cast<std::size_t>(e)] += part;

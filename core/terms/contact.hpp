@@ -11,6 +11,7 @@
 #include "core/contact/contact_system.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/terms/contact_constraints.hpp"
+#include "core/terms/known_step.hpp"
 #include "core/terms/policy_start.hpp"
 #include "core/terms/stiffness_update.hpp"
 #include "core/terms/term.hpp"
@@ -54,12 +55,9 @@ class ContactTerm final : public Term {
   void change_frame(const StepFrame& frame) override;
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
   void end_step(const PositionsView& x, PhaseClock& clock) override;
-  void adopt(const KnownStiffness& known) override {
-    stiffness_.adopt(known);
-    policy_start_.set_started(true);  // or not yet: that is for the other system to do
-  }
+  void adopt(const KnownStep& known) override { adopt_stiffness(known.stiffness); }
   void adopt_from(const Term& other) override {
-    adopt(static_cast<const ContactTerm&>(other).stiffness_.known());
+    adopt_stiffness(static_cast<const ContactTerm&>(other).stiffness_.known());
   }
   void keep(Archive& archive) override;
   void linearise(const PositionsView& x, const TermContext& context) override;
@@ -89,6 +87,10 @@ class ContactTerm final : public Term {
   StiffnessUpdate& stiffness() { return stiffness_; }
 
  private:
+  void adopt_stiffness(const KnownStiffness& known) {
+    stiffness_.adopt(known);
+    policy_start_.set_started(true);  // or not yet: that is for the other system to do
+  }
   void use_state();
   void fill_shape(ContactState& state);
   void evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,

@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/contact/combine_rule.hpp"
 #include "core/contact/contact_loads.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {
-
-inline double combined(CombineRule rule, double a, double b) {
-  if (rule == CombineRule::mean) return (a + b) / 2;
-  return rule == CombineRule::min ? std::min(a, b) : std::max(a, b);
-}
 
 /// Of contact r: its sides are the body of its first vertex, and its obstacle or the body of its last vertex.
 /// @param of  of(const Body&) and of(const Obstacle&), the coefficient of a side

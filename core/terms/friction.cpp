@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/contact/obstacle_arm.hpp"
 #include "core/energy/friction_law.hpp"
 #include "core/terms/contact_sides.hpp"
 #include "core/terms/lagged_contacts.hpp"
@@ -50,16 +51,15 @@ class Friction final : public LaggedContacts {
     for_each_pass(precision(), [&]<class T>(PassParts parts) {
       const Law<T> law = this->law<T>();
       store_motion_terms<T>(parts, [&](std::size_t e) {
-        const Vec<T, 3> along = slide<T>(e, x);
-        const T y = along.norm();
-        return friction_terms<T>(along, y, normal<T>(e), static_cast<T>(strength(e)), law(y));
+        return friction_of_slide<T>(slide<T>(e, x), normal<T>(e), static_cast<T>(strength(e)), law);
       });
     });
   }
   void evaluate(const PositionsView& x) override {
     with_value_scalar(precision(), [&]<class T>() {
       const Law<T> law = this->law<T>();
-      store_trial([&](std::size_t e) { return static_cast<T>(strength(e)) * law(slide<T>(e, x).norm()).f0; });
+      store_trial(
+          [&](std::size_t e) { return friction_value<T>(slide<T>(e, x), static_cast<T>(strength(e)), law); });
     });
   }
 
@@ -70,7 +70,7 @@ class Friction final : public LaggedContacts {
     for (std::size_t e = 0; e < size(); ++e) {
       if (!(strength(e) > 0)) continue;
       const double y = slide<double>(e, x).norm();
-      work += strength(e) * law(y).f1_over_y * y * y;
+      work += friction_work(y, strength(e), law);
       ++(y < eps_ ? out.friction_sticking : out.friction_sliding);
     }
     out.friction_dissipation_J = work;
@@ -108,9 +108,8 @@ class Friction final : public LaggedContacts {
       if (obstacle < 0) continue;
       const Obstacle& o = scene().obstacles[static_cast<std::size_t>(obstacle)];
       if (o.motion.most_turning() == 0) continue;
-      const Vec3d arm = arm_of(contact(e), o);
-      const Vec3d unturned = o.motion.turn(t_lag_).transpose() * arm;
-      spin_[e] = o.motion.turn(t_end_) * unturned - o.motion.turn(t_end_ - dt_) * unturned;
+      spin_[e] = way_of_turn<double>(arm_of(contact(e), o), o.motion.turn(t_lag_),
+                                     o.motion.turn(t_end_ - dt_), o.motion.turn(t_end_));
     }
   }
   /// From the point of an obstacle that moves to its surface at a contact, m.
@@ -119,10 +118,12 @@ class Friction final : public LaggedContacts {
     for (std::size_t k = 4 * r; k < 4 * r + 4 && contacts().stencil[k] >= 0; ++k) {
       arm += contacts().weight[k] * lagged().col(contacts().stencil[k]);
     }
-    if (o.kind == ObstacleKind::plane) return arm - o.axis.dot(arm) * o.axis;
-    const Vec3d along =
-        o.kind == ObstacleKind::cylinder ? Vec3d(o.axis.dot(arm) * o.axis) : Vec3d(Vec3d::Zero());
-    return along + o.radius * (arm - along).normalized();
+    return arm_to_surface<double>(analytic_surface<double>(o), arm);
+  }
+
+  void lag_is_adopted(double t) override {
+    t_lag_ = t;
+    find_spins();
   }
 
   double coefficient(std::size_t r) const override {

@@ -10,6 +10,17 @@ LaggedContacts::LaggedContacts(const Scene& scene, Precision precision, const Te
   families_.resize(1);
 }
 
+void LaggedContacts::adopt(const KnownStep& known) {
+  for (const KnownLag& lag : known.lags) {
+    if (lag.term != name()) continue;
+    lagged_ = lag.lagged;
+    make_elements(lag.contacts);
+    for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = lag.strength[row_[e]];
+    loads_known_ = true;
+    lag_is_adopted(lag.t);
+  }
+}
+
 void LaggedContacts::adopt_from(const Term& other) {
   const auto& same = static_cast<const LaggedContacts&>(other);
   lagged_ = same.lagged_;

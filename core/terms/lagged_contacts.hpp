@@ -7,6 +7,7 @@
 #include "core/contact/contact_loads.hpp"
 #include "core/energy/element_loop.hpp"
 #include "core/energy/friction.hpp"
+#include "core/terms/known_step.hpp"
 #include "core/terms/term.hpp"
 
 namespace bb {
@@ -18,6 +19,7 @@ class LaggedContacts : public Term {
   TermGroup group() const final { return TermGroup::friction; }
   Phase phase() const final { return Phase::contact_terms; }
   bool fixed_stencils() const final { return false; }
+  void adopt(const KnownStep& known) final;
   void adopt_from(const Term& other) override;
   void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const final;
 
@@ -29,6 +31,9 @@ class LaggedContacts : public Term {
   virtual double coefficient(std::size_t r) const = 0;
   /// strength is the coefficient times the load of each element now.
   virtual void loads_are_known(std::vector<double>& /*strength*/) {}
+
+  /// The rows are those of another system's step, taken from its state at the time t (s).
+  virtual void lag_is_adopted(double /*t*/) {}
 
   /// The step begins at x_n: motions are counted from there.
   void begin_at(const Positions& x_n) { x_n_ = x_n; }

@@ -1,11 +1,12 @@
 // Soft pins: k/2 |x - p(t)|^2, p where the motion of a pin takes its vertex by the end of the step, k its stiffness then.
+#include "core/terms/pull.hpp"
+
 #include <fmt/format.h>
 
 #include "core/terms/registry.hpp"
 #include "core/terms/vertex_quadratic.hpp"
 
 namespace bb {
-namespace {
 
 std::vector<int> pulled_vertices(const Scene& scene) {
   std::vector<int> out;
@@ -13,12 +14,28 @@ std::vector<int> pulled_vertices(const Scene& scene) {
   return out;
 }
 
+namespace {
+
 /// Of the stiffness in a step. One whose middle is not within the span has none, whatever its ends are rounded to.
-double factor_of(const Pull& pull, const StepFrame& frame) {
-  const double middle = frame.t_end - frame.dt / 2;
+double factor_of(const Pull& pull, double t_end, double dt) {
+  const double middle = t_end - dt / 2;
   if (!(middle > pull.span.hold && middle < pull.span.release)) return 0;
-  return pull.factors.empty() ? 1 : value_at(pull.factors, frame.t_end);
+  return pull.factors.empty() ? 1 : value_at(pull.factors, t_end);
 }
+
+}  // namespace
+
+std::vector<PulledTo> pulls_of_step(const Scene& scene, double t_end, double dt) {
+  std::vector<PulledTo> out;
+  for (const Pull& pull : scene.pulls) {
+    const RigidMotion& motion = scene.motions[static_cast<std::size_t>(pull.motion)];
+    const double stiffness = pull.stiffness * factor_of(pull, t_end, dt);
+    for (const int v : pull.vertices) out.push_back({motion(scene.x0.col(v), t_end), stiffness});
+  }
+  return out;
+}
+
+namespace {
 
 class PullTerm final : public VertexQuadratic {
  public:
@@ -27,11 +44,8 @@ class PullTerm final : public VertexQuadratic {
 
   void change_frame(const StepFrame& frame) override {
     std::size_t e = 0;
-    for (const Pull& pull : scene_.pulls) {
-      const RigidMotion& motion = scene_.motions[static_cast<std::size_t>(pull.motion)];
-      const double factor = factor_of(pull, frame);
-      const Mat3d stiffness = pull.stiffness * factor * Mat3d::Identity();
-      for (const int v : pull.vertices) set(e++, motion(scene_.x0.col(v), frame.t_end), stiffness);
+    for (const PulledTo& to : pulls_of_step(scene_, frame.t_end, frame.dt)) {
+      set(e++, to.place, to.stiffness * Mat3d::Identity());
     }
   }
 

@@ -5,21 +5,13 @@
 #include <algorithm>
 
 #include "core/archive/archive.hpp"
-#include "core/energy/restitution.hpp"
+#include "core/terms/contact_damping.hpp"
 #include "core/terms/contact_sides.hpp"
 #include "core/terms/lagged_contacts.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
 namespace {
-
-constexpr double least_speed = 1e-2;  // m/s; pairs that meet slower are damped as those that meet with it
-
-/// What a side asks for, in units of 1 over the speed at which a pair met.
-template <class Side>
-double damping_of(const Side& side) {
-  return restitution_damping(side.restitution.value_or(1));
-}
 
 /// A pair that is in contact, and the speed at which it met.
 struct Met {
@@ -63,19 +55,14 @@ class Restitution final : public LaggedContacts {
     learn_loads();
     for_each_pass(precision(), [&]<class T>(PassParts parts) {
       store_motion_terms<T>(parts, [&](std::size_t e) {
-        const Vec<T, 3> n = normal<T>(e);
-        const T k = static_cast<T>(stiffness(e)), way = motion<T>(e, x).dot(n);
-        MotionTerms<T> terms{k / T(2) * way * way, k * way * n, k * n * n.transpose()};
-        mirror_lower<T, 3>(terms.hess);
-        return terms;
+        return damping_terms<T>(motion<T>(e, x), normal<T>(e), static_cast<T>(stiffness(e)));
       });
     });
   }
   void evaluate(const PositionsView& x) override {
     with_value_scalar(precision(), [&]<class T>() {
       store_trial([&](std::size_t e) {
-        const T way = motion<T>(e, x).dot(normal<T>(e));
-        return static_cast<T>(stiffness(e)) / T(2) * way * way;
+        return damping_value<T>(motion<T>(e, x), normal<T>(e), static_cast<T>(stiffness(e)));
       });
     });
   }
@@ -131,7 +118,7 @@ class Restitution final : public LaggedContacts {
   double speed_at_meeting(PairId pair) const {
     const auto met = std::lower_bound(met_.begin(), met_.end(), pair,
                                       [](const Met& a, PairId wanted) { return a.pair < wanted; });
-    return std::max(met->speed, least_speed);
+    return std::max(met->speed, least_meeting_speed);
   }
   /// At the start of the step, m/s.
   double closing_speed(std::size_t r) const {

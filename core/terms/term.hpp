@@ -22,7 +22,7 @@ namespace bb {
 
 class Archive;
 struct ContactLoads;
-struct KnownStiffness;
+struct KnownStep;
 
 /// One time step, the same for all terms.
 struct StepFrame {
@@ -105,8 +105,8 @@ class Term {
   virtual void begin_step(const StepFrame& frame, PhaseClock&) { change_frame(frame); }
   /// The same step and iterate with another prediction and length.
   virtual void change_frame(const StepFrame&) {}
-  /// The stiffness that pairs of contact have in this step in another system, whose state is looked at.
-  virtual void adopt(const KnownStiffness&) {}
+  /// What this step has frozen in another system, whose state is looked at.
+  virtual void adopt(const KnownStep&) {}
   /// The same of that system's own term, which is of the same class.
   virtual void adopt_from(const Term&) {}
   /// The step has converged at the iterate x: what was taken from its start is taken from there, and the step goes on, if true.

@@ -7,14 +7,12 @@
 
 #include "core/barrier/shape.hpp"
 #include "core/barrier/stiffness_policy.hpp"
+#include "core/contact/combine_rule.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/math/precision.hpp"
 
 namespace bb {
-
-/// How the coefficients of two sides make that of their contact.
-enum class CombineRule { min, max, mean };
 
 struct FrictionOptions {
   std::string law = "smoothed_coulomb";  // of core/energy/friction_laws/registry.inc

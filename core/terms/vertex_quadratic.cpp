@@ -1,5 +1,6 @@
 #include "core/terms/vertex_quadratic.hpp"
 
+#include "core/energy/vertex_loads.hpp"
 #include "core/math/parallel.hpp"
 
 namespace bb {
@@ -20,9 +21,9 @@ void VertexQuadratic::set(std::size_t e, const Vec3d& place, const Mat3d& matrix
 void VertexQuadratic::linearise(const PositionsView& x, const TermContext&) {
   LocalTerms& local = families_[0].local;
   parallel_items(n_elements(), block_items, [&](std::size_t e) {
-    const Vec3d from = off(x, e), force = matrix(e) * from;
-    local.energy[e] = 0.5 * from.dot(force);
-    Vec3d::Map(&local.grad[3 * e]) = force;
+    const Vec3d from = off(x, e);
+    local.energy[e] = quadratic_value<double>(matrix(e), from);
+    Vec3d::Map(&local.grad[3 * e]) = matrix(e) * from;
   });
 }
 
@@ -30,7 +31,7 @@ void VertexQuadratic::evaluate(const PositionsView& x) {
   std::vector<double>& energy = families_[0].trial_energy;
   parallel_items(n_elements(), block_items, [&](std::size_t e) {
     const Vec3d from = off(x, e);
-    energy[e] = 0.5 * from.dot(matrix(e) * from);
+    energy[e] = quadratic_value<double>(matrix(e), from);
   });
 }
 
@@ -39,8 +40,8 @@ void VertexQuadratic::change(const PositionsView& x0, const PositionsView& x1, E
   out.resize(begin + n_elements());
   parallel_items(n_elements(), block_items, [&](std::size_t e) {
     const Vec3d from = off(x0, e), to = off(x1, e), step = x1.col(vertices_[e]) - x0.col(vertices_[e]);
-    const double change = 0.5 * step.dot(matrix(e) * (from + to));
-    out[begin + e] = {change, 0.5 * (from.dot(matrix(e) * from) + to.dot(matrix(e) * to))};
+    const auto part = quadratic_change<double>(matrix(e), from, to, step);
+    out[begin + e] = {part.change, part.magnitude};
   });
 }
 

@@ -34,34 +34,6 @@ void refuse_restitution(const RunConfig& config, const std::string& allowed, con
   }
 }
 
-/// Terms that no executor has.
-void refuse_driven(const SceneConfig& scene, const std::string& on, const Complain& complain) {
-  const std::string here = on + ": it runs with device cpu only";
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const BodySpec& body = scene.bodies[i].spec;
-    for (std::size_t p = 0; p < body.pins.size(); ++p) {
-      const HoldSpan& span = body.pins[p].span;
-      if (!body.pins[p].pull && !span.always()) {
-        complain(fmt::format("/scene/bodies/{}/pins/{}/{}", i, p, span.hold > 0 ? "hold_s" : "release_s"),
-                 "vertices that are prescribed for a time", "for the whole run " + here);
-      }
-      if (!body.pins[p].pull) continue;
-      complain(fmt::format("/scene/bodies/{}/pins/{}/pull_N_per_m", i, p),
-               fmt::format("{}", *body.pins[p].pull), "no pull " + here);
-    }
-    if (body.pressure != 0) {
-      complain(fmt::format("/scene/bodies/{}/pressure_Pa", i), fmt::format("{}", body.pressure), "0 " + here);
-    }
-    if (!body.pressure_keys.empty()) {
-      complain(fmt::format("/scene/bodies/{}/pressure_schedule", i), "a pressure", "none " + here);
-    }
-  }
-  if (scene.air.normal > 0 || scene.air.tangential > 0) {
-    complain("/scene/air", "drag of the air", "no drag " + here);
-  }
-  if (!scene.stitches.empty()) complain("/scene/stitches", "stitches", "none " + here);
-}
-
 /// Kernels pair all bodies.
 void refuse_collisions(const SceneConfig& scene, const std::string& on, const Complain& complain) {
   const std::string here = on + ": its kernels collide all pairs as ccd";
@@ -81,18 +53,7 @@ void refuse_collisions(const SceneConfig& scene, const std::string& on, const Co
 void check_device(const RunConfig& config, const Complain& complain) {
   if (config.device == Device::cpu) return;
   const std::string on = fmt::format("with device {}", word_of(config.device));
-  refuse_friction(config, "0 " + on + ": friction runs with device cpu only", complain);
-  refuse_restitution(config, "1 " + on + ": it is damped with device cpu only", complain);
-  for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
-    if (config.scene.obstacles[i].motion.is_static()) continue;
-    complain(fmt::format("/scene/obstacles/{}/motion", i), "an obstacle that moves",
-             "no motion " + on + ": its kernels know obstacles that stand still");
-  }
-  refuse_driven(config.scene, on, complain);
   refuse_collisions(config.scene, on, complain);
-  if (!config.scene.gravity_keys.empty()) {
-    complain("/scene/gravity_schedule", "gravity over time", "gravity_m_per_s2 " + on);
-  }
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
   }

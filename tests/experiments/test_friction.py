@@ -107,12 +107,6 @@ def test_what_has_no_meaning_is_refused(program, tmp_path, setting, said):
     refused(bench(program, "run", SLOPE, "--out", tmp_path, "--set", setting), said)
 
 
-@pytest.mark.parametrize("setting", ["/friction/mu", "/scene/bodies/0/friction", "/scene/obstacles/0/friction"])
-def test_a_device_refuses_friction_by_the_name_of_the_setting(program, tmp_path, setting):
-    words = ["--set", "/device=host", "--set", "/linear_solver/name=pcg_resident", "--set", "/friction/mu=0", "--set", f"{setting}=0.3"]
-    refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), setting, "friction runs with device cpu only")
-
-
 def test_a_published_method_refuses_friction_that_its_file_does_not_set(program, tmp_path):
     words = ["--set", "/method=ando2024", "--set", "/friction/mu=0.3"]
     refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), "/friction/mu", "0 with method ando2024")

@@ -109,7 +109,9 @@ struct CpuElements {
   static Plan plan_without_contact(const Scene& scene, const TermOptions& options) {
     Plan plan = make_plan(scene, options, {});
     for (std::size_t i = 0; i < plan.terms.size(); ++i) {
-      if (term_entries()[i].name == "contact") plan.terms[i].needed = false;
+      for (const char* name : {"contact", "friction", "restitution"}) {
+        if (term_entries()[i].name == name) plan.terms[i].needed = false;
+      }
     }
     return plan;
   }
@@ -147,10 +149,16 @@ struct CpuElements {
         if ((group == TermGroup::elastic) != elastic_ones || !set.has(group)) continue;
         const TermFamily& family = terms[i].families()[0];
         if (family.local.hess.empty()) continue;
-        const bool convex = group == TermGroup::load;
-        blocks.add_elements(i, convex ? family.local.hess : hessian_at(family, choice, level, force, buffer));
+        blocks.add_elements(i, is_convex(terms[i].name()) ? family.local.hess
+                                                          : hessian_at(family, choice, level, force, buffer));
       }
     }
+  }
+  static bool is_convex(std::string_view name) {
+    for (const TermEntry& entry : term_entries()) {
+      if (entry.name == name) return entry.convex;
+    }
+    return false;
   }
   /// 3x3 block of the values summed last.
   Mat3d block(int row, int column) const {

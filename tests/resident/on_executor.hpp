@@ -57,6 +57,9 @@ struct OnExecutor {
     };
     make("inertia", resident::make_resident_inertia);
     make("external_force", resident::make_resident_external_force);
+    make("pull", resident::make_resident_pull);
+    make("air_drag", resident::make_resident_air_drag);
+    make("inflation", resident::make_resident_inflation);
 #define BB_MAKE_kernels(name) make(#name, resident::make_resident_##name);
 #define BB_MAKE_host_only(name)
 #define PART(name, doc, convex, where, ...) BB_MAKE_##where(name)
@@ -64,10 +67,11 @@ struct OnExecutor {
 #undef PART
 #undef BB_MAKE_kernels
 #undef BB_MAKE_host_only
+    make("stitch", resident::make_resident_stitch);
     make("strain_limit", resident::make_resident_strain_limit);
   }
   resident::ResidentFrame resident_frame(const StepFrame& frame) const {
-    return {&x_n, &x_tilde, frame.dt, frame.c, frame.load_factor};
+    return {&x_n, &x_tilde, frame.dt, frame.c, frame.load_factor, frame.t_end};
   }
   /// H, kappa of the limit, gradient and energies at x. Returns how far kappa of the limit has moved; 0 without one.
   double linearise(const Positions& at) {

@@ -155,8 +155,10 @@ struct RunEnd {
   std::vector<double> dt_s;
   std::size_t contacts = 0;  // at the ends of all steps
   double kappa_min = 0, kappa_max = 0,
-         limit_load_max = 0;  // N/m, of the last step that has one; of all steps
-  double kappa_start = 0;     // N/m, of a policy that starts itself
+         limit_load_max = 0;                  // N/m, of the last step that has one; of all steps
+  double kappa_start = 0;                     // N/m, of a policy that starts itself
+  int sticking = 0, sliding = 0;              // contacts with friction, of all steps
+  double friction_work = 0, bounce_work = 0;  // J, of all steps
 };
 
 /// Goes on for so many steps, parts of steps counted.
@@ -172,6 +174,9 @@ inline RunEnd run_steps(Simulation& simulation, int steps) {
     end.contacts += report.contacts.total();
     if (report.kappa_min_N_per_m.finite()) end.kappa_min = report.kappa_min_N_per_m.value;
     if (report.kappa_max_N_per_m.finite()) end.kappa_max = report.kappa_max_N_per_m.value;
+    end.sticking += report.friction_sticking, end.sliding += report.friction_sliding;
+    if (report.friction_dissipation_J.finite()) end.friction_work += report.friction_dissipation_J.value;
+    if (report.restitution_dissipation_J.finite()) end.bounce_work += report.restitution_dissipation_J.value;
     if (report.limit_load_max_N_per_m.finite())
       end.limit_load_max = std::max(end.limit_load_max, report.limit_load_max_N_per_m.value);
   }
@@ -197,6 +202,10 @@ inline void expect_same_end(const RunEnd& resident, const RunEnd& cpu, double to
   EXPECT_GT(cpu.contacts, 0u);
   EXPECT_EQ(resident.contacts, cpu.contacts);
   EXPECT_LT((resident.x - cpu.x).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_EQ(resident.sticking, cpu.sticking);
+  EXPECT_EQ(resident.sliding, cpu.sliding);
+  EXPECT_NEAR(resident.friction_work, cpu.friction_work, 1e-5 * cpu.friction_work);
+  EXPECT_NEAR(resident.bounce_work, cpu.bounce_work, 1e-5 * cpu.bounce_work);
   EXPECT_NEAR(resident.kappa_min, cpu.kappa_min, 1e-6 * cpu.kappa_min);
   EXPECT_NEAR(resident.kappa_max, cpu.kappa_max, 1e-6 * cpu.kappa_max);
   EXPECT_NEAR(resident.kappa_start, cpu.kappa_start, 1e-6 * cpu.kappa_start);

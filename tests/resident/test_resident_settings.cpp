@@ -183,19 +183,6 @@ Scene rod_and_blocks() {
 
 TEST(ResidentSettings, RodsAndSolids) { expect_same_run(rod_and_blocks(), cubic, 8, tolerance); }
 
-TEST(ResidentSettings, FrictionHasNoKernels) {
-  Method method = cubic();
-  method.friction.mu = 0.3;
-  test::run_resident(method);
-  const Scene scene = test::cloth_on_plate();
-  try {
-    const Simulation simulation(scene, method, 0.01, 1);
-    FAIL() << "not refused";
-  } catch (const ConfigError& error) {
-    EXPECT_EQ(error.violations()[0].where, "/device");
-  }
-}
-
 TEST(ResidentSettings, OtherPrecisionsHaveNoKernels) {
   Method method = cubic();
   method.precision = Precision::mixed;

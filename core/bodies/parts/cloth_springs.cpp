@@ -53,10 +53,8 @@ class ClothSpringBatch final : public EnergyBatch {
   void flow(const PositionsView& x, double dt, std::span<double> memory) const override {
     for_each_element(size(), [&](std::size_t e) {
       const Points<2> p(x, vertices_, e);
-      const double length = (p.x[1] - p.x[0]).norm(), elongation = length / rest_length(e) - 1;
-      const double left = crept(elongation, part_.yield[e], kept_after(part_.creep[e], dt));
-      const double ratio = length / (1 + left) / (shrink(e) * part_.rest_length[e]);
-      if (left != elongation && std::isfinite(ratio) && ratio > 0) memory[e] = ratio;
+      memory[e] = crept_ratio<double>(p.x, rest_length(e), shrink(e) * part_.rest_length[e], part_.yield[e],
+                                      kept_after(part_.creep[e], dt), memory[e]);
     });
   }
 

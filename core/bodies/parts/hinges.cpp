@@ -82,10 +82,6 @@ class Hinges final : public Part {
     if (any_positive(part.creep)) batch->set_creep(part.yield, part.creep);
     out.push_back(std::move(batch));
   }
-  std::string_view lacks_kernels(const Scene& scene) const override {
-    if (any_positive(scene.hinges.exponential)) return "an exponential part";
-    return any_positive(scene.hinges.creep) ? "creep" : "";
-  }
 
   std::vector<std::string> element_names() const override { return {"hinge"}; }
   /// The rest angle is a field of its own, so `rest` may be left out.

@@ -297,13 +297,6 @@ class Membrane final : public Part {
       out.push_back(std::move(batch));
     }
   }
-  std::string_view lacks_kernels(const Scene& scene) const override {
-    const bool creeps = std::any_of(scene.membranes.begin(), scene.membranes.end(),
-                                    [](const MembranePart& part) { return !part.creep.empty(); });
-    const bool shrinks = std::any_of(scene.membranes.begin(), scene.membranes.end(),
-                                     [](const MembranePart& part) { return !part.shrink_keys.list.empty(); });
-    return creeps ? "creep" : shrinks ? "shrinking over time" : "";
-  }
   void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {
     out.of_triangles.push_back({"stretch", stretches(scene, x)});
   }

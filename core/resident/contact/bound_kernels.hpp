@@ -159,19 +159,19 @@ template <int N>
 BB_HD double obstacle_time(const BoundQuery& q, Index i, Index o, double enough, QueryCounts& counts) {
   const PrimitiveView<N>& of = q.surface.primitives<N>();
   const int* const vertex = of.vertex + N * i;
-  const AnalyticSurface<double> obstacle = q.surface.obstacles[o].surface();
+  const AnalyticSurface<double> obstacle = q.surface.obstacles[o].surface(q.x0),
+                                end = q.surface.obstacles[o].surface(q.x1);
   const Mat<double, 3, N> from = points_of<N>(q.x0, vertex), to = points_of<N>(q.x1, vertex);
   const double offset = of.offset[i], park = q.park * of.d_hat[i];
   double toi = 1;
   if constexpr (N == 1) {
-    toi = obstacle_toi<double>(obstacle, obstacle, from, to, offset, park);
+    toi = obstacle_toi<double>(obstacle, end, from, to, offset, park);
   } else {
     const double floor = stop_floor(q, vertex, N, offset);
     const double stop = park > floor ? park : floor;  // the obstacle's own is added there
-    if (obstacle_proven_time<N, double>(obstacle, obstacle, from, to, offset, stop, enough) > enough)
-      return 1;
+    if (obstacle_proven_time<N, double>(obstacle, end, from, to, offset, stop, enough) > enough) return 1;
     const AccdResult<double> r =
-        obstacle_accd<N, double>(obstacle, obstacle, from, to, offset, park, q.max_probes, enough);
+        obstacle_accd<N, double>(obstacle, end, from, to, offset, park, q.max_probes, enough);
     if (r.hit) toi = r.toi;
     counts.queries += 1;
     counts.probes += static_cast<std::uint32_t>(r.probes);

@@ -59,15 +59,15 @@ int ContactPattern::end_of_chunk(int first, Index most) const {
   return low;
 }
 
-void ContactPattern::build_slots(ResidentRows& rows) {
+void ContactPattern::build_slots(const RowStencils& rows) {
   count(rows);
-  fill_all_slots(rows.view());
+  fill_all_slots(rows.rows);
 }
 
 /// How many slots there are, and contributions to blocks.
-void ContactPattern::count(const ResidentRows& rows) {
-  if (rows.size() >= Index{1} << 28) {
-    throw std::length_error("contact matrix: " + std::to_string(rows.size()) + " rows; at most " +
+void ContactPattern::count(const RowStencils& rows) {
+  if (rows.rows.n >= Index{1} << 28) {
+    throw std::length_error("contact matrix: " + std::to_string(rows.rows.n) + " rows; at most " +
                             std::to_string((1 << 28) - 1));
   }
   n_ = {rows.n_slots, rows.n_contributions};
@@ -103,9 +103,9 @@ void ContactPattern::fill_slots(const RowView& rows, int first, int last) {
   executor_.sort(key_.data(), slot, n, bits_below(last - first));
 }
 
-void ContactPattern::build(ResidentRows& rows) {
+void ContactPattern::build(const RowStencils& rows) {
   count(rows);
-  const RowView view = rows.view();
+  const RowView& view = rows.rows;
   fill_all_slots(view);
   code_.fit(n_.contributions);
   column_.resize(0), begin_.fit(1);

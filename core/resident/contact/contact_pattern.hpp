@@ -8,6 +8,13 @@
 
 namespace bb::resident {
 
+/// Of a view vertices are read, and which of them are free; how many free points, and pairs a <= b of them in one row, all rows
+/// have together.
+struct RowStencils {
+  RowView rows;
+  Index n_slots, n_contributions;
+};
+
 /// Rebuilt when the stencils of the rows change. Sorted in chunks of vertices, so that scratch memory is 24 B times the
 /// contributions of a chunk, and 3 B a row; results do not depend on the chunks.
 class ContactPattern {
@@ -16,9 +23,11 @@ class ContactPattern {
   ContactPattern(exec::Executor& executor, int n_vertices, Index chunk = Index{1} << 28);
 
   /// The slots alone: all that gradients need. Errors: std::length_error for 2^28 rows or more; OutOfMemory.
-  void build_slots(ResidentRows& rows);
+  void build_slots(ResidentRows& rows) { build_slots(stencils_of(rows)); }
+  void build_slots(const RowStencils& rows);
   /// Slots and blocks. Errors: as above.
-  void build(ResidentRows& rows);
+  void build(ResidentRows& rows) { build(stencils_of(rows)); }
+  void build(const RowStencils& rows);
 
   /// What an executor that only counts buffers is to take the rows for.
   void expect(const ExpectedContacts& expected) { expected_ = expected; }
@@ -43,7 +52,10 @@ class ContactPattern {
   /// The first slot of a vertex, read.
   Index slot_begin(int vertex) const;
   int end_of_chunk(int first, Index most) const;
-  void count(const ResidentRows& rows);
+  static RowStencils stencils_of(ResidentRows& rows) {
+    return {rows.view(), rows.n_slots, rows.n_contributions};
+  }
+  void count(const RowStencils& rows);
   void count_slots(const RowView& rows);
   void fill_all_slots(const RowView& rows);
   void fill_slots(const RowView& rows, int first, int last);

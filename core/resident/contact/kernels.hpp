@@ -8,6 +8,7 @@
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/detour_kernels.hpp"
 #include "core/resident/contact/gather_kernels.hpp"
+#include "core/resident/contact/lag_kernels.hpp"
 #include "core/resident/contact/row_kernels.hpp"
 #include "core/resident/contact/shape_kernels.hpp"
 #include "core/resident/contact/slot_kernels.hpp"

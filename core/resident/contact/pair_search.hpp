@@ -100,10 +100,10 @@ BB_HD inline Index second_of(Key pair) { return static_cast<Index>(pair & 0xffff
 template <int N>
 BB_HD bool may_reach(const SurfaceView& s, Index i, int o, const double* x0, const double* x1) {
   const PrimitiveView<N>& of = s.primitives<N>();
-  const AnalyticSurface<double> obstacle = s.obstacles[o].surface();
+  const AnalyticSurface<double> obstacle = s.obstacles[o].surface(x0), end = s.obstacles[o].surface(x1);
   if (of.free[i] == 0 || !pairs_with<N>(obstacle, s.planar, of.lone[i] != 0)) return false;
   const int* const vertex = of.vertex + N * i;
-  return bb::may_reach<N>(obstacle, obstacle, points_of<N>(x0, vertex), points_of<N>(x1, vertex),
+  return bb::may_reach<N>(obstacle, end, points_of<N>(x0, vertex), points_of<N>(x1, vertex),
                           of.d_hat[i] + of.offset[i]);
 }
 

@@ -1,7 +1,5 @@
 #include "core/resident/contact/resident_surface.hpp"
 
-#include "core/math/error.hpp"
-
 #include <string>
 
 namespace bb::resident {
@@ -30,14 +28,12 @@ std::vector<PlainObstacle> plain_obstacles(const std::vector<Obstacle>& obstacle
   std::vector<PlainObstacle> out;
   out.reserve(obstacles.size());
   for (const Obstacle& o : obstacles) {
-    if (o.vertex >= 0)
-      throw ConfigError("/device", "obstacle " + o.name + ", which moves",
-                        "obstacles that stand still, or device cpu");
     out.push_back({{o.point[0], o.point[1], o.point[2]},
                    {o.axis[0], o.axis[1], o.axis[2]},
                    o.radius,
                    o.kind,
-                   o.inside});
+                   o.inside,
+                   o.vertex});
   }
   return out;
 }

@@ -49,8 +49,11 @@ struct PlainObstacle {
   double point[3], axis[3], radius;
   ObstacleKind kind;
   bool inside;
-  BB_HD AnalyticSurface<double> surface() const {
-    return {kind, Vec3d(point[0], point[1], point[2]), Vec3d(axis[0], axis[1], axis[2]), radius, inside};
+  int vertex;  // where its point is; -1: it stands still
+  /// Where it is in the state x [3 n_vertices], m: posed() of core/contact/obstacle.hpp.
+  BB_HD AnalyticSurface<double> surface(const double* x) const {
+    const double* const at = vertex < 0 ? point : x + 3 * static_cast<Index>(vertex);
+    return {kind, Vec3d(at[0], at[1], at[2]), Vec3d(axis[0], axis[1], axis[2]), radius, inside, vertex};
   }
 };
 

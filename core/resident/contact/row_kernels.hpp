@@ -31,7 +31,7 @@ struct NarrowPhase {
     const Index i = static_cast<Index>(candidate >> 32);
     const PrimitiveView<N>& of = surface.primitives<N>();
     const int* const vertex = of.vertex + N * i;
-    const AnalyticSurface<double> obstacle = surface.obstacles[candidate & 0xffffffffu].surface();
+    const AnalyticSurface<double> obstacle = surface.obstacles[candidate & 0xffffffffu].surface(x);
     const Side law{of.d_hat[i], of.offset[i]};
     const Mat<double, 3, N> at = points_of<N>(x, vertex);
     if constexpr (N > 1) {

@@ -54,9 +54,9 @@ BB_HD inline double pair_offset(const SurfaceView& s, Key pair) {
   return s.edges.offset[i] + s.edges.offset[j];
 }
 
-/// The obstacle of a row that has one.
-BB_HD inline AnalyticSurface<double> obstacle_of(const SurfaceView& s, Key pair) {
-  return s.obstacles[pair_second(pair)].surface();
+/// The obstacle of a row that has one, where it is in the state x.
+BB_HD inline AnalyticSurface<double> obstacle_of(const SurfaceView& s, Key pair, const double* x) {
+  return s.obstacles[pair_second(pair)].surface(x);
 }
 
 /// Whether a mollified row is one of an edge and the axis of a cylinder.
@@ -82,7 +82,7 @@ struct MollifiedRowAt {
     if (!of_axis(rows, r)) {
       return mollified_derivatives<double>(row_points(rows, r, x), threshold(r), b, db, d2b);
     }
-    return mollified_derivatives<double>(across_axis(r), obstacle_of(surface, rows.pair[r]).axis,
+    return mollified_derivatives<double>(across_axis(r), obstacle_of(surface, rows.pair[r], x).axis,
                                          threshold_of_axis(r), b, db, d2b);
   }
   BB_HD double mollifier(Index r) const {
@@ -98,7 +98,7 @@ struct MollifiedRowAt {
     return edge_axis_mollifier_threshold<double>(leading_points<2>(rows, r, surface.rest));
   }
   BB_HD Mat<double, 3, 3> across_axis(Index r) const {
-    return about_centre<2, double>(obstacle_of(surface, rows.pair[r]), leading_points<2>(rows, r, x));
+    return about_centre<2, double>(obstacle_of(surface, rows.pair[r], x), leading_points<2>(rows, r, x));
   }
 };
 
@@ -127,9 +127,12 @@ struct MollifiedChanges {
     const Index r = list[i];
     Vec<double, 12> stacked, out = Vec<double, 12>::Zero();
     bool moves = false;
+    const int n_points = of_axis(at.rows, r) ? 2 : 4;  // behind them the obstacle, where it moves
+    const Index obstacle = n_points == 2 ? at.rows.vertex[2 * at.rows.n + r] : -1;
     for (int c = 0; c < 12; ++c) {
-      const Index vertex = at.rows.vertex[c / 3 * at.rows.n + r];
+      const Index vertex = c / 3 < n_points ? at.rows.vertex[c / 3 * at.rows.n + r] : -1;
       stacked[c] = vertex < 0 ? 0.0 : motion[3 * vertex + c % 3];
+      if (vertex >= 0 && obstacle >= 0) stacked[c] -= motion[3 * obstacle + c % 3];
       moves = moves || stacked[c] != 0;
     }
     // On the host Eigen adds up other products of this size in another order than on a device.
@@ -275,7 +278,7 @@ BB_HD inline double obstacle_offset(const SurfaceView& surface, Key pair) {
 template <int N>
 BB_HD RowShape<double, N - 1> obstacle_row_shape(const RowView& rows, const SurfaceView& surface, Index r,
                                                  const double* x) {
-  const AnalyticSurface<double> obstacle = obstacle_of(surface, rows.pair[r]);
+  const AnalyticSurface<double> obstacle = obstacle_of(surface, rows.pair[r], x);
   Vec3d axis = Vec3d::Zero();
   if (obstacle.kind == ObstacleKind::cylinder) axis = obstacle.axis;
   const double distance = rows.d[r] + (obstacle_offset(surface, rows.pair[r]) + obstacle.radius);
@@ -329,7 +332,7 @@ BB_HD inline RowCurvature row_curvature(const RowView& rows, const SurfaceView& 
   }
   const Index v = rows.vertex[r];
   const SurfaceGap<double> gap =
-      surface_gap<double>(obstacle_of(surface, rows.pair[r]), Vec3d(x[3 * v], x[3 * v + 1], x[3 * v + 2]));
+      surface_gap<double>(obstacle_of(surface, rows.pair[r], x), Vec3d(x[3 * v], x[3 * v + 1], x[3 * v + 2]));
   return {gap.curvature, gap.flat};
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/energy/hinge.hpp"
 #include "core/energy/membrane_list.hpp"
+#include "core/energy/membrane_rest.hpp"
 #include "core/energy/rod_bend.hpp"
 #include "core/energy/spring.hpp"
 #include "core/energy/tetrahedron.hpp"
@@ -20,6 +21,39 @@ struct RestColumns {
     for (int k = 0; k < 4; ++k) rest.dm_inv.data()[k] = dm_inv[k * n + e];
     rest.area = area[e];
     return rest;
+  }
+};
+
+/// Rest shapes [5, n] that change with time: those that are given [5, n], a factor on their lengths, a plastic part.
+struct PlaceTriangles {
+  const double* given;
+  const int* list;            // [n] into factor, -1: none; or null
+  const double* factor;       // of the time, 1
+  const double* plastic_inv;  // [4 n] triangle by triangle; or null
+  Index n;
+  double* rest;
+  BB_HD void operator()(Index e) const {
+    const double by = list && list[e] >= 0 ? factor[list[e]] : 1;
+    const TriangleRest<double> from = RestColumns{given, given + 4 * n}.at(e, n);
+    const TriangleRest<double> to =
+        placed_rest<double>(from, by, plastic_inv ? plastic_inv + 4 * e : nullptr);
+    for (int k = 0; k < 4; ++k) rest[k * n + e] = to.dm_inv.data()[k];
+    rest[4 * n + e] = to.area;
+  }
+};
+
+/// plastic_inv becomes what it is after a step of dt (s) that ended at x.
+struct FlowTriangles {
+  ElementVertices<3> elements;
+  RestColumns rest;
+  const double *yield, *creep;  // [n] 1, 1/s
+  const double* x;
+  double dt;
+  double* plastic_inv;
+  BB_HD void operator()(Index e) const {
+    Vec3d p[3];
+    elements.points(x, e, p);
+    creep_plastic<double>(rest.at(e, elements.n), p, yield[e], kept_after(creep[e], dt), plastic_inv + 4 * e);
   }
 };
 
@@ -71,6 +105,38 @@ struct Hinges : ElementVertices<4> {
     Vec3d p[4];
     points(x, e, p);
     return hinge_terms<double>(p, stiffness[e], rest_angle[e], projection);
+  }
+};
+
+/// Those with a part that grows.
+struct StiffeningHinges : ElementVertices<4> {
+  const double* stiffness;    // [n] J
+  const double* rest_angle;   // [n] rad
+  const double* exponential;  // [n] J, at rest
+  const double* exponent;     // [n] 1/rad
+  BB_HD double value(const double* x, Index e) const {
+    Vec3d p[4];
+    points(x, e, p);
+    return hinge_value<double>(p, stiffness[e], exponential[e], exponent[e], rest_angle[e]);
+  }
+  BB_HD ElementTerms<double, 12> terms(const double* x, Index e, Projection projection) const {
+    Vec3d p[4];
+    points(x, e, p);
+    return hinge_terms<double>(p, stiffness[e], exponential[e], exponent[e], rest_angle[e], projection);
+  }
+};
+
+/// rest_angle [n] becomes what it is after a step of dt (s) that ended at x.
+struct FlowHinges {
+  ElementVertices<4> elements;
+  const double *yield, *creep;  // [n] rad, 1/s
+  const double* x;
+  double dt;
+  double* rest_angle;
+  BB_HD void operator()(Index e) const {
+    Vec3d p[4];
+    elements.points(x, e, p);
+    rest_angle[e] = crept_rest_angle<double>(p, rest_angle[e], yield[e], kept_after(creep[e], dt));
   }
 };
 

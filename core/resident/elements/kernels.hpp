@@ -3,10 +3,13 @@
 
 #include "barriers/shapes/shape_list.hpp"
 #include "barriers/stiffness/policy_list.hpp"
+#include "core/resident/elements/cloth_spring_kernels.hpp"
 #include "core/resident/elements/element_kernels.hpp"
 #include "core/resident/elements/family_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
+#include "core/resident/elements/inflation_kernels.hpp"
 #include "core/resident/elements/limit_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"
+#include "core/resident/elements/quadratic_kernels.hpp"
 #include "core/resident/sums/sum_kernels.hpp"
 #include "core/resident/sums/vector_kernels.hpp"

@@ -9,13 +9,13 @@ namespace {
 class LoadTerm final : public ResidentTerm {
  public:
   explicit LoadTerm(const ResidentInputs& inputs)
-      : executor_(inputs.executor), matrix_(inputs.matrix), n_vertices_(inputs.mass.size()) {
+      : executor_(inputs.executor),
+        scene_(inputs.scene),
+        matrix_(inputs.matrix),
+        n_vertices_(inputs.mass.size()) {
     loads_.mass = inputs.mass.data();
   }
-  void add_weight(const Vec3d& gravity) {
-    for (int k = 0; k < 3; ++k) loads_.gravity[k] = gravity[k];
-    loads_.has_weight = true;
-  }
+  void add_weight() { loads_.has_weight = true; }
 
   std::string_view name() const override { return "inertia"; }
   TermGroup group() const override { return TermGroup::load; }
@@ -23,6 +23,8 @@ class LoadTerm final : public ResidentTerm {
   void begin_step(const ResidentFrame& frame) override {
     loads_.x_n = frame.x_n->data();
     loads_.load_factor = frame.load_factor;
+    const Vec3d gravity = gravity_at(scene_, frame.t_end);
+    for (int k = 0; k < 3; ++k) loads_.gravity[k] = gravity[k];
     change_frame(frame);
   }
   void change_frame(const ResidentFrame& frame) override {
@@ -51,6 +53,7 @@ class LoadTerm final : public ResidentTerm {
 
  private:
   exec::Executor& executor_;
+  const Scene& scene_;
   ElementMatrix& matrix_;
   Index n_vertices_;
   Loads loads_{};
@@ -63,8 +66,8 @@ void make_resident_inertia(const ResidentInputs& inputs, ResidentTermList& terms
 }
 
 // Without a vertex there is no term to carry it.
-void make_resident_external_force(const ResidentInputs& inputs, ResidentTermList& terms) {
-  if (LoadTerm* loads = terms.find<LoadTerm>()) loads->add_weight(inputs.scene.gravity);
+void make_resident_external_force(const ResidentInputs&, ResidentTermList& terms) {
+  if (LoadTerm* loads = terms.find<LoadTerm>()) loads->add_weight();
 }
 
 }  // namespace bb::resident

@@ -18,7 +18,7 @@
 
 namespace bb {
 class Archive;
-struct KnownStiffness;
+struct KnownStep;
 }  // namespace bb
 
 namespace bb::resident {
@@ -30,8 +30,8 @@ struct ExpectedContacts;
 
 /// One time step, the same for all terms. Columns (m) are valid for the step.
 struct ResidentFrame {
-  const Column *x_n = nullptr, *x_tilde = nullptr;  // start of the step and prediction
-  double dt = 0, c = 1, load_factor = 1;            // as in StepFrame
+  const Column *x_n = nullptr, *x_tilde = nullptr;   // start of the step and prediction
+  double dt = 0, c = 1, load_factor = 1, t_end = 0;  // as in StepFrame
 };
 
 /// x0 -> x1, x1 - x0 = dx up to rounding, m; x1 is exact at prescribed vertices.
@@ -55,10 +55,10 @@ class EnergySeries {
   /// The loads, before anything else.
   void lead(Index n, const Lead& lead) { series_.lead = lead, series_.n_lead = n; }
   /// from: null where the column itself is summed.
-  void add(Index n, const double* from, const double* to) {
-    if (series_.n_columns == SumSeries<Lead>::most_columns) launch();
-    series_.column[series_.n_columns] = {from, to};
-    series_.n[series_.n_columns++] = n;
+  void add(Index n, const double* from, const double* to) { add_column({n, from, to, false}); }
+  /// Parts that have their magnitude beside them.
+  void add_parts(Index n, const double* part, const double* magnitude) {
+    add_column({n, part, magnitude, true});
   }
   void launch() {
     sum_.add(series_);
@@ -66,6 +66,11 @@ class EnergySeries {
   }
 
  private:
+  void add_column(const SeriesColumn& column) {
+    if (series_.n_columns == SumSeries<Lead>::most_columns) launch();
+    series_.column[series_.n_columns++] = column;
+  }
+
   ResidentSum& sum_;
   SumSeries<Lead> series_{};
 };
@@ -101,7 +106,10 @@ class ResidentTerm {
   virtual void begin_step(const ResidentFrame& frame) { change_frame(frame); }
   /// The same step and iterate with another prediction and length.
   virtual void change_frame(const ResidentFrame&) {}
-  virtual void end_step(PhaseClock&) {}
+  /// As Term::renew_lag.
+  virtual bool renew_lag(const Column& /*x*/) { return false; }
+  /// The step is over and ended at x.
+  virtual void end_step(const Column& /*x*/, PhaseClock&) {}
   /// The sections of its lines of registry.inc, with what it remembers from step to step, as the host's terms keep them.
   virtual void keep(Archive& archive);
   /// Forgets the pattern of a matrix that comes and goes: between steps.
@@ -162,8 +170,8 @@ class ResidentTerm {
   virtual void report_end(const Column& /*x*/, StepNumbers&) {}
   /// First element with an energy that is not finite; -1 without one.
   virtual Index first_not_finite(ResidentLeast&) { return -1; }
-  /// Stiffness of pairs that is frozen for the step, for the copy on the host.
-  virtual void add_known(KnownStiffness&) const {}
+  /// What is frozen for the step, for the copy on the host.
+  virtual void add_known(KnownStep&) const {}
 
   // --- memory
   /// What an executor that only counts buffers is to take the contacts for.

@@ -24,9 +24,11 @@ struct MatrixPart {
   bool operator==(const MatrixPart&) const = default;
 };
 
-/// The sum of two parts: elements, whose pattern stays, and contacts, whose pattern changes.
+/// The sum of some parts: elements, whose pattern stays, contacts, whose pattern changes, and terms on the contacts that a step
+/// begins with.
 struct ResidentMatrix {
-  MatrixPart part[2];
+  static constexpr int most_parts = 4;
+  MatrixPart part[most_parts];
   bool operator==(const ResidentMatrix&) const = default;
 };
 

@@ -7,6 +7,8 @@
 namespace bb::resident {
 namespace {
 
+constexpr int most_parts = ResidentMatrix::most_parts;
+
 template <class T>
 std::vector<T> download_numbers(exec::Executor& executor, const T* from, Index n) {
   std::vector<T> out(at(n));
@@ -26,11 +28,11 @@ bool has_couplings(const BlockGraph& graph) {
 
 }  // namespace
 
-/// Both parts as one graph, those of the first part first in a row.
+/// All parts as one graph, those of the first part first in a row.
 HostPattern Schwarz::download(const ResidentMatrix& matrix, Index n) const {
-  std::vector<Index> begin[2];
-  std::vector<int> column[2];
-  for (int p = 0; p < 2; ++p) {
+  std::vector<Index> begin[most_parts];
+  std::vector<int> column[most_parts];
+  for (int p = 0; p < most_parts; ++p) {
     if (!matrix.part[p].row_begin) continue;
     begin[p] = download_numbers(executor_, matrix.part[p].row_begin, n + 1);
     column[p] = download_numbers(executor_, matrix.part[p].column, begin[p].back());
@@ -38,11 +40,11 @@ HostPattern Schwarz::download(const ResidentMatrix& matrix, Index n) const {
   HostPattern out;
   out.graph.row_start.push_back(0);
   for (Index r = 0; r < n; ++r) {
-    for (int p = 0; p < 2; ++p) {
+    for (int p = 0; p < most_parts; ++p) {
       if (begin[p].empty()) continue;
       for (Index j = begin[p][at(r)]; j < begin[p][at(r) + 1]; ++j) {
         out.graph.column.push_back(column[p][at(j)]);
-        out.source.push_back(2 * j + p);
+        out.source.push_back(most_parts * j + p);
       }
     }
     out.graph.row_start.push_back(static_cast<Index>(out.source.size()));
@@ -51,18 +53,18 @@ HostPattern Schwarz::download(const ResidentMatrix& matrix, Index n) const {
 }
 
 void Schwarz::download_norms(const ResidentMatrix& matrix, const FixedMask* fixed, HostPattern& pattern) {
-  std::vector<double> norm[2];
-  for (int p = 0; p < 2; ++p) {
+  std::vector<double> norm[most_parts];
+  for (int p = 0; p < most_parts; ++p) {
     if (!matrix.part[p].row_begin) continue;
     const Index count = std::count_if(pattern.source.begin(), pattern.source.end(),
-                                      [p](Index source) { return source % 2 == p; });
+                                      [p](Index source) { return source % most_parts == p; });
     exec::Buffer<double> on_executor(executor_, "block norms", count);
     executor_.each(pattern.graph.n(), BlockNorms{matrix.part[p], fixed, on_executor.data()});
     norm[p] = on_executor.download();
   }
   pattern.graph.norm.resize(pattern.source.size());
   for (std::size_t k = 0; k < pattern.source.size(); ++k) {
-    pattern.graph.norm[k] = norm[pattern.source[k] % 2][at(pattern.source[k] / 2)];
+    pattern.graph.norm[k] = norm[pattern.source[k] % most_parts][at(pattern.source[k] / most_parts)];
   }
 }
 

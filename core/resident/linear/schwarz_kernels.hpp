@@ -30,7 +30,7 @@ struct BlockNorms {
 struct CoarseValues {
   ResidentMatrix matrix;  // of the level below
   const FixedMask* fixed;
-  const Index *begin, *source;  // [blocks + 1], fine blocks as 2 number + part
+  const Index *begin, *source;  // [blocks + 1], fine blocks as most_parts number + part
   const int* row;               // of each fine block
   double* value;
   BB_HD void operator()(Index i) const {
@@ -38,10 +38,12 @@ struct CoarseValues {
     const int c = static_cast<int>(i % 9);
     double sum = 0;
     for (Index k = begin[block]; k < begin[block + 1]; ++k) {
-      const bool second = source[k] % 2 != 0;
-      const int* column = second ? matrix.part[1].column : matrix.part[0].column;
-      const double* from = second ? matrix.part[1].value : matrix.part[0].value;
-      const Index j = source[k] / 2;
+      const Index own = source[k] % ResidentMatrix::most_parts, j = source[k] / ResidentMatrix::most_parts;
+      const int* column = matrix.part[0].column;
+      const double* from = matrix.part[0].value;
+      for (int p = 1; p < ResidentMatrix::most_parts; ++p) {
+        if (own == p) column = matrix.part[p].column, from = matrix.part[p].value;
+      }
       if (is_fixed(fixed[row[k]], c % 3) || is_fixed(fixed[column[j]], c / 3)) continue;
       sum += from[value_index(j, c)];
     }

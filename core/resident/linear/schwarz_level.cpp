@@ -65,7 +65,7 @@ HostPattern SchwarzLevel::set_coarse(const HostPattern& below, const VertexClust
                      [](const Summand& a, const Summand& b) { return a.column < b.column; });
     for (std::size_t i = 0; i < summands.size(); ++i) {
       if (i == 0 || summands[i].column != summands[i - 1].column) {
-        out.source.push_back(2 * static_cast<Index>(out.graph.column.size()));
+        out.source.push_back(ResidentMatrix::most_parts * static_cast<Index>(out.graph.column.size()));
         out.graph.column.push_back(summands[i].column);
         source_begin.push_back(static_cast<Index>(sources.size()));
       }

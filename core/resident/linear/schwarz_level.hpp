@@ -7,7 +7,7 @@
 
 namespace bb::resident {
 
-/// Where the blocks of a matrix are: beside the graph, 2 number + part of every block.
+/// Where the blocks of a matrix are: beside the graph, most_parts number + part of every block.
 struct HostPattern {
   BlockGraph graph;
   std::vector<Index> source;

@@ -199,6 +199,18 @@ struct ColumnChange {
   }
 };
 
+/// Parts with their magnitudes.
+struct ColumnParts {
+  const double *part, *magnitude;
+  BB_HD void operator()(Index i, Compensated& sum) const { sum.add(part[i], magnitude[i]); }
+};
+/// A column of a series [n]: ColumnParts, or ColumnChange, or ColumnSum of the second where the first is null.
+struct SeriesColumn {
+  Index n;
+  const double *first, *second;
+  bool parts;
+};
+
 /// Sums over one column after the other: of Lead, then of columns; each is a sum of its own (SumParts), and they are added
 /// in their order. So the result is that of one launch each.
 template <class Lead>
@@ -207,14 +219,13 @@ struct SumSeries {
   using Shared = SumShared<Compensated>;
   Lead lead;
   Index n_lead;
-  ColumnChange column[most_columns];  // from: null where the column itself is summed
-  Index n[most_columns];
+  SeriesColumn column[most_columns];
   int n_columns;
   SumPlaces<Compensated> to;  // partial: [n_blocks()]
 
   BB_HD Index n_blocks() const {
     Index out = blocks_of_sum(n_lead);
-    for (int k = 0; k < n_columns; ++k) out += blocks_of_sum(n[k]);
+    for (int k = 0; k < n_columns; ++k) out += blocks_of_sum(column[k].n);
     return out;
   }
   template <class Block>
@@ -222,7 +233,7 @@ struct SumSeries {
     Index first = blocks_of_sum(n_lead);
     if (b < first) sum_block(block, shared, lead, n_lead, b, to.partial);
     for (int k = 0; k < n_columns; ++k) {
-      const Index size = blocks_of_sum(n[k]);
+      const Index size = blocks_of_sum(column[k].n);
       if (b >= first && b < first + size) sum_column(block, shared, k, b - first, to.partial + first);
       first += size;
     }
@@ -230,7 +241,7 @@ struct SumSeries {
     first = blocks_of_sum(n_lead);
     if (first > 0) add_partials(block, shared, to.partial, first, to.total);
     for (int k = 0; k < n_columns; ++k) {
-      const Index size = blocks_of_sum(n[k]);
+      const Index size = blocks_of_sum(column[k].n);
       if (size > 0) add_partials(block, shared, to.partial + first, size, to.total);
       first += size;
     }
@@ -239,10 +250,13 @@ struct SumSeries {
  private:
   template <class Block>
   BB_HD void sum_column(Block& block, Shared& shared, int k, Index b, Compensated* partial) const {
-    if (column[k].from) {
-      sum_block(block, shared, column[k], n[k], b, partial);
+    const SeriesColumn& of = column[k];
+    if (of.parts) {
+      sum_block(block, shared, ColumnParts{of.first, of.second}, of.n, b, partial);
+    } else if (of.first) {
+      sum_block(block, shared, ColumnChange{of.first, of.second}, of.n, b, partial);
     } else {
-      sum_block(block, shared, ColumnSum{column[k].to}, n[k], b, partial);
+      sum_block(block, shared, ColumnSum{of.second}, of.n, b, partial);
     }
   }
 };

@@ -4,9 +4,9 @@
 
 #include "core/archive/archive.hpp"
 #include "core/contact/contact_key.hpp"
-#include "core/contact/kappa_memory.hpp"
 #include "core/resident/system/resident_contact.hpp"
 #include "core/terms/contact.hpp"
+#include "core/terms/known_step.hpp"
 
 namespace bb::resident {
 namespace {
@@ -69,11 +69,7 @@ void ResidentContact::report_end(const Column& x, StepNumbers& out) {
   out.gap_min_ulps = rows_.min_gap / (std::nextafter(largest, 2 * largest) - largest);
 }
 
-void ResidentContact::add_known(KnownStiffness& out) const {
-  const KnownStiffness own = stiffness_.known();
-  out.pair.insert(out.pair.end(), own.pair.begin(), own.pair.end());
-  out.parts.insert(out.parts.end(), own.parts.begin(), own.parts.end());
-}
+void ResidentContact::add_known(KnownStep& out) const { out.stiffness = stiffness_.known(); }
 
 // As ContactTerm::keep, which reads it; park, which is read of the later of two step ends only, is 0.
 void ResidentContact::keep(Archive& archive) {

@@ -282,7 +282,7 @@ void ResidentContact::accept() {
   stiffness_.keep(rows_);
 }
 
-void ResidentContact::end_step(PhaseClock& clock) {
+void ResidentContact::end_step(const Column&, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::stiffness);
   StiffnessPolicy& policy = *options_.stiffness;
   if (!policy.adapts()) return;

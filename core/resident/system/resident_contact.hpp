@@ -31,7 +31,7 @@ class ResidentContact final : public ResidentTerm {
   void begin_step(const ResidentFrame& frame) override;
   void change_frame(const ResidentFrame& frame) override;
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
-  void end_step(PhaseClock& clock) override;
+  void end_step(const Column& x, PhaseClock& clock) override;
   void keep(Archive& archive) override;
   void drop_caches() override { matrix_ = {}; }
 
@@ -64,12 +64,21 @@ class ResidentContact final : public ResidentTerm {
   void add_rows(RowEnergies& out) override;
   void accept() override;
 
+  // --- what later terms read of it, at the iterate x
+  ResidentRows& rows(const Column& x) {
+    settle(x);
+    return rows_;
+  }
+  /// Rows with their barrier, and mollifiers; valid until the next call of anything else.
+  RowEnergy forces(const Column& x) { return assembly_.row_energy(rows(x), x); }
+  const ResidentSurface& surface() const { return resident_surface_; }
+
   // --- what is said of it
   void add_energy(const Column& x, ResidentEnergy&) override { look_at_rows(x); }
   Compensated row_energy() override { return totals_.get().energy; }
   void report(const Column& x, IterateNumbers& out, PhaseClock& clock) override;
   void report_end(const Column& x, StepNumbers& out) override;
-  void add_known(KnownStiffness& out) const override;
+  void add_known(KnownStep& out) const override;
 
   // --- memory
   void expect(const ExpectedContacts& expected) override;
@@ -94,11 +103,6 @@ class ResidentContact final : public ResidentTerm {
   void take_back(const Column& x);
   void take_trial();
   void keep_elastic(const ResidentContext& context);
-  /// Of the iterate x.
-  ResidentRows& rows(const Column& x) {
-    settle(x);
-    return rows_;
-  }
   /// Launches the sums over the rows of the iterate, as linearise() or accept() left them.
   void look_at_rows(const Column& x);
   RowTotals totals(const Column& x) {
@@ -151,6 +155,6 @@ class ResidentContact final : public ResidentTerm {
   bool has_pattern_ = false;  // that of the rows
 };
 
-MakeResident make_resident_contact;
+MakeResident make_resident_contact, make_resident_friction, make_resident_restitution;
 
 }  // namespace bb::resident

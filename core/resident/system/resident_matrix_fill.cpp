@@ -62,12 +62,14 @@ void ResidentPotential::fill(const Column& x, const Filled& level) {
 }
 
 ResidentMatrix ResidentPotential::matrix() const {
-  ResidentMatrix out{{elements_.part(), {}}};
+  ResidentMatrix out{};
+  out.part[0] = elements_.part();
+  int n = 1;
   for (const auto& term : terms_) {
     const MatrixPart own = term->changing_matrix().part;
     if (!own.row_begin) continue;
-    if (out.part[1].row_begin) throw std::logic_error("two terms whose stencils come and go");
-    out.part[1] = own;
+    if (n == ResidentMatrix::most_parts) throw std::logic_error("more terms whose stencils come and go");
+    out.part[n++] = own;
   }
   return out;
 }

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "core/contact/kappa_memory.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/resident/system/term_list.hpp"
 #include "core/solvers/linear_solvers.hpp"
+#include "core/terms/known_step.hpp"
 
 namespace bb::resident {
 namespace {
@@ -67,8 +67,16 @@ void ResidentPotential::change_step(const StepColumns& step) {
   for (const auto& term : terms_) term->change_frame(frame(step));
 }
 
-void ResidentPotential::end_step(const Column&) {
-  for (const auto& term : terms_) term->end_step(clock());
+bool ResidentPotential::renew_lag(const Column& x) {
+  bool renewed = false;
+  for (const auto& term : terms_) renewed = term->renew_lag(x) || renewed;
+  energies_known_ = energies_known_ && !renewed;
+  announced_ = announced_ && !renewed;
+  return renewed;
+}
+
+void ResidentPotential::end_step(const Column& x) {
+  for (const auto& term : terms_) term->end_step(x, clock());
 }
 
 void ResidentPotential::keep(Archive& archive) {
@@ -203,8 +211,8 @@ std::string ResidentPotential::describe_non_finite() {
   return {};
 }
 
-KnownStiffness ResidentPotential::known_stiffness() const {
-  KnownStiffness out;
+KnownStep ResidentPotential::known_step() const {
+  KnownStep out;
   for (const auto& term : terms_) term->add_known(out);
   return out;
 }

@@ -31,6 +31,7 @@ class ResidentPotential final : public IncrementalPotential {
 
   void begin_step(const StepColumns& step) override;
   void change_step(const StepColumns& step) override;
+  bool renew_lag(const Column& x) override;
   void end_step(const Column& x) override;
   void keep(Archive& archive) override;
   void drop_caches() override;
@@ -61,7 +62,7 @@ class ResidentPotential final : public IncrementalPotential {
   void report(const Column& x, IterateNumbers& out) override;
   void report_end(const Column& x, StepNumbers& out) override;
   std::string describe_non_finite() override;
-  KnownStiffness known_stiffness() const override;
+  KnownStep known_step() const override;
 
   /// On an executor that only counts buffers: what the rows are to be taken for.
   void expect(const ExpectedContacts& expected);
@@ -80,7 +81,7 @@ class ResidentPotential final : public IncrementalPotential {
     const double* force = nullptr;
   };
   ResidentFrame frame(const StepColumns& step) const {
-    return {&step.x_n, &step.x_tilde, step.dt, step.c, step.load_factor};
+    return {&step.x_n, &step.x_tilde, step.dt, step.c, step.load_factor, step.t_end};
   }
   ResidentMatrix matrix() const;
   void fill(const Column& x, const Filled& level);

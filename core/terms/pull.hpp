@@ -1,0 +1,21 @@
+// What soft pins are in a step.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.hpp"
+
+namespace bb {
+
+/// The elements of the term: the vertices of all pulls, pull by pull.
+std::vector<int> pulled_vertices(const Scene& scene);
+
+/// Where a vertex is pulled to, m, and how stiff, N/m.
+struct PulledTo {
+  Vec3d place;
+  double stiffness;
+};
+/// Of every element in the step of length dt that ends at t_end, s.
+std::vector<PulledTo> pulls_of_step(const Scene& scene, double t_end, double dt);
+
+}  // namespace bb
