@@ -13,7 +13,7 @@ usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER] [--only GRO
   --out FOLDER       where the raw files go (default: results/runs/gpu_evidence/<UTC time>); calls with the same folder and
                      other --only add to it, if they are of the same commit
   --records FOLDER   where the record goes (default: results/gpu)
-  --only GROUPS      of: tests, sanitizer, same, scenes, memory, kernels; separated by commas (default: all)
+  --only GROUPS      of: tests, sanitizer, same, catalogue, scenes, memory, kernels; separated by commas (default: all)
   --bundle FOLDER    builds, and puts all that the evidence needs into FOLDER: this script, programs, their libraries,
                      configs. FOLDER/gpu_evidence.sh then runs on a machine that has a card and a driver and nothing else
                      of ours; it leaves the raw files, and `python -m analysis.gpu_evidence RAW` makes the record here.
@@ -31,7 +31,7 @@ else
 fi
 out="$root/results/runs/gpu_evidence/$(date -u +%Y-%m-%dT%H%M%SZ)"
 records="$root/results/gpu"
-only=tests,sanitizer,same,scenes,memory,kernels
+only=tests,sanitizer,same,catalogue,scenes,memory,kernels
 bundle=""
 while [ "$#" -gt 0 ]; do
   case "$1" in
@@ -46,10 +46,10 @@ while [ "$#" -gt 0 ]; do
 done
 for group in ${only//,/ } ""; do
   case "$group" in
-    tests | sanitizer | same | scenes | memory | kernels) ;;
+    tests | sanitizer | same | catalogue | scenes | memory | kernels) ;;
     "") [ -n "${only//,/}" ] || { usage >&2; exit 2; } ;;
     *)
-      printf 'gpu_evidence: --only %s: of tests, sanitizer, same, scenes, memory, kernels\n' "$group" >&2
+      printf 'gpu_evidence: --only %s: of tests, sanitizer, same, catalogue, scenes, memory, kernels\n' "$group" >&2
       exit 2
       ;;
   esac
@@ -64,6 +64,17 @@ tests="${BARRIERBENCH_DEVICE_TESTS:-$tests}"
 say() { printf 'gpu_evidence: %s\n' "$*" >&2; }
 rooms="sums linear elements contact system runs"
 
+# write_minis FOLDER: the configs of the catalogue at their small size, without those that are refused.
+write_minis() {
+  mkdir -p "$1"
+  for file in "$root"/configs/catalogue/*.json; do
+    local name
+    name="$(basename "$file" .json)"
+    case "$name" in intersect-*) continue ;; esac
+    "$bench" scenes "$name" --write "$1/$name.json" >&2
+  done
+}
+
 if [ -n "$bundle" ]; then
   "$bench" build release >&2 || exit 70
   build="$root/build/release"
@@ -74,6 +85,7 @@ if [ -n "$bundle" ]; then
   ldd "$bundle"/bin/* | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
     grep -Ev '/(libc|libm|libdl|librt|libpthread|ld-linux[^/]*)\.so' | xargs -I{} cp -L {} "$bundle/lib/"
   cp -r "$root/configs/." "$bundle/configs/"
+  write_minis "$bundle/minis"
   cp "${BASH_SOURCE[0]}" "$bundle/gpu_evidence.sh"
   git -C "$root" rev-parse HEAD >"$bundle/commit" 2>/dev/null || true
   printf '#!/bin/sh\nhere="$(dirname "$(readlink -f "$0")")"\nexport LD_LIBRARY_PATH="$here/lib" BARRIERBENCH_CONFIGS="$here/configs"\nexec "$here/bin/barrierbench" "$@"\n' >"$bundle/bench"
@@ -147,28 +159,38 @@ fi
 
 # ---------------------------------------------------------------- the same run on card and host
 
-# same_run NAME CONFIG [ARGUMENTS]: on the card and by the kernels of the host executor; the record compares the two.
+# same_run NAME FILE [ARGUMENTS]: on the card and by the kernels of the host executor; the record compares the two.
 same_run() {
   local name="$1" config="$2" device
   shift 2
   for device in cuda host; do
-    part "same_$name.$device" 100 "$bench" run "$root/configs/$config" --set "/device=\"$device\"" --set '/linear_solver={"name": "pcg_resident"}' \
+    part "same_$name.$device" 100 "$bench" run "$config" --set "/device=\"$device\"" --set '/linear_solver={"name": "pcg_resident"}' \
       --set '/passes={"time": true, "audit": true}' --set /threads=2 --out "$out/same/$name.$device" --progress none "$@"
   done
 }
 if wanted same; then
   for formulation in log cubic quadratic cubic_dynamic_lagged ipc2020; do
-    same_run "drape_$formulation" scenes/drape.json --set /scene/n=16 --set /time/steps=15 --set "/formulation=\"$formulation\"" &
+    same_run "drape_$formulation" "$root/configs/scenes/drape.json" --set /scene/n=16 --set /time/steps=15 --set "/formulation=\"$formulation\"" &
   done
-  for scene in strip_on_disk sphere_on_sheet sheets_on_ball noodle solid_ball solid_stack twist_cloth hang; do
-    same_run "$scene" "scenes/$scene.json" --set /time/steps=20 &
+  for scene in strip_on_disk sphere_on_sheet sheets_on_ball noodle solid_ball solid_stack twist_cloth hang balloon bounce curtain_wind friction_slope; do
+    same_run "$scene" "$root/configs/scenes/$scene.json" --set /time/steps=20 &
   done
-  same_run dense_patch gpu/dense_patch.json &
+  same_run dense_patch "$root/configs/gpu/dense_patch.json" &
   # No kernel of these calls a library: the bits have to be those of the host.
-  same_run plain_drape scenes/drape.json --set /scene/n=16 --set /time/steps=15 --set '/formulation="cubic"' --set /scene/bending_J=0 &
+  same_run plain_drape "$root/configs/scenes/drape.json" --set /scene/n=16 --set /time/steps=15 --set '/formulation="cubic"' --set /scene/bending_J=0 &
   for scene in strip_on_disk solid_ball solid_stack; do
-    same_run "plain_$scene" "scenes/$scene.json" --set /time/steps=20 --set '/formulation/name="cubic"' &
+    same_run "plain_$scene" "$root/configs/scenes/$scene.json" --set /time/steps=20 --set '/formulation/name="cubic"' &
   done
+  wait
+fi
+
+if wanted catalogue; then
+  minis="$root/minis"
+  if [ ! -d "$minis" ]; then
+    minis="$out/minis"
+    write_minis "$minis"
+  fi
+  for file in "$minis"/*.json; do same_run "catalogue_$(basename "$file" .json)" "$file" --set /time/steps=8 & done
   wait
 fi
 

@@ -196,9 +196,9 @@ template <class T>
 BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T exponential, T exponent,
                                       T rest_angle, Projection projection) {
   const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
-  if (!(exponential > T(0))) return hinge_terms_at<T>(x, stiffness, deviation, projection);
   const Stiffened<T> w = stiffened<T>(deviation, stiffness, exponential, exponent);
-  return hinge_terms_of<T>(x, w.energy, w.curvature, w.slope / w.curvature, projection);
+  const T ratio = exponential > T(0) ? w.slope / w.curvature : deviation;  // k u/k is not always u
+  return hinge_terms_of<T>(x, w.energy, w.curvature, ratio, projection);
 }
 
 // Compiled once for these scalars, in element_terms.cpp: kernels that call it are in headers of many files.

@@ -141,12 +141,13 @@ def test_prices_that_are_committed_are_whole_or_empty():
 FAKE_BENCH = '''#!/bin/sh
 case "$1" in
   device) cat "$RAW/device.json"; exit ${DEVICE_CODE:-0} ;;
+  scenes) touch "$4" ;;
   run) while [ "$1" != --out ]; do shift; done; mkdir -p "$2"; cp "$RAW/drape_1m/run.json" "$2" ;;
 esac
 '''
 
 
-def script(raw, tmp_path, only="tests,sanitizer,same,scenes,memory,kernels", **more):
+def script(raw, tmp_path, only="tests,sanitizer,same,catalogue,scenes,memory,kernels", **more):
     bench, tests = tmp_path / "bench", tmp_path / "tests"
     bench.write_text(FAKE_BENCH)
     tests.mkdir()
@@ -166,6 +167,8 @@ def test_the_script_makes_a_record_of_what_passed_and_what_failed(raw, tmp_path)
     assert record["parts"]["drape_82k"]["status"] == "passed" and record["scenes"]["dense_184m"]["vertices"] == 1048576
     assert all(record["parts"][f"card_{room}"]["status"] == "passed" for room in ("contact", "elements", "linear", "runs", "sums", "system"))
     same = {run["name"]: run for run in record["same"]}
+    accepted = [file.stem for file in (ROOT / "configs/catalogue").glob("*.json") if not file.stem.startswith("intersect-")]
+    assert len(accepted) > 20 and {name for name in same if name.startswith("catalogue_")} == {f"catalogue_{name}" for name in accepted}
     assert len(same) > 10 and same["drape_cubic"]["same_bits"] and same["drape_cubic"]["card"]["newton_iterations"] == 10
 
 

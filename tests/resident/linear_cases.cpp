@@ -28,21 +28,26 @@ OwnedSystem::OwnedSystem(exec::Executor& executor, const ReducedSystem& system, 
   fixed.upload(mask);
   SymmetricProduct rows;
   rows.update(system);
-  std::vector<Index> begin[2];
-  std::vector<int> column[2];
-  std::vector<Mat3d> block[2];
+  constexpr int n_parts = ResidentMatrix::most_parts;
+  constexpr double share[n_parts] = {0.125, 0.375, 0.25, 0.25};
+  std::vector<Index> begin[n_parts];
+  std::vector<int> column[n_parts];
+  std::vector<Mat3d> block[n_parts];
   std::mt19937_64 random(3);
   for (int r = 0; r < rows.n_blocks(); ++r) {
-    for (int part = 0; part < 2; ++part) begin[part].push_back(static_cast<Index>(column[part].size()));
+    for (int part = 0; part < n_parts; ++part) begin[part].push_back(static_cast<Index>(column[part].size()));
     for (int k = rows.row_start()[at(r)]; k < rows.row_start()[at(r) + 1]; ++k) {
       const int c = rows.column()[at(k)];
       const Mat3d b = Eigen::Map<const Mat3d>(rows.block(k)).transpose();
-      const int choice = split ? static_cast<int>(random() % 4) : 0;  // 0, 1: first part, 2: second, 3: both
-      if (choice != 2) column[0].push_back(c), block[0].push_back(choice == 3 ? Mat3d(0.25 * b) : b);
-      if (choice >= 2) column[1].push_back(c), block[1].push_back(choice == 3 ? Mat3d(0.75 * b) : b);
+      const int choice =
+          split ? static_cast<int>(random() % (n_parts + 2)) : 0;  // a part, or from n_parts on all
+      for (int part = 0; part < n_parts; ++part) {
+        if (choice < n_parts && choice != part) continue;
+        column[part].push_back(c), block[part].push_back(choice == part ? b : Mat3d(share[part] * b));
+      }
     }
   }
-  for (int part = 0; part < (split ? 2 : 1); ++part) {
+  for (int part = 0; part < (split ? n_parts : 1); ++part) {
     begin[part].push_back(static_cast<Index>(column[part].size()));
     parts_.push_back(std::make_unique<OwnedPart>(executor, begin[part], column[part], block[part]));
   }

@@ -24,7 +24,7 @@ struct OwnedPart {
 /// The matrix of a dense-able system over full degrees of freedom, 3 a vertex, some fixed.
 class OwnedSystem {
  public:
-  /// split: a random part of every block, and all of some, in the second part.
+  /// split: every block is in a random part or shared among all.
   OwnedSystem(exec::Executor& executor, const ReducedSystem& system, std::vector<FixedMask> fixed,
               bool split);
   ResidentMatrix matrix() const;

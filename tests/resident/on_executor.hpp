@@ -201,4 +201,24 @@ inline std::vector<std::unique_ptr<TestedExecutor>> all_orders() {
   return out;
 }
 
+/// The matrices at x of every Hessian that has blocks, at each of its levels. tolerance: relative.
+inline void expect_every_matrix(OnExecutor& resident, CpuElements& cpu, const Positions& x,
+                                double tolerance) {
+  for (const StepHessian choice :
+       {StepHessian::clamped, StepHessian::absolute, StepHessian::exact_or_clamped, StepHessian::blend}) {
+    cpu.linearise(x, choice);
+    resident.linearise(x);
+    HessianLevel level({choice});
+    for (;;) {
+      cpu.sum(TermSet::all(), choice, level, {});
+      resident.fill(TermSet::all(), resident::hessian_request(choice, level.t(), level.threshold(), nullptr));
+      const Difference found = compare(resident, cpu);
+      EXPECT_GT(found.n_nonzero, 10);
+      EXPECT_LE(found.relative, tolerance) << to_string(choice) << " " << level.t();
+      if (level.last()) break;
+      level.raise(2);
+    }
+  }
+}
+
 }  // namespace bb::test

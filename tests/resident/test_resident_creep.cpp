@@ -48,6 +48,10 @@ std::vector<Case> all_cases() {
     m.cloth_tension = 3, m.cloth_compression = 1, m.cloth_tension_growing = 1;
     m.cloth_yield = 0.01, m.cloth_creep = 5, m.shrink_keys = {{0, 1}, {1, 0.7}};
   });
+  add("triangles that shrink and creep", "membrane", [](Material& m) {
+    m.model = "arap", m.youngs = 20, m.membrane_yield = 0.01, m.membrane_creep = 5;
+    m.shrink_keys = {{0, 1}, {1, 0.7}};
+  });
   return out;
 }
 
@@ -100,7 +104,10 @@ struct Both {
   }
 };
 
-double tolerance_of(const Case& of) { return std::string(of.term) == "hinges" ? rounding : 0; }
+double tolerance_of(const Case& of) {
+  const bool same = std::string(of.term) != "hinges" && test::TestedExecutor::calls_library_of_host();
+  return same ? 0 : rounding;
+}
 
 TEST(ResidentCreep, FollowsFromStepToStep) {
   for (const Case& one : all_cases()) {
@@ -130,6 +137,36 @@ TEST(ResidentCreep, FollowsFromStepToStep) {
   }
 }
 
+TEST(ResidentCreep, HasEveryMatrixOfTheTerms) {
+  for (const Case& one : all_cases()) {
+    SCOPED_TRACE(one.name);
+    Both both(one.scene);
+    const Positions x = strained(one.scene, 0.05);
+    both.linearise(x);
+    both.end_step(x);
+    both.begin_step(x);
+    expect_every_matrix(both.resident, both.cpu, strained(one.scene, 0.08), tolerance_of(one));
+  }
+}
+
+TEST(ResidentCreep, HasTheEnergiesOfATrial) {
+  for (const Case& one : all_cases()) {
+    SCOPED_TRACE(one.name);
+    Both both(one.scene);
+    both.linearise(strained(one.scene, 0.05));
+    const Positions to = strained(one.scene, 0.08);
+    ASSERT_TRUE(both.resident.evaluate(to));
+    both.resident.accept();
+    double energy = 0;
+    for (const auto& term : both.cpu.terms) {
+      term->evaluate(to);
+      for (const double e : term->families()[0].trial_energy) energy += e;
+    }
+    ASSERT_GT(energy, 1e-4);
+    EXPECT_NEAR(both.resident.energy(TermSet::all()).value(), energy, 1e-13 * energy);
+  }
+}
+
 // What is remembered goes from path to path.
 TEST(ResidentCreep, IsKept) {
   for (const Case& one : all_cases()) {
@@ -155,7 +192,8 @@ TEST(ResidentCreep, IsKept) {
     fresh.begin_step(x);
     both.linearise(x);
     fresh.linearise(x);
-    EXPECT_EQ(fresh.resident.gradient(), both.resident.gradient());
+    EXPECT_LE(largest(fresh.resident.gradient() - both.resident.gradient()),
+              tolerance_of(one) * largest(both.resident.gradient()));
     EXPECT_LE(largest(fresh.cpu.gradient - both.cpu.gradient),
               tolerance_of(one) * largest(both.cpu.gradient));
     fresh.expect_same(tolerance_of(one));
