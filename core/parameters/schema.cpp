@@ -52,6 +52,7 @@ Json rule_schema(const Rule& rule) {
       put_size(rule, "minLength", "maxLength", out);
       return out;
     case Kind::word:
+      if (rule.list) break;
       return rule.names ? Json{{"type", "string"}} : Json{{"enum", rule.words()}};
     case Kind::words:
       out = array_of(Kind::word, rule, 0);
