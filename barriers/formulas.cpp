@@ -34,7 +34,9 @@ std::string python() {
   return given && *given ? given : BB_SOURCE_DIR "/.venv/bin/python";
 }
 
-Answer refused(std::string found, std::string allowed) { return {{}, std::move(found), std::move(allowed), {}}; }
+Answer refused(std::string found, std::string allowed) {
+  return {{}, std::move(found), std::move(allowed), {}};
+}
 
 /// Runs analysis/formula. Errors: none, they are answers.
 Answer ask(const std::string& text) {
@@ -51,13 +53,14 @@ Answer ask(const std::string& text) {
       end == std::string::npos ? "" : done.out.substr(done.out.rfind('\n', end) + 1, end + 1);
   const json answer = json::parse(last, nullptr, false);
   if (done.code != 0 || !answer.is_object()) {
-    return refused(fmt::format("a formula that \"{}\" gave no answer to: exit code {}, {}", program, done.code,
-                               shortened(last)),
+    return refused(fmt::format("a formula that \"{}\" gave no answer to: exit code {}, {}", program,
+                               done.code, shortened(last)),
                    environment);
   }
   if (answer.contains("found")) return refused(answer.at("found"), answer.at("allowed"));
   Plugin plugin = load_plugin(answer.at("library"));
-  FormulaShape out{plugin.shapes.at(0), answer.at("label"), answer.at("library"), answer.at("library_sha256")};
+  FormulaShape out{plugin.shapes.at(0), answer.at("label"), answer.at("library"),
+                   answer.at("library_sha256")};
   out.shape.name = std::string(formula_prefix) + answer.at("formula").get<std::string>();
   out.shape.doc = "a formula";
   return {std::move(out), {}, {}, answer.at("at_zero")};
@@ -108,7 +111,6 @@ FormulaShape require_formula(std::string_view text, const std::optional<std::str
 Rule shape_rule() {
   Rule rule = name_in(shape_names);
   rule.list = [](const json&) { return formula_list(); };
-  rule.or_text = "an object with a formula";
   return rule;
 }
 

@@ -35,7 +35,10 @@ def check(library: Path, terms: Terms) -> dict[str, float]:
                 worst[name] = max(worst[name], error)
                 if name != "b" and not error <= MOST_ERROR:
                     found = f"{name} off by a factor of {error:.1g} in double precision at d = {float(u):.6g} d_hat"
-                    raise FormulaError(found, f"a formula that keeps {MOST_ERROR:g}: written in (d_hat - d), say, without differences of near numbers")
+                    raise FormulaError(
+                        found,
+                        f"a formula that keeps {MOST_ERROR:g}: written in (d_hat - d), say, without differences of near numbers",
+                    )
     return worst
 
 

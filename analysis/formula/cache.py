@@ -59,7 +59,9 @@ def label_of(formula: Formula) -> str:
 def command() -> list[str]:
     """The compiler of the system and its flags: those of the program, which decide bits and speed."""
     compiler = shlex.split(os.environ.get("CXX") or "c++")
-    flags = "-std=c++20 -O2 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-math -DEIGEN_DONT_VECTORIZE"
+    flags = (
+        "-std=c++20 -O2 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-math -DEIGEN_DONT_VECTORIZE"
+    )
     march = ["-march=x86-64-v3"] if _runs_v3() else []
     return [*compiler, *flags.split(), *march, "-shared", "-fPIC", "-s", f"-I{ROOT}", "-isystem", EIGEN]
 
@@ -83,7 +85,9 @@ def key_of(formula: Formula, words: list[str]) -> str:
 
 def _version(compiler: str) -> str:
     try:
-        return subprocess.run([compiler, "--version"], check=True, capture_output=True, text=True, timeout=30).stdout
+        return subprocess.run(
+            [compiler, "--version"], check=True, capture_output=True, text=True, timeout=30
+        ).stdout
     except (OSError, subprocess.SubprocessError) as error:
         allowed = "a C++ compiler as c++, or named by the variable CXX (Debian: apt-get install g++)"
         raise FormulaError(f'no compiler "{compiler}" ({error})', allowed) from None
@@ -111,22 +115,37 @@ def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[
             there = Path(name)
             (there / "formula.cpp").write_text(source)
             _compile(words, there)
-            about = {**about, "error_rel": judge(there / "formula.so"), "library_sha256": digests.of_file(there / "formula.so")}
+            about = {
+                **about,
+                "error_rel": judge(there / "formula.so"),
+                "library_sha256": digests.of_file(there / "formula.so"),
+            }
             (there / "formula.json").write_text(json.dumps(about, indent=1) + "\n")
             for suffix in ("cpp", "so", "json"):  # the JSON last: it says that the others are there
                 (there / f"formula.{suffix}").replace(place / f"{key}.{suffix}")
     except OSError as error:
-        raise FormulaError(f"the folder {place} ({error})", "a folder to write to, or another in BARRIERBENCH_CACHE") from None
+        raise FormulaError(
+            f"the folder {place} ({error})", "a folder to write to, or another in BARRIERBENCH_CACHE"
+        ) from None
     return Compiled(place / f"{key}.so", about)
 
 
 def _compile(words: list[str], there: Path) -> None:
     try:
         done = subprocess.run(
-            [*words, "-o", "formula.so", "formula.cpp"], check=False, cwd=there, capture_output=True, text=True, timeout=SECONDS_TO_COMPILE
+            [*words, "-o", "formula.so", "formula.cpp"],
+            check=False,
+            cwd=there,
+            capture_output=True,
+            text=True,
+            timeout=SECONDS_TO_COMPILE,
         )
     except subprocess.TimeoutExpired:
-        raise FormulaError(f"a compiler that takes more than {SECONDS_TO_COMPILE} s", "a shorter formula") from None
+        raise FormulaError(
+            f"a compiler that takes more than {SECONDS_TO_COMPILE} s", "a shorter formula"
+        ) from None
     if done.returncode != 0:
         first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[:200])
-        raise FormulaError(f"a compiler that refuses the formula: {first}", f"a compiler of C++20 ({shlex.join(words)})")
+        raise FormulaError(
+            f"a compiler that refuses the formula: {first}", f"a compiler of C++20 ({shlex.join(words)})"
+        )

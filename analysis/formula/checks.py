@@ -65,7 +65,9 @@ def _check_poles(b: sp.Expr) -> None:
             continue
         inside = sorted(root for root in _roots(base) if 0 < root < 1)
         if inside:
-            raise FormulaError(f"a division by 0 at d = {_number(inside[0])} d_hat", "no division by 0 in (0, d_hat)")
+            raise FormulaError(
+                f"a division by 0 at d = {_number(inside[0])} d_hat", "no division by 0 in (0, d_hat)"
+            )
 
 
 def _roots(base: sp.Expr) -> list:
@@ -77,7 +79,10 @@ def _roots(base: sp.Expr) -> list:
     points = grid()
     signs = [(u, mpmath.sign(mpmath.re(value(u)))) for u in points]
     changes = [(a, b) for (a, left), (b, right) in zip(signs, signs[1:], strict=False) if left != right]
-    return [_first(a, b, lambda u, was=mpmath.sign(mpmath.re(value(a))): mpmath.sign(mpmath.re(value(u))) != was) for a, b in changes]
+    return [
+        _first(a, b, lambda u, was=mpmath.sign(mpmath.re(value(a))): mpmath.sign(mpmath.re(value(u))) != was)
+        for a, b in changes
+    ]
 
 
 def _first(good: mpmath.mpf, bad: mpmath.mpf, is_bad: Callable) -> mpmath.mpf:
@@ -143,5 +148,7 @@ def _limit(term: sp.Expr, at: int, side: str, name: str) -> float:
     if limit in (sp.oo, -sp.oo):
         return math.copysign(math.inf, 1 if limit == sp.oo else -1)
     if value is None or value.imag != 0:
-        raise FormulaError(f"no limit of {name} at d = {at} d_hat", "a formula whose limits exist at 0 and d_hat")
+        raise FormulaError(
+            f"no limit of {name} at d = {at} d_hat", "a formula whose limits exist at 0 and d_hat"
+        )
     return value.real

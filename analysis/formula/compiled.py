@@ -26,9 +26,16 @@ def compiled(text: str, declared: str | None = None) -> cache.Compiled:
 
 def _made(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
     try:
-        from . import accuracy, checks, source, symbolic  # of sympy, which a formula of the cache does not need
+        from . import (
+            accuracy,
+            checks,
+            source,
+            symbolic,
+        )  # of sympy, which a formula of the cache does not need
     except ImportError as error:
-        raise FormulaError(f"no Python package {error.name}", "the environment that ./bench setup makes") from None
+        raise FormulaError(
+            f"no Python package {error.name}", "the environment that ./bench setup makes"
+        ) from None
     with _within(SECONDS_TO_CHECK):
         terms = symbolic.terms_of(formula)
         ends = checks.check(terms, None)

@@ -54,7 +54,9 @@ def read(text: str) -> Formula:
         tree = ast.parse(source, mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
         at = places[min(max((getattr(error, "offset", 1) or 1) - 1, 0), len(places) - 1)]
-        raise FormulaError(f"{text!r}, which breaks off at character {at + 1}", f"a formula of {SYMBOLS}") from None
+        raise FormulaError(
+            f"{text!r}, which breaks off at character {at + 1}", f"a formula of {SYMBOLS}"
+        ) from None
     found = _Reader(text, places).unit(tree)
     if found.power != 2:
         raise FormulaError(f"the unit {_unit_text(found.power)}", "m^2: b(s d; s d_hat) = s^2 b(d; d_hat)")
@@ -74,7 +76,15 @@ def _as_python(text: str) -> tuple[str, list[int]]:
 
 
 def _unit_text(power: Fraction) -> str:
-    return "1" if power == 0 else "m" if power == 1 else f"m^{power}" if power.denominator == 1 else f"m^({power})"
+    return (
+        "1"
+        if power == 0
+        else "m"
+        if power == 1
+        else f"m^{power}"
+        if power.denominator == 1
+        else f"m^({power})"
+    )
 
 
 class _Renamed(ast.NodeTransformer):
@@ -98,12 +108,16 @@ class _Reader:
             return self.of_name(node)
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
             inner = self.unit(node.operand)
-            return inner._replace(value=-inner.value) if isinstance(node.op, ast.USub) and inner.value is not None else inner
+            return (
+                inner._replace(value=-inner.value)
+                if isinstance(node.op, ast.USub) and inner.value is not None
+                else inner
+            )
         if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
             return self.of_operator(node)
         if isinstance(node, ast.Call):
             return self.of_call(node)
-        raise self.refuse(node, f"\"{ast.unparse(node)[:40]}\"", SYMBOLS)
+        raise self.refuse(node, f'"{ast.unparse(node)[:40]}"', SYMBOLS)
 
     def of_number(self, node: ast.Constant) -> Unit:
         value = node.value
@@ -127,7 +141,10 @@ class _Reader:
             if left.power != right.power:
                 found = f"the sum of {_unit_text(left.power)} and {_unit_text(right.power)}"
                 raise self.refuse(node, found, "two terms of one unit: d and d_hat are m")
-            return Unit(left.power, both and (both[0] + both[1] if isinstance(node.op, ast.Add) else both[0] - both[1]))
+            return Unit(
+                left.power,
+                both and (both[0] + both[1] if isinstance(node.op, ast.Add) else both[0] - both[1]),
+            )
         if isinstance(node.op, ast.Mult):
             return Unit(left.power + right.power, both and both[0] * both[1])
         if isinstance(node.op, ast.Div):
@@ -140,20 +157,28 @@ class _Reader:
         p = exponent.value
         if p is None or abs(p) > MOST_EXPONENT or p.denominator > MOST_EXPONENT:
             found = f"the exponent {ast.unparse(node.right)[:40].replace(' ** ', '^')}"
-            raise self.refuse(node.right, found, f"a number from -{MOST_EXPONENT} to {MOST_EXPONENT}, such as 3, -1 or 3/2")
+            raise self.refuse(
+                node.right, found, f"a number from -{MOST_EXPONENT} to {MOST_EXPONENT}, such as 3, -1 or 3/2"
+            )
         if base.value is None:
             return Unit(base.power * p, None)
         if base.value <= 0 or p.denominator != 1:
-            raise self.refuse(node, f"a power of the number {float(base.value):g}", "a whole power of a number > 0")
+            raise self.refuse(
+                node, f"a power of the number {float(base.value):g}", "a whole power of a number > 0"
+            )
         value = base.value ** int(p)
         if not SMALLEST <= value <= LARGEST:
-            raise self.refuse(node, f"the number {float(base.value):g}^{int(p)}", f"{SMALLEST:g} to {LARGEST:g}")
+            raise self.refuse(
+                node, f"the number {float(base.value):g}^{int(p)}", f"{SMALLEST:g} to {LARGEST:g}"
+            )
         return Unit(Fraction(0), value)
 
     def of_call(self, node: ast.Call) -> Unit:
         known = isinstance(node.func, ast.Name) and SAME.get(node.func.id, node.func.id) in FUNCTIONS
         if not known or len(node.args) != 1 or node.keywords:
-            raise self.refuse(node, f'the call "{ast.unparse(node)[:40]}"', f"one argument of ln, {', '.join(FUNCTIONS)}")
+            raise self.refuse(
+                node, f'the call "{ast.unparse(node)[:40]}"', f"one argument of ln, {', '.join(FUNCTIONS)}"
+            )
         inner = self.unit(node.args[0])
         if node.func.id == "sqrt":
             return Unit(inner.power / 2, None)

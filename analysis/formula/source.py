@@ -123,7 +123,12 @@ class _Printer(CXX17CodePrinter):
 def cpp(name: str, formula: str, terms: Terms, ends: Ends) -> str:
     """The source of the plugin whose shape is called `name`."""
     inverted = [sp.sympify(x).replace(_is_inverse, lambda x: INVERSE ** (-x.exp)) for x in terms.precise]
-    constant = {x: sp.Float(sp.N(x, 20), 20) for y in inverted for x in y.atoms(sp.Function) | y.atoms(sp.Pow) if not x.free_symbols}
+    constant = {
+        x: sp.Float(sp.N(x, 20), 20)
+        for y in inverted
+        for x in y.atoms(sp.Function) | y.atoms(sp.Pow)
+        if not x.free_symbols
+    }
     inverted = [x.xreplace(constant) for x in inverted]
     common, last = sp.cse(inverted, symbols=sp.numbered_symbols("c"), optimizations="basic")
     used = set().union(*(x.free_symbols for x in [*last, *(y for _, y in common)]))
@@ -154,7 +159,10 @@ def _is_inverse(x: sp.Expr) -> bool:
 
 def _is_rational(x: sp.Expr) -> bool:
     """Made of + - * / of numbers and symbols: four rows side by side have nothing else."""
-    return all(y.is_Symbol or y.is_Number or y.is_Add or y.is_Mul or y.is_Pow and y.exp.is_Integer for y in sp.preorder_traversal(x))
+    return all(
+        y.is_Symbol or y.is_Number or y.is_Add or y.is_Mul or y.is_Pow and y.exp.is_Integer
+        for y in sp.preorder_traversal(x)
+    )
 
 
 def _literal(x: float) -> str:

@@ -53,8 +53,8 @@ std::optional<double> number_in_text(std::string_view text) {
 
 std::vector<std::string> shape_names() {
   std::vector<std::string> names = all_shapes().names();
-  for (const ShapeFamily* family : families()) names.push_back(std::string(family->name) + ":A");
   names.push_back(std::string(formula_prefix) + "TEXT");
+  for (const ShapeFamily* family : families()) names.push_back(std::string(family->name) + ":A");
   return names;
 }
 

@@ -14,8 +14,8 @@ namespace bb {
 /// All shapes, built-ins first, in the order of registry.inc. Host only.
 Registry<Shape>& all_shapes();
 
-/// Every name that a shape can be asked by, for messages and help: those of all_shapes(), then NAME:A for each that has an
-/// exponent, then formula:TEXT.
+/// Every name that a shape can be asked by, for messages and help: those of all_shapes(), then formula:TEXT, then NAME:A
+/// for each that has an exponent.
 std::vector<std::string> shape_names();
 
 /// A shape by its name, by NAME:A with its exponent A, a number, or by formula:TEXT (barriers/formulas.hpp). Errors:

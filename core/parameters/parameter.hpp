@@ -51,7 +51,7 @@ struct Rule {
   bool names = false;                               // the words are names of a registry
   std::function<ParameterList(const nlohmann::json&)>
       list;              // of an object, which may decide by what it holds; of one in the place of a word
-  std::string or_text;   // object or word: what else may stand in its place; whoever reads it puts the first there
+  std::string or_text;   // object: what a string in its place names; whoever reads it puts an object there
   std::string computed;  // the default in words, where it depends on other settings
   bool required = false;
 };

@@ -75,7 +75,7 @@ Json rule_schema(const Rule& rule) {
       break;
   }
   out = schema_of(rule.list(nullptr));  // no object: what any of them may hold
-  if (!rule.or_text.empty()) out["type"] = {"string", "object"};
+  if (!rule.or_text.empty() || rule.kind == Kind::word) out["type"] = {"string", "object"};
   return out;
 }
 

@@ -50,7 +50,8 @@ constexpr AsFormula as_formulas[] = {{"log_as_formula", "-(d - d_hat)^2*log(d/d_
 void register_shapes() {
   for (const Shape& shape : all_shapes()) add_shape(shape.name, shape);
   try {
-    for (const AsFormula& one : as_formulas) add_shape(one.label, require_formula(one.text, {}, one.label).shape);
+    for (const AsFormula& one : as_formulas)
+      add_shape(one.label, require_formula(one.text, {}, one.label).shape);
   } catch (const ConfigError& error) {
     std::fprintf(stderr, "no formulas here: %s\n", error.what());
   }

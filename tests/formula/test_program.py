@@ -142,7 +142,7 @@ def test_eval_says_what_is_wrong(program):
 
 
 def test_a_card_has_no_formula(program):
-    done = bench(program, "check", BLOCK, "--set", setting({"formula": "(d - d_hat)^2"}), "--set", '/device="cpu_executor"')
+    done = bench(program, "check", BLOCK, "--set", setting({"formula": "(d - d_hat)^2"}), "--set", '/device="host"')
     assert done.returncode == 2 and "formula:(d - d_hat)^2" in done.stderr and "CPU path" in done.stderr
 
 
@@ -163,7 +163,7 @@ def test_a_cut_library_is_made_again(tmp_path, monkeypatch):
 
 
 def test_a_formula_that_double_precision_loses(tmp_path):
-    """1 - cos(x)^2 - sin(x)^2 is 0; its noise is no force."""
+    """exp(e) - 1 - e - e^2/2 is e^3/6, which nothing of 1 is left of near d_hat."""
     text = "d_hat^2*((1 - d/d_hat)^2 + 10^11*(exp(1 - d/d_hat) - 1 - (1 - d/d_hat) - (1 - d/d_hat)^2/2))/10^11"
     with pytest.raises(FormulaError, match="in double precision at d = "):
         compiled(text)
