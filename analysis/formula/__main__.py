@@ -1,5 +1,6 @@
-"""What the program starts when it meets a formula: a JSON object {"formula", "at_zero"} from the standard input, one
-to the standard output: name, label, library, library_sha256; or found and allowed of what is wrong.
+"""What the program starts when it meets a formula: a JSON object {"formula", "at_zero"} from the standard
+input, one to the standard output: name, label, library, library_sha256; or found and allowed of what is
+wrong.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ import sympy as sp
 
 from .checks import DIGITS, NAMES, grid
 from .grammar import FormulaError
-from .symbolic import U, Terms
+from .symbolic import Terms, U
 
 MOST_ERROR = 1e-6  # relative, of force and curvature between NEAR and 1 - NEAR
 NEAR = 1e-4
@@ -18,8 +18,8 @@ EVERY = 7  # points of the grid
 
 
 def check(library: Path, terms: Terms) -> dict[str, float]:
-    """Largest relative error of b, b', b'' for u from 1e-4 to 1 - 1e-4. Errors: FormulaError where force or curvature
-    is lost to cancellation.
+    """Largest relative error of b, b', b'' for u from 1e-4 to 1 - 1e-4. Errors: FormulaError where force or
+    curvature is lost to cancellation.
     """
     call = _call(library)
     worst = dict.fromkeys(NAMES, 0.0)
@@ -34,10 +34,11 @@ def check(library: Path, terms: Terms) -> dict[str, float]:
                 error = float(abs((mpmath.mpf(value) - true) / true)) if true != 0 else abs(value)
                 worst[name] = max(worst[name], error)
                 if name != "b" and not error <= MOST_ERROR:
-                    found = f"{name} off by a factor of {error:.1g} in double precision at d = {float(u):.6g} d_hat"
                     raise FormulaError(
-                        found,
-                        f"a formula that keeps {MOST_ERROR:g}: written in (d_hat - d), say, without differences of near numbers",
+                        f"{name} off by a factor of {error:.1g} in double precision at"
+                        f" d = {float(u):.6g} d_hat",
+                        f"a formula that keeps {MOST_ERROR:g}: without differences of near numbers, in"
+                        " (d_hat - d), say",
                     )
     return worst
 

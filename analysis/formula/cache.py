@@ -1,5 +1,5 @@
-"""The compiled formulas of this user: made once, found by the hash of all that makes them. A library is put in
-place by renaming, and its JSON, which says that it is whole, after it.
+"""The compiled formulas of this user: made once, found by the hash of all that makes them. A library is put
+in place by renaming, and its JSON, which says that it is whole, after it.
 """
 
 from __future__ import annotations
@@ -75,8 +75,8 @@ def _runs_v3() -> bool:
 
 
 def key_of(formula: Formula, words: list[str]) -> str:
-    """Of the formula, this code, the headers, the command, and the compiler's own version. Errors: FormulaError
-    where there is no compiler.
+    """Of the formula, this code, the headers, the command, and the compiler's own version. Errors:
+    FormulaError where there is no compiler.
     """
     code = sorted(Path(__file__).parent.glob("*.py"))
     files = [digests.of_file(path) for path in [*code, *(ROOT / header for header in HEADERS)]]
@@ -105,8 +105,8 @@ def find(key: str) -> Compiled | None:
 
 
 def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[Path], dict]) -> Compiled:
-    """Compiles and keeps, with what `judge` says of the library. Errors: FormulaError with what the compiler said,
-    where nothing can be written, and of `judge`.
+    """Compiles and keeps, with what `judge` says of the library. Errors: FormulaError with what the
+    compiler said, where nothing can be written, and of `judge`.
     """
     place = folder()
     try:

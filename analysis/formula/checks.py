@@ -1,6 +1,6 @@
-"""What a formula has to be before it is a barrier: defined, positive, pushing, convex on (0, d_hat), without a jump
-of value or force at d_hat, and at 0 what it declares. Limits are exact (sympy); signs are looked for on a grid in 40
-digits and poles of rational parts by exact roots.
+"""What a formula has to be before it is a barrier: defined, positive, pushing, convex on (0, d_hat),
+without a jump of value or force at d_hat, and at 0 what it declares. Limits are exact (sympy); signs are
+looked for on a grid in 40 digits and poles of rational parts by exact roots.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import mpmath
 import sympy as sp
 
 from .grammar import FormulaError
-from .symbolic import HIGHEST, U, Terms
+from .symbolic import HIGHEST, Terms, U
 
 INFINITE, FINITE = "infinite", "finite"
 DIGITS = 40
@@ -22,8 +22,8 @@ UNITS = ("d_hat^2", "d_hat", "1")
 
 
 class Ends(NamedTuple):
-    """Limits: at 0 those of b, b', b'' for d_hat = 1 (inf where there is none), and at d_hat the number of continuous
-    derivatives.
+    """Limits: at 0 those of b, b', b'' for d_hat = 1 (inf where there is none), and at d_hat the number of
+    continuous derivatives.
     """
 
     at_zero: tuple[float, float, float]
@@ -76,13 +76,14 @@ def _roots(base: sp.Expr) -> list:
     if top.is_polynomial(U):
         return [mpmath.mpf(str(sp.N(root, DIGITS))) for root in sp.real_roots(sp.Poly(top, U))]
     value = sp.lambdify(U, base, "mpmath")
+
+    def sign(u: mpmath.mpf) -> mpmath.mpf:
+        return mpmath.sign(mpmath.re(value(u)))
+
     points = grid()
-    signs = [(u, mpmath.sign(mpmath.re(value(u)))) for u in points]
-    changes = [(a, b) for (a, left), (b, right) in zip(signs, signs[1:], strict=False) if left != right]
-    return [
-        _first(a, b, lambda u, was=mpmath.sign(mpmath.re(value(a))): mpmath.sign(mpmath.re(value(u))) != was)
-        for a, b in changes
-    ]
+    signs = [sign(u) for u in points]
+    changes = [k for k in range(1, len(points)) if signs[k] != signs[k - 1]]
+    return [_first(points[k - 1], points[k], lambda u, k=k: sign(u) != signs[k - 1]) for k in changes]
 
 
 def _first(good: mpmath.mpf, bad: mpmath.mpf, is_bad: Callable) -> mpmath.mpf:

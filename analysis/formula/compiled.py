@@ -13,7 +13,9 @@ SECONDS_TO_CHECK = 60
 
 
 def compiled(text: str, declared: str | None = None) -> cache.Compiled:
-    """declared: what `at_zero` says, or None. Cost: 0.1 s from the cache, else some seconds. Errors: FormulaError."""
+    """declared: what `at_zero` says, or None. Cost: 0.1 s from the cache, else some seconds. Errors:
+    FormulaError.
+    """
     formula = read(text)
     words = cache.command()
     key = cache.key_of(formula, words)

@@ -1,5 +1,6 @@
-"""Reads a formula by a whitelist: numbers, d, d_hat, pi, + - * / ^, and the functions named here. Nothing of the
-text is ever evaluated. Imports nothing but the standard library, so that a formula of the cache costs no library.
+"""Reads a formula by a whitelist: numbers, d, d_hat, pi, + - * / ^, and the functions named here. Nothing
+of the text is ever evaluated. Imports nothing but the standard library, so that a formula of the cache
+costs no library.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ class Unit(NamedTuple):
 
 
 def read(text: str) -> Formula:
-    """Errors: FormulaError for anything but the symbols allowed, an exponent that is no number, and a unit that is
-    not m^2.
+    """Errors: FormulaError for anything but the symbols allowed, an exponent that is no number, and a unit
+    that is not m^2.
     """
     if not text.strip() or len(text) > MOST_CHARACTERS:
         raise FormulaError(f"{len(text)} characters", f"1 to {MOST_CHARACTERS}")

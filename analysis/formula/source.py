@@ -1,5 +1,5 @@
-"""C++ of a formula: a plugin (core/plugin/barrierbench_plugin.h) whose shape is made like a built-in one, from
-u, e, l (barriers/shapes/normalized_gap.hpp), with common subexpressions computed once.
+"""C++ of a formula: a plugin (core/plugin/barrierbench_plugin.h) whose shape is made like a built-in one,
+from u, e, l (barriers/shapes/normalized_gap.hpp), with common subexpressions computed once.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.printing.cxx import CXX17CodePrinter
 
 from .checks import Ends
-from .symbolic import E, L, U, Terms
+from .symbolic import L, Terms, U
 
 INVERSE = sp.Symbol("r", positive=True)  # 1/u
 MOST_FACTORS = 8  # of a power that is written as a product

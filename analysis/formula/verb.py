@@ -12,9 +12,10 @@ from .grammar import SYMBOLS, FormulaError
 DOC = f"""
 The formula is b in m^2 of the gap d and of d_hat (m), made of
 {SYMBOLS}.
-It is checked (unit, poles, sign, force, convexity, limits at d_hat and 0), differentiated, compiled and kept in
-BARRIERBENCH_CACHE or ~/.cache/barrierbench. In a config: "shape": {{"formula": "...", "at_zero": "infinite"}},
-or the name formula:TEXT wherever a shape has a name. docs/jobs/add-a-barrier.md.
+It is checked (unit, poles, sign, force, convexity, limits at d_hat and 0), differentiated, compiled and kept
+in BARRIERBENCH_CACHE or ~/.cache/barrierbench. In a config:
+"shape": {{"formula": "...", "at_zero": "infinite"}}, or the name formula:TEXT wherever a shape has a name.
+docs/jobs/add-a-barrier.md.
 """
 
 
@@ -53,7 +54,7 @@ def card(about: dict) -> str:
         f"at d_hat    {about['smoothness_at_d_hat']} continuous derivatives",
         "with u = d/d_hat, e = 1 - u, l = -ln u:",
         *(
-            f"  {name:<4}= {unit}({terms[name].replace('**', '^')})   relative error in double {error[name]:.1e}"
+            f"  {name:<4}= {unit}({terms[name].replace('**', '^')})   relative error {error[name]:.1e}"
             for name, unit in zip(terms, ("d_hat^2 ", "d_hat ", ""), strict=True)
         ),
     ]

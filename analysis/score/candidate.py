@@ -46,8 +46,8 @@ def fixed(label: str, shape: str) -> dict:
 
 def candidate(text: str) -> Candidate:
     """Errors: UserError for what is none of them, and for a formula that is no barrier."""
-    file, _, shape = text.partition(".so")
-    if Path(f"{file}.so").is_file() and _ == ".so":
+    file, suffix, shape = text.partition(".so")
+    if suffix and Path(f"{file}.so").is_file():
         return _of_plugin(f"{file}.so", shape.removeprefix(":"))
     if NAME.fullmatch(text):
         return _of_name(text)

@@ -1,5 +1,5 @@
-"""Where a barrier is better and where worse than others, from rows at equal target, starts and hard cases. One
-number decides nothing: a barrier that does not come to the end somewhere is said first.
+"""Where a barrier is better and where worse than others, from rows at equal target, starts and hard cases.
+One number decides nothing: a barrier that does not come to the end somewhere is said first.
 """
 
 from __future__ import annotations
@@ -86,8 +86,8 @@ def _logs(rows: list[dict], metric: str, theta: float, label: str, rival: str) -
 
 
 def at_equal_gap(rows: list[dict], label: str) -> list[tuple[str, float, Ratio]]:
-    """metric, gap over d_hat, candidate over log, each along its own path over theta: geometric mean over the scenes in
-    which both come down to that gap.
+    """metric, gap over d_hat, candidate over log, each along its own path over theta: geometric mean over
+    the scenes in which both come down to that gap.
     """
     found = []
     for metric in COSTS:
@@ -137,12 +137,14 @@ def decides(rows: list[dict], starts: list[dict], cases: list[dict], label: str)
     mine = next(one for one in starts if one["method"] == label)
     if mine["ok"] < mine["of"]:
         said.append(
-            f"{mine['of'] - mine['ok']} of {mine['of']} jittered starts do not end ok: {', '.join(mine['others'])}."
+            f"{mine['of'] - mine['ok']} of {mine['of']} jittered starts do not end ok:"
+            f" {', '.join(mine['others'])}."
         )
     found = [one for one in comparisons(rows, label) if one.verdict != EVEN and one.metric not in CHEAP]
     for one in sorted(found, key=lambda one: -abs(math.log(one.ratio)))[:4]:
         said.append(
-            f"{METRICS[one.metric].capitalize()}: {one.ratio:.2f} times those of {one.rival} at theta {one.theta:g}"
+            f"{METRICS[one.metric].capitalize()}: {one.ratio:.2f} times those of {one.rival} at theta"
+            f" {one.theta:g}"
             f" ({one.low:.2f} to {one.high:.2f} over {one.scenes} scenes): {one.verdict}."
         )
     return said or ["Nothing here tells it from the others by more than 10 % in every scene."]

@@ -122,8 +122,8 @@ def rows(spec: Spec, of: Candidate, records: dict[str, tuple[dict, Path] | None]
 
 
 def row_ns(record: dict, folder: Path) -> float | None:
-    """Nanoseconds of one thread for a contact row: barrier, local gradient and Hessian, over all iterations. None below
-    LEAST_ROWS rows, where the first touch of memory decides.
+    """Nanoseconds of one thread for a contact row: barrier, local gradient and Hessian, over all
+    iterations. None below LEAST_ROWS rows, where the first touch of memory decides.
     """
     seconds = (record["summary"].get("time") or {}).get("contact_terms_s")
     contacts = sum(sum(line["contacts"].values()) for line in read_trace(record, folder))
@@ -171,7 +171,9 @@ def _of_test(test: Test, of: Candidate) -> list[Formulation]:
 
 
 def _of_equal_capacity(of: Candidate) -> float:
-    """Factor on a stiffness of the cubic at which the candidate carries at most as much; 1 where it carries any load."""
+    """Factor on a stiffness of the cubic at which the candidate carries at most as much; 1 where it carries
+    any load.
+    """
     shape = of.formulation.get("shape")
     if shape is None:
         return 1.0

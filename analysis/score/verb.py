@@ -21,10 +21,10 @@ from .page import page
 SPEC = ROOT / "configs" / "score" / "default.json"
 SCHEMA = "barrierbench.score/1"
 DOC = """
-WHAT is a formula, FILE.so (FILE.so:SHAPE where a plugin has several), a formulation of configs/formulations or a
-shape of ./bench list shapes. It is matched at theta 0.5, 0.1 and 0.01 in three small scenes beside log, quadratic,
-cubic and a consistent stiffness, started from five jittered states, and put through eleven hard cases of the stress
-suite. Writes score.json and score.html into the folder. Finished runs are kept.
+WHAT is a formula, FILE.so (FILE.so:SHAPE where a plugin has several), a formulation of configs/formulations
+or a shape of ./bench list shapes. It is matched at theta 0.5, 0.1 and 0.01 in three small scenes beside log,
+quadratic, cubic and a consistent stiffness, started from five jittered states, and put through twelve hard
+cases of the stress suite. Writes score.json and score.html into the folder. Finished runs are kept.
 """
 
 
