@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from statistics import median
 
 from ..gap_map.judge import Ratio, ratio_at
 from .candidate import RIVALS
@@ -18,9 +19,7 @@ METRICS = {
     "bj_p95": "the same after block-Jacobi scaling",
     "off_target": "reached gap off its target, as a factor",
     "spread": "median gap over that of the deepest 5 % of the load",
-    "row_ns": "nanoseconds a contact row (barrier, gradient, Hessian)",
 }  # the smaller the better
-CHEAP = ("row_ns",)  # measured on a machine that may be busy
 COSTS = ("newton", "pcg", "cond_p95", "bj_p95")
 GAPS = (0.8, 0.5, 0.2, 0.1, 0.05)  # over d_hat, at which it is held against the log
 BETTER, WORSE, EVEN = "better", "worse", "even"
@@ -98,6 +97,17 @@ def at_equal_gap(rows: list[dict], label: str) -> list[tuple[str, float, Ratio]]
     return found
 
 
+def row_times(rows: list[dict]) -> dict[str, tuple[float, int]]:
+    """method -> median over its runs of the nanoseconds of a contact row, and of how many runs. No verdict: a
+    machine that does something else beside it makes a single run many times slower.
+    """
+    found: dict[str, list[float]] = {}
+    for row in rows:
+        if row["row_ns"] is not None:
+            found.setdefault(row["shape"], []).append(row["row_ns"])
+    return {method: (median(of), len(of)) for method, of in found.items()}
+
+
 def failed(rows: list[dict], label: str) -> list[str]:
     """Matched runs that did not end ok."""
     return [
@@ -140,7 +150,7 @@ def decides(rows: list[dict], starts: list[dict], cases: list[dict], label: str)
             f"{mine['of'] - mine['ok']} of {mine['of']} jittered starts do not end ok:"
             f" {', '.join(mine['others'])}."
         )
-    found = [one for one in comparisons(rows, label) if one.verdict != EVEN and one.metric not in CHEAP]
+    found = [one for one in comparisons(rows, label) if one.verdict != EVEN]
     for one in sorted(found, key=lambda one: -abs(math.log(one.ratio)))[:4]:
         said.append(
             f"{METRICS[one.metric].capitalize()}: {one.ratio:.2f} times those of {one.rival} at theta"

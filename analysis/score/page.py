@@ -11,7 +11,7 @@ from string import Template
 from ..judge.page import table
 from ..style import WIDE_IN, plt
 from .candidate import RIVALS
-from .judge import METRICS, at_equal_gap, comparisons, value
+from .judge import METRICS, at_equal_gap, comparisons, row_times, value
 
 HERE = Path(__file__).resolve().parent
 SHOWN = ("newton", "pcg", "cond_p95")  # of the figure
@@ -28,6 +28,7 @@ def page(score: dict) -> str:
         figure=_figure(rows, label),
         compared=_compared(rows, label),
         equal=_equal(rows, label),
+        times=_times(rows),
         rows=_rows(rows, label),
         starts=_starts(score["starts"]),
         cases=_cases(score["hard_cases"], label),
@@ -78,6 +79,13 @@ def _equal(rows: list[dict], label: str) -> str:
         "Candidate over log at equal reached gap",
         ["", "gap/d_hat", "ratio", "scenes from, to", "scenes"],
         body,
+    )
+
+
+def _times(rows: list[dict]) -> str:
+    body = [[method, ns, runs] for method, (ns, runs) in row_times(rows).items()]
+    return table(
+        "Nanoseconds of a contact row: barrier, gradient, Hessian", ["method", "median", "runs"], body
     )
 
 

@@ -68,6 +68,7 @@ def main(argv: list[str]) -> int:
             vars(ratio) | {"metric": metric, "gap": gap}
             for metric, gap, ratio in judge.at_equal_gap(rows, of.label)
         ],
+        "row_ns": {method: ns for method, (ns, _) in judge.row_times(rows).items()},
         "rows": rows,
         "starts": starts,
         "hard_cases": cases,

@@ -54,6 +54,14 @@ def test_off_target_counts_in_both_directions():
     assert judge.value(made("new", outcome="timeout"), "newton") is None
 
 
+def test_one_slow_run_does_not_make_a_row_slow():
+    busy = rows()
+    for one, ns in zip((row for row in busy if row["shape"] == "log"), (100.0, None), strict=True):
+        one["row_ns"] = ns
+    busy += [made("log", "c", row_ns=110.0), made("log", "d", row_ns=9000.0)]
+    assert judge.row_times(busy)["log"] == (110.0, 3) and "row_ns" not in {one.metric for one in judge.comparisons(busy, "new")}
+
+
 @pytest.mark.parametrize("text, said", [("log", "held against"), ("nothing_like_it", "none of that name"), ("d_hat - d", "the unit m")])
 def test_what_cannot_be_scored_is_said(program, monkeypatch, text, said):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
