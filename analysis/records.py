@@ -58,8 +58,9 @@ def run_row(record: dict, run: str = "") -> dict:
 
 
 def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
-    """File and sha256 of every plugin of the run."""
+    """File and sha256 of every plugin of the run; formulas are no plugins that could be asked for."""
     plugins = record.get("provenance", {}).get("plugins") or []
+    plugins = [plugin for plugin in plugins if not plugin["name"].startswith("formula:")]
     return tuple((str((folder / plugin["file"]).resolve()), plugin["sha256"]) for plugin in plugins)
 
 

@@ -100,7 +100,9 @@ def figure(out: Path, runs: pd.DataFrame | None = None) -> list[Path]:
     """runs: Records.runs, whose shapes are drawn. A shape of a plugin that is gone is left out and said."""
     plugins = plugins_of(runs)
     known, asked = known_shapes(plugins), shapes_of(runs)
-    shapes = {name: pair for name, pair in asked.items() if pair[0] in known}
+    shapes = {
+        name: pair for name, pair in asked.items() if pair[0] in known or pair[0].startswith("formula:")
+    }
     for name in asked.keys() - shapes.keys():
         print(
             f"figures: the shape {name} of a run is not known to {program()} with its plugins; it is not"

@@ -173,7 +173,14 @@ def judge(row: Row, test: Test) -> Row:
     return row
 
 
-def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, limit_s: float) -> Row:
+def run_case(
+    test: Test,
+    formulation: Formulation,
+    case: Case,
+    folder: Path,
+    limit_s: float,
+    plugins: tuple[str, ...] = (),
+) -> Row:
     """One run, or its record if it is there. Raises UserError when the test itself is wrong."""
     place = folder / test.id / _folder(formulation.label) / _folder(case.label)
     spec = place / "spec.json"
@@ -188,6 +195,7 @@ def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, lim
             place / "runs",
             "--progress",
             "none",
+            plugins=list(plugins),
             timeout=CLOCK * limit_s,
             preexec_fn=lambda: _limit(limit_s),
         )
@@ -200,17 +208,19 @@ def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, lim
     if done.returncode != 0:
         return blank("crash", f"the program ended with {done.returncode}: {_told(done.stderr)}")
     try:
-        return row_of(read_record(_record(spec, place / "runs")), test.id, case.label, formulation.label)
+        return row_of(
+            read_record(_record(spec, place / "runs", plugins)), test.id, case.label, formulation.label
+        )
     except RecordError as error:
         return blank("crash", str(error))
 
 
-def _record(spec: Path, folder: Path) -> Path:
+def _record(spec: Path, folder: Path, plugins: tuple[str, ...] = ()) -> Path:
     """The record of this very config; those of earlier versions of the case may lie beside it."""
     made = sorted(folder.glob("*/run.json"))
     if len(made) == 1:
         return made[0]
-    told = run_sweep(spec, folder, "--dry-run").stdout.strip()
+    told = run_sweep(spec, folder, "--dry-run", plugins=list(plugins)).stdout.strip()
     return Path(told or folder) / "run.json"
 
 

@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "barriers/formulas.hpp"
 #include "barriers/shapes/shape_family.hpp"
 #include "core/barrier/folded_barrier.hpp"
 
@@ -52,12 +53,14 @@ std::optional<double> number_in_text(std::string_view text) {
 
 std::vector<std::string> shape_names() {
   std::vector<std::string> names = all_shapes().names();
+  names.push_back(std::string(formula_prefix) + "TEXT");
   for (const ShapeFamily* family : families()) names.push_back(std::string(family->name) + ":A");
   return names;
 }
 
 Shape require_shape(std::string_view name, std::string_view where) {
   if (const Shape* shape = all_shapes().find(name)) return *shape;
+  if (is_formula(name)) return require_formula(name.substr(formula_prefix.size()), {}, where).shape;
   for (const ShapeFamily* family : families()) {
     const std::size_t colon = family->name.size();
     if (!name.starts_with(family->name) || name.size() == colon || name[colon] != ':') continue;

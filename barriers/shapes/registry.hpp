@@ -14,12 +14,13 @@ namespace bb {
 /// All shapes, built-ins first, in the order of registry.inc. Host only.
 Registry<Shape>& all_shapes();
 
-/// Every name that a shape can be asked by, for messages and help: those of all_shapes(), then NAME:A for each that has an
-/// exponent.
+/// Every name that a shape can be asked by, for messages and help: those of all_shapes(), then formula:TEXT, then NAME:A
+/// for each that has an exponent.
 std::vector<std::string> shape_names();
 
-/// A shape by its name, or by NAME:A with its exponent A, a number. Errors: ConfigError at `where` with the names allowed
-/// and the nearest one, or the exponents allowed.
+/// A shape by its name, by NAME:A with its exponent A, a number, or by formula:TEXT (barriers/formulas.hpp). Errors:
+/// ConfigError at `where` with the names allowed and the nearest one, the exponents allowed, or what is wrong with a
+/// formula.
 Shape require_shape(std::string_view name, std::string_view where = "shape");
 
 /// The same; nothing where require_shape throws.

@@ -25,14 +25,15 @@ bool size_fits(const Rule& rule, std::size_t size) {
   return size >= rule.min_size && (rule.max_size == 0 || size <= rule.max_size);
 }
 
-/// Whether it is one of the words; NAME:A stands for NAME with any number behind the colon, which whoever takes the
-/// word judges.
+/// Whether it is one of the words; NAME:A and NAME:TEXT stand for NAME with anything behind the colon, which whoever
+/// takes the word judges.
 bool is_word(const std::string& found, const std::vector<std::string>& words) {
   const auto holds = [&words](const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
   };
   const std::size_t colon = found.find(':');
-  return holds(found) || (colon != std::string::npos && holds(found.substr(0, colon) + ":A"));
+  return holds(found) || (colon != std::string::npos &&
+                          (holds(found.substr(0, colon) + ":A") || holds(found.substr(0, colon) + ":TEXT")));
 }
 
 bool check_word(const json& value, const Rule& rule, const std::string& where,
@@ -119,7 +120,9 @@ bool check_value(json& value, const Rule& rule, const std::string& where,
       return (value.is_string() && size_fits(rule, value.get_ref<const std::string&>().size())) ||
              report(value, allowed_text(rule), where, violations);
     case Kind::word:
-      return check_word(value, rule, where, violations);
+      if (!rule.list || !value.is_object()) return check_word(value, rule, where, violations);
+      check_object(value, rule.list(value), where, violations);
+      return true;
     case Kind::object:
       if (!value.is_object()) return report(value, allowed_text(rule), where, violations);
       check_object(value, rule.list(value), where, violations);

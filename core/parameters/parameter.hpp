@@ -50,7 +50,7 @@ struct Rule {
   std::function<std::vector<std::string>()> words;  // asked when needed: plugins add names
   bool names = false;                               // the words are names of a registry
   std::function<ParameterList(const nlohmann::json&)>
-      list;              // of an object, which may decide by what it holds
+      list;              // of an object, which may decide by what it holds; of one in the place of a word
   std::string or_text;   // object: what a string in its place names; whoever reads it puts an object there
   std::string computed;  // the default in words, where it depends on other settings
   bool required = false;

@@ -52,6 +52,7 @@ Json rule_schema(const Rule& rule) {
       put_size(rule, "minLength", "maxLength", out);
       return out;
     case Kind::word:
+      if (rule.list) break;
       return rule.names ? Json{{"type", "string"}} : Json{{"enum", rule.words()}};
     case Kind::words:
       out = array_of(Kind::word, rule, 0);
@@ -74,7 +75,7 @@ Json rule_schema(const Rule& rule) {
       break;
   }
   out = schema_of(rule.list(nullptr));  // no object: what any of them may hold
-  if (!rule.or_text.empty()) out["type"] = {"string", "object"};
+  if (!rule.or_text.empty() || rule.kind == Kind::word) out["type"] = {"string", "object"};
   return out;
 }
 

@@ -37,7 +37,7 @@ std::string default_text(const Parameter& row) {
 void print_list(const std::string& pointer, const ParameterList& list) {
   fmt::print("\n{}: {}\n", pointer.empty() ? "/" : pointer, list.doc);
   for (const Parameter& row : list.rows) {
-    if (row.rule.list) continue;
+    if (row.rule.list && row.rule.kind != Kind::word) continue;
     fmt::print("  {:<26} {:<24} {}\n", row.name, default_text(row), allowed_text(row.rule));
     if (!row.doc.empty()) fmt::print("  {:<26} {}\n", "", row.doc);
   }

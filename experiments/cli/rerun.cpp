@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "barriers/formulas.hpp"
 #include "barriers/plugins.hpp"
 #include "core/math/error.hpp"
 #include "core/record/provenance.hpp"
@@ -30,7 +31,7 @@ void load_plugins(const StoredRun& stored, std::vector<PluginFile>& loaded) {
     const bool given = std::any_of(loaded.begin(), loaded.end(), [&wanted](const PluginFile& p) {
       return p.sha256 == wanted.sha256 || p.name == wanted.name;
     });
-    if (given) continue;
+    if (given || is_formula(wanted.name)) continue;  // the config has the formula itself
     const fs::path file = (home_of(stored) / wanted.file).lexically_normal();
     const std::string where = fmt::format("{}#/provenance/plugins/{}", stored.file.string(), i);
     const std::string sha256 = sha256_file(file.string());  // empty: not there, or no regular file

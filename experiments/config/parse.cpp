@@ -10,6 +10,7 @@
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/enum_words.hpp"
+#include "experiments/config/formula_shapes.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/sections.hpp"
@@ -60,6 +61,9 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   const std::size_t before = violations.size();
   if (!check_value(document, settings_of<RunConfig>().rule(), source + "#", violations)) {
     document = json::object();
+  }
+  for (const char* section : {"formulation", "strain_limit"}) {
+    if (document.contains(section)) name_formula(document[section], source + "#/" + section, violations);
   }
   const Reader reader{source, violations, violations.size() == before};
   if (document.contains("formulation")) expand_preset(document["formulation"], source, violations);

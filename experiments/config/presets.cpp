@@ -10,6 +10,7 @@
 
 #include "core/input/json.hpp"
 #include "core/parameters/registry.hpp"
+#include "experiments/config/formula_shapes.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/config/sections.hpp"
 
@@ -29,6 +30,7 @@ json read_preset(const std::string& path) {
   std::vector<Violation> violations;
   check_value(preset["formulation"], settings_of<FormulationConfig>().rule(), path + "#/formulation",
               violations);
+  name_formula(preset["formulation"], path + "#/formulation", violations);
   if (!violations.empty()) throw ConfigError(std::move(violations));
   return preset;
 }

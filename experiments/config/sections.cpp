@@ -1,7 +1,7 @@
 // The sections of settings.inc as lists, the policies, and the document that holds them all.
 #include "experiments/config/sections.hpp"
 
-#include "barriers/shapes/registry.hpp"
+#include "barriers/formulas.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "core/energy/friction_law.hpp"
 #include "core/input/json.hpp"

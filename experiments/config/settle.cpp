@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "barriers/formulas.hpp"
 #include "barriers/matching.hpp"
 #include "core/input/names.hpp"
 #include "experiments/config/policy_request.hpp"
@@ -103,6 +104,9 @@ void settle_formulation(const json& object, const Reader& reader, FormulationCon
   if (object.contains("name")) {
     check_plain_name(reader.source + "#/formulation/name", object["name"].get<std::string>(),
                      reader.violations);
+  }
+  if (out.name.empty() && is_formula(out.shape)) {  // a name for folders and legends, as short as others
+    out.name = formulas_of({out.shape}).front().label;
   }
   const std::string pointer = "/formulation/stiffness_policy";
   const json& policy = child(object, "stiffness_policy");

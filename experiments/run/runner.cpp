@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <new>
 
+#include "barriers/formulas.hpp"
 #include "core/bodies/part.hpp"
 #include "core/linear/blas_info.hpp"
 #include "core/math/error.hpp"
@@ -48,6 +49,14 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.dt_s = config.time.dt;
   labels.note = options.note;
   labels.swept = options.swept;
+}
+
+/// Libraries of formulas are made again from the config where they are missing, so no plugin has to be kept for them.
+std::vector<PluginFile> with_formulas(const RunConfig& config, std::vector<PluginFile> plugins) {
+  for (const FormulaShape& formula : formulas_of({config.formulation.shape, config.strain_limit.shape})) {
+    plugins.push_back({formula.shape.name, formula.library, formula.sha256});
+  }
+  return plugins;
 }
 
 /// Before the first step: the file of the method may be edited while a run goes on.
@@ -218,7 +227,7 @@ RunRecord identified(const RunConfig& config, const RunOptions& options) {
     }
   }
   record.provenance = collect_provenance(options.argv, thread_count(config));
-  record.provenance.plugins = name_from(options.folder, options.plugins);
+  record.provenance.plugins = name_from(options.folder, with_formulas(config, options.plugins));
   record.machine = collect_machine();
   record.machine.card = card_of(config);
   if (!options.sweep_id.empty()) record.ids.sweep_id = options.sweep_id;

@@ -59,7 +59,7 @@ void walk(const ParameterList& list, const std::string& pointer, const json& con
     std::string at = pointer + "/" + row.name;
     if (at == "/scene/bodies/0/motion") at = "/scene/bodies/1/motion";  // only a rigid body has one
     out.push_back({at, row, config});
-    if (!row.rule.list) continue;
+    if (!row.rule.list || row.rule.kind == Kind::word) continue;
     const json::json_pointer place(at);
     const json here = config.contains(place) && config[place].is_object() ? config[place] : json::object();
     walk(row.rule.list(here), at + (row.rule.kind == Kind::objects ? "/0" : ""), config, out);

@@ -1,0 +1,71 @@
+"""From the text of a formula to a library that the program loads."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+from collections.abc import Iterator
+
+from . import cache
+from .grammar import Formula, FormulaError, read
+
+SECONDS_TO_CHECK = 60
+
+
+def compiled(text: str, declared: str | None = None) -> cache.Compiled:
+    """declared: what `at_zero` says, or None. Cost: 0.1 s from the cache, else some seconds. Errors:
+    FormulaError.
+    """
+    formula = read(text)
+    words = cache.command()
+    key = cache.key_of(formula, words)
+    found = cache.find(key) or _made(formula, key, words)
+    if declared is not None and declared != found.about["at_zero"]:
+        allowed = f'"{found.about["at_zero"]}": b -> {found.about["b_at_zero"]} at d = 0'
+        raise FormulaError(f'at_zero "{declared}"', allowed)
+    return found
+
+
+def _made(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
+    try:
+        from . import (
+            accuracy,
+            checks,
+            source,
+            symbolic,
+        )  # of sympy, which a formula of the cache does not need
+    except ImportError as error:
+        raise FormulaError(
+            f"no Python package {error.name}", "the environment that ./bench setup makes"
+        ) from None
+    with _within(SECONDS_TO_CHECK):
+        terms = symbolic.terms_of(formula)
+        ends = checks.check(terms, None)
+        label = cache.label_of(formula)
+        text = source.cpp(label.replace("-", "_"), formula.text, terms, ends)
+    about = {
+        "formula": formula.text,
+        "label": label,
+        "at_zero": ends.kind,
+        "b_at_zero": "infinity" if ends.kind == checks.INFINITE else f"{ends.at_zero[0]:.6g} d_hat^2",
+        "capacity": None if ends.kind == checks.INFINITE else f"{-ends.at_zero[1]:.6g} kappa d_hat",
+        "smoothness_at_d_hat": ends.smoothness,
+        "terms": {name: str(x) for name, x in zip(checks.NAMES, terms.precise, strict=True)},
+    }
+    return cache.make(key, words, text, about, lambda library: accuracy.check(library, terms))
+
+
+@contextlib.contextmanager
+def _within(seconds: int) -> Iterator[None]:
+    """Limits of odd formulas may be looked for without end. Seconds are those of the processor."""
+
+    def over(*_: object) -> None:
+        raise FormulaError(f"a formula whose limits are not found within {seconds} s", "a simpler formula")
+
+    before = signal.signal(signal.SIGPROF, over)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)

@@ -1,0 +1,61 @@
+"""`bench formula`: what a formula is as a barrier."""
+
+from __future__ import annotations
+
+import json
+
+from ..errors import UserError, tells
+from ..front.arguments import parser_of
+from .compiled import compiled
+from .grammar import SYMBOLS, FormulaError
+
+DOC = f"""
+The formula is b in m^2 of the gap d and of d_hat (m), made of
+{SYMBOLS}.
+It is checked (unit, poles, sign, force, convexity, limits at d_hat and 0), differentiated, compiled and kept
+in BARRIERBENCH_CACHE or ~/.cache/barrierbench. In a config:
+"shape": {{"formula": "...", "at_zero": "infinite"}}, or the name formula:TEXT wherever a shape has a name.
+docs/jobs/add-a-barrier.md.
+"""
+
+
+@tells("formula")
+def main(argv: list[str]) -> int:
+    """0: a barrier; 2: none."""
+    parser = parser_of("formula", DOC)
+    parser.add_argument("formula", metavar="TEXT")
+    parser.add_argument("--at-zero", choices=("infinite", "finite"), help="what it is meant to do as d -> 0")
+    parser.add_argument("--json", action="store_true", help="the answer as JSON")
+    parser.add_argument("--source", action="store_true", help="the C++ that was made of it instead")
+    args = parser.parse_args(argv)
+    try:
+        made = compiled(args.formula, args.at_zero)
+    except FormulaError as error:
+        raise UserError(f"{args.formula!r}: {error}") from None
+    if args.source:
+        print(made.library.with_suffix(".cpp").read_text(), end="")
+    elif args.json:
+        print(json.dumps({**made.about, "library": str(made.library)}, indent=1))
+    else:
+        print(card(made.about))
+        print(f"library     {made.library}")
+    return 0
+
+
+def card(about: dict) -> str:
+    """What there is to say of a formula, a line each."""
+    terms, error = about["terms"], about["error_rel"]
+    lines = [
+        f"formula     {about['formula']}",
+        f"name        formula:{about['formula']}",
+        f"label       {about['label']}",
+        f"at d = 0    {about['at_zero']}: b -> {about['b_at_zero']}",
+        f"carries     {'any load' if about['capacity'] is None else 'at most ' + about['capacity']}",
+        f"at d_hat    {about['smoothness_at_d_hat']} continuous derivatives",
+        "with u = d/d_hat, e = 1 - u, l = -ln u:",
+        *(
+            f"  {name:<4}= {unit}({terms[name].replace('**', '^')})   relative error {error[name]:.1e}"
+            for name, unit in zip(terms, ("d_hat^2 ", "d_hat ", ""), strict=True)
+        ),
+    ]
+    return "\n".join(lines)

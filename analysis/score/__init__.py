@@ -1,0 +1,1 @@
+"""One page for a new barrier: matched beside four others, what it takes, where it fails (`bench score`)."""
