@@ -41,24 +41,29 @@ class AugmentedLagrangian final : public StepSolver {
 StepSolverEntry step_solver_augmented_lagrangian() {
   StepSolverEntry entry;
   entry.guarantee =
-      "none against passing through; at the end of a step that converges no contact is violated by more than al_tolerance_m, where "
+      "none against passing through; at the end of a step that converges no contact is violated by more than "
+      "al_tolerance_m, where "
       "its gap has a sign";
   entry.parameters = {
       {"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"},
       {"al_tolerance_m", positive("m"), 1e-6,
-       "augmented_lagrangian: largest violation of a contact, and gap (m) or force (N), whichever is less, at the end of a step"},
+       "augmented_lagrangian: largest violation of a contact, and gap (m) or force (N), whichever is less, "
+       "at the end of a step"},
       {"al_penalty_initial_N_per_m", non_negative("N/m"), 0.0,
-       "augmented_lagrangian: penalty of a pair that is new in a step; 0: 10 max(1, 2 E), E in J of inertia and elasticity at its start"},
+       "augmented_lagrangian: penalty of a pair that is new in a step; 0: 10 max(1, 2 E), E in J of inertia "
+       "and elasticity at its start"},
       {"al_penalty_factor", open_low(number_in(1, 1e6, "1")), 4.0,
        "augmented_lagrangian: what a penalty grows by where a violation does not shrink"},
       {"al_penalty_largest_N_per_m", positive("N/m"), 1e7, "augmented_lagrangian: largest penalty"},
       {"al_reduction", open_high(open_low(number_in(0, 1, "1"))), 0.5,
-       "augmented_lagrangian: part of a violation that may be left from update to update before its penalty grows"},
+       "augmented_lagrangian: part of a violation that may be left from update to update before its penalty "
+       "grows"},
   };
   entry.stated_always = false;
   entry.counters = {
       {"al_updates", "augmented_lagrangian: updates of the multipliers", OverSteps::sum},
-      {"al_violation_m", "augmented_lagrangian: largest -d of a contact at the end of a step", OverSteps::largest},
+      {"al_violation_m", "augmented_lagrangian: largest -d of a contact at the end of a step",
+       OverSteps::largest},
       {"al_penalty_N_per_m", "augmented_lagrangian: largest penalty of a contact at the end of a step",
        OverSteps::largest},
       {"al_feasibility_trials",
@@ -69,9 +74,9 @@ StepSolverEntry step_solver_augmented_lagrangian() {
   entry.needs.overlap = entry.needs.multipliers = true;
   entry.set_terms = [](const StepSolverOptions& options, TermOptions& terms) {
     const auto of = [&](const char* name) { return number(options.parameters, name); };
-    terms.multipliers = MultiplierRules{of("al_penalty_initial_N_per_m"), of("al_penalty_factor"),
-                                        of("al_penalty_largest_N_per_m"), of("al_reduction"),
-                                        of("al_tolerance_m")};
+    terms.multipliers =
+        MultiplierRules{of("al_penalty_initial_N_per_m"), of("al_penalty_factor"),
+                        of("al_penalty_largest_N_per_m"), of("al_reduction"), of("al_tolerance_m")};
   };
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AugmentedLagrangian>(options);

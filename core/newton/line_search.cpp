@@ -258,16 +258,18 @@ std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options, c
 StepSolverEntry step_solver_line_search() {
   StepSolverEntry entry;
   entry.guarantee =
-      "no surface passes through another and no strain reaches its limit, in the motion of any iteration; a step that does not "
+      "no surface passes through another and no strain reaches its limit, in the motion of any iteration; a "
+      "step that does not "
       "converge ends the run";
   entry.parameters = {
       {"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"},
       {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,
        "part of a binding contact or strain bound that is taken; 1 goes to the stop level"},
   };
-  entry.counters = {{"feasibility_trials",
-                     "line_search: those of line_search_trials that feasibility alone judged, short of a pose",
-                     OverSteps::sum}};
+  entry.counters = {
+      {"feasibility_trials",
+       "line_search: those of line_search_trials that feasibility alone judged, short of a pose",
+       OverSteps::sum}};
   entry.make = [](const StepSolverOptions& options) {
     return make_line_search(options, {number(options.parameters, "cap_fraction"), true});
   };

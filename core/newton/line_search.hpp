@@ -8,8 +8,8 @@
 namespace bb {
 
 struct LineSearchRules {
-  double cap_fraction = 1;  // of a bound that binds, in (0, 1]; not read without a bound
-  bool bounded = true;      // by ACCD and the strain limit; false: trials are judged as states alone
+  double cap_fraction = 1;     // of a bound that binds, in (0, 1]; not read without a bound
+  bool bounded = true;         // by ACCD and the strain limit; false: trials are judged as states alone
   double* renewals = nullptr;  // gets how often terms renewed what they lag, step by step
 };
 

@@ -57,11 +57,12 @@ class ProjectionSteps final : public StepSolver {
 StepSolverEntry step_solver_projection() {
   StepSolverEntry entry;
   entry.guarantee =
-      "none: nothing keeps a step from passing through a surface; springs resist by the number of sweeps, dt and the mesh, not by "
+      "none: nothing keeps a step from passing through a surface; springs resist by the number of sweeps, dt "
+      "and the mesh, not by "
       "their stiffness";
-  entry.parameters = {
-      {"projection_stiffness", open_low(number_in(0, 1, "1")), 1.0,
-       "projection: part of the elongation of a lone spring that the max_iterations sweeps of a step take off"}};
+  entry.parameters = {{"projection_stiffness", open_low(number_in(0, 1, "1")), 1.0,
+                       "projection: part of the elongation of a lone spring that the max_iterations sweeps "
+                       "of a step take off"}};
   entry.stated_always = false;
   entry.counters = {
       {"projection_sweeps", "projection: sweeps over all constraints", OverSteps::sum},

@@ -40,13 +40,14 @@ class StepSolver {
 
 struct StepSolverEntry {
   std::string name, doc;
-  std::string guarantee;                // what every state that a step ends in has, in plain words
-  std::vector<Parameter> parameters;    // its own, with defaults
-  bool stated_always = true;            // false: a resolved config has its own settings only where it is chosen
+  std::string guarantee;              // what every state that a step ends in has, in plain words
+  std::vector<Parameter> parameters;  // its own, with defaults
+  bool stated_always = true;          // false: a resolved config has its own settings only where it is chosen
   std::vector<SolverCounter> counters;  // that its steps fill in StepReport::solver, all of them
   StepNeeds needs;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
-  void (*set_terms)(const StepSolverOptions& complete, TermOptions&) = nullptr;  // what it asks of terms by numbers
+  void (*set_terms)(const StepSolverOptions& complete,
+                    TermOptions&) = nullptr;  // what it asks of terms by numbers
   std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
 const Registry<StepSolverEntry>& step_solvers();

@@ -54,7 +54,8 @@ class Xpbd final : public StepSolver {
 StepSolverEntry step_solver_xpbd() {
   StepSolverEntry entry;
   entry.guarantee =
-      "none: nothing keeps a step from passing through a surface, and what the sweeps have not corrected is left";
+      "none: nothing keeps a step from passing through a surface, and what the sweeps have not corrected is "
+      "left";
   entry.counters = {
       {"xpbd_sweeps", "xpbd: sweeps over all constraints", OverSteps::sum},
       {"xpbd_constraints", "xpbd: constraints in the last sweep of a step", OverSteps::largest},

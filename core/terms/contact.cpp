@@ -227,7 +227,8 @@ PlanItem needs_contact(const TermNeeds& needs) {
 }
 
 void make_contact(const TermInputs& inputs, TermList& terms) {
-  terms.add(std::make_unique<ContactTerm>(inputs.scene, inputs.options, inputs.contacts, inputs.fixed, terms));
+  terms.add(
+      std::make_unique<ContactTerm>(inputs.scene, inputs.options, inputs.contacts, inputs.fixed, terms));
 }
 
 }  // namespace bb

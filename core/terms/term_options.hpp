@@ -28,7 +28,8 @@ struct FrictionOptions {
 
 struct TermOptions {
   BarrierFunction contact;
-  bool overlap = false;  // states with d <= 0 are feasible; contact goes on there by the formula of its bounded shape
+  bool overlap =
+      false;  // states with d <= 0 are feasible; contact goes on there by the formula of its bounded shape
   std::optional<MultiplierRules> multipliers;  // of contact, in the place of its barrier
   std::unique_ptr<StiffnessPolicy> stiffness;
   Precision precision = Precision::full;  // of all terms; contact and limit have in_float set accordingly

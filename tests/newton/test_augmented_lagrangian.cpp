@@ -52,7 +52,8 @@ TEST(AugmentedLagrangian, a_weight_rests_at_contact_and_its_force_is_the_multipl
     EXPECT_NEAR(ran.last.contact_load_max_N.value, weight, 1e-4 * weight) << initial;
     EXPECT_LT(ran.most_violated, tolerance) << initial;
     EXPECT_GT(ran.updates, 0) << initial;
-    EXPECT_GE(ran.last.solver.values.at("al_penalty_N_per_m"), 0.999 * std::max(initial, weight / d_hat)) << initial;
+    EXPECT_GE(ran.last.solver.values.at("al_penalty_N_per_m"), 0.999 * std::max(initial, weight / d_hat))
+        << initial;
     EXPECT_EQ(ran.last.ccd_queries, 0);
   }
 }
