@@ -39,9 +39,8 @@ class Penalty final : public StepSolver {
 StepSolverEntry step_solver_penalty() {
   StepSolverEntry entry;
   entry.guarantee =
-      "none against passing through: surfaces overlap by load/k and more in motion, and what moves by more "
-      "than d_hat in a "
-      "step may come out behind; a step that converges ends in a minimum of E";
+      "none against passing through: surfaces overlap where a load is above k d_hat, and what moves by more "
+      "than d_hat in a step may come out behind; a step that converges ends in a minimum of E";
   entry.parameters = {{"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"}};
   entry.counters = {
       {"penalty_overlap_m", "penalty: largest -d of a contact at the end of a step", OverSteps::largest},
