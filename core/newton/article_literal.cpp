@@ -68,6 +68,7 @@ class ArticleLiteral final : public StepSolver {
 
 StepSolverEntry step_solver_article_literal() {
   StepSolverEntry entry;
+  entry.guarantee = "none: nothing keeps a step from passing through a surface or beyond the strain limit";
   entry.parameters = {{"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"}};
   entry.needs.minimum = entry.needs.step_bound = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {

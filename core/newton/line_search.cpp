@@ -17,7 +17,7 @@
 
 #include "core/newton/error_estimate.hpp"
 #include "core/newton/iteration.hpp"
-#include "core/newton/step_solver.hpp"
+#include "core/newton/line_search.hpp"
 
 namespace bb {
 namespace {
@@ -29,11 +29,13 @@ constexpr int most_escapes = 10;          // in a step; a saddle after that many
 
 class LineSearch final : public StepSolver {
  public:
-  explicit LineSearch(const StepSolverOptions& options)
+  LineSearch(const StepSolverOptions& options, const LineSearchRules& rules)
       : options_(options),
         armijo_(number(options.parameters, "armijo")),
-        cap_fraction_(number(options.parameters, "cap_fraction")) {}
-  std::string_view name() const override { return "line_search"; }
+        cap_fraction_(rules.cap_fraction),
+        bounded_(rules.bounded),
+        renewals_(rules.renewals) {}
+  std::string_view name() const override { return options_.name; }
 
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
@@ -70,7 +72,9 @@ class LineSearch final : public StepSolver {
       // Of a body at rest without a force, E is rounding and so is the direction.
       const bool nothing_left = !moved && bound_ >= collapsed_step && report.dx_beyond_m == 0;
       if (small && (nothing_left || (enough && (report.contraction.finite() || as_modelled(report))))) {
-        if (system.renew_lag()) {  // another minimum is looked for, by what is left of the iterations
+        if (system.renew_lag()) {
+          if (renewals_) ++*renewals_;
+          // another minimum is looked for, by what is left of the iterations
           collapsed = 0;
           if (iteration + 1 < options_.max_iterations) error_.reset();
           continue;
@@ -134,8 +138,7 @@ class LineSearch final : public StepSolver {
 
   // Lengths are parts of that of the escape.
   bool leave(StepSystem& system, IterationReport& report, double slope, double curvature, double least) {
-    system.prepare_motion(MotionEnd::on_target, true);
-    bound_ = system.bound_motion(report);
+    find_bound(system, report);
     for (double alpha = bound_ < 1 ? cap_fraction_ * bound_ : 1; alpha > least; alpha /= 2) {
       ++report.line_search_trials;
       const auto change = system.try_motion(alpha);
@@ -165,11 +168,16 @@ class LineSearch final : public StepSolver {
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its
   // motion does work.
   bool search(StepSystem& system, IterationReport& report, bool energy_test, bool small) {
-    system.prepare_motion(MotionEnd::on_target, true);
-    bound_ = system.bound_motion(report);
+    find_bound(system, report);
     const bool held = bound_ < 1 && report.alpha_ccd <= report.alpha_strain;
     if (held && energy_test && !small && go_round(system, report)) return true;
     return go_along(system, report, smallest_alpha, energy_test);
+  }
+
+  // Without a step bound every trial is one of states alone.
+  void find_bound(StepSystem& system, IterationReport& report) {
+    system.prepare_motion(MotionEnd::on_target, bounded_);
+    bound_ = bounded_ ? system.bound_motion(report) : 1;
   }
 
   // A gap that is curved along dx, as that of an edge that rolls over a ball, ends a straight step after the root of what
@@ -192,8 +200,7 @@ class LineSearch final : public StepSolver {
   // Of another dx; the queries of both count.
   void bound_again(StepSystem& system, IterationReport& report) {
     const StepBound before = report.bound;
-    system.prepare_motion(MotionEnd::on_target, true);
-    bound_ = system.bound_motion(report);
+    find_bound(system, report);
     report.bound.queries += before.queries;
     report.bound.probes += before.probes;
     report.bound.capped += before.capped;
@@ -234,6 +241,8 @@ class LineSearch final : public StepSolver {
 
   StepSolverOptions options_;
   double armijo_, cap_fraction_;
+  bool bounded_;
+  double* renewals_;
   double bound_ = 1;    // of the step taken last
   bool noise_ = false;  // its change of E is
   double* feasibility_trials_ = nullptr;
@@ -242,8 +251,16 @@ class LineSearch final : public StepSolver {
 
 }  // namespace
 
+std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options, const LineSearchRules& rules) {
+  return std::make_unique<LineSearch>(options, rules);
+}
+
 StepSolverEntry step_solver_line_search() {
   StepSolverEntry entry;
+  entry.guarantee =
+      "no surface passes through another and no strain reaches its limit, in the motion of any iteration; a "
+      "step that does not "
+      "converge ends the run";
   entry.parameters = {
       {"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"},
       {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,
@@ -253,8 +270,8 @@ StepSolverEntry step_solver_line_search() {
       {"feasibility_trials",
        "line_search: those of line_search_trials that feasibility alone judged, short of a pose",
        OverSteps::sum}};
-  entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
-    return std::make_unique<LineSearch>(options);
+  entry.make = [](const StepSolverOptions& options) {
+    return make_line_search(options, {number(options.parameters, "cap_fraction"), true});
   };
   return entry;
 }

@@ -31,11 +31,26 @@ std::vector<SolverCounter> step_solver_counters() {
   return out;
 }
 
-std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options) {
-  const StepSolverEntry& entry = step_solvers().require(options.name, "/step_solver/name");
+namespace {
+
+StepSolverOptions completed(const StepSolverEntry& entry, const StepSolverOptions& options) {
   StepSolverOptions complete = options;
   complete.parameters = to_map(entry.parameters, to_json(options.parameters));
-  return entry.make(complete);
+  return complete;
+}
+
+}  // namespace
+
+void fit_terms(Method& method) {
+  const StepSolverEntry& entry = step_solvers().require(method.step_solver.name, "/step_solver/name");
+  method.contact.literal = method.limit.literal = !entry.needs.step_bound && !entry.needs.overlap;
+  method.overlap = entry.needs.overlap;
+  if (entry.set_terms) entry.set_terms(completed(entry, method.step_solver), method);
+}
+
+std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options) {
+  const StepSolverEntry& entry = step_solvers().require(options.name, "/step_solver/name");
+  return entry.make(completed(entry, options));
 }
 
 }  // namespace bb

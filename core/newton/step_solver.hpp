@@ -40,15 +40,21 @@ class StepSolver {
 
 struct StepSolverEntry {
   std::string name, doc;
-  std::vector<Parameter> parameters;    // its own, with defaults
+  std::string guarantee;              // what every state that a step ends in has, in plain words
+  std::vector<Parameter> parameters;  // its own, with defaults
+  bool stated_always = true;          // false: a resolved config has its own settings only where it is chosen
   std::vector<SolverCounter> counters;  // that its steps fill in StepReport::solver, all of them
   StepNeeds needs;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
+  void (*set_terms)(const StepSolverOptions& complete,
+                    TermOptions&) = nullptr;  // what it asks of terms by numbers
   std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
 const Registry<StepSolverEntry>& step_solvers();
 /// Those of all of them, in the order of registry.inc. Errors: std::logic_error for a name that two declare.
 std::vector<SolverCounter> step_solver_counters();
+/// Makes the terms those that the method's step solver needs: how barriers are read beyond contact, multipliers.
+void fit_terms(Method& method);
 /// Errors: ConfigError for an unknown name. Ranges are checked where a config is read.
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
 

@@ -19,14 +19,16 @@ ContactOptions contact_options(const TermOptions& options) {
 }  // namespace
 
 ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const ContactPlan& plan,
-                         const std::vector<std::uint8_t>& fixed)
+                         const std::vector<std::uint8_t>& fixed, const TermList& terms)
     : scene_(scene),
       options_(options),
       fixed_(fixed),
+      terms_(terms),
       contacts_(scene, contact_options(options), plan),
       stiffness_(*options.stiffness, scene.mass) {
   families_.resize(2);
   if (options.stiffness->has_potential()) folded_.emplace(options.contact);
+  if (options.multipliers) multipliers_.emplace(*options.multipliers);
   use_state();
 }
 
@@ -53,6 +55,7 @@ void ContactTerm::use_state() {
 
 void ContactTerm::begin_step(const StepFrame& frame, PhaseClock& clock) {
   stiffness_.begin_step();
+  if (multipliers_) multipliers_->begin_step();
   change_frame(frame);
   first_iterate_ = true;
   {
@@ -75,6 +78,7 @@ void ContactTerm::linearise(const PositionsView& x, const TermContext& context) 
     start_policy(x, context);
     const double change = stiffness_.refresh(state_.rows, state_.mollified, context.blocks, context.elastic);
     kappa_change_ = first_iterate_ ? 0 : change;
+    if (first_iterate_) scale_multipliers();
     first_iterate_ = false;
   }
   fill_local(x, context.projection);
@@ -84,12 +88,29 @@ void ContactTerm::linearise(const PositionsView& x, const TermContext& context) 
 
 void ContactTerm::fill_shape(ContactState& state) {
   const auto fill = [this](auto& rows) {
+    if (multipliers_) return multipliers_->fill(rows);
     if (folded_) return fill_folded(*folded_, rows);
     options_.contact.eval(rows.size(), rows.d.data(), rows.d_hat.data(), rows.b.data(), rows.db.data(),
                           rows.d2b.data());
   };
   fill(state.rows);
   fill(state.mollified);
+}
+
+// Of inertia and elasticity at the start of a step.
+void ContactTerm::scale_multipliers() {
+  if (!multipliers_) return;
+  double energy = 0;
+  for (const auto& term : terms_) {
+    if (term->name() != "inertia" && term->group() != TermGroup::elastic) continue;
+    for (const TermFamily& family : term->families())
+      for (const double of : family.local.energy) energy += of;
+  }
+  multipliers_->set_scale(energy);
+}
+
+bool ContactTerm::renew_lag(const PositionsView&) {
+  return multipliers_ && multipliers_->update(state_.rows, state_.mollified);
 }
 
 // Gradients and Hessians of the current rows, from the kappa that they have.
@@ -150,7 +171,7 @@ std::string ContactTerm::describe_bound() const { return pair_name(scene_, bound
 bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
   trial_.gap_min = contacts_.find_rows(x, trial_.rows, trial_.mollified);
-  return trial_.gap_min > 0 || options_.contact.literal;
+  return trial_.gap_min > 0 || options_.contact.literal || options_.overlap;
 }
 
 void ContactTerm::freeze(const BlockSystem& blocks, const BlockSystem::Values& elastic, PhaseClock& clock) {
@@ -206,7 +227,8 @@ PlanItem needs_contact(const TermNeeds& needs) {
 }
 
 void make_contact(const TermInputs& inputs, TermList& terms) {
-  terms.add(std::make_unique<ContactTerm>(inputs.scene, inputs.options, inputs.contacts, inputs.fixed));
+  terms.add(
+      std::make_unique<ContactTerm>(inputs.scene, inputs.options, inputs.contacts, inputs.fixed, terms));
 }
 
 }  // namespace bb

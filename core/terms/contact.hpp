@@ -43,9 +43,9 @@ struct PairGap {
 
 class ContactTerm final : public Term {
  public:
-  /// All arguments must outlive the term. fixed: [3 n] prescribed or locked degrees of freedom.
+  /// All arguments must outlive the term. fixed: [3 n] prescribed or locked degrees of freedom. terms: with those of lines before.
   ContactTerm(const Scene& scene, TermOptions& options, const ContactPlan& plan,
-              const std::vector<std::uint8_t>& fixed);
+              const std::vector<std::uint8_t>& fixed, const TermList& terms);
   std::string_view name() const override { return "contact"; }
   TermGroup group() const override { return TermGroup::contact; }
   Phase phase() const override { return Phase::contact_terms; }
@@ -53,6 +53,8 @@ class ContactTerm final : public Term {
 
   void begin_step(const StepFrame& frame, PhaseClock& clock) override;
   void change_frame(const StepFrame& frame) override;
+  /// Updates multipliers, where there are some (contact_multipliers.hpp).
+  bool renew_lag(const PositionsView& x) override;
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
   void end_step(const PositionsView& x, PhaseClock& clock) override;
   void adopt(const KnownStep& known) override { adopt_stiffness(known.stiffness); }
@@ -96,6 +98,7 @@ class ContactTerm final : public Term {
   void evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,
                 std::vector<double>& mollified);
   void fill_local(const PositionsView& x, Projection projection);
+  void scale_multipliers();
   void start_policy(const PositionsView& x, const TermContext& context);
   StartSums start_sums(const PositionsView& others) const;
   void list_pair_gaps();
@@ -103,9 +106,11 @@ class ContactTerm final : public Term {
   const Scene& scene_;
   TermOptions& options_;
   const std::vector<std::uint8_t>& fixed_;
+  const TermList& terms_;
   ContactSystem contacts_;
   StiffnessUpdate stiffness_;
   std::optional<FoldedBarrier> folded_;  // where the policy has a potential
+  std::optional<ContactMultipliers> multipliers_;
   ContactState state_, trial_;
   ContactState constrained_;  // rows that add_constraints() found last
   ContactConstraints constraints_;

@@ -15,9 +15,10 @@ std::vector<HessianChoice> choices() {
   for (const TermEntry& entry : term_entries()) {
     if (entry.convex) continue;
     const std::string name(entry.name);
-    out.push_back({name,
-                   {{name, computed(word(allowed), "blend with step solver line_search, else clamped"),
-                     no_default, "Hessian in the Newton matrix; " + std::string(entry.doc) + "."}}});
+    out.push_back(
+        {name,
+         {{name, computed(word(allowed), "blend with step solvers line_search and penalty, else clamped"),
+           no_default, "Hessian in the Newton matrix; " + std::string(entry.doc) + "."}}});
   }
   return out;
 }

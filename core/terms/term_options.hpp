@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/barrier/shape.hpp"
@@ -11,6 +12,7 @@
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/math/precision.hpp"
+#include "core/terms/contact_multipliers.hpp"
 
 namespace bb {
 
@@ -24,6 +26,9 @@ struct FrictionOptions {
 
 struct TermOptions {
   BarrierFunction contact;
+  bool overlap =
+      false;  // states with d <= 0 are feasible; contact goes on there by the formula of its bounded shape
+  std::optional<MultiplierRules> multipliers;  // of contact, in the place of its barrier
   std::unique_ptr<StiffnessPolicy> stiffness;
   Precision precision = Precision::full;  // of all terms; contact and limit have in_float set accordingly
   HessianMode hessian_mode = HessianMode::gauss_newton;

@@ -12,6 +12,7 @@
 #include "core/exec/memory_ledger.hpp"
 #include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
+#include "core/newton/step_solver.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/enum_words.hpp"
@@ -62,6 +63,8 @@ void print_formulation(const RunConfig& config) {
     fmt::print("limit     {} on {}, onset {:g}, width {:g}, {}\n", limit.shape, to_string(limit.argument),
                limit.onset, limit.width, stiffness_text(limit.stiffness_policy));
   }
+  fmt::print("guarantee {}: {}\n", config.step_solver.name,
+             step_solvers().require(config.step_solver.name, "/step_solver/name").guarantee);
   fmt::print("matching  {}{}\n\n", to_string(config.matching.rule),
              config.matching.rule == MatchingRule::as_given
                  ? ""

@@ -37,6 +37,7 @@ void print_entries(const char* title, const Entries& entries) {
   fmt::print("{}\n", title);
   for (const auto& entry : entries) {
     fmt::print("  {:<22} {}\n", entry.name, entry.doc);
+    if constexpr (requires { entry.guarantee; }) fmt::print("    guarantee: {}\n", entry.guarantee);
     if constexpr (requires { entry.parameters; }) print_parameters(entry.parameters);
   }
 }

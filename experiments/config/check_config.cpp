@@ -34,15 +34,30 @@ void check_exponent(const std::string& section, const std::string& shape, const 
   }
 }
 
+/// What a barrier is beyond contact: its own formula, which an unbounded shape does not have there, with a number for kappa.
+void check_overlap(const RunConfig& config, const Complain& complain) {
+  const FormulationConfig& contact = config.formulation;
+  const std::optional<Shape> shape = find_shape(contact.shape);
+  if (shape && shape->infinite_at_zero && !needs_of(config).multipliers) {
+    complain("/formulation/shape", '"' + contact.shape + '"',
+             "a shape that is finite at contact, as quadratic: the step solver " + config.step_solver.name +
+                 " goes on beyond it");
+  }
+  if (contact.stiffness_policy.name != "fixed") {
+    complain("/formulation/stiffness_policy/name", '"' + contact.stiffness_policy.name + '"',
+             "fixed: the step solver is " + config.step_solver.name);
+  }
+}
+
 void check_step_solver(const RunConfig& config, const Complain& complain) {
   const StepSolverConfig& solver = config.step_solver;
   const StepNeeds needs = needs_of(config);
-  const bool literal = !needs.step_bound;
+  const bool unbound = !needs.step_bound, literal = unbound && !needs.overlap;
   if ((solver.name == "accumulated_toi" || literal) && config.integrator.name != "implicit_euler") {
     complain("/integrator/name", '"' + config.integrator.name + '"',
              "implicit_euler: the step solver is " + solver.name);
   }
-  if (literal && config.formulation.argument != Argument::gap) {
+  if (unbound && config.formulation.argument != Argument::gap) {
     complain("/formulation/argument", "\"squared_gap\"", "gap: the step solver is " + solver.name);
   }
   if (literal && config.strain_limit.argument != Argument::gap) {
@@ -52,14 +67,15 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
     complain("/step_solver/saddle", "\"report\"",
              "ignore: the step solver " + solver.name + " has no matrix");
   }
-  if (solver.saddle == SaddleRule::escape && solver.name != "line_search") {
+  if (solver.saddle == SaddleRule::escape && !needs.minimum) {
     complain("/step_solver/saddle", "\"escape\"",
-             "report or ignore: only line_search, which tests energies, can leave a saddle");
+             "report or ignore: only line_search and penalty, which test energies, can leave a saddle");
   }
-  if (config.friction.lag_iterations > 1 && solver.name != "line_search") {
+  if (config.friction.lag_iterations > 1 && !needs.minimum) {
     complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
-             "1: only line_search solves a step again");
+             "1: only line_search and penalty solve a step again");
   }
+  if (needs.overlap) check_overlap(config, complain);
   const int min_newton_steps = integer(solver.parameters, "min_newton_steps");
   if (solver.name == "accumulated_toi" && min_newton_steps > solver.max_iterations) {
     complain("/step_solver/min_newton_steps", fmt::format("{}", min_newton_steps),

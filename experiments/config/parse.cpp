@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input/read_file.hpp"
+#include "core/newton/step_solver.hpp"
 #include "core/record/provenance.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "core/terms/step_hessian.hpp"
@@ -117,9 +118,20 @@ RunConfig load_config(const std::string& path, std::span<const std::string> over
 }
 
 /// A scene without pressure, or without stitches that have a length, has no choice of their Hessian, and the id that it had
-/// before there was one.
+/// before there was one. So it is with the settings of step solvers that came later.
 json resolved_document(const RunConfig& config) {
   json out = settings_of<RunConfig>().write(config);
+  const auto stated = [&](const Parameter& row) {
+    return std::any_of(step_solvers().begin(), step_solvers().end(), [&](const StepSolverEntry& entry) {
+      return (entry.stated_always || entry.name == config.step_solver.name) &&
+             find_named(entry.parameters, row.name) != nullptr;
+    });
+  };
+  for (const StepSolverEntry& entry : step_solvers()) {
+    for (const Parameter& own : entry.parameters) {
+      if (!stated(own)) out["step_solver"].erase(own.name);
+    }
+  }
   const auto presses = [](const BodyConfig& body) {
     return body.spec.pressure != 0 || !body.spec.pressure_keys.empty();
   };

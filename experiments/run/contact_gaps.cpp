@@ -1,6 +1,7 @@
 #include "experiments/run/contact_gaps.hpp"
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "core/archive/archive.hpp"
@@ -13,7 +14,8 @@ constexpr double bins_per_octave = 64;
 }  // namespace
 
 void LogHistogram::add(double value, double weight) {
-  bins_[static_cast<int>(std::floor(bins_per_octave * std::log2(value)))] += weight;
+  constexpr int below_all = std::numeric_limits<int>::min();
+  bins_[value > 0 ? static_cast<int>(std::floor(bins_per_octave * std::log2(value))) : below_all] += weight;
   weight_ += weight;
 }
 

@@ -13,10 +13,11 @@ namespace bb {
 class Archive;
 
 /// A weighted sample in bins of equal ratio, 64 to a factor 2: quantiles are right to 1.1 %. Memory: 64 bytes a bin that
-/// was met, at most 64 for each halving of the smallest value.
+/// was met, at most 64 for each halving of the smallest value. What is <= 0 (surfaces that overlap) has one bin below all others,
+/// which a quantile says as 0.
 class LogHistogram {
  public:
-  /// value > 0, weight > 0.
+  /// weight > 0.
   void add(double value, double weight);
   double weight() const { return weight_; }
   /// Below which the share q of the weight lies, q in [0, 1]; inside a bin by its logarithm. Requires a value.

@@ -61,8 +61,6 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
     method.limit = {require_shape(config.strain_limit.shape), config.strain_limit.argument};
     method.limit_stiffness = make_limit_policy(config.strain_limit.stiffness_policy, calibration);
   }
-  method.contact.literal = method.limit.literal =
-      !step_solvers().require(config.step_solver.name, "/step_solver/name").needs.step_bound;
   method.precision = config.precision;
   method.contact.in_float = method.limit.in_float = values_in_float(config.precision);
   method.hessian_mode = config.contact.hessian_mode;
@@ -72,6 +70,7 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
                      config.friction.lag_iterations, config.friction.eps_v};
   method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);
   method.step_solver = step_solver_options(config);
+  fit_terms(method);
   for (const HessianChoice& choice : hessian_choices()) {
     method.step_hessian[choice.name] = step_hessian_of(text(config.hessian.parameters, choice.name));
   }

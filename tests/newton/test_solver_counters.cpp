@@ -17,7 +17,7 @@ StepReport step_of(const std::string& solver, const Scene& scene, int retries = 
   method.step_solver.retries = retries;
   method.step_solver.max_iterations = most;
   method.step_solver.saddle = SaddleRule::ignore;
-  method.contact.literal = !step_solvers().require(solver, "").needs.step_bound;
+  fit_terms(method);
   Simulation simulation(scene, method, dt, 1);
   StepObserver none;
   return simulation.step(none);

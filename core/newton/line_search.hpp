@@ -1,0 +1,19 @@
+// Newton with a line search on E, for step solvers that differ in what bounds its motions.
+#pragma once
+
+#include <memory>
+
+#include "core/newton/step_solver.hpp"
+
+namespace bb {
+
+struct LineSearchRules {
+  double cap_fraction = 1;     // of a bound that binds, in (0, 1]; not read without a bound
+  bool bounded = true;         // by ACCD and the strain limit; false: trials are judged as states alone
+  double* renewals = nullptr;  // gets how often terms renewed what they lag, step by step
+};
+
+/// options: with `armijo`. Its steps say one counter, `feasibility_trials`.
+std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options, const LineSearchRules& rules);
+
+}  // namespace bb
