@@ -56,6 +56,7 @@ struct StiffnessGlobals {
   double grad_b_dot_grad_e = 0;  // m N
   double grad_b_sq = 0;          // m^2
   double mean_contact_mass = 0;  // kg
+  double max_free_mass = 0;      // kg, of the vertices that are not prescribed, in contact or not
   double d2b_half = 0;           // b''(d_hat/2) for kappa = 1
   double d_hat = 0;              // m, the smallest of the scene
   StiffnessTime time;
@@ -80,6 +81,8 @@ class StiffnessPolicy {
 
   /// Called once, at the first iterate that has contacts, when needs_globals().
   virtual void start(const StiffnessGlobals&) {}
+  /// Called where a step begins or goes on with another length, before kappa is asked for.
+  virtual void set_time(const StiffnessTime&) {}
   /// kappa (N/m) of every row. Requires start() first when needs_globals().
   virtual void fill(const StiffnessBatch& rows, double* kappa) const = 0;
   /// Whether B has to be the potential of kappa(d) b'(d): kappa's dependence on the gap is then part of B, and

@@ -71,7 +71,8 @@ FoldedFrame BroadPhase::folded(const PositionsView& x0) {
 
 BroadPhase::Frame BroadPhase::frame(const PositionsView& x0, const PositionsView& x1) {
   Frame out{folded(x0), Vec3d::Zero()};
-  if (x0.data() != x1.data()) out.moved = common_motion(surface_.points, x0, x1, moved_);
+  if (x0.data() != x1.data() && pace_ == Pace::common)
+    out.moved = common_motion(surface_.points, x0, x1, moved_);
   return out;
 }
 
@@ -145,7 +146,8 @@ void BroadPhase::find(const Bvh& a, const Bvh& b, const PositionsView& x0, const
         const auto body = [&](int k) { return surface_.body[static_cast<std::size_t>(pair.vertex[k])]; };
         return body(0) != body(pair_split(K)) ||
                !apart_by_rest_rule<K>(pair.law, bb::gather(surface_.rest, pair.vertex),
-                                      bb::gather(x0, pair.vertex), bb::gather(x1, pair.vertex), eps);
+                                      bb::gather(x0, pair.vertex), bb::gather(x1, pair.vertex), eps,
+                                      pace_ == Pace::common);
       },
       out);
 }
@@ -156,7 +158,8 @@ double BroadPhase::state_rounding(const PositionsView& x0, const PositionsView& 
   return distance_rounding(precision_, std::max(x0.cwiseAbs().maxCoeff(), x1.cwiseAbs().maxCoeff()));
 }
 
-void BroadPhase::update(const PositionsView& x0, const PositionsView& x1, Candidates& out) {
+void BroadPhase::update(const PositionsView& x0, const PositionsView& x1, Candidates& out, Pace pace) {
+  pace_ = pace;
   const Surface& s = surface_;
   if (plan_.broad_phase.needed) {
     // Which pairs come close depends on relative motion alone: what most points share, a fall say, would only
@@ -241,16 +244,19 @@ void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positio
       if (!primitives.free[i]) continue;
       for (std::size_t o = 0; o < obstacles_.size(); ++o) {
         const AnalyticSurface<double>&obstacle = first_poses_[o], &last = last_poses_[o];
+        // with a pace of its own the obstacle is taken where it begins, and comes nearer by its whole way at most
+        const bool together = pace_ == Pace::common;
+        const double way = together ? 0 : (last.point - obstacle.point).norm();
         if (!pairs_with<N>(obstacle, surface_.planar, primitives.lone[i] != 0)) continue;
         if (chosen_ &&
             surface_.kind_at_obstacle(primitives.vertices[i][0], static_cast<int>(o)) == CollisionKind::off)
           continue;
-        const double reach = primitives.side[i].d_hat + primitives.side[i].offset + of_states +
+        const double reach = primitives.side[i].d_hat + primitives.side[i].offset + of_states + way +
                              distance_rounding(precision_, std::max(obstacle.point.cwiseAbs().maxCoeff(),
                                                                     last.point.cwiseAbs().maxCoeff()) +
                                                                obstacle.radius);
         const auto& vertex = primitives.vertices[i];
-        if (may_reach<N>(obstacle, last, gather(x0, vertex), gather(x1, vertex), reach))
+        if (may_reach<N>(obstacle, together ? last : obstacle, gather(x0, vertex), gather(x1, vertex), reach))
           near.push_back({static_cast<int>(i), static_cast<int>(o)});
       }
     }

@@ -32,6 +32,9 @@ void for_each_obstacle_list(const Surface& surface, CandidateLists& c, const F& 
 /// Into `out` those of pairs that bound motions (CollisionKind::ccd).
 void select_swept(const Surface& surface, const Candidates& all, Candidates& out);
 
+/// Whether all vertices are the same part of a motion on their way, or each at its own.
+enum class Pace { common, own };
+
 /// Keeps one tree per kind of primitive that pairs of the plan need, one of the edges without triangles where there are
 /// any, and no other.
 class BroadPhase {
@@ -44,8 +47,9 @@ class BroadPhase {
   bool active() const { return plan_.any(); }
   /// All pairs with a free vertex, not adjacent, that may have a row or bound the motion x0 -> x1, and more. A pair that
   /// the rest rule keeps from both is left out (rest_rule.hpp), and so is one of bodies that are `off`.
-  /// All vertices move together: a state is (1 - t) x0 + t x1 with one t.
-  void update(const PositionsView& x0, const PositionsView& x1, Candidates& out);
+  /// Pace::common: all vertices move together, a state is (1 - t) x0 + t x1 with one t. Pace::own: each has its own t,
+  /// which leaves more pairs.
+  void update(const PositionsView& x0, const PositionsView& x1, Candidates& out, Pace pace = Pace::common);
 
  private:
   struct Tree {
@@ -86,6 +90,7 @@ class BroadPhase {
   const ContactPlan plan_;
   const bool chosen_, tests_states_;  // of the collisions of the surface
   const Precision precision_;
+  Pace pace_ = Pace::common;  // of the motion in progress
 };
 
 }  // namespace bb

@@ -7,6 +7,7 @@
 #include "core/contact/intersection.hpp"
 #include "core/contact/pair_name.hpp"
 #include "core/contact/row_builder.hpp"
+#include "core/contact/vertex_bounds.hpp"
 
 namespace bb {
 
@@ -28,7 +29,10 @@ struct ContactSystem::Data {
         obstacles(analytic_surfaces(s)),
         broad_phase(surface, obstacles, plan, o.precision),
         builder(surface, obstacles, plan, o.precision),
-        bound(surface, obstacles, {o.ccd_park, o.ccd_max_probes}, o.precision) {}
+        bound(surface, obstacles, {o.ccd_park, o.ccd_max_probes}, o.precision),
+        each(surface, obstacles, o.step_bound, o.bound_gamma, o.precision) {
+    if (o.weighting == ContactWeighting::area) areas.emplace(surface, obstacles);
+  }
 
   const Scene& scene;
   const ContactOptions options;
@@ -42,6 +46,8 @@ struct ContactSystem::Data {
   StepBound near_asked;  // its counters are part of those of the next bound
   RowBuilder builder;
   StepBoundFinder bound;
+  VertexBounds each;
+  std::optional<PairAreas> areas;
 
   const Candidates& bounding(const Candidates& all) {
     if (!surface.collisions.chosen()) return all;
@@ -94,6 +100,19 @@ StepBound ContactSystem::step_bound(const PositionsView& x0, const PositionsView
   bound.probes += data_->near_asked.probes;
   return bound;
 }
+
+void ContactSystem::update_candidates_of_each(const PositionsView& x0, const PositionsView& x1) {
+  data_->near_asked = {};
+  if (active()) data_->broad_phase.update(x0, x1, data_->candidates, Pace::own);
+}
+
+StepBound ContactSystem::vertex_bounds(const PositionsView& x0, const PositionsView& x1) {
+  return data_->each.find(data_->bounding(data_->candidates), x0, x1);
+}
+
+std::span<const double> ContactSystem::vertex_parts() const { return data_->each.parts(); }
+
+const PairAreas* ContactSystem::areas() const { return data_->areas ? &*data_->areas : nullptr; }
 
 ContactSystem::Counts ContactSystem::candidate_counts() const {
   const Candidates& c = data_->candidates;

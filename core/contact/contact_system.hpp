@@ -4,10 +4,13 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "core/contact/contact_table.hpp"
 #include "core/contact/overlap.hpp"
+#include "core/contact/pair_areas.hpp"
 #include "core/contact/step_bound.hpp"
+#include "core/contact/step_bound_rule.hpp"
 #include "core/math/precision.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
@@ -19,6 +22,9 @@ struct ContactOptions {
   double ccd_park = 1e-6;  // stop level in units of d_hat
   int ccd_max_probes = 4096;
   Precision precision = Precision::full;  // scalar of rows and step bound
+  StepBoundRule step_bound = StepBoundRule::accd;
+  double bound_gamma = default_bound_gamma;  // in (0, 1), where each vertex has a bound
+  ContactWeighting weighting = ContactWeighting::none;
 };
 
 /// Owns the broad phase. All results are independent of the number of threads. The scene must outlive it. Not
@@ -62,9 +68,21 @@ class ContactSystem {
   /// rows and -infinity. -infinity too where surfaces intersect at x whose states are tested.
   double find_rows(const PositionsView& x, ContactTable& rows, MollifiedTable& mollified) const;
 
+  /// The same for all states between x0 and x1, each vertex at its own pace: what vertex_bounds() needs, and rows there.
+  void update_candidates_of_each(const PositionsView& x0, const PositionsView& x1);
+
+  /// The part of the motion x0 -> x1 that each vertex may go, by the rule of the options, of the pairs that step_bound()
+  /// has. Its alpha is the smallest. Requires update_candidates_of_each().
+  StepBound vertex_bounds(const PositionsView& x0, const PositionsView& x1);
+  /// [n_vertices] of the last vertex_bounds().
+  std::span<const double> vertex_parts() const;
+
   /// All non-adjacent pairs of bodies that collide as `ccd`, whatever rule keeps them from having a row. A motion that
   /// is not finite: alpha 0.
   StepBound step_bound(const PositionsView& x0, const PositionsView& x1) const;
+
+  /// With the weighting `area`; else null.
+  const PairAreas* areas() const;
 
   struct Counts {  // obstacle: with points, edges and triangles
     std::size_t point_triangle = 0, edge_edge = 0, point_point = 0, point_edge = 0, obstacle = 0;

@@ -2,6 +2,7 @@
 #include "core/newton/host_potential.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "core/archive/archive.hpp"
 #include "core/newton/element_name.hpp"
@@ -104,16 +105,45 @@ void HostPotential::prepare(const Column& x0, const Column& x1, const Column& dx
 }
 
 double HostPotential::bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
+  return smallest_bound({points(x0), points(x1), points(dx)}, report, false);
+}
+
+double HostPotential::bound_truncated(const Column& x0, const Column& x1, const Column& dx,
+                                      IterationReport& report) {
+  return smallest_bound({points(x0), points(x1), points(dx)}, report, true);
+}
+
+// truncated: what terms said of each vertex the motion keeps to already.
+double HostPotential::smallest_bound(const Motion& motion, IterationReport& report, bool truncated) {
   double smallest = 1;
   holder_ = nullptr;
   for (const auto& term : terms_) {
-    const double said = term->bound({points(x0), points(x1), points(dx)}, report, clock());
+    if (truncated && !term->vertex_parts().empty()) continue;
+    const double said = term->bound(motion, report, clock());
     const double alpha = said >= 0 ? said : 0;  // what is no number proves nothing
     if (!(alpha < 1) || alpha > smallest) continue;
     smallest = alpha;
     holder_ = term.get();
   }
   return smallest;
+}
+
+bool HostPotential::bounds_each_vertex() const {
+  return std::any_of(terms_.begin(), terms_.end(),
+                     [](const auto& term) { return !term->vertex_parts().empty(); });
+}
+
+double HostPotential::truncate(Column& dx) {
+  std::vector<double> part(static_cast<std::size_t>(dx.size()) / 3, 1);
+  for (const auto& term : terms_) {
+    const std::span<const double> own = term->vertex_parts();
+    for (std::size_t i = 0; i < own.size(); ++i) part[i] = std::min(part[i], own[i]);
+  }
+  double of_pins = 1;
+  for (const Pin& pin : scene_.pins) of_pins = std::min(of_pins, part[static_cast<std::size_t>(pin.vertex)]);
+  for (const Pin& pin : scene_.pins) part[static_cast<std::size_t>(pin.vertex)] = of_pins;
+  for (std::size_t i = 0; i < part.size(); ++i) points(dx).col(static_cast<int>(i)) *= part[i];
+  return of_pins;
 }
 
 bool HostPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {

@@ -54,6 +54,10 @@ class HostPotential final : public IncrementalPotential {
 
   void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) override;
   double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
+  bool bounds_each_vertex() const override;
+  double truncate(Column& dx) override;
+  double bound_truncated(const Column& x0, const Column& x1, const Column& dx,
+                         IterationReport& report) override;
   std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
   bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
   bool admits(const Column& x, Column& trial) override;
@@ -86,6 +90,7 @@ class HostPotential final : public IncrementalPotential {
     return {*blocks_, elastic_, gradient, first_projection(hessian), clock()};
   }
   void linearise(Slot& slot, const Column& x, const Column& g);
+  double smallest_bound(const Motion& motion, IterationReport& report, bool truncated);
   void know_energies(const Column& x);
   void add_families(const Slot& slot, PositionsSpan gradient) const;
   void add_gradient(const Slot& slot, Column& g);

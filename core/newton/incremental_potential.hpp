@@ -79,6 +79,15 @@ class IncrementalPotential {
   virtual void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) = 0;
   /// Largest feasible fraction, in [0, 1]; each term says its own in the report.
   virtual double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) = 0;
+  /// Whether some term bounds each vertex by itself; then dx of each becomes the part of it that the last bound() lets it go,
+  /// and prescribed vertices go the smallest of theirs, which is returned.
+  virtual bool bounds_each_vertex() const { return false; }
+  virtual double truncate(Column& /*dx*/) { return 1; }
+  /// bound() of the terms that said nothing about each vertex, of a motion that was truncated.
+  virtual double bound_truncated(const Column& /*x0*/, const Column& /*x1*/, const Column& /*dx*/,
+                                 IterationReport&) {
+    return 1;
+  }
   virtual std::string describe_bound() const = 0;
   /// force (N) becomes what makes room for gaps that are curved along dx, of a motion that bound() ends at `bound`. Whether
   /// curvature is what holds it. The matrix is that of the last fill_matrix() again, whatever was filled since.

@@ -5,7 +5,8 @@
 //     one as positive definiteness allows
 //   3 stop when the estimated error of x + dx is below h tol_velocity, every prescribed vertex is at its pose
 //     and the exact Hessian is positive definite; from a saddle go on along negative curvature
-//   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds
+//   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds. Where contact bounds each
+//     vertex by itself, dx of each is cut to what it may go, as long as that descends
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
 //     with a detour round them
 //   6 accept; what converged goes on where terms renew what they lag
@@ -41,6 +42,7 @@ class LineSearch final : public StepSolver {
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
     feasibility_trials_ = &(step.solver.values["feasibility_trials"] = 0);
+    truncations_ = &(step.solver.values["truncations"] = 0);
     error_.reset();
     const double tolerance = tolerance_of(system, task.dt);
     int collapsed = 0, escapes = 0;
@@ -64,11 +66,11 @@ class LineSearch final : public StepSolver {
         continue;
       }
       const bool moved = search(system, report, at_pose, small);
-      error_.took(report.detours > 0 ? 0 : report.alpha);  // the direction itself was not taken
+      error_.took(report.detours > 0 || truncated_ ? 0 : report.alpha);  // the direction itself was not taken
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
-      const bool enough = report.alpha == 1 || report.dx_inf_m < tolerance;
+      const bool enough = (report.alpha == 1 && !truncated_) || report.dx_inf_m < tolerance;
       // Of a body at rest without a force, E is rounding and so is the direction.
       const bool nothing_left = !moved && bound_ >= collapsed_step && report.dx_beyond_m == 0;
       if (small && (nothing_left || (enough && (report.contraction.finite() || as_modelled(report))))) {
@@ -169,6 +171,11 @@ class LineSearch final : public StepSolver {
   // motion does work.
   bool search(StepSystem& system, IterationReport& report, bool energy_test, bool small) {
     find_bound(system, report);
+    share_ = 1, truncated_ = false;
+    if (bounded_ && report.alpha_ccd < 1) {
+      if (const auto motion = system.truncate_motion(report))
+        return go_truncated(system, report, *motion, energy_test);
+    }
     const bool held = bound_ < 1 && report.alpha_ccd <= report.alpha_strain;
     if (held && energy_test && !small && go_round(system, report)) return true;
     return go_along(system, report, smallest_alpha, energy_test);
@@ -197,6 +204,27 @@ class LineSearch final : public StepSolver {
     return false;
   }
 
+  // Each vertex as far as contact lets it, or where that does not descend all of them as far as the one that may go least.
+  // What is taken is said as the part of the fall that dx promises to first order; of a motion that is asked for no
+  // energies, as that of prescribed vertices.
+  bool go_truncated(StepSystem& system, IterationReport& report, const TruncatedMotion& motion,
+                    bool energy_test) {
+    const double slope = system.direction_size().slope_J, whole = -2 * report.decrement_J;
+    if (!energy_test || (slope < 0 && whole < 0)) {
+      const double of_all = bound_;
+      bound_ = motion.bound;
+      share_ = energy_test ? slope / whole : motion.of_pins;
+      truncated_ = true;
+      ++*truncations_;
+      if (go_along(system, report, smallest_alpha, energy_test)) return true;
+      bound_ = of_all;
+    }
+    share_ = 1, truncated_ = false;
+    system.restore_direction();
+    bound_again(system, report);
+    return go_along(system, report, smallest_alpha, energy_test);
+  }
+
   // Of another dx; the queries of both count.
   void bound_again(StepSystem& system, IterationReport& report) {
     const StepBound before = report.bound;
@@ -214,7 +242,7 @@ class LineSearch final : public StepSolver {
     for (; alpha > least; alpha /= 2) {
       ++report.line_search_trials;
       if (!(energy_test ? decreases(system, report, alpha) : is_feasible(system, report, alpha))) continue;
-      report.alpha = alpha;
+      report.alpha = std::min(1.0, alpha * share_);
       system.accept();
       return true;
     }
@@ -224,7 +252,7 @@ class LineSearch final : public StepSolver {
   bool decreases(StepSystem& system, IterationReport& report, double alpha) {
     const auto change = system.try_motion(alpha);
     if (!change) return false;
-    const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
+    const bool decrease = change->change <= -armijo_ * (alpha * share_) * (2 * report.decrement_J);
     noise_ = within_rounding(*change, system.view().precision());
     report.rounding_accepts = !decrease && noise_;
     if (!decrease && !noise_) return false;
@@ -245,7 +273,9 @@ class LineSearch final : public StepSolver {
   double* renewals_;
   double bound_ = 1;    // of the step taken last
   bool noise_ = false;  // its change of E is
-  double* feasibility_trials_ = nullptr;
+  double share_ = 1;    // of the fall that dx promises, in the motion that is tried
+  bool truncated_ = false;
+  double *feasibility_trials_ = nullptr, *truncations_ = nullptr;
   ErrorEstimate error_;
 };
 
@@ -269,6 +299,9 @@ StepSolverEntry step_solver_line_search() {
   entry.counters = {
       {"feasibility_trials",
        "line_search: those of line_search_trials that feasibility alone judged, short of a pose",
+       OverSteps::sum},
+      {"truncations",
+       "line_search: iterations in which vertices went each as far as contact let it (/contact/step_bound)",
        OverSteps::sum}};
   entry.make = [](const StepSolverOptions& options) {
     return make_line_search(options, {number(options.parameters, "cap_fraction"), true});

@@ -13,7 +13,7 @@ struct LineSearchRules {
   double* renewals = nullptr;  // gets how often terms renewed what they lag, step by step
 };
 
-/// options: with `armijo`. Its steps say one counter, `feasibility_trials`.
+/// options: with `armijo`. Its steps say two counters, `feasibility_trials` and `truncations`.
 std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options, const LineSearchRules& rules);
 
 }  // namespace bb

@@ -101,6 +101,17 @@ double NewtonSystem::bound_motion(IterationReport& report) {
   return state_.potential->bound(state_.x, state_.end, state_.dx, report);
 }
 
+// Prescribed vertices that are held back do not reach their targets.
+std::optional<TruncatedMotion> NewtonSystem::truncate_motion(IterationReport& report) {
+  if (!state_.potential->bounds_each_vertex()) return std::nullopt;
+  state_.aside.copy_from(state_.dx);
+  state_.direction_seen = false;
+  const double of_pins = state_.potential->truncate(state_.dx);
+  if (of_pins < 1) end_ = MotionEnd::free;
+  move(1, state_.end);
+  return TruncatedMotion{state_.potential->bound_truncated(state_.x, state_.end, state_.dx, report), of_pins};
+}
+
 bool NewtonSystem::try_feasible(double alpha) {
   const ScopedPhase timer(clock(), Phase::line_search);
   move(alpha, state_.trial);

@@ -42,6 +42,7 @@ class NewtonSystem : public StepSystem {
 
   void prepare_motion(MotionEnd end, bool to_bound) override;
   double bound_motion(IterationReport& report) override;
+  std::optional<TruncatedMotion> truncate_motion(IterationReport& report) override;
   bool make_detour(double bound, SolveReport& report) override;
   void restore_direction() override {
     state_.dx.swap(state_.aside);

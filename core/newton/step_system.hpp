@@ -32,6 +32,12 @@ struct EndCheck {
   int factorizations = 0, iterations = 0;
 };
 
+/// A motion whose vertices go each the part that contact lets them go.
+struct TruncatedMotion {
+  double bound = 1;    // in [0, 1], of what has one bound for all vertices
+  double of_pins = 1;  // part that prescribed vertices go
+};
+
 /// Where prescribed vertices are at the whole of a motion: at x + dx, or exactly at their target.
 enum class MotionEnd { free, on_target };
 
@@ -86,10 +92,13 @@ class StepSystem {
   virtual void prepare_motion(MotionEnd end, bool to_bound) = 0;
   /// Largest feasible fraction of the motion, in [0, 1]; each term says its own in the report.
   virtual double bound_motion(IterationReport& report) = 0;
+  /// After bound_motion(), where contact bounds each vertex by itself: dx of each becomes the part that it may go, and the
+  /// motion along that is the motion in progress. Nothing, and dx as it was, where one bound serves all vertices.
+  virtual std::optional<TruncatedMotion> truncate_motion(IterationReport&) { return std::nullopt; }
   /// Of a direction that contact ends at `bound`, prescribed vertices at their target: where curved gaps hold it, dx gets
   /// a second-order correction from the matrix that was solved, and becomes another motion. False: it stays.
   virtual bool make_detour(double bound, SolveReport& report) = 0;
-  /// dx as it was before make_detour() or aim_at_escape().
+  /// dx as it was before make_detour(), truncate_motion() or aim_at_escape().
   virtual void restore_direction() = 0;
   /// Whether x + alpha dx, rounded to the precision of the run, is finite and feasible. No energy there is evaluated.
   virtual bool try_feasible(double alpha) = 0;

@@ -4,6 +4,7 @@
 
 #include "core/contact/contact_loads.hpp"
 #include "core/contact/pair_name.hpp"
+#include "core/math/error.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
@@ -25,7 +26,14 @@ ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const Contact
       fixed_(fixed),
       terms_(terms),
       contacts_(scene, contact_options(options), plan),
-      stiffness_(*options.stiffness, scene.mass) {
+      stiffness_(*options.stiffness, scene.mass, contacts_.areas()) {
+  const PairAreas* areas = contacts_.areas();
+  if (areas && areas->without_area() >= 0) {
+    throw ConfigError(
+        "/contact/weighting", "\"area\"",
+        "none: " + pair_name(scene, {areas->without_area(), -1, -1, -1}, ContactKind::point_point) +
+            " belongs to no triangle and has no area");
+  }
   families_.resize(2);
   if (options.stiffness->has_potential()) folded_.emplace(options.contact);
   if (options.multipliers) multipliers_.emplace(*options.multipliers);
@@ -146,7 +154,9 @@ void ContactTerm::add_loads(const PositionsView& x, ContactLoads& out) const {
 
 void ContactTerm::prepare(const Motion& motion, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::broad_phase);
-  if (motion.to_bound) {
+  if (bounds_each_vertex(options_.contact_options.step_bound)) {
+    contacts_.update_candidates_of_each(motion.x0, motion.x1);
+  } else if (motion.to_bound) {
     contacts_.update_candidates_to_bound(motion.x0, motion.x1);
   } else {
     contacts_.update_candidates(motion.x0, motion.x1);
@@ -155,7 +165,9 @@ void ContactTerm::prepare(const Motion& motion, PhaseClock& clock) {
 
 double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::step_bound);
-  bound_ = contacts_.step_bound(motion.x0, motion.x1);
+  bound_ = bounds_each_vertex(options_.contact_options.step_bound)
+               ? contacts_.vertex_bounds(motion.x0, motion.x1)
+               : contacts_.step_bound(motion.x0, motion.x1);
   report.bound = bound_;
   report.alpha_ccd = bound_.alpha;
   return bound_.alpha;
@@ -164,6 +176,11 @@ double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClo
 bool ContactTerm::add_detour(const PositionsView& x, const PositionsView& dx, double bound,
                              PositionsSpan force) const {
   return bb::add_detour(state_.rows, x, dx, force).by_curvature(bound);
+}
+
+std::span<const double> ContactTerm::vertex_parts() const {
+  if (bounds_each_vertex(options_.contact_options.step_bound)) return contacts_.vertex_parts();
+  return {};
 }
 
 std::string ContactTerm::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }

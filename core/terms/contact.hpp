@@ -69,6 +69,7 @@ class ContactTerm final : public Term {
   void add_loads(const PositionsView& x, ContactLoads& out) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
+  std::span<const double> vertex_parts() const override;
   bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
                   PositionsSpan force) const override;
   std::string describe_bound() const override;

@@ -11,12 +11,18 @@ namespace {
 
 constexpr const char* no_matrix = "the step solver has no matrix";
 
+std::string reason_of_bound(const Scene& scene, StepBoundRule rule) {
+  std::string out = scene.collisions.chosen()
+                        ? "every step of pairs that collide as ccd stays free of contact"
+                        : "every step stays free of contact";
+  if (rule != StepBoundRule::accd) out += ", by " + std::string(to_string(rule));
+  return out;
+}
+
 void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
   const bool contact = plan.term("contact").needed;
   plan.step_bound =
-      plan_item(contact && options.step.step_bound,
-                scene.collisions.chosen() ? "every step of pairs that collide as ccd stays free of contact"
-                                          : "every step stays free of contact",
+      plan_item(contact && options.step.step_bound, reason_of_bound(scene, terms.contact_options.step_bound),
                 contact ? "the step solver has no step bound" : "nothing can touch");
   plan.trial_energies = plan_item(options.step.energies, "the step solver compares E at trials",
                                   "feasibility alone judges the trials of the step solver");

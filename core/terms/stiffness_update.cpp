@@ -41,8 +41,9 @@ StiffnessBatch PolicyColumns::batch(const StiffnessTime& time, bool with_hessian
   return rows;
 }
 
-StiffnessUpdate::StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass)
-    : policy_(policy), mass_(mass) {}
+StiffnessUpdate::StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass,
+                                 const PairAreas* areas)
+    : policy_(policy), mass_(mass), areas_(areas) {}
 
 void StiffnessUpdate::begin_step() {
   memory_.clear();
@@ -109,6 +110,7 @@ void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const Hessia
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto r = static_cast<std::size_t>(rows[i]);
+    if (areas_) parts_[i].fixed *= areas_->of(table.pair[r]);
     table.parts[r] = parts_[i];
     table.kappa[r] = parts_[i].at(table.d[r]);
   }

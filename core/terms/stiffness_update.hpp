@@ -9,6 +9,7 @@
 #include "core/barrier/relative_change.hpp"
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/contact/kappa_memory.hpp"
+#include "core/contact/pair_areas.hpp"
 #include "core/linear/block_system.hpp"
 
 namespace bb {
@@ -22,13 +23,17 @@ struct PolicyColumns {
 
 class StiffnessUpdate {
  public:
-  /// policy must outlive this object. mass: [n_vertices] kg.
-  StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass);
+  /// policy and areas must outlive this object. mass: [n_vertices] kg. areas: by which kappa of a pair is multiplied, that of
+  /// the policy being one of a square metre (N/m^3); null: it is that of the pair.
+  StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass, const PairAreas* areas = nullptr);
 
   /// Forgets the kappa and the H of the step before.
   void begin_step();
   /// Step length (s) and inertia weight c that policies read.
-  void set_time(const StiffnessTime& time) { time_ = time; }
+  void set_time(const StiffnessTime& time) {
+    time_ = time;
+    policy_.set_time(time);
+  }
 
   /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
   /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had
@@ -77,6 +82,7 @@ class StiffnessUpdate {
 
   StiffnessPolicy& policy_;
   std::span<const double> mass_;
+  const PairAreas* areas_;
   StiffnessTime time_;
   KappaMemory memory_;
   PolicyColumns columns_;

@@ -137,6 +137,9 @@ class Term {
   virtual void prepare(const Motion&, PhaseClock&) {}
   /// Largest alpha in [0, 1] up to which the motion is feasible. Says it in the report too.
   virtual double bound(const Motion&, IterateNumbers&, PhaseClock&) { return 1; }
+  /// What the last bound() was the smallest of, where each vertex has a bound of its own: [n] the part of its motion that
+  /// each may go, whatever part the others do. Empty where one part serves all.
+  virtual std::span<const double> vertex_parts() const { return {}; }
   /// Of a motion dx [3 x n] (m) from x that bound() ends at `bound`, prescribed vertices at rest: adds to `force` (N) what
   /// makes room for gaps that are curved along it (core/contact/gap_along.hpp). Whether curvature is what holds it.
   virtual bool add_detour(const PositionsView& /*x*/, const PositionsView& /*dx*/, double /*bound*/,

@@ -130,6 +130,31 @@ void check_potential(const std::string& section, const std::string& shape, Argum
     complain(pointer, "\"included\"", "dropped: the step solver is " + config.step_solver.name);
 }
 
+/// What only some step solvers and policies can do.
+void check_contact(const RunConfig& config, const Complain& complain) {
+  const ContactConfig& contact = config.contact;
+  const StepBoundRule rule = contact.step_bound.value_or(StepBoundRule::accd);
+  if (bounds_each_vertex(rule) && config.step_solver.name != "line_search") {
+    complain("/contact/step_bound", '"' + word_of(rule) + '"',
+             "accd, or step solver line_search: " + config.step_solver.name +
+                 " takes one part of a step for all vertices");
+  }
+  if (contact.bound_gamma && !bounds_each_vertex(rule)) {
+    complain("/contact/bound_gamma", fmt::format("{}", *contact.bound_gamma),
+             "nothing: accd does not read it, planar_truncation and per_vertex do");
+  }
+  if (contact.weighting != ContactWeighting::area) return;
+  const std::string where = "/contact/weighting", found = "\"area\"";
+  if (config.formulation.stiffness_policy.name != "fixed") {
+    complain(where, found,
+             "none, or policy fixed: kappa of " + config.formulation.stiffness_policy.name +
+                 " is that of a pair and not of an area");
+  }
+  if (config.matching.rule != MatchingRule::as_given) {
+    complain(where, found, "none, or matching rule as_given: the others match the kappa of a pair");
+  }
+}
+
 void check_policies(const RunConfig& config, const Complain& complain) {
   const FormulationConfig& contact = config.formulation;
   check_policy("/formulation", contact.stiffness_policy, PolicyUse::contact,
@@ -307,6 +332,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   if (config.strain_limit.shape != config.formulation.shape) {
     check_exponent("/strain_limit", config.strain_limit.shape, complain);
   }
+  check_contact(config, complain);
   check_step_solver(config, complain);
   check_damping(config, complain);
   check_hessians(config, complain);

@@ -57,6 +57,13 @@ void check_device(const RunConfig& config, const Complain& complain) {
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
   }
+  if (const auto rule = config.contact.step_bound.value_or(StepBoundRule::accd); bounds_each_vertex(rule)) {
+    complain("/contact/step_bound", '"' + word_of(rule) + '"',
+             "accd " + on + ": no kernel bounds each vertex by itself");
+  }
+  if (config.contact.weighting == ContactWeighting::area) {
+    complain("/contact/weighting", "\"area\"", "none " + on + ": its kernels count every pair as one");
+  }
   if (is_numeric(config.contact.hessian_mode)) {
     complain("/contact/hessian_mode", '"' + word_of(config.contact.hessian_mode) + '"',
              "gauss_newton or projected_full " + on);

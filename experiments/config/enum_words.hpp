@@ -27,6 +27,14 @@ inline EnumWords<MatchingRule> words_of(MatchingRule) {
 inline EnumWords<Mollifier> words_of(Mollifier) {
   return {{Mollifier::ipc, "ipc"}, {Mollifier::none, "none"}};
 }
+inline EnumWords<StepBoundRule> words_of(StepBoundRule) {
+  return {{StepBoundRule::accd, "accd"},
+          {StepBoundRule::planar_truncation, "planar_truncation"},
+          {StepBoundRule::per_vertex, "per_vertex"}};
+}
+inline EnumWords<ContactWeighting> words_of(ContactWeighting) {
+  return {{ContactWeighting::none, "none"}, {ContactWeighting::area, "area"}};
+}
 inline EnumWords<CombineRule> words_of(CombineRule) {
   return {{CombineRule::min, "min"}, {CombineRule::max, "max"}, {CombineRule::mean, "mean"}};
 }

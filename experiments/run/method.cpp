@@ -66,6 +66,9 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.hessian_mode = config.contact.hessian_mode;
   method.contact_options.mollifier = config.contact.mollifier;
   method.contact_options.ccd_park = config.contact.ccd_park;
+  method.contact_options.weighting = config.contact.weighting.value_or(ContactWeighting::none);
+  method.contact_options.step_bound = config.contact.step_bound.value_or(StepBoundRule::accd);
+  method.contact_options.bound_gamma = config.contact.bound_gamma.value_or(default_bound_gamma);
   method.friction = {config.friction.law, config.friction.mu, config.friction.combine,
                      config.friction.lag_iterations, config.friction.eps_v};
   method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);

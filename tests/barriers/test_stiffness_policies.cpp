@@ -124,7 +124,7 @@ TEST(IpcAdaptivePolicy, WithoutInertiaItNeedsBothBounds) {
 
 TEST(PolicyFactory, HoldsTheBuiltInsAndNamesTheNearest) {
   const std::vector<std::string> names = stiffness_policies().names();
-  const std::vector<std::string> expected{"fixed", "ipc_adaptive", "elasticity_inclusive"};
+  const std::vector<std::string> expected{"fixed", "ipc_adaptive", "elasticity_inclusive", "dart"};
   ASSERT_GE(names.size(), expected.size());
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), names.begin()));
 

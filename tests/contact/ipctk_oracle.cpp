@@ -49,6 +49,42 @@ void scatter(const std::vector<int>& vertex, const std::vector<double>& grad, co
   }
 }
 
+/// [n_vertices] parts of the motion by a rule that bounds each vertex, with the toolkit's gamma.
+void write_parts(std::ofstream& out, const ContactProblem& p, StepBoundRule rule) {
+  ContactOptions options = p.options;
+  options.step_bound = rule;
+  ContactSystem contacts(p.scene, options);
+  contacts.update_candidates_of_each(p.scene.x0, p.x1);
+  contacts.vertex_bounds(p.scene.x0, p.x1);
+  write(out, contacts.vertex_parts().data(), contacts.vertex_parts().size());
+}
+
+/// Potential and gradient with kappa = 1 N/m^3 and the area of each pair.
+double write_weighted(std::ofstream& out, const ContactProblem& p, ContactTable& rows,
+                      MollifiedTable& mollified) {
+  ContactOptions options = p.options;
+  options.weighting = ContactWeighting::area;
+  const ContactSystem contacts(p.scene, options);
+  const auto weigh = [&contacts](auto& table) {
+    for (std::size_t r = 0; r < table.size(); ++r) table.kappa[r] = contacts.areas()->of(table.pair[r]);
+  };
+  weigh(rows), weigh(mollified);
+  double potential = 0;
+  std::vector<double> energy, grad, hess;
+  std::vector<Entry> unread;
+  Positions gradient = Positions::Zero(3, p.scene.n_vertices());
+  contact_energies(rows, energy);
+  for (double e : energy) potential += e;
+  mollified_energies(mollified, p.scene.x0, energy);
+  for (double e : energy) potential += e;
+  contact_terms(rows, p.scene.x0, HessianMode::projected_full, Projection::psd, grad, hess);
+  scatter(rows.vertex, grad, hess, gradient, unread);
+  mollified_terms(mollified, p.scene.x0, Projection::psd, grad, hess);
+  scatter(mollified.free_vertex, grad, hess, gradient, unread);
+  write(out, gradient.data(), static_cast<std::size_t>(gradient.size()));
+  return potential;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -91,10 +127,14 @@ int main(int argc, char** argv) {
     write(out, &e.column, 1);
     write(out, &e.value, 1);
   }
+  for (const StepBoundRule rule : {StepBoundRule::planar_truncation, StepBoundRule::per_vertex})
+    write_parts(out, p, rule);
+  const double weighted = write_weighted(out, p, rows, mollified);
   std::printf(
       "{\"rows\": %zu, \"mollified\": %zu, \"entries\": %zu, \"potential\": %.17g, "
-      "\"alpha\": %.17g, \"queries\": %lld, \"probes\": %lld, \"capped\": %lld, \"zero\": %lld}\n",
-      rows.size(), mollified.size(), entries.size(), potential, bound.alpha, bound.queries, bound.probes,
-      bound.capped, bound.zero);
+      "\"weighted\": %.17g, \"alpha\": %.17g, \"queries\": %lld, \"probes\": %lld, \"capped\": %lld, "
+      "\"zero\": %lld}\n",
+      rows.size(), mollified.size(), entries.size(), potential, weighted, bound.alpha, bound.queries,
+      bound.probes, bound.capped, bound.zero);
   return out ? 0 : 1;
 }

@@ -46,6 +46,9 @@ def probe(tmp_path, rest, x0, x1, faces, d_hat, mollify=True):
         answer["gradient"] = np.fromfile(file, "<f8", 3 * len(rest))
         entry = [("row", "<i4"), ("column", "<i4"), ("value", "<f8")]
         answer["hessian"] = np.fromfile(file, entry, answer["entries"])
+        for rule in ("planar_truncation", "per_vertex"):
+            answer[rule] = np.fromfile(file, "<f8", len(rest))
+        answer["weighted_gradient"] = np.fromfile(file, "<f8", 3 * len(rest))
     return answer
 
 

@@ -26,6 +26,7 @@ CASES = {
     "lagged_cholesky, two threads": {"/linear_solver/name": "lagged_cholesky", "/threads": 2},
     "pcg": {"/linear_solver/name": "pcg"},
     "ipc_adaptive": {"/formulation": "ipc2020"},
+    "dart": {"/formulation": "dart"},
     "elasticity_inclusive": {"/formulation": "cubic_dynamic_lagged"},
     "device host": {"/device": "host"},
     "device host, ipc_adaptive": {"/device": "host", "/formulation": "ipc2020"},

@@ -138,6 +138,7 @@ void ResidentContact::look_at_rows(const Column& x) {
 void ResidentContact::change_frame(const ResidentFrame& frame) {
   time_ = {frame.dt, frame.c};
   stiffness_.set_time(time_);
+  options_.stiffness->set_time(time_);
 }
 
 void ResidentContact::use_policy_kappa() {

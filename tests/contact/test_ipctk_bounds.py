@@ -1,0 +1,62 @@
+"""Bounds of each vertex, and pairs weighted by area, against the IPC Toolkit (Python package ipctk).
+
+Its trust region has candidates within a radius; here those of the motion, so both are given all pairs. Skipped when ipctk
+or the program contact_probe is missing.
+"""
+
+import os
+
+import numpy as np
+import pytest
+from analysis import toolkit_meshes
+from test_ipctk import PROBE, collision_mesh, ipctk, probe
+
+pytestmark = pytest.mark.skipif(not os.access(PROBE, os.X_OK), reason="contact_probe is not built")
+
+
+def two_wavy_sheets(seed=3):
+    """x0, x1 and triangles: two sheets 0.3 apart that run into each other and aside, every vertex by its own way."""
+    rng = np.random.default_rng(seed)
+    x0, _, faces = toolkit_meshes.generated_sheets(5, 0.3)
+    x0 = x0[: len(x0) * 2 // 3]
+    faces = faces[(faces < len(x0)).all(axis=1)]
+    return x0, x0 + rng.uniform(-0.25, 0.25, x0.shape), faces
+
+
+def toolkit_parts(x0, x1, faces, filtered):
+    """What the toolkit's trust region leaves of the motion of each vertex: all pairs, gamma 0.9, no second cap."""
+    mesh = collision_mesh(x0, faces)
+    region = ipctk.ogc.TrustRegion(1.0)
+    region.trust_region_inflation_radius = 10.0
+    region.update(mesh, x0, ipctk.NormalCollisions(), 0.0, ipctk.BruteForce())
+    assert len(region.candidates) > 1000 and region.relaxed_radius_scaling == 0.9
+    dx = np.asfortranarray(x1 - x0)
+    getattr(region, filtered)(mesh, x0, dx)
+    return np.linalg.norm(dx, axis=1) / np.linalg.norm(x1 - x0, axis=1)
+
+
+@pytest.mark.parametrize("rule, filtered", [("planar_truncation", "planar_filter_step"), ("per_vertex", "filter_step")])
+def test_bounds_of_each_vertex(tmp_path, rule, filtered):
+    """d_hat is as long as the scene, so that every pair is a candidate here as it is there."""
+    x0, x1, faces = two_wavy_sheets()
+    theirs = toolkit_parts(x0, x1, faces, filtered)
+    ours = probe(tmp_path, x0, x0, x1, faces, 5.0)[rule]
+    assert ours.shape == theirs.shape and (theirs < 1).mean() > 0.3
+    np.testing.assert_allclose(ours, theirs, rtol=1e-9)
+
+
+def test_potential_weighted_by_area(tmp_path):
+    """In its collision set IPC weights of pairs with one closest feature add up, as rows do here."""
+    x, _, faces = toolkit_meshes.generated_sheets(9, 0.2)
+    answer = probe(tmp_path, x, x, x, faces, 0.2)
+    mesh = collision_mesh(x, faces)
+    collisions = ipctk.NormalCollisions()
+    collisions.collision_set_type = ipctk.NormalCollisions.CollisionSetType.IPC
+    collisions.use_area_weighting = True
+    collisions.build(mesh, x, 0.2)
+    potential = ipctk.BarrierPotential(0.2, 1.0)
+    assert answer["rows"] > 1000 and answer["weighted"] < 0.1 * answer["potential"]
+    assert answer["weighted"] == pytest.approx(potential(collisions, mesh, x) / 0.2**2, rel=1e-11, abs=0)
+    gradient = potential.gradient(collisions, mesh, x) / 0.2**2
+    assert np.linalg.norm(gradient) > 0
+    assert np.linalg.norm(answer["weighted_gradient"] - gradient) <= 1e-10 * np.linalg.norm(gradient)
