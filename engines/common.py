@@ -106,6 +106,13 @@ def plane_stress(membrane: dict) -> tuple[float, float]:
     return 4 * mu * (lam + mu) / (lam + 2 * mu), lam / (lam + 2 * mu)
 
 
+def reach(body: dict, asked: float = 0.0) -> float:
+    """How far from its middle surface a body is met, m: what is asked for, else half of its thickness and half of
+    the distance at which our barrier begins.
+    """
+    return asked or body["half_thickness_m"] + body["d_hat_m"] / 2
+
+
 class Frames:
     """The states of a run, and where the time went: `with frames.stepping():` around what is the engine's."""
 
@@ -163,6 +170,8 @@ def _value(text: str, setting: dict, parser: argparse.ArgumentParser):
         parser.error(f"found {text!r}; allowed: {', '.join(setting['allowed'])}")
     if "above" in setting and not value > setting["above"]:
         parser.error(f"found {text!r}; allowed: above {setting['above']}")
+    if "least" in setting and not value >= setting["least"]:
+        parser.error(f"found {text!r}; allowed: from {setting['least']}")
     return value
 
 

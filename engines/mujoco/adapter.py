@@ -37,7 +37,7 @@ def flex(scene, body, settings):
     names = " ".join(f"v{first + k}" for k in range(body["vertices"]))
     ignored = 'contype="0" conaffinity="0"' if settings["contact"] == "none" else ""
     return (
-        f'<flex name={quoteattr(body["name"])} dim="2" radius="{settings["radius_m"]:.17g}" body="{names}"'
+        f'<flex name={quoteattr(body["name"])} dim="2" radius="{common.reach(body, settings["radius_m"]):.17g}" body="{names}"'
         f' element="{words(triangles.ravel().tolist())}">'
         f'<elasticity young="{youngs / thickness:.17g}" poisson="{poisson:.17g}" thickness="{thickness:.17g}"'
         f' damping="{settings["damping_s"]:.17g}" elastic2d="{kind}"/>'

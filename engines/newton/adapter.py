@@ -41,7 +41,7 @@ def add_body(builder, scene, body, settings):
         add_springs=settings["solver"] == "xpbd",
         spring_ke=youngs * factor,
         spring_kd=0.0,
-        particle_radius=settings["radius_m"],
+        particle_radius=common.reach(body, settings["radius_m"]),
     )
     stiffness = body["hinge_J"] * settings["bending_factor"]
     for k in range(begin, len(builder.edge_indices)):  # VBD multiplies by the length of the edge
@@ -85,15 +85,16 @@ def model_of(scene, settings):
     return model
 
 
-def solver_of(model, settings):
+def solver_of(model, scene, settings):
     if settings["solver"] == "xpbd":
         return newton.solvers.SolverXPBD(model, iterations=settings["iterations"])
+    margin = settings["margin_m"] or 2 * max(common.reach(body) for body in scene.bodies)
     return newton.solvers.SolverVBD(
         model,
         iterations=settings["iterations"],
         particle_enable_self_contact=settings["contact"],
-        particle_self_contact_margin=settings["margin_m"],
-        particle_self_contact_gap=0.75 * settings["margin_m"],
+        particle_self_contact_margin=margin,
+        particle_self_contact_gap=0.75 * margin,
         particle_vertex_contact_buffer_size=64,
         particle_edge_contact_buffer_size=128,
     )
@@ -105,7 +106,7 @@ class Stepper:
     def __init__(self, scene, settings, dt_s):
         self.scene, self.dt_s = scene, dt_s
         self.model = model_of(scene, settings)
-        self.solver = solver_of(self.model, settings)
+        self.solver = solver_of(self.model, scene, settings)
         self.old, self.new = self.model.state(), self.model.state()
         for state in (self.old, self.new):
             state.particle_q.assign(scene.x.astype(np.float32))
