@@ -53,7 +53,9 @@ def _check(data: dict, path: Path) -> None:
                 raise refused(path, place, name, f"one of {', '.join(known)}")
     for name, one in known.items():
         if "allowed" in one and one["default"] not in one["allowed"]:
-            raise refused(path, f"settings/{name}/default", one["default"], f"one of {', '.join(one['allowed'])}")
+            raise refused(
+                path, f"settings/{name}/default", one["default"], f"one of {', '.join(one['allowed'])}"
+            )
 
 
 def read_card(name: str, engines: Path = ENGINES) -> Card:

@@ -1,7 +1,8 @@
-"""./bench engine compare: the scenes of a spec under this program and under engines, each judged, in one record.
+"""./bench engine compare: the scenes of a spec under this program and under engines, each judged, in one
+record.
 
-A run that is there with the same scene, settings and requirements is taken as it is, so that a study that was cut
-off goes on.
+A run that is there with the same scene, settings and requirements is taken as it is, so that a study that
+was cut off goes on.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ def _ours(study: Study, name: str, scene: dict, parts: int, more: dict, label: s
 
 
 def fits(study: Study) -> dict[str, dict]:
-    """Factors and what is left of each engine and variant: "engine variant" -> fit, or the `failed` of one."""
+    """Factors and what is left of each "engine variant", or why it has `failed`."""
     m = study.spec["material"]
     material = Material(m["youngs_N_per_m"], m["poisson"], m["density_kg_per_m2"], m["hinge_J"])
     folder, tests, out = study.folder / "material", None, {}
@@ -152,20 +153,23 @@ def _engine_rows(study: Study, name: str, scene: dict, fitted: dict, reference) 
         factors = fitted[label].get("factors", {})
         for k, level in enumerate(one["levels"]):
             out = study.folder / name / f"{card.name}-{variant}-{k}"
+            sets = {**factors, **level}
 
-            def make(card=card, variant=variant, sets={**factors, **level}, out=out, label=label, k=k) -> dict:
+            def make(card=card, variant=variant, sets=sets, out=out, label=label, k=k) -> dict:
                 study.say(f"{name}: {label}, level {k}")
                 done = launch.run(card, scene, out, variant, sets, study.spec["limit_s"])
                 judged = done["outcome"] in ("ok", "not_finite")
                 return done | ({"judged": judge(out, scene)} if judged else {})
 
             answer = kept(out, _key(scene, _code(card), variant, factors, level), make)
-            rows.append({"engine": card.name, "variant": variant, "level": k, **_row(answer, scene, reference)})
+            rows.append(
+                {"engine": card.name, "variant": variant, "level": k, **_row(answer, scene, reference)}
+            )
     return rows
 
 
 def of_scene(study: Study, name: str, fitted: dict) -> dict:
-    """The rows of one scene. Errors: UserError where the scene cannot be built; every run that fails is a row."""
+    """The rows of one scene; a run that fails is a row. Errors: UserError where the scene cannot be built."""
     config, asked = study.scenes[name], study.spec["reference"]
     scene = exported(config.file, config.sets())
     more = {"/integrator/name": asked["integrator"]}

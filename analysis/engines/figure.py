@@ -19,7 +19,9 @@ def _crossed(row: dict) -> bool:
 def paint(record: dict, path: Path) -> None:
     scenes = record["scenes"]
     height = -(-(len(scenes) + 1) // COLUMNS)
-    figure, axes = plt.subplots(height, COLUMNS, figsize=(WIDE_IN, 2.4 * height), layout="constrained", squeeze=False)
+    figure, axes = plt.subplots(
+        height, COLUMNS, figsize=(WIDE_IN, 2.4 * height), layout="constrained", squeeze=False
+    )
     who = list(dict.fromkeys((row["engine"], row["variant"]) for one in scenes for row in one["rows"]))
     looks = {one: (COLOURS[k % len(COLOURS)], MARKS[k % len(MARKS)]) for k, one in enumerate(who)}
     for axis, one in zip(axes.flat, scenes):
@@ -32,7 +34,13 @@ def paint(record: dict, path: Path) -> None:
         known = one["reference_apart"].get("error_mean")
         if known:
             axis.axhline(100 * known, color="#999999", lw=0.8, ls=":")
-        axis.set(xscale="log", yscale="log", title=one["scene"], xlabel="seconds of steps", ylabel="error, % of width")
+        axis.set(
+            xscale="log",
+            yscale="log",
+            title=one["scene"],
+            xlabel="seconds of steps",
+            ylabel="error, % of width",
+        )
     for axis in axes.flat[len(scenes) :]:
         axis.axis("off")
     key = axes.flat[len(scenes)]

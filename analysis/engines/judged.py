@@ -35,8 +35,8 @@ def error_of(x: np.ndarray, reference: np.ndarray, scene: dict) -> dict:
 
 
 def energy_of(frames: list[dict]) -> dict:
-    """Kinetic energy of the mean velocities between frames and energy of gravity in the middle, J: the most that
-    was gained above the start, and what is left at the end. Elastic energy is in neither.
+    """Kinetic energy of the mean velocities between frames and energy of gravity in the middle, J: the most
+    that was gained above the start, and what is left at the end. Elastic energy is in neither.
     """
     rows = [f for f in frames if "gravity_J" in f]
     if len(rows) < 2 or any("kinetic_J" not in f for f in rows[1:]):
@@ -48,14 +48,16 @@ def energy_of(frames: list[dict]) -> dict:
 
 
 def judge(folder: Path, scene: dict) -> dict:
-    """The numbers of the judgement of folder/frames.npz; the whole lies in folder/judgement. Errors: UserError."""
+    """The numbers of the judgement of folder/frames.npz; the whole lies in folder/judgement."""
     file = folder / "about.json"
     write_whole(file, json.dumps(about(scene)) + "\n")
     out = folder / "judgement"
     words = [str(folder / "frames.npz"), "--about", str(file), "--out", str(out)]
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         code = verb.main(words)
-    record = json.loads((out / "judgement.json").read_text()) if code in (verb.CLEAN, verb.NOT_CLEAN) else None
+    record = (
+        json.loads((out / "judgement.json").read_text()) if code in (verb.CLEAN, verb.NOT_CLEAN) else None
+    )
     if record is None:
         return {"verdict": "not_judged"}
     frames, total = record["frames"], record["total"]

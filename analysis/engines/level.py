@@ -32,8 +32,8 @@ def at(line: list[dict], given: str, value: float, wanted: str) -> float | None:
 
 
 def equal(rows: list[dict], ours: str) -> list[dict]:
-    """Of every engine: the error in the seconds of our first level, and the seconds of its error; None where the
-    levels do not reach.
+    """Of every engine: the error in the seconds of our first level, and the seconds of its error; None where
+    the levels do not reach.
     """
     found = lines(rows)
     own = next((row for row in rows if row["engine"] == ours and row["level"] == 0), None)

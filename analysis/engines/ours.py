@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -38,12 +39,13 @@ def run(
         "/output/frames_every": 1,
         **(more or {}),
     }
-    out.mkdir(parents=True, exist_ok=True)
     folder, log = out / "run", out / "log.txt"
+    shutil.rmtree(folder, ignore_errors=True)
+    out.mkdir(parents=True, exist_ok=True)
     answer = {"engine": "barrierbench", "log": str(log), "out": str(out), "run": None}
     words = [word for one in Config(config.file, changed).sets() for word in ("--set", one)]
     try:
-        done = started("run", str(config.file), *words, "--out", str(folder), "--force", timeout=limit_s)
+        done = started("run", str(config.file), *words, "--out", str(folder), timeout=limit_s)
     except subprocess.TimeoutExpired:
         return answer | {"outcome": "timed_out", "detail": f"after {limit_s:g} s"}
     log.write_text(done.stdout + done.stderr)
@@ -67,8 +69,9 @@ def run(
 
 
 def _write_frames(record: dict, folder: Path, scene: dict, out: Path, parts: int) -> None:
-    """Of the start and of the ends of frames: step `parts` - 1 ends the first. Obstacles that rest stand for no
-    vertex."""
+    """Of the start and of the ends of frames: step `parts` - 1 ends the first. Obstacles that rest stand for
+    no vertex.
+    """
     if any("vertex" in o for o in read_scene(record, folder)["obstacles"]):
         raise UserError(f"{folder}: an obstacle moves")
     steps = [-1, *range(parts - 1, scene["steps"] * parts, parts)]

@@ -91,7 +91,9 @@ def _seen(record: dict) -> list[str]:
     """Beside each promise what the judge found in all scenes."""
     lines = []
     for name, promise in record["guarantees"].items():
-        lines.append(f"- **{name} {record['versions'][name]}** promises: {promise['words']} ({promise['citation']})")
+        lines.append(
+            f"- **{name} {record['versions'][name]}** promises: {promise['words']} ({promise['citation']})"
+        )
         rows = [row for one in record["scenes"] for row in one["rows"] if row["engine"] == name]
         for variant in dict.fromkeys(row["variant"] for row in rows):
             own = [row for row in rows if row["variant"] == variant]
@@ -100,8 +102,8 @@ def _seen(record: dict) -> list[str]:
             lines.append(
                 f"  - {variant}: {len(ran)} of {len(own)} runs ended ok;"
                 f" {count('frames_crossing')} with surfaces that cross in a frame,"
-                f" {count('frames_in_obstacles')} with surfaces in an obstacle, {count('passages')} with a passage"
-                " between frames, on straight lines"
+                f" {count('frames_in_obstacles')} with surfaces in an obstacle,"
+                f" {count('passages')} with a passage between frames, on straight lines"
             )
     return lines
 
@@ -110,10 +112,11 @@ def text_of(record: dict) -> str:
     lines = [
         "# Engines of others",
         "",
-        "Made by `./bench engine compare`; [docs/engines.md](../docs/engines.md) says what is compared and how.",
-        "Error: distance of vertices from our refined reference, root mean square over vertices and frames, in widths of"
-        " the scene. Depth: the largest in an obstacle or a closed body. Gained: the most of kinetic energy and that of gravity above"
-        " the start; end: what is left of it. Seconds are those of steps, without start and compilation, on one machine that did other things too.",
+        "Made by `./bench engine compare`; [docs/engines.md](../docs/engines.md) says what is compared.",
+        "Error: distance of vertices from our refined reference, root mean square over vertices and frames,"
+        " in widths of the scene. Depth: the largest in an obstacle or a closed body. Gained: the most of"
+        " kinetic energy and that of gravity above the start; end: what is left of it. Seconds are those of"
+        " steps, without start and compilation, on one machine that did other things too.",
         "",
         "![Error against seconds](../docs/engines.png)",
         "",
@@ -123,9 +126,9 @@ def text_of(record: dict) -> str:
         "",
         "## Materials",
         "",
-        "Factors that the tests fitted, and how far the tests are apart after it: far ends in the tensile tests"
-        " (`warp`, `weft`, `bias`) and the bending test, relative to ours; `narrowing`: change of width of `warp`; `drape`:"
-        " root mean square distance, in widths of the sheet.",
+        "Factors that the tests fitted, and how far the tests are apart after it: far ends in the tensile"
+        " tests (`warp`, `weft`, `bias`) and the bending test, relative to ours; `narrowing`: change of width"
+        " of `warp`; `drape`: root mean square distance, in widths of the sheet.",
         "",
         *_left(record["material_left"]),
         "",

@@ -24,7 +24,7 @@ def exported(config: Path, sets: list[str] = ()) -> dict:
 
 
 def _check(scene: dict, path: Path) -> None:
-    """What no schema says: counts that agree, vertices that are there, finite numbers (JSON has no others)."""
+    """What no schema says: counts that agree, vertices that are there."""
     n = len(scene["positions_m"])
     for key in ("rest_m", "velocities_m_s", "mass_kg"):
         if len(scene[key]) != n:
@@ -67,7 +67,7 @@ def made(scene: dict, place: str) -> dict:
 
 
 def about(scene: dict) -> dict:
-    """barrierbench.judge/1 (./bench judge --about): bodies, obstacles, given vertices, masses as densities."""
+    """barrierbench.judge/1 (./bench judge --about): bodies, obstacles, given vertices, densities."""
     rest, mass = np.array(scene["rest_m"]), np.array(scene["mass_kg"])
     triangles = np.array(scene["triangles"], int).reshape(-1, 3)
     a, b = (rest[triangles[:, k]] - rest[triangles[:, 0]] for k in (1, 2))

@@ -28,16 +28,26 @@ results/ENGINES.md, docs/engines.png; what was run is kept and not run again."""
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("engine", DOC, "./bench engine mujoco run configs/scenes/twist_cloth.json --out out/twist",
-                       "./bench engine compare --scene hang")  # fmt: skip
-    parser.add_argument("words", nargs="+", metavar="WORD", help="list | NAME setup | NAME run SCENE | compare [SPEC]")
+    run = "./bench engine mujoco run configs/scenes/twist_cloth.json --out out/twist"
+    parser = parser_of("engine", DOC, run, "./bench engine compare --scene hang")
+    parser.add_argument(
+        "words", nargs="+", metavar="WORD", help="list | NAME setup | NAME run SCENE | compare [SPEC]"
+    )
     parser.add_argument("--out", type=Path, help="run: folder of frames.npz, engine.json, log.txt, judgement")
     parser.add_argument("--variant", help="run: one of the card (default: its first)")
-    parser.add_argument("--set", action="append", default=[], metavar="POINTER=JSON", help="run: of the config")
-    parser.add_argument("--engine-set", action="append", default=[], metavar="NAME=VALUE", help="run: of the card")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="POINTER=JSON", help="run: of the config"
+    )
+    parser.add_argument(
+        "--engine-set", action="append", default=[], metavar="NAME=VALUE", help="run: of the card"
+    )
     parser.add_argument("--limit", type=float, metavar="S", help="run: seconds after which it is stopped")
-    parser.add_argument("--scene", action="append", default=[], help="compare: these scenes alone; writes no page")
-    parser.add_argument("--runs", type=Path, default=ROOT / "results/runs/engines", help="compare: folder of its runs")
+    parser.add_argument(
+        "--scene", action="append", default=[], help="compare: these scenes alone; writes no page"
+    )
+    parser.add_argument(
+        "--runs", type=Path, default=ROOT / "results/runs/engines", help="compare: folder of its runs"
+    )
     return parser.parse_args(argv)
 
 
@@ -55,12 +65,14 @@ def _list() -> int:
 
 
 def _settings(card: Card, words: list[str]) -> dict:
-    """NAME=VALUE of --engine-set. Errors: UserError with the names that there are; values are the adapter's."""
+    """NAME=VALUE of --engine-set; values are the adapter's to check. Errors: UserError."""
     out = {}
     for word in words:
         name, mark, value = word.partition("=")
         if not mark or name not in card.data["settings"]:
-            raise UserError(f"--engine-set {word}: found {name!r}; allowed: {', '.join(card.data['settings'])}")
+            raise UserError(
+                f"--engine-set {word}: found {name!r}; allowed: {', '.join(card.data['settings'])}"
+            )
         out[name] = value
     return out
 
@@ -122,4 +134,6 @@ def main(argv: list[str]) -> int:
             return OK
         case [name, "run", scene]:
             return _run(read_card(name), Path(scene), options)
-    raise UserError(f"found {' '.join(options.words)!r}; allowed: list, NAME setup, NAME run SCENE, compare [SPEC]")
+    raise UserError(
+        f"found {' '.join(options.words)!r}; allowed: list, NAME setup, NAME run SCENE, compare [SPEC]"
+    )

@@ -22,12 +22,13 @@ def words(values):
 def point(k, x, mass, given):
     """A vertex: a mass without size on three slides; gravity does not act on a given one."""
     slides = "".join(f'<joint type="slide" axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
-    inertia = f'<inertial pos="0 0 0" mass="{mass:.17g}" diaginertia="{mass * 1e-4:.17g} {mass * 1e-4:.17g} {mass * 1e-4:.17g}"/>'
+    around = words(3 * [mass * 1e-4])
+    inertia = f'<inertial pos="0 0 0" mass="{mass:.17g}" diaginertia="{around}"/>'
     return f'<body name="v{k}" pos="{words(x.tolist())}" gravcomp="{int(given)}">{slides}{inertia}</body>'
 
 
 def flex(scene, body, settings):
-    """E and t with E t = Y and E t^3/(12 (1 - nu^2)) = D: D of the plate is that of the hinges, a factor apart."""
+    """E and t with E t = Y and E t^3/(12 (1 - nu^2)) = D, the stiffness of hinges times a factor."""
     youngs, poisson = common.plane_stress(body["membrane"])
     youngs *= settings["stretch_factor"]
     rigidity = body["hinge_J"] * settings["bending_factor"]
@@ -35,10 +36,7 @@ def flex(scene, body, settings):
     kind = "both" if rigidity > 0 else "stretch"
     first, triangles = body["first_vertex"], scene.triangles_of(body)
     names = " ".join(f"v{first + k}" for k in range(body["vertices"]))
-    ignored = 'contype="0" conaffinity="0"' if settings["contact"] == "none" else ""
-    return (
-        f'<flex name={quoteattr(body["name"])} dim="2" radius="{common.reach(body, settings["radius_m"]):.17g}" body="{names}"'
-        f' element="{words(triangles.ravel().tolist())}">'
+XX
         f'<elasticity young="{youngs / thickness:.17g}" poisson="{poisson:.17g}" thickness="{thickness:.17g}"'
         f' damping="{settings["damping_s"]:.17g}" elastic2d="{kind}"/>'
         f'<contact selfcollide="auto" condim="1" passive="true" {ignored}/></flex>'
@@ -55,9 +53,8 @@ def geom(o, settings):
             f' zaxis="{words(z.tolist())}" condim="1" {ignored}/>'
         )
     if o["kind"] == "sphere" and not o["inside"]:
-        return (
-            f'<geom type="sphere" size="{o["radius_m"]:.17g}" pos="{words(o["point_m"])}" condim="1" {ignored}/>'
-        )
+        size, at = o["radius_m"], words(o["point_m"])
+        return f'<geom type="sphere" size="{size:.17g}" pos="{at}" condim="1" {ignored}/>'
     raise common.Refused(f"obstacle {o['name']}: {o['kind']} is not mapped; planes and spheres are")
 
 

@@ -1,5 +1,5 @@
-"""The shortest engine that takes part: springs along edges, explicit steps, obstacles that push back. Copy this
-folder for the next one.
+"""The shortest engine that takes part: springs along edges, explicit steps, obstacles that push back. Copy
+this folder for the next one.
 """
 
 import sys

@@ -54,6 +54,11 @@ void check_motion(const Scene& scene) {
   }
 }
 
+/// Whether a column of rates or stiffnesses, which may be absent, has one.
+bool acts(const std::vector<double>& column) {
+  return std::any_of(column.begin(), column.end(), [](double value) { return value > 0; });
+}
+
 /// The one value of a body.   Errors: ConfigError where it has two.
 class OneOfEach {
  public:
@@ -98,8 +103,9 @@ json bodies_json(const Scene& scene) {
     }
   }
   const HingePart& hinges = scene.hinges;
-  if (!hinges.exponential.empty() || !hinges.creep.empty())
+  if (acts(hinges.exponential) || acts(hinges.creep)) {
     refuse(scene, "hinges that stiffen or creep", "elastic hinges");
+  }
   for (std::size_t k = 0; k < hinges.hinges.size(); ++k)
     bending.add(hinges.hinges[k][0], hinges.stiffness[k]);
   for (int i = 0; i < scene.n_vertices(); ++i) {

@@ -193,7 +193,7 @@ def test_the_fit_finds_the_stiffness_that_ours_has(program, here, tmp_path):
     assert 0.012 < strain < 0.025  # 2 % without clamped ends and with a mesh of eight cells
     fit = tests.fit(simulate, card.data["fit"])
     left = [np.log1p(fit["left"][name]) for name in matching.TENSILE]
-    assert 0.5 < fit["factors"]["stretch_factor"] < 2 and abs(np.mean(left)) < 0.02
+    assert 0.5 < fit["factors"]["stretch_factor"] < 2 and abs(np.mean(left)) < 0.05
     assert np.ptp(left) > 1e-3
 
 
