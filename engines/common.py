@@ -1,8 +1,9 @@
 """What every adapter shares: the scene file, the settings of the card, and the files that a run leaves. Runs
 in the environment of an engine, so it imports numpy and nothing of this project.
 
-An adapter reads a scene (configs/schema/engine_scene.schema.json), steps it and hands every state to `Frames`.
-It ends with exit code 0, or with REFUSED where the scene holds something that the engine has no words for.
+An adapter reads a scene (configs/schema/engine_scene.schema.json), steps it and hands every state to
+`Frames`. It ends with exit code 0, or with REFUSED where the scene holds something that the engine has no
+words for.
 """
 
 from __future__ import annotations
@@ -109,8 +110,8 @@ def plane_stress(membrane: dict) -> tuple[float, float]:
 
 
 def reach(body: dict, asked: float = 0.0) -> float:
-    """How far from its middle surface a body is met, m: what is asked for, else half of its thickness and half
-    of the distance at which our barrier begins.
+    """How far from its middle surface a body is met, m: what is asked for, else half of its thickness and
+    half of the distance at which our barrier begins.
     """
     return asked or body["half_thickness_m"] + body["d_hat_m"] / 2
 

@@ -73,7 +73,7 @@ def kept(folder: Path, key: str, make: Callable[[], dict]) -> dict:
     if file.is_file() and (old := json.loads(file.read_text())).get("key") == key:
         return old["answer"]
     answer = make()
-    if answer.get("outcome") not in ("not_installed",):
+    if answer.get("outcome") not in ("not_installed", "not_fitted"):
         write_whole(file, json.dumps({"key": key, "answer": answer}, indent=1) + "\n")
     return answer
 

@@ -36,7 +36,11 @@ def flex(scene, body, settings):
     kind = "both" if rigidity > 0 else "stretch"
     first, triangles = body["first_vertex"], scene.triangles_of(body)
     names = " ".join(f"v{first + k}" for k in range(body["vertices"]))
-XX
+    ignored = 'contype="0" conaffinity="0"' if settings["contact"] == "none" else ""
+    radius = common.reach(body, settings["radius_m"])
+    return (
+        f'<flex name={quoteattr(body["name"])} dim="2" radius="{radius:.17g}" body="{names}"'
+        f' element="{words(triangles.ravel().tolist())}">'
         f'<elasticity young="{youngs / thickness:.17g}" poisson="{poisson:.17g}" thickness="{thickness:.17g}"'
         f' damping="{settings["damping_s"]:.17g}" elastic2d="{kind}"/>'
         f'<contact selfcollide="auto" condim="1" passive="true" {ignored}/></flex>'
