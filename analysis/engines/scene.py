@@ -66,6 +66,31 @@ def made(scene: dict, place: str) -> dict:
     return scene
 
 
+def smallest() -> dict:
+    """Two squares that fall on a sphere in three frames, one corner held: all that a scene needs of an engine."""
+    square = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]]
+    x = [[*p, z] for z in (0.2, 0.22) for p in square]
+    membrane = {"model": "corotational", "lame_mu_N_per_m": 100.0, "lame_lambda_N_per_m": 50.0}
+    common = {"vertices": 4, "half_thickness_m": 0.0, "d_hat_m": 0.005, "membrane": membrane, "hinge_J": 1e-5}
+    ball = {"name": "ball", "kind": "sphere", "point_m": [0.05, 0.05, 0.09], "radius_m": 0.1, "inside": False}
+    scene = {
+        "schema": SCHEMA,
+        "name": "smallest",
+        "dt_s": 0.01,
+        "steps": 3,
+        "gravity_m_s2": [0.0, 0.0, -9.81],
+        "positions_m": x,
+        "rest_m": x,
+        "velocities_m_s": [[0.0, 0.0, 0.0]] * 8,
+        "mass_kg": [0.0, *[0.001] * 7],
+        "triangles": [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+        "bodies": [{"name": f"square{k}", "first_vertex": 4 * k, **common} for k in (0, 1)],
+        "given": {"vertices": [0], "positions_m": [[x[0]]]},
+        "obstacles": [ball],
+    }
+    return made(scene, "smallest")
+
+
 def about(scene: dict) -> dict:
     """barrierbench.judge/1 (./bench judge --about): bodies, obstacles, given vertices, densities."""
     rest, mass = np.array(scene["rest_m"]), np.array(scene["mass_kg"])

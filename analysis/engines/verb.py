@@ -15,12 +15,13 @@ from ..text_table import aligned
 from ..whole_file import write_whole
 from . import environment, launch
 from .card import Card, names, read_card
-from .scene import read
+from .scene import read, smallest
 
 OK, NOT_CLEAN, NOT_RUN = 0, 1, 3
 SPEC = ROOT / "configs/engines/compare.json"
 DOC = """list: the engines of engines/, their variants, what they promise, whether they are installed.
-NAME setup: makes the environment of one, from PyPI, below build/engines; instant when it is there.
+NAME setup: makes the environment of one, from PyPI, below build/engines, and tries every variant (newton
+compiles its kernels then: minutes); instant when it is there.
 NAME run SCENE --out DIR: one scene, a config or a file of ./bench neutral, and what ./bench judge says of it;
 exit 0: clean, 1: not, 3: it did not run (outcome and log are said), 2: bad input.
 compare [SPEC]: all scenes of configs/engines/compare.json under us and all engines: results/engines.json,
@@ -61,6 +62,18 @@ def _list() -> int:
     for name in names():
         promise = read_card(name).data["guarantee"]
         print(f"\n{name} promises: {promise['words']}\n  ({promise['citation']})")
+    return OK
+
+
+def _setup(card: Card) -> int:
+    """Makes the environment and steps the smallest scene with every variant: what compiles does it now."""
+    missing = environment.why_not(card)
+    print(environment.setup(card), flush=True)
+    for variant in card.data["variants"] if missing else ():
+        done = launch.run(card, smallest(), environment.ENVIRONMENTS / f"{card.name}.check", variant)
+        print(f"{card.name} {variant}: {done['outcome']} {done['detail']}".rstrip(), flush=True)
+        if done["outcome"] != "ok":
+            raise UserError(f"{card.name} is installed and does not run (log: {done['log']})")
     return OK
 
 
@@ -130,8 +143,7 @@ def main(argv: list[str]) -> int:
         case ["compare", spec]:
             return _compare(Path(spec), options, argv)
         case [name, "setup"]:
-            print(environment.setup(read_card(name)))
-            return OK
+            return _setup(read_card(name))
         case [name, "run", scene]:
             return _run(read_card(name), Path(scene), options)
     raise UserError(

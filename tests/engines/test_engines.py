@@ -2,6 +2,7 @@
 
 import json
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -161,6 +162,23 @@ def test_an_engine_that_is_not_there_says_how_to_get_it(monkeypatch, tmp_path):
     done = launch.run(cards.read_card("mujoco"), sheet(), tmp_path / "out", "cg")
     assert done["outcome"] == "not_installed" and "./bench engine mujoco setup" in done["detail"]
     assert "not installed" in (tmp_path / "out/log.txt").read_text()
+
+
+def test_setup_tries_every_variant_and_says_what_does_not_run(monkeypatch, tmp_path, capsys):
+    """Without a network: the environment is made of this Python, and nothing is installed."""
+    monkeypatch.setattr(environment, "ENVIRONMENTS", tmp_path)
+    monkeypatch.setattr(environment, "python", lambda card: Path(sys.executable))
+    commands = []
+
+    def said(command, log):
+        commands.append(command)
+        (tmp_path / "template").mkdir(exist_ok=True)
+
+    monkeypatch.setattr(environment, "_said", said)
+    assert verb.main(["template", "setup"]) == 0
+    assert "template plain: ok" in capsys.readouterr().out and any("-r" in c for c in commands)
+    n = len(commands)
+    assert verb.main(["template", "setup"]) == 0 and len(commands) == n and "is there" in capsys.readouterr().out
 
 
 def test_the_verb_runs_judges_and_says_the_promise(program, here, tmp_path, capsys):
