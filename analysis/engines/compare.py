@@ -19,7 +19,7 @@ from ..errors import UserError
 from ..program import built_program
 from ..spec_file import read_spec, refused, require_base
 from ..whole_file import write_whole
-from . import environment, launch, ours
+from . import environment, launch, matching, ours
 from .card import Card, read_card
 from .judged import error_of, judge, positions
 from .matching import Material, Tests
@@ -28,6 +28,7 @@ from .scene import exported
 
 RECORD = "barrierbench.engines_record/1"
 OURS = "barrierbench"
+_FITS = Path(matching.__file__).read_text()  # what a fit depends on beside its engine
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ def fits(study: Study) -> dict[str, dict]:
             except UserError as error:
                 return {"outcome": "not_fitted", "failed": str(error)}
 
-        out[label] = kept(where, _key(_code(card), m, one["variant"]), make)
+        out[label] = kept(where, _key(_code(card), _FITS, m, one["variant"]), make)
     return out
 
 

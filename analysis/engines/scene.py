@@ -67,7 +67,7 @@ def made(scene: dict, place: str) -> dict:
 
 
 def smallest() -> dict:
-    """Two squares that fall on a sphere in three frames, one corner held: all that a scene needs of an engine."""
+    """Two squares that fall on a sphere in three frames, one corner held: whatever a scene may need."""
     square = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]]
     x = [[*p, z] for z in (0.2, 0.22) for p in square]
     membrane = {"model": "corotational", "lame_mu_N_per_m": 100.0, "lame_lambda_N_per_m": 50.0}
