@@ -173,7 +173,7 @@ class Tests:
         return measured(name, x) / measured(name, self.ours[name])
 
     def apart(self, x: np.ndarray) -> float:
-        """Between the mean shapes of the drape test's second half, root mean square, in widths of the sheet."""
+        """Between mean shapes of the drape test's second half, root mean square, in widths of a sheet."""
         half = len(x) // 2
         apart = np.linalg.norm(x[half:].mean(axis=0) - self.ours["drape"][half:].mean(axis=0), axis=1)
         return float(np.sqrt((apart**2).mean()) / width_of(self.scenes["drape"]))
