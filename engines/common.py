@@ -147,11 +147,18 @@ class Frames:
 def parse(argv: list[str], card: dict) -> tuple[argparse.Namespace, dict]:
     """The arguments, and the settings: those of the card, then of its variant, then of --set."""
     parser = argparse.ArgumentParser(description=f"{card['title']}: one scene")
-    parser.add_argument("--scene", type=Path, required=True, help="barrierbench.engine_scene/1")
-    parser.add_argument("--out", type=Path, required=True, help="folder of frames.npz and engine.json")
+    more = "; may be repeated, with an --out each"
+    parser.add_argument(
+        "--scene", type=Path, action="append", required=True, help=f"barrierbench.engine_scene/1{more}"
+    )
+    parser.add_argument(
+        "--out", type=Path, action="append", required=True, help="folder of frames.npz and engine.json"
+    )
     parser.add_argument("--variant", choices=list(card["variants"]), default=next(iter(card["variants"])))
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="given")
     options = parser.parse_args(argv)
+    if len(options.scene) != len(options.out):
+        parser.error(f"found {len(options.out)} --out; allowed: one for each of {len(options.scene)} --scene")
     settings = {name: one["default"] for name, one in card["settings"].items()}
     settings |= card["variants"][options.variant].get("settings", {})
     for word in options.given:
@@ -182,32 +189,36 @@ def run(adapter: Path, simulate: Callable[[Scene, dict, Frames, dict], None]) ->
     """The whole of an adapter: `simulate(scene, settings, frames, notes)` steps; `notes` are kept."""
     card = tomllib.loads((adapter.parent / "card.toml").read_text())
     options, settings = parse(sys.argv[1:], card)
-    scene = read_scene(options.scene)
-    frames, notes = Frames(scene, settings["dt_s"]), {}
-    try:
-        simulate(scene, settings, frames, notes)
-    except Refused as why:
-        print(why, file=sys.stderr)
-        sys.exit(REFUSED)
-    options.out.mkdir(parents=True, exist_ok=True)
+    for path, out in zip(options.scene, options.out):
+        scene = read_scene(path)
+        frames, notes = Frames(scene, settings["dt_s"]), {}
+        try:
+            simulate(scene, settings, frames, notes)
+        except Refused as why:
+            print(why, file=sys.stderr)
+            sys.exit(REFUSED)
+        leave(out, frames, {"engine": card["name"], "variant": options.variant, "settings": settings}, notes)
+
+
+def leave(out: Path, frames: Frames, who: dict, notes: dict) -> None:
+    """Writes frames.npz and engine.json."""
+    out.mkdir(parents=True, exist_ok=True)
+    scene = frames.scene
     np.savez_compressed(
-        options.out / "frames.npz",
+        out / "frames.npz",
         positions=np.array(frames.states),
         triangles=scene.triangles,
         times_s=scene.dt_s * np.arange(len(frames.states)),
     )
-    whole = time.perf_counter() - frames.begun
     record = {
         "schema": RUN,
-        "engine": card["name"],
-        "variant": options.variant,
-        "version": notes.pop("version", card["version"]),
-        "settings": settings,
+        **who,
+        "version": notes.pop("version", ""),
         "dt_s": frames.dt_s,
         "frames": len(frames.states),
         "stepping_s": frames.seconds,
-        "other_s": whole - frames.seconds,
+        "other_s": time.perf_counter() - frames.begun - frames.seconds,
         "iterations_a_step": float(np.mean(frames.iterations)) if frames.iterations else None,
         "notes": notes,
     }
-    (options.out / "engine.json").write_text(json.dumps(record, indent=1) + "\n")
+    (out / "engine.json").write_text(json.dumps(record, indent=1) + "\n")

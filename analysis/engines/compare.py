@@ -116,14 +116,10 @@ def fits(study: Study) -> dict[str, dict]:
             study.say(f"material tests: {label}")
             tests = tests or Tests(material, folder)
 
-            def simulate(name: str, scene: dict, factors: dict) -> np.ndarray:
-                own = {**card.data.get("tests", {}), "dt_s": scene["dt_s"], **factors}
-                if card.settings_of(one["variant"])["dt_s"] < scene["dt_s"]:
-                    own["dt_s"] = card.settings_of(one["variant"])["dt_s"]
-                done = launch.run(card, scene, where / name, one["variant"], own, study.spec["limit_s"])
-                if done["outcome"] != "ok":
-                    raise UserError(f"test {name}: {done['outcome']}: {done['detail']} (log: {done['log']})")
-                return positions(where / name)
+            def simulate(scenes: dict[str, dict], factors: dict) -> dict[str, np.ndarray]:
+                own = {**card.data.get("tests", {}), **factors}
+                limit = len(scenes) * study.spec["limit_s"]
+                return launch.run_all(card, scenes, where, one["variant"], own, limit)
 
             try:
                 return {"outcome": "ok", **tests.fit(simulate, card.data["fit"])}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import subprocess
-import time
 from pathlib import Path
 
 import numpy as np
 
+from ..errors import UserError
 from . import environment
 from .card import Card
 
@@ -44,6 +44,36 @@ def _frames(out: Path, scene: dict) -> tuple[str, str]:
     return "ok", ""
 
 
+def _ended(card: Card, jobs: dict[Path, dict], out: Path, variant: str, sets: dict, limit_s) -> dict:
+    """Starts the adapter with the scenes of all jobs, folder -> scene, and waits: outcome and detail, `ok`
+    where it ended well; what it said is in out/log.txt.
+    """
+    log = out / "log.txt"
+    if why := environment.why_not(card):
+        log.write_text(f"{why}\n")
+        return {"outcome": "not_installed", "detail": why}
+    words = ["--variant", variant, *(f"--set={name}={_word(value)}" for name, value in sets.items())]
+    for folder, scene in jobs.items():
+        folder.mkdir(parents=True, exist_ok=True)
+        for stale in (folder / "frames.npz", folder / "engine.json"):
+            stale.unlink(missing_ok=True)
+        (folder / "scene.json").write_text(json.dumps(scene))
+        words += ["--scene", str(folder / "scene.json"), "--out", str(folder)]
+    command = [str(environment.python(card)), str(card.adapter), *words]
+    try:
+        with log.open("w") as said:
+            done = subprocess.run(
+                command, stdout=said, stderr=subprocess.STDOUT, timeout=limit_s, check=False
+            )
+    except subprocess.TimeoutExpired:
+        return {"outcome": "timed_out", "detail": f"after {limit_s:g} s"}
+    if done.returncode == REFUSED:
+        return {"outcome": "refused", "detail": last_line(log)}
+    if done.returncode != 0:
+        return {"outcome": "crashed", "detail": f"exit code {done.returncode}: {last_line(log)}"}
+    return {"outcome": "ok", "detail": ""}
+
+
 def run(
     card: Card, scene: dict, out: Path, variant: str, sets: dict | None = None, limit_s: float | None = None
 ) -> dict:
@@ -51,34 +81,38 @@ def run(
     engine; OSError where nothing can be written.
     """
     out.mkdir(parents=True, exist_ok=True)
-    log, file = out / "log.txt", out / "scene.json"
-    for stale in (out / "frames.npz", out / "engine.json"):
-        stale.unlink(missing_ok=True)
-    answer = {"engine": card.name, "variant": variant, "log": str(log), "out": str(out), "run": None}
-    if why := environment.why_not(card):
-        log.write_text(f"{why}\n")
-        return answer | {"outcome": "not_installed", "detail": why}
-    file.write_text(json.dumps(scene))
-    words = [f"--set={name}={_word(value)}" for name, value in (sets or {}).items()]
-    command = [str(environment.python(card)), str(card.adapter), "--scene", str(file), "--out", str(out)]
-    begun = time.perf_counter()
-    try:
-        with log.open("w") as said:
-            done = subprocess.run(
-                [*command, "--variant", variant, *words],
-                stdout=said, stderr=subprocess.STDOUT, timeout=limit_s, check=False,
-            )  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return answer | {"outcome": "timed_out", "detail": f"after {limit_s:g} s"}
-    answer["whole_s"] = time.perf_counter() - begun
-    if done.returncode == REFUSED:
-        return answer | {"outcome": "refused", "detail": last_line(log)}
-    if done.returncode != 0:
-        return answer | {"outcome": "crashed", "detail": f"exit code {done.returncode}: {last_line(log)}"}
+    answer = {
+        "engine": card.name,
+        "variant": variant,
+        "log": str(out / "log.txt"),
+        "out": str(out),
+        "run": None,
+    }
+    ended = _ended(card, {out: scene}, out, variant, sets or {}, limit_s)
+    if ended["outcome"] != "ok":
+        return answer | ended
     outcome, detail = _frames(out, scene)
     if (out / "engine.json").is_file():
         answer["run"] = json.loads((out / "engine.json").read_text())
     return answer | {"outcome": outcome, "detail": detail}
+
+
+def run_all(
+    card: Card, scenes: dict[str, dict], out: Path, variant: str, sets: dict, limit_s: float | None = None
+) -> dict[str, np.ndarray]:
+    """Frames of several scenes under the same settings, by one process, in out/NAME. Errors: UserError with
+    the first that is not ok, and the log.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    jobs = {out / name: scene for name, scene in scenes.items()}
+    ended = _ended(card, jobs, out, variant, sets, limit_s)
+    states = {}
+    for folder, scene in jobs.items():
+        outcome, detail = _frames(folder, scene) if ended["outcome"] == "ok" else ended.values()
+        if outcome != "ok":
+            raise UserError(f"{folder.name}: {outcome}: {detail} (log: {out / 'log.txt'})")
+        states[folder.name] = np.load(folder / "frames.npz")["positions"].astype(float)
+    return states
 
 
 def _word(value) -> str:

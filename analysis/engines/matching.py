@@ -28,9 +28,8 @@ from .scene import exported
 STRAIN, DROP = 0.02, 0.2
 PERIOD_STEPS = 40
 TENSILE = ("warp", "weft", "bias")
-ROUNDS = 3  # of the fit of a factor
 DRAPE_TRIES = (0.8, 1.0, 1.25)  # times the bending factor that the bending test gave
-Simulate = Callable[[str, dict, dict], np.ndarray]  # name of the test, scene, settings -> frames
+Simulate = Callable[[dict[str, dict], dict], dict[str, np.ndarray]]  # scenes, settings -> frames of each
 
 
 @dataclass(frozen=True)
@@ -179,24 +178,28 @@ class Tests:
         return float(np.sqrt((apart**2).mean()) / width_of(self.scenes["drape"]))
 
     def fit(self, simulate: Simulate, fit: dict) -> dict:
-        """Factors of an engine and what is left. simulate: raises UserError where the engine fails."""
-        factors = {fit["stretch"]: 1.0}
-        for _ in range(ROUNDS - 1):
-            ratios = [self.ratio(n, simulate(n, self.scenes[n], factors)) for n in TENSILE]
-            factors[fit["stretch"]] *= float(np.exp(np.mean(np.log(ratios))))
-        bends = "bending" in fit and "bend" in self.scenes
+        """Factors of an engine and what is left. What goes is in inverse proportion to a stiffness, so one
+        round finds a factor. simulate: raises UserError where the engine fails.
+        """
+        static = {name: scene for name, scene in self.scenes.items() if name != "drape"}
+        bends = "bending" in fit and "bend" in static
+        states = simulate(static, {})
+        factors = {
+            fit["stretch"]: float(np.exp(np.mean([np.log(self.ratio(n, states[n])) for n in TENSILE])))
+        }
         if bends:
-            factors[fit["bending"]] = 1.0
-            for _ in range(ROUNDS - 1):
-                factors[fit["bending"]] *= self.ratio("bend", simulate("bend", self.scenes["bend"], factors))
-            tries = {t: dict(factors, **{fit["bending"]: t * factors[fit["bending"]]}) for t in DRAPE_TRIES}
-            drapes = {t: self.apart(simulate("drape", self.scenes["drape"], one)) for t, one in tries.items()}
-            best = min(drapes, key=drapes.get)
-            factors = tries[best]
-        states = {n: simulate(n, self.scenes[n], factors) for n in self.scenes if n != "drape"}
+            factors[fit["bending"]] = self.ratio("bend", states["bend"])
+        best = None
+        for times in DRAPE_TRIES if bends and "drape" in self.scenes else (1.0,):
+            tried = {**factors, **({fit["bending"]: times * factors[fit["bending"]]} if bends else {})}
+            if "drape" not in self.scenes:
+                best = (None, tried)
+                break
+            apart = self.apart(simulate({"drape": self.scenes["drape"]}, tried)["drape"])
+            best = (apart, tried) if best is None or apart < best[0] else best
+        states = simulate(static, best[1])
         left = {n: self.ratio(n, x) - 1 for n, x in states.items() if n != "bend" or bends}
         left["narrowing"] = narrowed(states["warp"]) - narrowed(self.ours["warp"])
-        if "drape" in self.scenes:
-            last = drapes[best] if bends else self.apart(simulate("drape", self.scenes["drape"], factors))
-            left["drape"] = last
-        return {"factors": factors, "left": left}
+        if best[0] is not None:
+            left["drape"] = best[0]
+        return {"factors": best[1], "left": left}

@@ -146,7 +146,7 @@ def test_given_vertices_are_where_they_are_given(program, here, tmp_path):
 )
 def test_every_failure_has_its_name_and_its_log(here, tmp_path, body, outcome, detail):
     card = stand_in(tmp_path, body)
-    done = launch.run(card, sheet(), tmp_path / "out", "plain", limit_s=1)
+    done = launch.run(card, sheet(), tmp_path / "out", "plain", limit_s=1 if outcome == "timed_out" else 60)
     assert done["outcome"] == outcome and detail in done["detail"] and outcome in launch.OUTCOMES
     assert done["log"].endswith("log.txt") and (tmp_path / "out/log.txt").exists()
 
@@ -202,16 +202,14 @@ def test_the_fit_finds_the_stiffness_that_ours_has(program, here, tmp_path):
     assert set(tests.scenes) == set(matching.TENSILE)
     card = cards.read_card("template")
 
-    def simulate(name, data, factors):
-        done = launch.run(card, data, tmp_path / "engine" / name, "plain", {"dt_s": 5e-5, **factors})
-        assert done["outcome"] == "ok"
-        return np.load(tmp_path / "engine" / name / "frames.npz")["positions"]
+    def simulate(scenes, factors):
+        return launch.run_all(card, scenes, tmp_path / "engine", "plain", {"dt_s": 5e-5, **factors})
 
     strain = matching.measured("warp", tests.ours["warp"]) / (0.2 - 0.0125)
     assert 0.012 < strain < 0.025  # 2 % without clamped ends and with a mesh of eight cells
     fit = tests.fit(simulate, card.data["fit"])
     left = [np.log1p(fit["left"][name]) for name in matching.TENSILE]
-    assert 0.5 < fit["factors"]["stretch_factor"] < 2 and abs(np.mean(left)) < 0.05
+    assert 0.5 < fit["factors"]["stretch_factor"] < 2 and abs(np.mean(left)) < 0.1
     assert np.ptp(left) > 1e-3
 
 
