@@ -128,8 +128,8 @@ def tests_of(material: Material, folder: Path) -> dict[str, Config]:
     found["bend"] = config_of(
         folder, "bend", (x, triangles), material, held, [0, 0, -g], period / PERIOD_STEPS, 2 * PERIOD_STEPS
     )
-    x, triangles = lattice(0.3, 0.3, 0.03, False)
-    held = np.flatnonzero((np.abs(x - 0.15) < 0.045).all(axis=1)).tolist()
+    x, triangles = lattice(0.3, 0.3, 0.05, False)
+    held = np.flatnonzero((np.abs(x - 0.15) < 0.06).all(axis=1)).tolist()
     found["drape"] = config_of(folder, "drape", (x, triangles), material, held, [0, 0, -9.81], 0.01, 60)
     return found
 
@@ -162,7 +162,7 @@ class Tests:
         folder.mkdir(parents=True, exist_ok=True)
         for name, config in tests_of(material, folder).items():
             self.scenes[name] = exported(config.file)
-            done = run_ours(config, self.scenes[name], folder / "ours" / name, parts=2)
+            done = run_ours(config, self.scenes[name], folder / "ours" / name)
             if done["outcome"] != "ok":
                 raise UserError(f"test {name}: {done['outcome']}: {done['detail']} (log: {done['log']})")
             self.ours[name] = positions(folder / "ours" / name)
