@@ -250,7 +250,7 @@ def test_a_comparison_goes_on_where_an_engine_is_missing(program, here, tmp_path
     assert missing["outcome"] == "not_installed" and "setup" in missing["detail"]
     assert template["outcome"] == "ok" and template["error_mean"] > 0
     n = len(said)
-    assert n > 3 and compare.compared(study) == record and len(said) == n  # what was run is not run again
+    assert n > 3 and compare.compared(study) == record and said[n:] == ["hang: mujoco cg, level 0"]  # what was run is not run again
     from analysis.engines.figure import paint
     from analysis.engines.report import text_of
 
