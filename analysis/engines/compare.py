@@ -28,6 +28,7 @@ from .scene import exported
 
 RECORD = "barrierbench.engines_record/1"
 OURS = "barrierbench"
+MOST_FACTOR = 20.0  # of a fit
 _FITS = Path(matching.__file__).read_text()  # what a fit depends on beside its engine
 
 
@@ -98,6 +99,18 @@ def _ours(study: Study, name: str, scene: dict, parts: int, more: dict, label: s
     return kept(out, key, make)
 
 
+def believed(fit: dict) -> dict:
+    """A fit whose factors are some of a stiffness. Errors: UserError where an engine goes far further or
+    hardly at all: it is unstable, or another material altogether.
+    """
+    for name, value in fit["factors"].items():
+        if not 1 / MOST_FACTOR < value < MOST_FACTOR:
+            raise UserError(
+                f"{name} {value:.3g} would be needed; believed: {1 / MOST_FACTOR:g} to {MOST_FACTOR:g}"
+            )
+    return fit
+
+
 def fits(study: Study) -> dict[str, dict]:
     """Factors and what is left of each "engine variant", or why it has `failed`."""
     m = study.spec["material"]
@@ -122,7 +135,7 @@ def fits(study: Study) -> dict[str, dict]:
                 return launch.run_all(card, scenes, where, one["variant"], own, limit)
 
             try:
-                return {"outcome": "ok", **tests.fit(simulate, card.data["fit"])}
+                return {"outcome": "ok", **believed(tests.fit(simulate, card.data["fit"]))}
             except UserError as error:
                 return {"outcome": "not_fitted", "failed": str(error)}
 
