@@ -77,7 +77,11 @@ def read_spec(path: Path, kind: str) -> dict:
     """A spec as its file has it. Errors: UserError with file and place: no JSON object, another schema, a key
     that is missing or unknown, a value of another type or out of its range.
     """
-    data = read_object(path)
+    return checked(read_object(path), path, kind)
+
+
+def checked(data: dict, path: Path, kind: str) -> dict:
+    """What was read of a file that is no JSON; otherwise as read_spec."""
     if errors := sorted(_validator(kind).iter_errors(data), key=_order):
         raise UserError(f"{path}#/{_fault(errors[0])}")
     return data

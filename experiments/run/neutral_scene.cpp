@@ -1,0 +1,185 @@
+#include "experiments/run/neutral_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "core/math/error.hpp"
+#include "experiments/run/runner.hpp"
+
+namespace bb {
+namespace {
+
+using nlohmann::json;
+
+/// Terms that the file says everything of.
+const std::set<std::string_view> said = {"inertia", "external_force", "membrane", "hinges", "contact"};
+
+json to_json(const Vec3d& v) { return json::array({v[0], v[1], v[2]}); }
+
+json to_json(const Positions& x) {
+  json out = json::array();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) out.push_back(to_json(Vec3d(x.col(i))));
+  return out;
+}
+
+[[noreturn]] void refuse(const Scene& scene, std::string_view what, std::string_view allowed) {
+  throw ConfigError("scene " + scene.name, std::string(what), std::string(allowed));
+}
+
+void check_terms(const Scene& scene, const Plan& plan) {
+  for (const PlanItem& item : plan.terms) {
+    const auto entry = static_cast<std::size_t>(&item - plan.terms.data());
+    const std::string_view name = term_entries()[entry].name;
+    if (item.needed && !said.contains(name)) {
+      refuse(scene, fmt::format("{} ({})", name, item.reason),
+             "membranes, hinges, contact, gravity and given vertices: engines share no other term");
+    }
+  }
+}
+
+void check_motion(const Scene& scene) {
+  if (scene.planar) refuse(scene, "a planar scene", "three dimensions");
+  if (!scene.gravity_keys.empty()) refuse(scene, "gravity over time", "constant gravity");
+  if (scene.damping.acts()) refuse(scene, "damping of velocities", "none");
+  for (const Obstacle& o : scene.obstacles) {
+    if (o.vertex >= 0) refuse(scene, "obstacle " + o.name + " moves", "obstacles that rest");
+  }
+  for (const Pin& pin : scene.pins) {
+    if (!pin.span.always()) refuse(scene, "a pin that lets go or takes hold", "pins that always hold");
+  }
+}
+
+/// Whether a column of rates or stiffnesses, which may be absent, has one.
+bool acts(const std::vector<double>& column) {
+  return std::any_of(column.begin(), column.end(), [](double value) { return value > 0; });
+}
+
+/// The one value of a body.   Errors: ConfigError where it has two.
+class OneOfEach {
+ public:
+  OneOfEach(const Scene& scene, std::string_view what) : scene_(scene), what_(what) {}
+  void add(int vertex, double value) {
+    const int body = scene_.body[static_cast<std::size_t>(vertex)];
+    const auto [at, fresh] = values_.emplace(body, value);
+    if (!fresh && at->second != value) {
+      refuse(scene_,
+             fmt::format("body {} with two values of {}", scene_.bodies[static_cast<std::size_t>(body)].name,
+                         what_),
+             "one");
+    }
+  }
+  double operator()(int body) const {
+    const auto at = values_.find(body);
+    return at == values_.end() ? 0.0 : at->second;
+  }
+  bool has(int body) const { return values_.contains(body); }
+
+ private:
+  const Scene& scene_;
+  std::string what_;
+  std::map<int, double> values_;
+};
+
+json bodies_json(const Scene& scene) {
+  OneOfEach mu(scene, "lame_mu"), lambda(scene, "lame_lambda"), bending(scene, "bending"),
+      offset(scene, "offset"), d_hat(scene, "d_hat");
+  std::map<int, std::string> model;
+  for (const MembranePart& part : scene.membranes) {
+    const bool plain = part.model != "baraff_witkin" && part.shrink.empty() &&
+                       part.shrink_keys.list.empty() && part.creep.empty();
+    if (!plain)
+      refuse(scene, "a membrane of " + part.model + " that is anisotropic, shrinks or creeps",
+             "an isotropic elastic membrane");
+    for (std::size_t k = 0; k < part.triangles.size(); ++k) {
+      const int vertex = part.triangles[k][0];
+      mu.add(vertex, part.lame_mu[k]);
+      lambda.add(vertex, part.lame_lambda[k]);
+      model.emplace(scene.body[static_cast<std::size_t>(vertex)], part.model);
+    }
+  }
+  const HingePart& hinges = scene.hinges;
+  if (acts(hinges.exponential) || acts(hinges.creep)) {
+    refuse(scene, "hinges that stiffen or creep", "elastic hinges");
+  }
+  for (std::size_t k = 0; k < hinges.hinges.size(); ++k)
+    bending.add(hinges.hinges[k][0], hinges.stiffness[k]);
+  for (int i = 0; i < scene.n_vertices(); ++i) {
+    const auto v = static_cast<std::size_t>(i);
+    offset.add(i, scene.offset[v]);
+    d_hat.add(i, scene.d_hat[v]);
+  }
+  json out = json::array();
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    const int id = static_cast<int>(b);
+    json row = {{"name", body.name},
+                {"first_vertex", body.first_vertex},
+                {"vertices", body.n_vertices},
+                {"half_thickness_m", offset(id)},
+                {"d_hat_m", d_hat(id)}};
+    if (mu.has(id)) {
+      row["membrane"] = {
+          {"model", model[id]}, {"lame_mu_N_per_m", mu(id)}, {"lame_lambda_N_per_m", lambda(id)}};
+    }
+    row["hinge_J"] = bending(id);
+    out.push_back(row);
+  }
+  return out;
+}
+
+json obstacles_json(const Scene& scene) {
+  constexpr std::array<const char*, 3> kinds = {"plane", "sphere", "cylinder"};
+  json out = json::array();
+  for (const Obstacle& o : scene.obstacles) {
+    json row = {
+        {"name", o.name}, {"kind", kinds[static_cast<std::size_t>(o.kind)]}, {"point_m", to_json(o.point)}};
+    if (o.kind != ObstacleKind::sphere) row["axis"] = to_json(o.axis);
+    if (o.kind != ObstacleKind::plane) row.update({{"radius_m", o.radius}, {"inside", o.inside}});
+    out.push_back(row);
+  }
+  return out;
+}
+
+/// Of given vertices, at the start and at the end of every step.
+json given_json(const Scene& scene, double dt, int steps) {
+  json vertices = json::array(), positions = json::array();
+  for (const Pin& pin : scene.pins) vertices.push_back(pin.vertex);
+  const bool rests = std::all_of(scene.pins.begin(), scene.pins.end(), [&scene](const Pin& pin) {
+    return scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
+  });
+  for (int step = 0; step <= (rests ? 0 : steps); ++step) {
+    json frame = json::array();
+    for (const Pin& pin : scene.pins) frame.push_back(to_json(pin_pose(scene, pin, step * dt)));
+    positions.push_back(frame);
+  }
+  return {{"vertices", vertices}, {"positions_m", positions}};
+}
+
+}  // namespace
+
+json neutral_scene(const RunConfig& config, const Scene& scene, const Plan& plan) {
+  check_terms(scene, plan);
+  check_motion(scene);
+  json triangles = json::array();
+  for (const auto& t : scene.surface_triangles) triangles.push_back(t);
+  return {{"schema", "barrierbench.engine_scene/1"},
+          {"name", run_label(config)},
+          {"dt_s", config.time.dt},
+          {"steps", config.time.steps},
+          {"gravity_m_s2", to_json(scene.gravity)},
+          {"positions_m", to_json(scene.x0)},
+          {"rest_m", to_json(scene.rest)},
+          {"velocities_m_s", to_json(scene.v0)},
+          {"mass_kg", scene.mass},
+          {"triangles", triangles},
+          {"bodies", bodies_json(scene)},
+          {"given", given_json(scene, config.time.dt, config.time.steps)},
+          {"obstacles", obstacles_json(scene)}};
+}
+
+}  // namespace bb
