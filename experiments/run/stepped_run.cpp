@@ -34,16 +34,6 @@ RunConfig stepped(const RunConfig& asked) {
   return config;
 }
 
-class ThreadLimit {
- public:
-  explicit ThreadLimit(const RunConfig& config)
-      : limit_(oneapi::tbb::global_control::max_allowed_parallelism,
-               static_cast<std::size_t>(thread_count(config))) {}
-
- private:
-  oneapi::tbb::global_control limit_;
-};
-
 /// The recorder, and the caller's hook behind it.
 class HookedRecorder final : public StepObserver {
  public:
@@ -72,9 +62,20 @@ class HookedRecorder final : public StepObserver {
 
 }  // namespace
 
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(const RunConfig& config)
+      : limit_(oneapi::tbb::global_control::max_allowed_parallelism,
+               static_cast<std::size_t>(thread_count(config))) {}
+
+ private:
+  oneapi::tbb::global_control limit_;
+};
+
 SteppedRun::SteppedRun(const RunConfig& asked, RunOptions options)
-    : config_(stepped(asked)), options_(std::move(options)) {
-  const ThreadLimit limit(config_);
+    : config_(stepped(asked)),
+      threads_(std::make_unique<ThreadLimit>(config_)),
+      options_(std::move(options)) {
   set_one_blas_thread();
   scene_ = build_scene(config_);
   require_device(config_, scene_);
@@ -165,7 +166,6 @@ const StepRecord& SteppedRun::step(const Iteration& iteration) {
     throw std::logic_error(fmt::format("the run is over: {}{}{}", to_string(result_.verdict.outcome),
                                        result_.verdict.detail.empty() ? "" : ": ", result_.verdict.detail));
   }
-  const ThreadLimit limit(config_);
   Archive start(lists_);
   keep(start);
   log_ += std::move(lists_.added);
@@ -256,6 +256,7 @@ const RunRecord& SteppedRun::finish() {
   }
   finished_ = true;
   lock_.reset();
+  threads_.reset();
   return record_;
 }
 

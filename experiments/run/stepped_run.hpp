@@ -19,6 +19,8 @@
 
 namespace bb {
 
+class ThreadLimit;
+
 class SteppedRun {
  public:
   /// Called after every Newton iteration; what it throws ends the step.
@@ -27,7 +29,8 @@ class SteppedRun {
   /// Of the two passes of a config it is the observed one, where there is one, and then leaves out the timed one: the config
   /// of its record says so. options.folder: of record, trace, frames and matrices; empty: nothing is written, and
   /// the config may ask for no frames or matrices. options.resume and limits are not read.
-  /// A scene that cannot start is an outcome: the run is over before its first step.
+  /// While it lives the process computes with at most the threads of the config: to limit them anew in each step costs
+  /// milliseconds. A scene that cannot start is an outcome: the run is over before its first step.
   /// Errors: those of run_config; ConfigError for a run on a card, or a folder with a checkpoint.
   SteppedRun(const RunConfig& asked, RunOptions options);
   /// Without finish() what was written goes.
@@ -68,6 +71,7 @@ class SteppedRun {
   bool has_folder() const { return !options_.folder.empty(); }
 
   const RunConfig config_;
+  std::unique_ptr<ThreadLimit> threads_;
   RunOptions options_;
   Scene scene_;
   std::optional<FolderLock> lock_;
