@@ -67,7 +67,7 @@ function(bb_check_rooms)
   endforeach()
   file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/rooms.txt" CONTENT "${text}" @ONLY)
   set(files "")
-  foreach(top core barriers experiments)
+  foreach(top core barriers experiments python)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${top}/*.[hc]pp" "${PROJECT_SOURCE_DIR}/${top}/*.[hc]"
       "${PROJECT_SOURCE_DIR}/${top}/*.cu" "${PROJECT_SOURCE_DIR}/${top}/*.cuh" "${PROJECT_SOURCE_DIR}/${top}/*.in"
       "${PROJECT_SOURCE_DIR}/${top}/*.inc")

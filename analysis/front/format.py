@@ -1,4 +1,4 @@
-"""The verb format: C++ by clang-format, the Python of analysis/ by ruff, in place."""
+"""The verb format: C++ by clang-format, the Python of analysis/ and python/ by ruff, in place."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ def clang_format(*words: str) -> int:
 
 
 def ruff(verb: str, *words: str) -> int:
-    """Exit code of `ruff format` or `ruff check` on analysis/."""
+    """Exit code of `ruff format` or `ruff check` on analysis/ and python/."""
     return subprocess.run(
-        [*RUFF, verb, "--no-cache", *words, "analysis"], cwd=ROOT, stdout=sys.stderr, check=False
+        [*RUFF, verb, "--no-cache", *words, "analysis", "python"], cwd=ROOT, stdout=sys.stderr, check=False
     ).returncode
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..places import ROOT
 
-FOLDERS = ("core", "barriers", "experiments", "examples", "tests")
+FOLDERS = ("core", "barriers", "experiments", "python", "examples", "tests")
 SUFFIXES = (".cpp", ".hpp", ".c", ".h", ".cu", ".cuh")
 
 

@@ -1,7 +1,9 @@
 // Build, machine and ids of a record, read from the generated build info, /proc and the environment.
 #include "core/record/provenance.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -15,6 +17,7 @@
 
 #include "core/linear/blas_info.hpp"
 #include "core/record/build_info.hpp"
+#include "core/record/program_file.hpp"
 
 namespace bb {
 namespace {
@@ -99,8 +102,18 @@ Machine collect_machine() {
   return m;
 }
 
+// The list of the loader names every library by its path, and the program itself by nothing.
+std::string program_file() {
+  Dl_info info{};
+  void* map = nullptr;
+  const void* here = reinterpret_cast<const void*>(&program_file);
+  if (::dladdr1(here, &info, &map, RTLD_DL_LINKMAP) == 0 || map == nullptr) return "/proc/self/exe";
+  const char* name = static_cast<const link_map*>(map)->l_name;
+  return name != nullptr && *name != 0 ? name : "/proc/self/exe";
+}
+
 void fill_ids(RunRecord& record) {
-  static const std::string this_program = sha256_file("/proc/self/exe");
+  static const std::string this_program = sha256_file(program_file());
   Ids& ids = record.ids;
   ids.config_id = config_id(record.config.text);
   ids.build_id = this_program;

@@ -4,6 +4,7 @@
 
 #include "core/math/error.hpp"
 #include "experiments/run/device_run.hpp"
+#include "experiments/run/fill_record.hpp"
 #include "experiments/run/keep_record.hpp"
 #include "experiments/run/pass.hpp"
 #include "experiments/run/plan.hpp"
@@ -18,40 +19,6 @@ static void keep(Archive& archive, Calibration& c) {
 }
 
 namespace {
-
-/// Times of the pass that was timed; a step that it did not reach has none. A build that is not valid shows none.
-void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
-  Summary& summary = record.summary;
-  const bool shown = record.validity.build.valid;
-  const Number absent = Number::missing(!requested ? "not_requested"
-                                        : shown    ? "not_reached"
-                                                   : "build_not_valid");
-  for (std::size_t i = 0; i < record.steps.size(); ++i) {
-    StepRecord& step = record.steps[i];
-    step.wall_s = step.unaccounted_s = absent;
-    if (!shown || i >= timed.steps.size()) continue;
-    step.time = timed.steps[i].phases;
-    step.wall_s = timed.steps[i].wall_s;
-    step.unaccounted_s = timed.steps[i].wall_s - step.time.total_s();
-  }
-  summary.wall_s = summary.solve_s = summary.unaccounted_s = absent;
-  if (!requested || !shown) return;
-  record.samples["wall_s"] = {timed.wall_s};
-  for (const PassResult::StepTime& step : timed.steps) summary.time += step.phases;
-  summary.wall_s = timed.wall_s;
-  summary.solve_s = summary.time.solve_s();
-  summary.unaccounted_s = timed.wall_s - summary.time.total_s();
-}
-
-void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
-  if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
-}
-
-void fill_stiffness(const PassResult& pass, RunRecord& record) {
-  if (!(pass.stiffness.kappa > 0)) return;
-  record.summary.stiffness = {pass.stiffness.kappa_start, pass.stiffness.kappa, pass.stiffness.doublings,
-                              pass.stiffness.saturated};
-}
 
 /// The two passes, and what a checkpoint between two of their steps has to hold.
 class PassSequence {

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
 
 #include <algorithm>
 #include <new>
 
 #include "barriers/formulas.hpp"
-#include "core/bodies/part.hpp"
 #include "core/linear/blas_info.hpp"
 #include "core/math/error.hpp"
 #include "core/record/folder_lock.hpp"
@@ -17,12 +15,10 @@
 #include "core/record/writer.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "core/terms/plan.hpp"
-#include "experiments/config/enum_words.hpp"
-#include "experiments/config/methods.hpp"
 #include "experiments/config/parse.hpp"
-#include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
 #include "experiments/run/device_run.hpp"
+#include "experiments/run/fill_record.hpp"
 #include "experiments/run/input_files.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/passes.hpp"
@@ -33,79 +29,12 @@
 namespace bb {
 namespace {
 
-void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& record) {
-  Labels& labels = record.labels;
-  labels.scene = config.scene.name;
-  labels.formulation = label_of(config.formulation);
-  labels.shape = config.formulation.shape;
-  labels.argument = std::string(to_string(config.formulation.argument));
-  labels.stiffness_policy = config.formulation.stiffness_policy.name;
-  labels.integrator = config.integrator.name;
-  labels.step_solver = config.step_solver.name;
-  labels.linear_solver = config.linear_solver.name;
-  labels.preconditioner = preconditioner_of({config.linear_solver.name, config.linear_solver.parameters});
-  labels.precision = word_of(config.precision);
-  labels.d_hat_m = config.formulation.d_hat;
-  labels.dt_s = config.time.dt;
-  labels.note = options.note;
-  labels.swept = options.swept;
-}
-
 /// Libraries of formulas are made again from the config where they are missing, so no plugin has to be kept for them.
 std::vector<PluginFile> with_formulas(const RunConfig& config, std::vector<PluginFile> plugins) {
   for (const FormulaShape& formula : formulas_of({config.formulation.shape, config.strain_limit.shape})) {
     plugins.push_back({formula.shape.name, formula.library, formula.sha256});
   }
   return plugins;
-}
-
-/// Before the first step: the file of the method may be edited while a run goes on.
-void fill_method(const RunConfig& config, RunRecord& record) {
-  if (config.method.empty()) return;
-  const MethodUse use = method_use(config);
-  record.labels.method = use.title();
-  record.method = {use.method.name, use.method.source, use.overridden, use.method.differs};
-}
-
-void fill_scene(const Scene& scene, RunRecord& record) {
-  SceneSize& size = record.scene;
-  const Eigen::Index of_bodies = scene.n_body_vertices();
-  size.vertices = static_cast<std::size_t>(of_bodies);
-  const std::size_t per_vertex = scene.planar ? 2 : 3;
-  size.free_dofs =
-      per_vertex * (static_cast<std::size_t>(scene.n_vertices()) - holding_pins(scene, 0).size());
-#define PART(name, term, convex, where, field, ...) size.field = parts::name::part().size(scene);
-#include "core/scene/parts/registry.inc"
-#undef PART
-  size.obstacles = scene.obstacles.size();
-  const auto start = scene.x0.leftCols(of_bodies);
-  size.extent_m = (start.rowwise().maxCoeff() - start.rowwise().minCoeff()).maxCoeff();
-}
-
-void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {
-  for (const auto& [name, item] : plan.items()) {
-    record.plan.push_back({std::string(name), item->needed, item->reason});
-  }
-  if (!config.passes.time) record.skipped.push_back({"time", "not_requested"});
-  if (config.passes.time && !record.validity.build.valid)
-    record.skipped.push_back({"time", "build_not_valid"});
-  if (!plan.conditioning.needed) record.skipped.push_back({"cond", "not_requested"});
-  if (!plan.audit.needed) record.skipped.push_back({"audit", "not_requested"});
-  if (!plan.trace.needed) record.skipped.push_back({"trace", "not_requested"});
-}
-
-/// The stiffness of this run by its matching rule, or why there is no first step: only the scene or its pilot can tell that it
-/// cannot be matched, and the time limit may come before the answer.
-std::optional<Verdict> find_stiffness(const RunConfig& config, const Scene& scene, const RunOptions& options,
-                                      MatchingRecord& record, Calibration& out) {
-  try {
-    out = calibrate(config, scene, options, record);
-    return std::nullopt;
-  } catch (const ConfigError& error) {
-    return Verdict{Outcome::invalid_scene, error.what()};
-  } catch (const TimeOver& over) {
-    return Verdict{Outcome::timeout, over.detail};
-  }
 }
 
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
@@ -203,10 +132,6 @@ void put_finished_in_place(const std::filesystem::path& folder, Checkpoint& chec
   } catch (const ConfigError&) {  // of another version: what lies there is judged as it is
   }
   put_in_place(folder);
-}
-
-int thread_count(const RunConfig& config) {
-  return config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+"""The verb python: builds the Python module barrierbench in the release build and runs its tests."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+from ..errors import UserError, tells
+from ..places import ROOT
+from .building import build, folder, say, setup
+
+TARGETS = ("barrierbench_python", "barrierbench_python_stub", "barrierbench")
+TOOLS = ROOT / "build/python-tools"  # nanobind, which only builds
+REQUIREMENTS = ROOT / "python/requirements.txt"
+
+
+def module_folder() -> str:
+    """What PYTHONPATH has to name."""
+    return str(folder("release") / "python")
+
+
+def _install_tools() -> None:
+    """Once for each version of the list. Errors: UserError."""
+    stamp = TOOLS / "installed.txt"
+    if stamp.is_file() and stamp.read_text() == REQUIREMENTS.read_text():
+        return
+    words = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--upgrade"]
+    words += ["--target", str(TOOLS), "--requirement", str(REQUIREMENTS)]
+    if subprocess.run(words, stdout=sys.stderr, check=False).returncode != 0:
+        raise UserError(f"cannot install {REQUIREMENTS.relative_to(ROOT)}: is there a network?")
+    stamp.write_text(REQUIREMENTS.read_text())
+
+
+def build_module() -> None:
+    """The module, its stubs and the program, in build/release. Errors: UserError."""
+    setup("python3-dev")
+    _install_tools()
+    options = {
+        "BB_PYTHON": "ON",
+        "Python_EXECUTABLE": sys.executable,
+        "nanobind_ROOT": str(TOOLS / "nanobind/cmake"),
+    }
+    build("release", *TARGETS, options=options)
+
+
+@tells("python")
+def main(argv: list[str]) -> int:
+    build_module()
+    say(f"built: PYTHONPATH={os.path.relpath(module_folder())}")
+    if argv == ["--no-tests"]:
+        return 0
+    words = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-c",
+        str(ROOT / "pytest.ini"),
+        "-q",
+        "-rs",
+        "-p",
+        "no:cacheprovider",
+    ]
+    return subprocess.run([*words, *argv, str(ROOT / "tests/python_module")], check=False).returncode
