@@ -58,12 +58,12 @@ def _ended(card: Card, jobs: dict[Path, dict], out: Path, variant: str, sets: di
         for stale in (folder / "frames.npz", folder / "engine.json"):
             stale.unlink(missing_ok=True)
         (folder / "scene.json").write_text(json.dumps(scene))
-        words += ["--scene", str(folder / "scene.json"), "--out", str(folder)]
+        words += ["--scene", str((folder / "scene.json").resolve()), "--out", str(folder.resolve())]
     command = [str(environment.python(card)), str(card.adapter), *words]
     try:
         with log.open("w") as said:
             done = subprocess.run(
-                command, stdout=said, stderr=subprocess.STDOUT, timeout=limit_s, check=False
+                command, cwd=out, stdout=said, stderr=subprocess.STDOUT, timeout=limit_s, check=False
             )
     except subprocess.TimeoutExpired:
         return {"outcome": "timed_out", "detail": f"after {limit_s:g} s"}
