@@ -121,7 +121,8 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
     say = lambda line: print(f"engine: {line}", file=sys.stderr, flush=True)  # noqa: E731
     study = read_study(spec, options.runs, options.scene, say)
     record = compared(study) | {"command": shlex.join(["./bench", "engine", *argv])}
-    text, page = json.dumps(record, indent=1, allow_nan=False) + "\n", text_of(record)
+    record = json.loads(json.dumps(record, allow_nan=False).replace(f"{ROOT}/", ""))  # no path of a machine
+    text, page = json.dumps(record, indent=1) + "\n", text_of(record)
     if options.scene:
         print(page)
         return OK
