@@ -1,6 +1,6 @@
 """Reads a formula by a whitelist: numbers, d, d_hat, pi, + - * / ^, and the functions named here. Nothing
-of the text is ever evaluated. Imports nothing but the standard library, so that a formula of the cache
-costs no library.
+of the text is ever evaluated. Imports no library beside the standard one, so that a formula of the cache
+costs none.
 """
 
 from __future__ import annotations
@@ -8,6 +8,8 @@ from __future__ import annotations
 import ast
 from fractions import Fraction
 from typing import NamedTuple
+
+from ..errors import UserError
 
 FUNCTIONS = ("log", "exp", "sqrt", "sin", "cos", "tan", "atan", "sinh", "cosh", "tanh")
 SAME = {"ln": "log"}
@@ -19,7 +21,7 @@ OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "
 SYMBOLS = f"d, d_hat, pi, numbers, + - * / ^ ( ) and the functions ln, {', '.join(FUNCTIONS)}"
 
 
-class FormulaError(ValueError):
+class FormulaError(UserError):
     """What is wrong with a formula: what was found, with its place, and what is allowed."""
 
     def __init__(self, found: str, allowed: str):

@@ -10,7 +10,8 @@ from ..errors import UserError, tells
 from ..places import ROOT
 from .building import build, folder, say, setup
 
-TARGETS = ("barrierbench_python", "barrierbench_python_stub", "barrierbench")
+MODULE = ("barrierbench_python", "barrierbench_python_stub")
+PACKAGE = "python3-dev"  # of Debian: the headers of Python
 TOOLS = ROOT / "build/python-tools"  # nanobind, which only builds
 REQUIREMENTS = ROOT / "python/requirements.txt"
 
@@ -32,16 +33,20 @@ def _install_tools() -> None:
     stamp.write_text(REQUIREMENTS.read_text())
 
 
-def build_module() -> None:
-    """The module, its stubs and the program, in build/release. Errors: UserError."""
-    setup("python3-dev")
+def options() -> dict[str, str]:
+    """What a build with the module is configured with. Installs what only builds. Errors: UserError."""
     _install_tools()
-    options = {
+    return {
         "BB_PYTHON": "ON",
         "Python_EXECUTABLE": sys.executable,
         "nanobind_ROOT": str(TOOLS / "nanobind/cmake"),
     }
-    build("release", *TARGETS, options=options)
+
+
+def build_module() -> None:
+    """The module, its stubs and the program, in build/release. Errors: UserError."""
+    setup(PACKAGE)
+    build("release", *MODULE, "barrierbench", options=options())
 
 
 @tells("python")

@@ -15,7 +15,7 @@ from pathlib import Path
 from ..errors import UserError, tells
 from ..places import ROOT
 from . import format as formatting
-from . import rooms
+from . import python_module, rooms
 from .building import build, folder, job_count, say, setup
 
 OWN = ("--sanitize", "--browser")  # what ctest does not see
@@ -144,7 +144,7 @@ def set_up(browser: bool) -> None:
     """What every test needs; with `browser` also Debian's chromium (about 100 MB) and what drives it. Errors:
     UserError.
     """
-    setup(*(["chromium"] if browser else []))
+    setup(python_module.PACKAGE, *(["chromium"] if browser else []))
     if browser:
         words = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
         file = ROOT / "analysis/requirements-browser.txt"
@@ -160,7 +160,9 @@ def main(argv: list[str]) -> int:
     set_up("--browser" in own)
     summary = Summary()
     start = time.monotonic()
-    build(preset, options={"BB_CUDA": "AUTO"})
+    build(preset, options={"BB_CUDA": "AUTO"} | (python_module.options() if preset == "release" else {}))
+    if preset == "release":
+        build(preset, *python_module.MODULE)
     summary.lines.append(f"built    {preset} ({time.monotonic() - start:.0f} s)")
     summary.step("clang-format", lambda: formatting.clang_format("--dry-run", "--Werror"))
     summary.step("rooms", lambda: rooms.main([]))

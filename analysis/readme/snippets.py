@@ -157,8 +157,8 @@ def _json_faults(snippet: Snippet) -> list[str]:
     return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
 
 
-def _python_faults(snippet: Snippet) -> list[str]:
-    """In a folder with one small record where the page has its demo."""
+def _python_faults(snippet: Snippet, before: str) -> list[str]:
+    """In a folder with one small record where the page has its demo, after those `before` it on the page."""
     with tempfile.TemporaryDirectory() as folder:
         words = ["run", str(ROOT / "configs/scenes/resting_block_1d.json"), "--out", "results/runs/demo/one"]
         words += ["--set", "/time/steps=2", "--set", "/passes/diagnose=true"]
@@ -167,9 +167,9 @@ def _python_faults(snippet: Snippet) -> list[str]:
             return [f"{snippet.place}: {_told(made)}"]
         prelude = "import sys, types\nimport analysis\nsys.modules['barrierbench_analysis'] = analysis\n"
         done = subprocess.run(
-            [sys.executable, "-c", prelude + snippet.text],
+            [sys.executable, "-c", prelude + before + snippet.text],
             cwd=folder,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            env={**os.environ, "PYTHONPATH": f"{ROOT}:{ROOT / 'build/release/python'}"},
             capture_output=True,
             text=True,
             check=False,
@@ -180,14 +180,18 @@ def _python_faults(snippet: Snippet) -> list[str]:
 
 def faults(text: str, page: str) -> list[str]:
     """What does not work, with page and line; a fence of a language that nothing checks as well."""
-    judges = {"sh": _shell_faults, "json": _json_faults, "python": _python_faults}
-    found = []
+    judges = {"sh": _shell_faults, "json": _json_faults}
+    found, before = [], ""
     for snippet in snippets(text, page):
-        if snippet.language in judges:
+        if snippet.language == "python":
+            wrong = _python_faults(snippet, before)
+            before += "" if wrong else f"{snippet.text}\n"
+            found += wrong
+        elif snippet.language in judges:
             found += judges[snippet.language](snippet)
         elif snippet.language not in PLAIN:
             found.append(
                 f"{snippet.place}: a fence of {snippet.language!r}, which nothing checks; allowed:"
-                f" {', '.join(judges)}, and {PLAIN[1]} for what is no snippet"
+                f" {', '.join(judges)}, python, and {PLAIN[1]} for what is no snippet"
             )
     return found

@@ -118,7 +118,8 @@ TEST(Settings, AreAllThere) {
 
 TEST(Settings, AWrongTypeIsNamed) {
   for (const Place& place : all_places()) {
-    const bool object = place.row.rule.kind == Kind::object;
+    const Rule& rule = place.row.rule;
+    const bool object = rule.kind == Kind::object || (rule.kind == Kind::word && rule.list);  // or a word
     const json wrong = object ? json(3) : json{{"a", 1}};
     expect_refused(with(place.config, place.pointer, wrong), place.pointer, wrong.dump(),
                    allowed_text(place.row.rule));

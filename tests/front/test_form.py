@@ -46,12 +46,12 @@ def test_users_see_one_kind_of_error():
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ClassDef) and any(isinstance(base, ast.Name) and base.id.endswith(("Error", "Exception")) for base in node.bases):
                 classes[node.name] = [base.id for base in node.bases]
-    assert classes == {"UserError": ["ValueError"], "RecordError": ["UserError"], "NoReference": ["ValueError"], "NotFinite": ["ValueError"], "NoHistory": ["Exception"]}
+    assert classes == {"UserError": ["ValueError"], "RecordError": ["UserError"], "FormulaError": ["UserError"], "NoReference": ["ValueError"], "NotFinite": ["ValueError"], "NoHistory": ["Exception"]}
 
 
 def test_one_place_starts_the_program():
     """Other files start git, compilers and their like, Python, or targets of their own."""
-    others = {"claims/history.py", "compare_toolkit.py", "engines/environment.py", "engines/launch.py", "fuzz.py", "readme/snippets.py", "figures/sources.py",
+    others = {"claims/history.py", "compare_toolkit.py", "engines/environment.py", "engines/launch.py", "formula/cache.py", "fuzz.py", "readme/snippets.py", "figures/sources.py",
               *(f"front/{name}.py" for name in ("building", "format", "microbenchmarks", "mutate", "python_module", "rooms", "test", "tidy"))}
     starters, program = set(), re.compile(r"built_program\(|ensure_program\(|RELEASE|BARRIERBENCH_PROGRAM")
     for path in ANALYSIS.rglob("*.py"):
