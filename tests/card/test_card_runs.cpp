@@ -28,6 +28,11 @@ TEST_P(CardRuns, HaveTheBitsOfTheHost) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, CardRuns, testing::Values("cubic", "quadratic"));
 
+// racecheck slows a run down some thousandfold: these few steps have contact, and every stage of a Newton iteration.
+TEST(CardRuns, FewStepsHaveTheBitsOfTheHost) {
+  test::expect_same_runs(test::touching(test::two_sheets(), 0.01), "cubic", 1, on_card);
+}
+
 TEST(CardRuns, StayCloseWhereALibraryIsCalled) {
   for (const Scene& scene : {test::cloth_on_plate(), test::cloth_on_balls_and_bar()}) {
     const auto run = [&](const test::MakeExecutor& make) { return test::run_on(scene, "log", 20, make); };

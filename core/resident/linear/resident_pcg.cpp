@@ -36,7 +36,10 @@ void ResidentPcg::set_residual(const double* from, const double* minus, double* 
 
 double ResidentPcg::sum_of(const double* partial) {
   executor_.blocks(1, FinishSum{partial, v_.partition.n_blocks(), v_.scalars});
-  return executor_.counts_only() ? 1 : scalars_.get(0).sum;
+  if (executor_.counts_only()) return 1;
+  double sum = 0;
+  executor_.download(&sum, &v_.scalars->sum, sizeof(sum));
+  return sum;
 }
 
 double ResidentPcg::norm(const FixedMask* fixed, const double* v) {
