@@ -21,12 +21,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_bytes = 400;  // as grammar.py has it
-
-/// What is known of one text: the shape, or what is wrong with it.
+/// What is known of one text: the plugin that was made of it, or what is wrong with it.
 struct Answer {
-  std::optional<FormulaShape> shape;
-  std::string found, allowed, at_zero;
+  std::optional<Plugin> plugin;
+  std::string formula;  // its one spelling
+  FormulaLibrary library;
+  std::string found, allowed, at_zero;  // at_zero: of a shape
 };
 
 std::string python() {
@@ -35,19 +35,20 @@ std::string python() {
 }
 
 Answer refused(std::string found, std::string allowed) {
-  return {{}, std::move(found), std::move(allowed), {}};
+  return {{}, {}, {}, std::move(found), std::move(allowed), {}};
 }
 
-/// Runs analysis/formula. Errors: none, they are answers.
-Answer ask(const std::string& text) {
+/// Runs analysis/formula. kind: "shape" or "policy". Errors: none, they are answers.
+Answer ask(const std::string& kind, const std::string& text) {
   const std::string program = python();
   const std::string environment =
       "the environment that ./bench setup makes, or another with sympy named by BARRIERBENCH_PYTHON";
   if (!std::filesystem::exists(program)) {
     return refused(fmt::format("a formula and no Python at \"{}\"", program), environment);
   }
-  const Finished done = run_process({program, "-m", "analysis.formula"}, json{{"formula", text}}.dump(),
-                                    {{"PYTHONPATH", BB_SOURCE_DIR}});
+  const Finished done =
+      run_process({program, "-m", "analysis.formula"}, json{{"kind", kind}, {"formula", text}}.dump(),
+                  {{"PYTHONPATH", BB_SOURCE_DIR}});
   const std::size_t end = done.out.find_last_not_of('\n');
   const std::string last =
       end == std::string::npos ? "" : done.out.substr(done.out.rfind('\n', end) + 1, end + 1);
@@ -58,30 +59,41 @@ Answer ask(const std::string& text) {
                    environment);
   }
   if (answer.contains("found")) return refused(answer.at("found"), answer.at("allowed"));
-  Plugin plugin = load_plugin(answer.at("library"));
-  FormulaShape out{plugin.shapes.at(0), answer.at("label"), answer.at("library"),
-                   answer.at("library_sha256")};
-  out.shape.name = std::string(formula_prefix) + answer.at("formula").get<std::string>();
-  out.shape.doc = "a formula";
-  return {std::move(out), {}, {}, answer.at("at_zero")};
+  const std::string formula = answer.at("formula");
+  return {load_plugin(answer.at("library")),
+          formula,
+          {std::string(formula_prefix) + formula, answer.at("label"), answer.at("library"),
+           answer.at("library_sha256")},
+          {},
+          {},
+          answer.value("at_zero", "")};
 }
 
-/// Asked once for every text of this process.
-const Answer& known(const std::string& text) {
+/// Asked once for every text of this process. Errors: ConfigError at `where`.
+const Answer& known(const std::string& kind, std::string_view text, std::string_view where) {
   static std::mutex mutex;
-  static std::map<std::string, Answer> answers;
+  static std::map<std::pair<std::string, std::string>, Answer> answers;
+  if (text.size() > most_formula_bytes) {
+    throw ConfigError(std::string(where), fmt::format("{} characters", text.size()),
+                      fmt::format("at most {}", most_formula_bytes));
+  }
   const std::lock_guard lock(mutex);
-  const auto found = answers.find(text);
-  if (found != answers.end()) return found->second;
-  const Answer answer = ask(text);
-  if (answer.shape) answers.emplace(answer.shape->shape.name.substr(formula_prefix.size()), answer);
-  return answers.emplace(text, answer).first->second;
+  const auto key = std::pair(kind, std::string(text));
+  auto found = answers.find(key);
+  if (found == answers.end()) {
+    const Answer answer = ask(kind, key.second);
+    if (answer.plugin) answers.emplace(std::pair(kind, answer.formula), answer);
+    found = answers.emplace(key, answer).first;
+  }
+  const Answer& answer = found->second;
+  if (!answer.plugin) throw ConfigError(std::string(where), answer.found, answer.allowed);
+  return answer;
 }
 
 ParameterList formula_list() {
   ParameterList list;
   list.doc = "A shape as a formula, b in m^2 of the gap d and of d_hat (m).";
-  list.rows = {{"formula", required(text_up_to(most_bytes)), no_default,
+  list.rows = {{"formula", required(text_up_to(most_formula_bytes)), no_default,
                 "Of d, d_hat, pi, numbers, + - * / ^ and functions such as log, exp, sqrt: "
                 "-(d - d_hat)^2*log(d/d_hat)."},
                {"at_zero", word({"infinite", "finite"}), no_default,
@@ -95,17 +107,20 @@ bool is_formula(std::string_view shape_name) { return shape_name.starts_with(for
 
 FormulaShape require_formula(std::string_view text, const std::optional<std::string>& at_zero,
                              std::string_view where) {
-  if (text.size() > most_bytes) {
-    throw ConfigError(std::string(where), fmt::format("{} characters", text.size()),
-                      fmt::format("at most {}", most_bytes));
-  }
-  const Answer& answer = known(std::string(text));
-  if (!answer.shape) throw ConfigError(std::string(where), answer.found, answer.allowed);
+  const Answer& answer = known("shape", text, where);
   if (at_zero && *at_zero != answer.at_zero) {
     throw ConfigError(std::string(where), fmt::format("at_zero \"{}\"", *at_zero),
                       fmt::format("\"{}\", which is what this formula does as d -> 0", answer.at_zero));
   }
-  return *answer.shape;
+  FormulaShape out{answer.plugin->shapes.at(0), answer.library};
+  out.shape.name = answer.library.name;
+  out.shape.doc = "a formula";
+  return out;
+}
+
+FormulaPolicy require_policy_formula(std::string_view text, std::string_view where) {
+  const Answer& answer = known("policy", text, where);
+  return {answer.formula, answer.plugin->policies.at(0), answer.library};
 }
 
 Rule shape_rule() {
@@ -114,15 +129,16 @@ Rule shape_rule() {
   return rule;
 }
 
-std::vector<FormulaShape> formulas_of(const std::vector<std::string>& shape_names) {
-  std::map<std::string, FormulaShape> out;
+std::vector<FormulaLibrary> formula_libraries(const std::vector<std::string>& shape_names,
+                                              const std::vector<std::string>& policies) {
+  std::map<std::string, FormulaLibrary> out;
+  const auto add = [&out](const FormulaLibrary& library) { out.emplace(library.name, library); };
   for (const std::string& name : shape_names) {
-    if (is_formula(name)) {
-      out.emplace(name, require_formula(name.substr(formula_prefix.size()), {}, "shape"));
-    }
+    if (is_formula(name)) add(require_formula(name.substr(formula_prefix.size()), {}, "shape").library);
   }
-  std::vector<FormulaShape> list;
-  for (auto& [name, shape] : out) list.push_back(std::move(shape));
+  for (const std::string& text : policies) add(require_policy_formula(text, "stiffness_policy").library);
+  std::vector<FormulaLibrary> list;
+  for (auto& [name, library] : out) list.push_back(std::move(library));
   return list;
 }
 

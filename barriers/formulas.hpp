@@ -1,4 +1,4 @@
-// Shapes that a config gives as formulas (docs/design.md, Formulas). The Python of analysis/formula reads, checks and
+// Shapes and stiffnesses that a config gives as formulas (docs/design.md, Formulas). The Python of analysis/formula reads, checks and
 // compiles them into plugins; this file asks it, loads what it made and keeps it for the process.
 #pragma once
 
@@ -9,17 +9,32 @@
 
 #include "core/barrier/shape.hpp"
 #include "core/parameters/parameter.hpp"
+#include "core/plugin/plugin.hpp"
 
 namespace bb {
 
 /// What a shape's name begins with when the rest of it is a formula.
 inline constexpr std::string_view formula_prefix = "formula:";
 
+inline constexpr std::size_t most_formula_bytes = 400;  // as grammar.py has it
+
+/// The plugin that was made of a formula.
+struct FormulaLibrary {
+  std::string name;    // formula_prefix and the one spelling of the formula
+  std::string label;   // formula-HASH, for folders and legends
+  std::string file;    // that was compiled and loaded
+  std::string sha256;  // of the file
+};
+
 struct FormulaShape {
-  Shape shape;          // its name is formula_prefix and the one spelling of the formula
-  std::string label;    // formula-HASH, for folders and legends
-  std::string library;  // that was compiled and loaded
-  std::string sha256;   // of the library
+  Shape shape;  // its name is that of the library
+  FormulaLibrary library;
+};
+
+struct FormulaPolicy {
+  std::string formula;  // its one spelling
+  PluginPolicy policy;
+  FormulaLibrary library;
 };
 
 bool is_formula(std::string_view shape_name);
@@ -32,10 +47,15 @@ bool is_formula(std::string_view shape_name);
 FormulaShape require_formula(std::string_view text, const std::optional<std::string>& at_zero,
                              std::string_view where);
 
+/// A stiffness, kappa in N/m of a contact, such as m/h^2 + k (analysis/formula/grammar.py has the symbols). Errors and cost as those
+/// of require_formula.
+FormulaPolicy require_policy_formula(std::string_view text, std::string_view where);
+
 /// A registered name, or an object {"formula", "at_zero"}.
 Rule shape_rule();
 
-/// The formulas among these shapes, each once, asked for before.
-std::vector<FormulaShape> formulas_of(const std::vector<std::string>& shape_names);
+/// The libraries of the formulas among these shapes, and of these formulas of policies, each once.
+std::vector<FormulaLibrary> formula_libraries(const std::vector<std::string>& shape_names,
+                                              const std::vector<std::string>& policies = {});
 
 }  // namespace bb

@@ -24,6 +24,8 @@ HEADERS = (
     "barriers/shapes/normalized_gap.hpp",
     "barriers/shapes/shape_family.hpp",
     "core/barrier/shape.hpp",
+    "core/barrier/stiffness_sums.hpp",
+    "core/math/host_device.hpp",
     "core/math/lanes.hpp",
     "core/math/lanes_log.hpp",
     "core/math/scale.hpp",

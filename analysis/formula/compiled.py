@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import signal
 from collections.abc import Iterator
 
 from . import cache
-from .grammar import Formula, FormulaError, read
+from .grammar import POLICY, Formula, FormulaError, read
 
 SECONDS_TO_CHECK = 60
 
@@ -26,18 +27,38 @@ def compiled(text: str, declared: str | None = None) -> cache.Compiled:
     return found
 
 
-def _made(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
+def compiled_policy(text: str) -> cache.Compiled:
+    """The same of a stiffness, kappa in N/m of a contact."""
+    formula = read(text, POLICY)
+    words = cache.command()
+    key = cache.key_of(formula, words)
+    return cache.find(key) or _made_policy(formula, key, words)
+
+
+def _made_policy(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
+    policy = _of_sympy("policy")
+    with _within(SECONDS_TO_CHECK):
+        kappa = policy.kappa_of(formula)
+        points = policy.check(kappa)
+    label = cache.label_of(formula)
+    about = {"formula": formula.text, "label": label, "points": points, "symbols": policy.symbols_of(kappa)}
+    text = policy.cpp(label.replace("-", "_"), formula.text, kappa)
+    return cache.make(key, words, text, about, lambda library: policy.judge(library, kappa))
+
+
+def _of_sympy(*names: str):
+    """Modules that import sympy, which a formula of the cache does not need."""
     try:
-        from . import (
-            accuracy,
-            checks,
-            source,
-            symbolic,
-        )  # of sympy, which a formula of the cache does not need
+        found = [importlib.import_module(f".{name}", __package__) for name in names]
     except ImportError as error:
         raise FormulaError(
             f"no Python package {error.name}", "the environment that ./bench setup makes"
         ) from None
+    return found[0] if len(found) == 1 else found
+
+
+def _made(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
+    accuracy, checks, source, symbolic = _of_sympy("accuracy", "checks", "source", "symbolic")
     with _within(SECONDS_TO_CHECK):
         terms = symbolic.terms_of(formula)
         ends = checks.check(terms, None)

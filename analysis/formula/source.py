@@ -73,7 +73,7 @@ extern "C" const bb_plugin* barrierbench_plugin(void) {{ return &plugin; }}
 """
 
 
-class _Printer(CXX17CodePrinter):
+class Printer(CXX17CodePrinter):
     """Every number as T(...), small whole powers as products: the same text for float, double and four doubles."""
 
     def _print_Integer(self, x: sp.Integer) -> str:
@@ -123,17 +123,11 @@ class _Printer(CXX17CodePrinter):
 def cpp(name: str, formula: str, terms: Terms, ends: Ends) -> str:
     """The source of the plugin whose shape is called `name`."""
     inverted = [sp.sympify(x).replace(_is_inverse, lambda x: INVERSE ** (-x.exp)) for x in terms.precise]
-    constant = {
-        x: sp.Float(sp.N(x, 20), 20)
-        for y in inverted
-        for x in y.atoms(sp.Function) | y.atoms(sp.Pow)
-        if not x.free_symbols
-    }
-    inverted = [x.xreplace(constant) for x in inverted]
+    inverted = with_constants(inverted)
     common, last = sp.cse(inverted, symbols=sp.numbered_symbols("c"), optimizations="basic")
     used = set().union(*(x.free_symbols for x in [*last, *(y for _, y in common)]))
     simple = all(_is_rational(x) for x in [*last, *(y for _, y in common)])
-    printer = _Printer()
+    printer = Printer()
     lanes = simple and L in used  # without a logarithm the compiler does as well by itself
     return TEMPLATE.format(
         formula=formula,
@@ -151,6 +145,17 @@ def cpp(name: str, formula: str, terms: Terms, ends: Ends) -> str:
         smoothness=ends.smoothness,
         infinite=int(math.isinf(ends.at_zero[0])),
     )
+
+
+def with_constants(terms: list[sp.Expr]) -> list[sp.Expr]:
+    """Functions and powers of numbers alone become numbers."""
+    constant = {
+        x: sp.Float(sp.N(x, 20), 20)
+        for y in terms
+        for x in y.atoms(sp.Function) | y.atoms(sp.Pow)
+        if not x.free_symbols
+    }
+    return [x.xreplace(constant) for x in terms]
 
 
 def _is_inverse(x: sp.Expr) -> bool:

@@ -35,19 +35,19 @@ def terms_of(formula: Formula) -> Terms:
     return Terms((b, slope, sp.diff(slope, U)), (precise, first, _derivative(first)))
 
 
-def expression(node: ast.expr) -> sp.Expr:
-    """Requires a tree that grammar.read has let through."""
+def expression(node: ast.expr, values: dict[str, sp.Expr] = VALUES) -> sp.Expr:
+    """Requires a tree that grammar.read has let through, and a value of each of its names."""
     if isinstance(node, ast.Constant):
         exact = Fraction(repr(node.value))
         return sp.Rational(exact.numerator, exact.denominator)
     if isinstance(node, ast.Name):
-        return VALUES[node.id]
+        return values[node.id]
     if isinstance(node, ast.UnaryOp):
-        inner = expression(node.operand)
+        inner = expression(node.operand, values)
         return -inner if isinstance(node.op, ast.USub) else inner
     if isinstance(node, ast.Call):
-        return getattr(sp, SAME.get(node.func.id, node.func.id))(expression(node.args[0]))
-    left, right = expression(node.left), expression(node.right)
+        return getattr(sp, SAME.get(node.func.id, node.func.id))(expression(node.args[0], values))
+    left, right = expression(node.left, values), expression(node.right, values)
     kind = type(node.op)
     if kind is ast.Add:
         return left + right

@@ -6,16 +6,19 @@ import json
 
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
-from .compiled import compiled
-from .grammar import SYMBOLS, FormulaError
+from .compiled import compiled, compiled_policy
+from .grammar import POLICY, SHAPE, FormulaError
 
 DOC = f"""
 The formula is b in m^2 of the gap d and of d_hat (m), made of
-{SYMBOLS}.
+{SHAPE.words}.
 It is checked (unit, poles, sign, force, convexity, limits at d_hat and 0), differentiated, compiled and kept
 in BARRIERBENCH_CACHE or ~/.cache/barrierbench. In a config:
 "shape": {{"formula": "...", "at_zero": "infinite"}}, or the name formula:TEXT wherever a shape has a name.
-docs/jobs/add-a-barrier.md.
+With --policy it is the stiffness kappa of a contact in N/m instead, made of
+{POLICY.words}: m and k are w^T M w and w^T H w over w^T w (kg and N/m; w the weighted normals of the free
+vertices, M their masses, H the elastic Hessian), h the time step (s), c the weight of the inertia M/(c h^2).
+In a config: "stiffness_policy": {{"name": "formula", "formula": "m/h^2 + k"}}. docs/jobs/add-a-barrier.md.
 """
 
 
@@ -25,11 +28,14 @@ def main(argv: list[str]) -> int:
     parser = parser_of("formula", DOC)
     parser.add_argument("formula", metavar="TEXT")
     parser.add_argument("--at-zero", choices=("infinite", "finite"), help="what it is meant to do as d -> 0")
+    parser.add_argument("--policy", action="store_true", help="the formula is a stiffness, kappa in N/m")
     parser.add_argument("--json", action="store_true", help="the answer as JSON")
     parser.add_argument("--source", action="store_true", help="the C++ that was made of it instead")
     args = parser.parse_args(argv)
+    if args.policy and args.at_zero:
+        raise UserError("--at-zero is of shapes, not of --policy")
     try:
-        made = compiled(args.formula, args.at_zero)
+        made = compiled_policy(args.formula) if args.policy else compiled(args.formula, args.at_zero)
     except FormulaError as error:
         raise UserError(f"{args.formula!r}: {error}") from None
     if args.source:
@@ -37,9 +43,22 @@ def main(argv: list[str]) -> int:
     elif args.json:
         print(json.dumps({**made.about, "library": str(made.library)}, indent=1))
     else:
-        print(card(made.about))
+        print(policy_card(made.about) if args.policy else card(made.about))
         print(f"library     {made.library}")
     return 0
+
+
+def policy_card(about: dict) -> str:
+    """What there is to say of a stiffness."""
+    reads = f"reads {', '.join(about['symbols']) or 'nothing'}"
+    return "\n".join(
+        [
+            f"formula     {about['formula']}",
+            f"label       {about['label']}",
+            f"kappa       {reads}; finite and not negative at all {about['points']} points it was asked at",
+            f"            relative error {about['error_rel']:.1e}",
+        ]
+    )
 
 
 def card(about: dict) -> str:

@@ -44,6 +44,13 @@ class PolicyParameters {
     add({name, bb::positive(unit), no_default, doc},
         [=](const ParameterMap& map, P& out) { out.*member = optional_number(map, name); });
   }
+  /// A text of at most so many bytes, or nothing.
+  void text(const char* name, std::string P::*member, std::size_t most, const char* doc) {
+    add({name, text_up_to(most), no_default, doc}, [=](const ParameterMap& map, P& out) {
+      const auto given = map.find(name);
+      if (given != map.end()) out.*member = std::get<std::string>(given->second);
+    });
+  }
   /// The stiffness itself, > 0, which the matching rule supplies where it is left out.
   void matched(const char* name, double P::*member, const char* unit, const char* doc) {
     matched_ = name;
@@ -71,13 +78,13 @@ class PolicyParameters {
     if (n_allowed > 0) allowed.resize(n_allowed);
     add({name, word(allowed), fallback, doc}, [=](const ParameterMap& map, P& out) {
       for (std::size_t i = 0; i < allowed.size(); ++i) {
-        if (text(map, name) == allowed[i]) out.*member = static_cast<Enum>(i);
+        if (bb::text(map, name) == allowed[i]) out.*member = static_cast<Enum>(i);
       }
     });
   }
   void refresh(Refresh P::*member) {
     add(refresh_parameter(),
-        [=](const ParameterMap& map, P& out) { out.*member = require_refresh(text(map, "refresh")); });
+        [=](const ParameterMap& map, P& out) { out.*member = require_refresh(bb::text(map, "refresh")); });
   }
 
   // --- what the registry takes

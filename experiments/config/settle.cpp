@@ -29,6 +29,16 @@ void keep_own(const json& object, const Registry<Entry>& registry, const std::st
   }
 }
 
+/// The formula of a policy gets the one spelling of its tree. What is no formula stays, and is refused by the policy.
+void spell_formula(PolicyConfig& policy) {
+  const auto given = policy.parameters.find("formula");
+  if (given == policy.parameters.end() || given->second == ParameterValue(no_default)) return;
+  try {
+    given->second = require_policy_formula(text(policy.parameters, "formula"), "").formula;
+  } catch (const ConfigError&) {
+  }
+}
+
 /// A published constant becomes the kappa that it means.
 void convert_kappa(const json& object, const std::string& pointer, const Reader& reader,
                    const FormulationConfig& formulation, PolicyConfig& policy) {
@@ -106,11 +116,12 @@ void settle_formulation(const json& object, const Reader& reader, FormulationCon
                      reader.violations);
   }
   if (out.name.empty() && is_formula(out.shape)) {  // a name for folders and legends, as short as others
-    out.name = formulas_of({out.shape}).front().label;
+    out.name = formula_libraries({out.shape}).front().label;
   }
   const std::string pointer = "/formulation/stiffness_policy";
   const json& policy = child(object, "stiffness_policy");
   keep_own(policy, stiffness_policies(), pointer, reader, out.stiffness_policy);
+  spell_formula(out.stiffness_policy);
   convert_kappa(policy, pointer, reader, out, out.stiffness_policy);
 }
 

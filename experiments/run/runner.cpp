@@ -31,8 +31,12 @@ namespace {
 
 /// Libraries of formulas are made again from the config where they are missing, so no plugin has to be kept for them.
 std::vector<PluginFile> with_formulas(const RunConfig& config, std::vector<PluginFile> plugins) {
-  for (const FormulaShape& formula : formulas_of({config.formulation.shape, config.strain_limit.shape})) {
-    plugins.push_back({formula.shape.name, formula.library, formula.sha256});
+  std::vector<std::string> policies;
+  const ParameterMap& parameters = config.formulation.stiffness_policy.parameters;
+  if (parameters.contains("formula")) policies.push_back(text(parameters, "formula"));
+  for (const FormulaLibrary& library :
+       formula_libraries({config.formulation.shape, config.strain_limit.shape}, policies)) {
+    plugins.push_back({library.name, library.file, library.sha256});
   }
   return plugins;
 }
