@@ -5,7 +5,7 @@ geometry      distances of pairs with gradient and Hessian, continuous collision
 condition     condition numbers of sparse symmetric matrices
 scene         what can be named in a config; configs with every default; scenes as numpy arrays
 simulation    runs a step at a time, with callbacks and records
-python_shapes a Python class as a shape
+python_shapes, python_policies  a Python class as a shape, as a stiffness policy
 eval          the queries of `bench eval`, in this process
 records       records as tables, judge and claims: the package barrierbench-analysis
 """
@@ -38,6 +38,7 @@ from ._core import ConfigError, RecordError  # noqa: E402
 from .condition import Condition, condition_number  # noqa: E402
 from .eval import evaluate  # noqa: E402
 from .geometry import accd, distance, edge_edge, point_edge, point_point, point_triangle  # noqa: E402
+from .python_policies import ContactRows, register_policy  # noqa: E402
 from .python_shapes import register_shape  # noqa: E402
 from .scene import Scene, build_scene, parts, resolve, scenes  # noqa: E402
 from .shape import Shape, shapes  # noqa: E402
@@ -48,6 +49,7 @@ __version__: str = _core.version
 __all__ = [
     "Condition",
     "ConfigError",
+    "ContactRows",
     "RecordError",
     "Scene",
     "Shape",
@@ -62,6 +64,7 @@ __all__ = [
     "point_edge",
     "point_point",
     "point_triangle",
+    "register_policy",
     "register_shape",
     "resolve",
     "run",

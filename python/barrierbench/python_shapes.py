@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import inspect
 from collections.abc import Callable
 from typing import Any
@@ -11,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .python_sources import is_name, remember
 from .shape import Shape
 
 Terms3 = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
 _NEAR = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 0.95])  # gaps over d_hat at which a declaration is tested
-_sources: dict[str, tuple[str, str]] = {}  # name -> file, sha256 of what records name
 
 
 def _error(name: str, found: str, allowed: str) -> _core.ConfigError:
@@ -107,21 +106,6 @@ def _check(name: str, terms: Callable, smoothness: int) -> None:
             )
 
 
-def _source_of(shape: Any, name: str) -> tuple[str, str]:
-    """File and hash of what the class is made of: of its file, or of its text where it has none (a notebook)."""
-    try:
-        file = inspect.getsourcefile(type(shape)) or ""
-        with open(file, "rb") as stream:
-            return file, hashlib.sha256(stream.read()).hexdigest()
-    except (OSError, TypeError):
-        pass
-    try:
-        text = inspect.getsource(type(shape))
-    except (OSError, TypeError):
-        text = repr(type(shape))
-    return f"python:{name}", hashlib.sha256(text.encode()).hexdigest()
-
-
 def register_shape(shape: Any) -> Shape:
     """Makes a Python object a shape that configs name, until the process ends; returns it as a Shape.
 
@@ -141,7 +125,7 @@ def register_shape(shape: Any) -> Shape:
     -0.04
     """
     name = getattr(shape, "name", None)
-    if not isinstance(name, str) or not name.isidentifier() or name != name.lower():
+    if not is_name(name):
         raise _error(str(name), f"name {name!r}", "a snake_case word")
     smoothness, infinite = getattr(shape, "smoothness_at_d_hat", None), getattr(shape, "infinite_at_zero", None)
     if not isinstance(smoothness, int) or isinstance(smoothness, bool) or not 0 <= smoothness <= 1000:
@@ -152,10 +136,5 @@ def register_shape(shape: Any) -> Shape:
     _check(name, terms, smoothness)
     doc = inspect.getdoc(shape) or "a shape of Python"
     _core.register_shape(name, doc.splitlines()[0], smoothness, infinite, _filler(name, terms, infinite))
-    _sources[name] = _source_of(shape, name)
+    remember(shape, name)
     return Shape(name)
-
-
-def brought(shape: str) -> list[tuple[str, str, str]]:
-    """What a record names of a shape: name, file, sha256; nothing for a shape of the program."""
-    return [(shape, *_sources[shape])] if shape in _sources else []

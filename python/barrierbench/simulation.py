@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from .python_shapes import brought
+from .python_sources import brought
 from .scene import Config, Scene, _given
 
 
 def _brought(given: tuple[str, str, str, list[str]]) -> list[tuple[str, str, str]]:
-    return brought(json.loads(_core.resolved_json(*given))["formulation"]["shape"])
+    formulation = json.loads(_core.resolved_json(*given))["formulation"]
+    return brought(formulation["shape"], formulation["stiffness_policy"]["name"])
 
 
 class Simulation:

@@ -38,6 +38,7 @@ void bind_scene(nb::module_& module);
 /// The fields of barrierbench.Scene.
 nb::dict arrays_of(const Scene& scene);
 void bind_python_shape(nb::module_& module);
+void bind_python_policy(nb::module_& module);
 void bind_runs(nb::module_& module);
 void bind_evaluate(nb::module_& module);
 

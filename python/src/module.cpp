@@ -29,5 +29,6 @@ NB_MODULE(_core, m) {
   bind_scene(m);
   bind_evaluate(m);
   bind_python_shape(m);
+  bind_python_policy(m);
   bind_runs(m);
 }

@@ -23,7 +23,7 @@
 namespace bb::python {
 namespace {
 
-/// name, file, sha256 of each shape that Python brings to the run.
+/// name, file, sha256 of what Python brings to the run.
 using Brought = std::vector<std::tuple<std::string, std::string, std::string>>;
 
 RunOptions options_of(const std::string& folder, const std::vector<std::string>& argv,

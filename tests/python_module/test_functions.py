@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 
-MODULES = ("shape", "geometry", "condition", "eval", "scene", "python_shapes", "simulation")
+MODULES = ("shape", "geometry", "condition", "eval", "scene", "python_policies", "python_shapes", "simulation")
 
 
 @pytest.mark.parametrize("name", MODULES)
