@@ -1,7 +1,8 @@
 """Runs mini scenes of the catalogue from jittered starts: every start coordinate of a free vertex is moved
 by a uniform number within the jitter that the scene names, by the seeds 1, 2 and so on, which the records
 keep. A scene passes when every seed ends `ok` without a crossing; one that must be rejected, when every
-seed is. Prints a table and keeps it in results/robust.json.
+seed is. Prints a table and keeps it in results/robust.json; where --set gives the runs settings of their
+own, such as another device, the table is printed alone.
 
 Exit codes: 0 all passed, 1 some did not, 2 bad input.
 """
@@ -37,6 +38,13 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
         "--formulations", nargs="+", default=list(PAIR), metavar="NAME", help=f"default: {' '.join(PAIR)}"
     )
     parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="POINTER=VALUE",
+        help="a setting of every run, as of ./bench run: /device='\"cuda\"' (repeatable)",
+    )
+    parser.add_argument(
         "--runs",
         type=Path,
         default=RUNS / "robust",
@@ -48,7 +56,18 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
         raise UserError("scenes, or --all, are needed, and not both")
     if args.seeds < 1:
         raise UserError(f"--seeds {args.seeds}: at least 1 is needed")
+    args.given = dict(_setting(text) for text in args.set)
     return args
+
+
+def _setting(text: str) -> tuple[str, object]:
+    pointer, equals, value = text.partition("=")
+    if not equals or not pointer.startswith("/"):
+        raise UserError(f"--set {text}: a pointer, = and a value as JSON are needed, such as /threads=1")
+    try:
+        return pointer, json.loads(value)
+    except ValueError:
+        raise UserError(f"--set {text}: {value} is no JSON; a word stands in double quotes") from None
 
 
 def failure(entry: Entry, done: Done) -> str:
@@ -101,9 +120,10 @@ def main(argv: list[str]) -> int:
     seeds, kept, lines = list(range(1, args.seeds + 1)), read(), []
     for entry in entries(args.names):
         print(f"robust: {entry.name}", file=sys.stderr)
-        rows = rows_of(entry, run_scene(entry, args.formulations, args.runs, seeds))
+        rows = rows_of(entry, run_scene(entry, args.formulations, args.runs, seeds, args.given))
         kept[entry.name] = rows
-        write(kept)  # an interrupt leaves what is over
+        if not args.given:
+            write(kept)  # an interrupt leaves what is over
         lines += [
             [entry.name, row["formulation"], f"{row['passed']}/{row['seeds']}", row["failed"]] for row in rows
         ]

@@ -33,14 +33,17 @@ class Done:
     record: dict = field(hash=False)
 
 
-def run_scene(entry: Entry, labels: list[str], folder: Path, seeds: list[int] | None = None) -> list[Done]:
+def run_scene(
+    entry: Entry, labels: list[str], folder: Path, seeds: list[int] | None = None, given: dict | None = None
+) -> list[Done]:
     """The mini scene under every formulation, from its own start with a frame of its end, or from jittered
-    starts. Errors: UserError with what the program says.
+    starts. given: settings by pointer that every run has besides. Errors: UserError with what the program
+    says.
     """
     base, file, out = folder / f"{entry.name}.json", folder / f"{entry.name}.sweep.json", folder / entry.name
     write_config(entry, base, MINI)
     start = {"/seeds/jitter_m": entry.data["jitter_m"]} if seeds else {"/output/frames_every": LAST_FRAME}
-    write_whole(file, sweep(entry.name, base, ONE_PASS | start, cases(labels), seeds).text)
+    write_whole(file, sweep(entry.name, base, ONE_PASS | start | (given or {}), cases(labels), seeds).text)
     said = ("--progress", "none", "--time-limit", str(LIMIT_S))
     done = run_sweep(file, out, *said)
     if done.returncode != 0:

@@ -90,6 +90,19 @@ def test_jittered_starts_pass_and_are_kept(tmp_path, monkeypatch, capsys):
     assert robust.main([]) == 2 and robust.main(["domino", "--all"]) == 2
 
 
+def test_settings_of_all_runs_are_taken_and_their_table_is_not_kept(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(robust, "entries", lambda names: [short(name) for name in names])
+    monkeypatch.setattr(robust, "write", lambda *_: pytest.fail("kept"))
+    asked = ["domino", "--seeds", "1", "--formulations", "log", "--runs", str(tmp_path / "runs"), "--set", "/time/steps=3", "--set", '/device="host"']
+    assert robust.main(asked) == 0
+    assert "1/1" in capsys.readouterr().out
+    (record,) = (json.loads(file.read_text()) for file in (tmp_path / "runs" / "domino").glob("*/run.json"))
+    assert record["config"]["time"]["steps"] == 3 and record["config"]["device"] == "host"
+    for wrong in ("/device", "device=1", "/device=cuda"):
+        assert robust.main(["domino", "--set", wrong]) == 2
+        assert f"--set {wrong}: " in capsys.readouterr().err
+
+
 def test_a_seed_that_fails_fails_the_scene(tmp_path):
     entry = short("domino")
     (run,) = run_scene(entry, ["log"], tmp_path, [1])
