@@ -2,19 +2,10 @@
 
 from __future__ import annotations
 
-import math
-import tempfile
 from pathlib import Path
 
-import matplotlib.image as image
-import matplotlib.pyplot as plt
-
-from .. import style
-from ..render import Look, render
-
-COLUMNS = 5
-PIXELS = (360, 280)
-VIEW = (-60.0, 22.0)  # degrees, of a scene that has none of its own
+from ..render import Look
+from ..stills import COLUMNS, PIXELS, VIEW, Still, sheet
 
 
 def look_of(scene: dict) -> Look:
@@ -27,17 +18,4 @@ def contact_sheet(runs: dict[str, tuple[Path, Look]], out: Path) -> Path:
     """A still for each scene -> folder of a run with frames and how it is looked at, with its name above
     it.
     """
-    rows = math.ceil(len(runs) / COLUMNS)
-    size = (2 * style.WIDE_IN, 2 * style.WIDE_IN * rows / COLUMNS * 0.85)
-    fig, axes = plt.subplots(rows, COLUMNS, figsize=size, squeeze=False, layout="constrained")
-    for axis in axes.flat:
-        axis.set_axis_off()
-    with tempfile.TemporaryDirectory() as scratch:
-        for axis, (name, (folder, look)) in zip(axes.flat, runs.items()):
-            still = render(folder, out=Path(scratch) / f"{name}.png", look=look)
-            axis.imshow(image.imread(still))
-            axis.set_title(name, fontsize=10)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(out, dpi=130, metadata={"Software": None})
-    plt.close(fig)
-    return out
+    return sheet([Still(name, *run) for name, run in runs.items()], out, COLUMNS)

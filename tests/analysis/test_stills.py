@@ -1,0 +1,58 @@
+"""Several runs in one picture: every run is there, under its label and outcome."""
+
+import json
+import subprocess
+import sys
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from analysis import stills
+from analysis.places import ROOT
+from tests.falling_cloth import CLOTH_ON_BALL
+
+SWEPT = {"labels": {"scene": "bodies", "step_solver": "penalty", "formulation": "log", "note": "baselines: main=1 drape penalty 1e3"},
+         "status": {"outcome": "penetration"}, "audit": {"crossings": 12}}
+
+
+@pytest.fixture(scope="module")
+def runs(program, tmp_path_factory):
+    """A cloth at its start, and after it has fallen."""
+    folder = tmp_path_factory.mktemp("stills")
+    for name, steps in (("short", 1), ("long", 5)):
+        config = {**CLOTH_ON_BALL, "time": {**CLOTH_ON_BALL["time"], "steps": steps}, "output": {"frames_every": 100}}
+        (folder / f"{name}.json").write_text(json.dumps(config))
+        done = subprocess.run([program, "run", folder / f"{name}.json", "--out", folder / name], capture_output=True, text=True, check=False, timeout=60)
+        assert done.returncode == 0, done.stderr
+    return folder / "short", folder / "long"
+
+
+def test_a_label_says_what_was_swept_and_how_it_ended():
+    assert stills.label_of(SWEPT) == "main=1 drape penalty 1e3\npenetration\n12 crossings"
+    alone = {**SWEPT, "labels": {**SWEPT["labels"], "note": ""}, "status": {"outcome": "ok"}, "audit": None}
+    assert stills.label_of(alone) == "bodies, penalty log\nok"
+
+
+def test_every_run_is_in_the_picture(runs, tmp_path):
+    pixels = {}
+    for name, given in {"both": runs, "same": (runs[0], runs[0])}.items():
+        out = tmp_path / f"{name}.png"
+        assert stills.main([*map(str, given), "--out", str(out), "--columns", "2"]) == 0
+        pixels[name] = plt.imread(out)[:, :, :3]
+    half = pixels["both"].shape[1] // 2
+    below = pixels["both"].shape[0] // 3  # titles stand above
+    left, right = pixels["both"][below:, :half], pixels["both"][below:, -half:]
+    assert left.std() > 0.01 and right.std() > 0.01
+    assert np.array_equal(left, pixels["same"][below:, :half]) and not np.array_equal(right, pixels["same"][below:, -half:])
+
+
+def test_what_cannot_be_drawn_is_named(runs, tmp_path):
+    def told(*words):
+        done = subprocess.run([sys.executable, "-m", "analysis", "stills", *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False)
+        assert done.returncode == 2
+        return done.stderr
+
+    assert "nowhere" in told(tmp_path / "nowhere", "--out", tmp_path / "a.png")
+    assert "in 0 columns" in told(runs[0], "--out", tmp_path / "a.png", "--columns", "0")
+    assert not (tmp_path / "a.png").exists()
