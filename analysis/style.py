@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import colorsys
 import logging
-import textwrap
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,25 +18,10 @@ from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 
 from . import pgfplots  # noqa: E402
 from .captions import caption  # noqa: E402
-from .record_file import other_meanings  # noqa: E402
+from .run_words import hollow_rule, name_of, verdict_word  # noqa: E402
 from .ticks import make_readable  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
-HOLLOW = (
-    r"hollow markers: the run failed, is not valid, or a quantile (5, 50 or 95 % of the load) of"
-    r" gap/$\hat{{d}}$ between two bodies at converged step ends is not within a factor {ratio:g} of"
-    r" {reference}"
-)
-FAILED = (  # where all verdicts are of an earlier rule
-    "hollow markers: the run failed, is not valid or not comparable"
-)
-VERDICT, JUDGED = (
-    "comparability.verdict",
-    (
-        "comparable",
-        "not_comparable",
-    ),
-)  # the field, and its words that a rule on gaps decides
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
@@ -141,58 +125,10 @@ def marks(length: int, wanted: int = 12) -> int:
     return max(1, length // wanted)
 
 
-def verdict_word(row: pd.Series) -> str:
-    """Why the markers of a run are hollow: its outcome, or the program's verdict on comparability; else
-    empty.
-    """
-    if row["outcome"] != "ok":
-        return row["outcome"]
-    return (
-        row["comparability_verdict"]
-        if row["comparability_verdict"] in ("not_valid", "not_comparable")
-        else ""
-    )
-
-
-def earlier_rule(row: pd.Series) -> dict | None:
-    """The rule by which comparability was judged in the version of the record (`since`, `before`); None where
-    it is that of now, or nothing was compared.
-    """
-    if row.get("comparability_verdict") not in JUDGED or not row.get("schema_version"):
-        return None
-    return other_meanings(row["schema_version"]).get(VERDICT)
-
-
-def judged_words(row: pd.Series) -> list[str]:
-    """verdict_word, with the rule where it is another one than that of other records."""
-    word, rule = verdict_word(row), earlier_rule(row)
-    if rule is None:
-        return [word] if word else []
-    judged = f"{row['comparability_verdict']} by the rule before {rule['since']}"
-    return [judged] if word in ("", row["comparability_verdict"]) else [word, judged]
-
-
-def end_word(row: pd.Series) -> str:
-    """Which residual the steps of a run end with that its step solver does not ask to converge; else
-    empty."""
-    if row.get("convergence") != "not_asked":
-        return ""
-    median = row["end_error_tolerances_median"]
-    size = "not measured" if pd.isna(median) else f"{median:.2g} tolerances"
-    return f"not asked to converge, residual {size}"
-
-
-def name_of(row: pd.Series) -> str:
-    """The legend's text: the series, the word of a run whose marker is hollow, and of one that does not
-    converge.
-    """
-    words = judged_words(row) + [word for word in (end_word(row),) if word]
-    return f"{row['series']} ({'; '.join(words)})" if words else row["series"]
-
-
 def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "default") -> None:
-    """One run's line. Hollow markers: see HOLLOW; a failure ends in a cross. steps: matplotlib's drawstyle,
-    `steps-mid` for a count of each time step, `steps-post` for a share."""
+    """One run's line. Hollow markers: run_words.HOLLOW; a failure ends in a cross. steps: matplotlib's
+    drawstyle, `steps-mid` for a count of each time step, `steps-post` for a share.
+    """
     style = look(row["formulation"], int(row.get("variant", 0)))
     solid = not verdict_word(row)
     axis.plot(
@@ -244,26 +180,6 @@ def marker_sentence(runs: pd.DataFrame) -> str:
 
 def not_measured(axis, text: str = "not measured") -> None:
     axis.text(0.5, 0.5, text, ha="center", va="center", transform=axis.transAxes, color="#666666")
-
-
-def hollow_rule(runs: pd.DataFrame) -> str:
-    """The rule of hollow markers in words; empty where no run of the group has a reference."""
-    compared = runs[runs["comparability_reference_run"] != ""]
-    if compared.empty:
-        return ""
-    names = runs.drop_duplicates("run").set_index("folder")["series"]
-    references = " or ".join(
-        dict.fromkeys(names.get(folder, folder) for folder in compared["comparability_reference_run"])
-    )
-    rules = [earlier_rule(row) for _, row in compared.iterrows() if row["comparability_verdict"] in JUDGED]
-    text = (
-        FAILED
-        if rules and all(rules)
-        else HOLLOW.format(ratio=compared["comparability_max_ratio"].iloc[0], reference=references)
-    )
-    if rule := next(filter(None, rules), None):
-        text += f"; by the rule before {rule['since']}, with reference {references}, {rule['before']}"
-    return "\n".join(textwrap.wrap(text, 110))
 
 
 def legend_below(fig, axis, runs: pd.DataFrame | None = None) -> None:

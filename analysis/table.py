@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from . import style
+from . import run_words
 from .records import Records, condition_of, counted
 from .text_table import aligned
 
@@ -40,7 +40,7 @@ def summary_table(records: Records) -> pd.DataFrame:
     rows = []
     for _, run in records.runs.iterrows():
         raw, scaled = _cond(records, run["run"], "none"), _cond(records, run["run"], "block_jacobi")
-        words = [run["outcome"], *style.judged_words(run), style.end_word(run)]
+        words = [run["outcome"], *run_words.judged_words(run), run_words.end_word(run)]
         rows.append(
             {
                 "group": run["group"],

@@ -65,9 +65,9 @@ Equilibrium equilibrium(const BarrierFunction& barrier, double kappa, double d_h
   const double t = far.slope > near.slope && std::isfinite(far.slope)
                        ? (target - near.slope) / (far.slope - near.slope)
                        : 1.0;
-  const bool at_edge = near.d >= d_hat;
+  const bool at_edge = near.d >= d_hat, unbounded = std::isinf(far.d2b);
   result.d = t < 0.5 && !at_edge ? near.d : far.d;
-  result.stiffness = kappa * (at_edge ? far.d2b : near.d2b + t * (far.d2b - near.d2b));
+  result.stiffness = kappa * (at_edge || unbounded ? far.d2b : near.d2b + t * (far.d2b - near.d2b));
   return result;
 }
 

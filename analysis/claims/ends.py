@@ -7,7 +7,7 @@ from __future__ import annotations
 import re
 from statistics import median
 
-from ..style import end_word
+from ..run_words import end_word
 from .entry import Sweep
 
 ENDS = ("convergence", "end_error_tolerances_median")  # columns of `runs`, which end_word reads

@@ -63,7 +63,7 @@ def run(
         "dt_s": scene["dt_s"] / parts,
         "stepping_s": summary["solve_s"],
         "iterations_a_step": summary["newton_iterations"] / summary["steps"],
-        "notes": {},
+        "notes": {"contacts_most": max(step["contacts"]["total"] for step in record["steps"])},
     }
     return answer | {"outcome": "ok", "detail": ""}
 

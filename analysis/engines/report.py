@@ -60,6 +60,16 @@ def _short_left(fitted: dict) -> str:
     return "; ".join(words)
 
 
+def _touched(rows: list[dict]) -> list[str]:
+    """How many contacts our runs had, where they were counted: without any nothing was promised."""
+    counts = [row["notes"]["contacts_most"] for row in rows if "contacts_most" in row.get("notes", {})]
+    if not counts:
+        return []
+    if max(counts) == 0:
+        return ["Nothing touches in our runs: of contact this scene says nothing.", ""]
+    return [f"Contacts at a step end in our runs: up to {max(counts)}.", ""]
+
+
 def _scene(one: dict, fitted: dict) -> list[str]:
     apart = one["reference_apart"]
     known = apart.get("error_mean")
@@ -70,6 +80,7 @@ def _scene(one: dict, fitted: dict) -> list[str]:
         f" {1e3 * one['frame_s']:g} ms. The reference and one of twice its time step are"
         f" {number(known, 100) or '?'} % apart. Materials, the largest that is left: {_short_left(fitted)}.",
         "",
+        *_touched(one["rows"]),
         *markdown(HEAD, [_row(row) for row in one["rows"]]),
         "",
     ]

@@ -11,9 +11,19 @@ from typing import NoReturn
 from ..errors import UserError
 from ..program import RELEASE, become
 from . import verbs
+from .table import HELP
 
 INTERRUPTED = 130
 WIDTH = 116
+
+
+def usage_of(verb: verbs.Verb) -> list[str]:
+    """What its row says."""
+    return [
+        f"  {verb.name} {verb.arguments}".rstrip(),
+        *textwrap.wrap(verb.help, WIDTH, initial_indent=6 * " ", subsequent_indent=6 * " "),
+        f"        {verb.example}",
+    ]
 
 
 def usage() -> str:
@@ -23,9 +33,7 @@ def usage() -> str:
         lines.append(f"{group}: {meaning}")
         for verb in verbs.every():
             if verb.group == group:
-                lines.append(f"  {verb.name} {verb.arguments}".rstrip())
-                lines += textwrap.wrap(verb.help, WIDTH, initial_indent=6 * " ", subsequent_indent=6 * " ")
-                lines.append(f"        {verb.example}")
+                lines += usage_of(verb)
         lines.append("")
     lines.append("./bench VERB --help says more; what runs the program is run after an incremental build.")
     return "\n".join(lines)
@@ -70,6 +78,9 @@ def main(arguments: list[str]) -> int:
             print(usage(), flush=True)
             return 0
         verb = verbs.find(arguments[0])
+        if verb and not verb.own_help and any(word in HELP for word in arguments[1:]):
+            print("\n".join(["usage: ./bench VERB [ARGUMENTS]", "", *usage_of(verb)]), flush=True)
+            return 0
         return run(verb, arguments[1:]) if verb else become_program(arguments)
     except UserError as error:
         print(f"bench: {error}", file=sys.stderr)

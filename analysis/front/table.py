@@ -21,6 +21,7 @@ class Verb(NamedTuple):
     help: str
     example: str
     without: tuple[str, ...] = ()  # more options with which it needs no built program
+    own_help: bool = True  # answers --help itself; else its row does
 
 
 # fmt: off
@@ -64,12 +65,12 @@ TABLE = (
     Verb("gpu-report", "make", ENVIRONMENT, "gpu_report", "", "results/GPU.md and its figure from the records of cards that experiments/gpu_evidence.sh made", "./bench gpu-report"),
     Verb("mesh", "make", ENVIRONMENT, "mesh_file", "IN OUT.ply", "a mesh of Gmsh (MSH 2.2, 4.1) or VTK (VTU), tetrahedra too, as PLY for /scene/bodies/N/mesh/file; tetrahedra within a closed surface", "./bench mesh gear.msh gear.ply"),
     Verb("setup", "develop", ENVIRONMENT, "", "", "packages, compiler cache, Python environment; instant when all is there", "./bench setup"),
-    Verb("build", "develop", ENVIRONMENT, "front.build", "[PRESET]", "configures and builds (release by default; dev, sanitize, cuda-compile)", "./bench build sanitize"),
-    Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [--browser] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate; --browser installs chromium first, so that the player is tested in it", "./bench test -R eval"),
-    Verb("format", "develop", ENVIRONMENT, "front.format", "", "clang-format every C++ file and ruff every Python file of analysis/ and python/, in place", "./bench format"),
-    Verb("tidy", "develop", ENVIRONMENT, "front.tidy", "[FILES]", "clang-tidy the sources (all, or the files named)", "./bench tidy core/record/hash.cpp"),
-    Verb("rooms", "develop", ENVIRONMENT, "front.rooms", "", "the rooms of the code, what each one includes, lowest first; fails on a circle or an undeclared one", "./bench rooms"),
-    Verb("python", "develop", ENVIRONMENT, "front.python_module", "[--no-tests] [PYTEST ARGUMENTS]", "builds the Python module barrierbench beside the program and runs its tests (docs/python.md); pip install . builds it by itself", "./bench python --no-tests"),
+    Verb("build", "develop", ENVIRONMENT, "front.build", "[PRESET]", "configures and builds (release by default; dev, sanitize, cuda-compile)", "./bench build sanitize", own_help=False),
+    Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [--browser] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate; --browser installs chromium first, so that the player is tested in it", "./bench test -R eval", own_help=False),
+    Verb("format", "develop", ENVIRONMENT, "front.format", "", "clang-format every C++ file and ruff every Python file of analysis/ and python/, in place", "./bench format", own_help=False),
+    Verb("tidy", "develop", ENVIRONMENT, "front.tidy", "[FILES]", "clang-tidy the sources (all, or the files named)", "./bench tidy core/record/hash.cpp", own_help=False),
+    Verb("rooms", "develop", ENVIRONMENT, "front.rooms", "", "the rooms of the code, what each one includes, lowest first; fails on a circle or an undeclared one", "./bench rooms", own_help=False),
+    Verb("python", "develop", ENVIRONMENT, "front.python_module", "[--no-tests] [PYTEST ARGUMENTS]", "builds the Python module barrierbench beside the program and runs its tests (docs/python.md); pip install . builds it by itself", "./bench python --no-tests", own_help=False),
     Verb("mutate", "develop", ENVIRONMENT, "front.mutate", "", "puts mistakes into the code one at a time and counts those that the tests catch", "./bench mutate --only 'newton/armijo*'"),
     Verb("fuzz", "develop", ENVIRONMENT, "fuzz", "[TARGET...]", "feeds broken input to every reader under clang's sanitizers; 1 when one of them fails", "./bench fuzz mesh_ply config --seconds 60"),
     Verb("microbenchmarks", "develop", "barrierbench_microbenchmarks", "front.microbenchmarks", "[GOOGLE BENCHMARK ARGUMENTS]", "ns per shape, query, contact, element, tier; JSON kept in results/runs/microbenchmarks", "./bench microbenchmarks --benchmark_filter='drape/.*:48'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import re
@@ -72,20 +73,30 @@ def _missing_files(words: list[str]) -> list[str]:
     return [word for word in named if not any(ROOT.glob(word))]
 
 
+@functools.cache
+def _helped(verb: str) -> subprocess.CompletedProcess:
+    """VERB --help, of the program or of this package."""
+    if not verbs.find(verb):
+        return started(verb, "--help", timeout=SECONDS)
+    command = [sys.executable, str(ROOT / "analysis"), verb, "--help"]
+    return subprocess.run(command, check=False, capture_output=True, text=True, timeout=SECONDS)
+
+
 def _command_fault(words: list[str]) -> str:
     """Of `./bench VERB ...`; empty when it is well."""
     verb, rest = words[1], words[2:]
     if missing := _missing_files(rest):
         return f"{missing[0]}: not there"
-    if verbs.find(verb):
-        return ""
-    helped = started(verb, "--help", timeout=SECONDS)
+    row = verbs.find(verb)
+    if row and not (row.module and row.needs in (verbs.ENVIRONMENT, verbs.PROGRAM)):
+        return ""  # of the script itself, or of a target that is built for it alone
+    helped = _helped(verb)
     if helped.returncode != 0:
         return _told(helped)
     flags = [word.split("=")[0] for word in rest if word.startswith("--")]
     if unknown := [flag for flag in flags if not re.search(rf"{flag}\b", helped.stdout)]:
         return f"{verb} has no {unknown[0]}"
-    if verb in SAFE:
+    if verb in SAFE and not row:
         done = started(verb, *rest, timeout=SECONDS)
         return "" if done.returncode in (0, 5) else _told(done)
     return ""

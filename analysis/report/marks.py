@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
-from .. import style
+from .. import run_words, style
 from .comparison import METRICS
 from .gather import Entry
 
@@ -41,7 +41,7 @@ def _table(entries: list[Entry], group: str) -> pd.DataFrame:
 def _draw(axis, table: pd.DataFrame, cost: str) -> None:
     for formulation, rows in table.groupby("formulation", sort=False):
         look = style.look(formulation)
-        for is_solid, some in rows.groupby([not style.verdict_word(row) for _, row in rows.iterrows()]):
+        for is_solid, some in rows.groupby([not run_words.verdict_word(row) for _, row in rows.iterrows()]):
             axis.plot(
                 some["gap_min_rel"].astype(float),
                 some[cost].astype(float),

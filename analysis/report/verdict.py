@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
-from ..style import earlier_rule
+from ..run_words import earlier_rule
 from .comparison import METRICS, Beside, Factor, compared
 from .gather import Entry, Folder
 from .words import counted, listed, number

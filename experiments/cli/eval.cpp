@@ -1,7 +1,5 @@
-#include <fstream>
 #include <iostream>
 
-#include "core/input/read_file.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/eval/eval.hpp"
 
@@ -14,10 +12,7 @@ int eval(const std::string& file, bool schema) {
     print_eval_schema(std::cout);
     return exit_ok;
   }
-  if (file == "-") return run_eval(std::cin, std::cout, std::cerr);
-  require_regular_file(file, query_file);
-  std::ifstream in(file);
-  return run_eval(in, std::cout, std::cerr);
+  return run_eval(file);
 }
 
 }  // namespace

@@ -1,14 +1,15 @@
 // The loop over lines: parse, dispatch, answer. One line's failure never reaches another.
 #include "experiments/eval/eval.hpp"
 
-#include <istream>
+#include <fstream>
+#include <iostream>
 #include <nlohmann/json.hpp>
-#include <ostream>
 #include <regex>
 #include <set>
 #include <string>
 
 #include "core/input/json.hpp"
+#include "core/input/read_file.hpp"
 #include "core/parameters/registry.hpp"
 #include "experiments/eval/kinds.hpp"
 #include "experiments/eval/top_level.hpp"
@@ -126,14 +127,22 @@ std::string text_of(const Line& line) {
   return "{\"id\":" + line.id + "," + line.fields + "}";
 }
 
-/// std::getline with a bound: false at the end; `text` has max_query_bytes + 1 bytes when the line is longer.
+/// std::getline with a bound: false at the end; `text` has max_query_bytes + 1 bytes of a line that is longer, and its rest
+/// is passed over.
 bool next_line(std::istream& in, std::string& text) {
   text.clear();
-  for (char c = 0; text.size() <= max_query_bytes && in.get(c);) {
+  for (char c = 0; in.get(c);) {
     if (c == '\n') return true;
-    text.push_back(c);
+    if (text.size() <= max_query_bytes) text.push_back(c);
   }
   return !text.empty();
+}
+
+Line too_long() {
+  Line line;
+  line.error =
+      "found a line of more than " + std::to_string(max_query_bytes) + " bytes; allowed: at most that";
+  return line;
 }
 
 }  // namespace
@@ -142,13 +151,9 @@ bool next_line(std::istream& in, std::string& text) {
 int run_eval(std::istream& in, std::ostream& out, std::ostream& err) {
   std::size_t queries = 0, failed = 0;
   for (std::string text; eval::next_line(in, text);) {
-    if (text.size() > max_query_bytes) {
-      err << "eval: a line of more than " << max_query_bytes << " bytes; it and what follows is not read\n";
-      return 2;
-    }
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const eval::Line line = eval::answer_line(text);
+    const eval::Line line = text.size() > max_query_bytes ? eval::too_long() : eval::answer_line(text);
     ++queries;
     failed += line.error.empty() ? 0 : 1;
     out << eval::text_of(line) << '\n' << std::flush;
@@ -163,6 +168,13 @@ int run_eval(std::istream& in, std::ostream& out, std::ostream& err) {
   }
   if (failed > 0) err << "eval: " << failed << " of " << queries << " queries could not be answered\n";
   return failed > 0 ? 2 : 0;
+}
+
+int run_eval(const std::string& file) {
+  if (file == "-") return run_eval(std::cin, std::cout, std::cerr);
+  require_regular_file(file, query_file);
+  std::ifstream in(file);
+  return run_eval(in, std::cout, std::cerr);
 }
 
 }  // namespace bb

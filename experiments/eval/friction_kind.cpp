@@ -1,7 +1,7 @@
 // friction: value, gradient and Hessian of the friction of one contact.
 #include "core/energy/friction.hpp"
 #include "core/energy/friction_law.hpp"
-#include "core/geometry/closest_points.hpp"
+#include "experiments/eval/any_scale.hpp"
 #include "experiments/eval/kinds.hpp"
 #include "experiments/eval/pair_field.hpp"
 
@@ -17,7 +17,7 @@ Answer answer::friction(Query& q) {
     constexpr int n = pair_points(K);
     const Mat<T, 3, n> lagged = q.points<T>("points_lagged", n), start = q.points<T>("points_start", n),
                        end = q.points<T>("points_end", n);
-    const Closest<T, n> closest = closest_points<K, T>(lagged);
+    const Closest<T, n> closest = closest_at_any_scale<K, T>(lagged).closest;
     if (!q.wrong() && !(closest.d > 0)) {
       q.complain("points_lagged", "a pair that touches", "a pair with a gap, whose normal is known");
     }

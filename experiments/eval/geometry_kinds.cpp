@@ -1,20 +1,20 @@
 // distance, ccd, intersects: the geometry of one pair.
 #include "core/audit/segment_triangle.hpp"
-#include "core/geometry/accd.hpp"
-#include "core/geometry/closest_points.hpp"
+#include "experiments/eval/any_scale.hpp"
 #include "experiments/eval/kinds.hpp"
 #include "experiments/eval/pair_field.hpp"
 
 namespace bb::eval {
+
 template <class T>
 Answer answer::distance(Query& q) {
   return with_pair(q, [&q]<PairKind K>(PairTag<K>) {
     constexpr int n = pair_points(K);
     const Mat<T, 3, n> x = q.points<T>("points", n);
     q.finish();
-    const Closest<T, n> closest = closest_points<K, T>(x);
+    const auto [scale, closest] = closest_at_any_scale<K, T>(x);
     Answer a;
-    a.number("d", static_cast<double>(closest.d));
+    a.number("d", static_cast<double>(scale.back(closest.d)));
     a.vector("weights", closest.weights);
     a.word("region", region_name(closest.region));
     return a;
@@ -29,7 +29,7 @@ Answer answer::ccd(Query& q) {
     const T offset = static_cast<T>(q.number_or("offset", kNonNegative, 0));
     const T park = static_cast<T>(q.number_or("park", kNonNegative, 0));
     q.finish();
-    const AccdResult<T> result = accd<K, T>(x0, x1, offset, park);
+    const AccdResult<T> result = accd_at_any_scale<K, T>(x0, x1, offset, park);
     Answer a;
     a.flag("hit", result.hit);
     a.number("toi", static_cast<double>(result.toi));

@@ -6,7 +6,7 @@ condition     condition numbers of sparse symmetric matrices
 scene         what can be named in a config; configs with every default; scenes as numpy arrays
 simulation    runs a step at a time, with callbacks and records
 python_shapes, python_policies  a Python class as a shape, as a stiffness policy
-eval          the queries of `bench eval`, in this process
+queries       the queries of `bench eval`, in this process; eval is the verb itself: python -m barrierbench.eval
 records       records as tables, judge and claims: the package barrierbench-analysis
 """
 
@@ -36,10 +36,10 @@ if _os.environ["OPENBLAS_CORETYPE"] == "Haswell" and _core.blas_kernel() != "Has
 
 from ._core import ConfigError, RecordError  # noqa: E402
 from .condition import Condition, condition_number  # noqa: E402
-from .eval import evaluate  # noqa: E402
 from .geometry import accd, distance, edge_edge, point_edge, point_point, point_triangle  # noqa: E402
 from .python_policies import ContactRows, register_policy  # noqa: E402
 from .python_shapes import register_shape  # noqa: E402
+from .queries import evaluate  # noqa: E402
 from .scene import Scene, build_scene, parts, resolve, scenes  # noqa: E402
 from .shape import Shape, shapes  # noqa: E402
 from .simulation import Simulation, run  # noqa: E402

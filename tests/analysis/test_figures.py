@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import style
+from analysis import run_words, style
 from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
 from analysis.figures import verb as figures_verb
 from analysis.records import load
@@ -112,7 +112,7 @@ def test_comparability_is_read_and_never_computed(tmp_path):
     write_run(tmp_path / "runs", "quadratic", 2.0, 0.1, note="strip: quadratic", verdict="no_reference")
     runs = load(tmp_path / "runs").runs.set_index("series", drop=False)
 
-    assert [style.name_of(runs.loc[name]) for name in ("log", "cubic", "quadratic")] == ["log (not_valid)", "cubic", "quadratic"]
+    assert [run_words.name_of(runs.loc[name]) for name in ("log", "cubic", "quadratic")] == ["log (not_valid)", "cubic", "quadratic"]
     verdicts = summary_table(load(tmp_path / "runs")).set_index("series")["verdict"]
     assert verdicts["log"] == "ok, not_valid" and verdicts["cubic"] == verdicts["quadratic"] == "ok"
 
@@ -133,30 +133,30 @@ def test_verdicts_of_an_earlier_rule_are_marked_and_the_rule_is_stated(tmp_path,
     records = load(tmp_path / "runs")
     assert "3 of 4 records are of before 3.5.0, in which these fields mean something else: comparability.verdict" in capsys.readouterr().err
     runs = records.runs.set_index("series", drop=False)
-    assert [style.name_of(runs.loc[name]) for name in ("log", "cubic", "cubic_dynamic", "quadratic")] == [
+    assert [run_words.name_of(runs.loc[name]) for name in ("log", "cubic", "cubic_dynamic", "quadratic")] == [
         "log", "cubic (comparable by the rule before 3.5.0)", "cubic_dynamic (not_comparable by the rule before 3.5.0)", "quadratic (newton_stall)"]
     text = as_text(summary_table(records))
     assert "ok, not_comparable by the rule before 3.5.0" in text and "ok, comparable by the rule before 3.5.0" in text
-    rule = style.hollow_rule(records.runs).replace("\n", " ")
+    rule = run_words.hollow_rule(records.runs).replace("\n", " ")
     assert "between two bodies" in rule and "by the rule before 3.5.0, with reference log, comparable: the smallest gap of the run" in rule
     assert "by the rule before 3.5.0" in " ".join(gaps.figure(records, "strip", tmp_path / "out")[3].read_text().split())
     version(tmp_path / "runs", "log", "3.4.0")
-    only = style.hollow_rule(load(tmp_path / "runs").runs).replace("\n", " ")
+    only = run_words.hollow_rule(load(tmp_path / "runs").runs).replace("\n", " ")
     assert only.startswith("hollow markers: the run failed, is not valid or not comparable; by the rule before 3.5.0") and "between two bodies" not in only
 
 
 def test_records_of_this_version_have_no_other_rule(records, capsys):
     assert "mean something else" not in capsys.readouterr().err
-    assert not any("by the rule" in style.name_of(row) for _, row in records.runs.iterrows()) and "before" not in style.hollow_rule(records.runs)
+    assert not any("by the rule" in run_words.name_of(row) for _, row in records.runs.iterrows()) and "before" not in run_words.hollow_rule(records.runs)
 
 
 def test_the_legend_states_the_rule_of_hollow_markers_and_its_reference(records):
-    rule = style.hollow_rule(records.runs).replace("\n", " ")
+    rule = run_words.hollow_rule(records.runs).replace("\n", " ")
     assert "converged step ends" in rule and "factor 2 of log" in rule
     fig, axis = plt.subplots()
     style.draw(axis, np.array([0, 1]), np.array([1.0, 2.0]), records.runs.iloc[0])
     style.legend_below(fig, axis, records.runs)
-    assert fig.legends[0].get_title().get_text() == style.hollow_rule(records.runs)
+    assert fig.legends[0].get_title().get_text() == run_words.hollow_rule(records.runs)
     plt.close("all")
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from analysis.figures import kappa_cycle
 from analysis.records import condition_of, load
-from analysis.style import name_of
+from analysis.run_words import name_of
 from analysis.table import as_text, summary_table
 from synthetic import bind, digest, write_cycle, write_run, write_set
 

@@ -206,6 +206,7 @@ print(records.runs[["outcome", "gap_min_rel_min"]])
     ("```sh\n./bench run configs/scenes/none.json\n```\n", "a.md:13", "configs/scenes/none.json: not there"),
     ("```sh\n./bench run configs/scenes/drape.json --set /time/stps=3\n```\n", "a.md:13", "/time/stps"),
     ("```sh\n./bench run configs/scenes/drape.json --st /time/steps=3\n```\n", "a.md:13", "--st"),
+    ("```sh\n./bench score log --jobs 2 --thetas 0.5\n```\n", "a.md:13", "score has no --thetas"),
     ("```sh\necho '{\"kind\": \"none\"}' | ./bench eval\n```\n", "a.md:13", "kind"),
     ("```json\n{\"schema\": \"barrierbench.sweep/1\", \"name\": \"a\", \"base\": \"../scenes/drape.json\", \"axes\": [{\"pointer\": \"/time/x\", \"values\": [1]}]}\n```\n", "a.md:13", "/time/x"),
     ("```json\n{\"schema\":\n```\n", "a.md:13", "not JSON"),

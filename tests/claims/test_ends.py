@@ -7,7 +7,7 @@ import pandas as pd
 from made import runs
 from synthetic import write_run
 
-from analysis import style
+from analysis import run_words
 from analysis.claims import figure, frontiers, report
 from analysis.claims.ends import end_of_case, ends_of_part
 from analysis.claims.entry import read_claim, read_sweep
@@ -31,8 +31,8 @@ def made(**more) -> Runs:
 
 def test_the_words_are_those_of_all_tables():
     row = pd.Series({"convergence": "not_asked", "end_error_tolerances_median": 3.0})
-    assert end_of_case(made().rows, "published", SWEEP) == style.end_word(row) == WORD
-    assert end_of_case(made().rows, "log", SWEEP) == "" == style.end_word(pd.Series({"convergence": "asked"}))
+    assert end_of_case(made().rows, "published", SWEEP) == run_words.end_word(row) == WORD
+    assert end_of_case(made().rows, "log", SWEEP) == "" == run_words.end_word(pd.Series({"convergence": "asked"}))
 
 
 def test_of_a_sweep_over_stiffness_all_scales_are_one_case():

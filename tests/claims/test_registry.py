@@ -1,83 +1,23 @@
-"""A claim that calls itself confirmed: registered, committed and unchanged, before its first run. Repositories of their own, made here."""
+"""A claim that calls itself confirmed: its rule, its sweeps and what these name, registered and unchanged."""
 
 import copy
 import inspect
 import json
-import os
-import shutil
 import subprocess
 from dataclasses import replace
 
 import pytest
-from made import runs
+from registered import CLAIM, FILE, NAME
 
 from analysis.errors import UserError
 from analysis.claims import verb
 from analysis.claims import registry, report
-from analysis.claims.entry import ROOT, read_claim, read_sweep
+from analysis.claims.entry import read_claim, read_sweep
 from analysis.claims.inputs import inputs_of
 from analysis.claims.judge import judge
 from analysis.claims.metrics import METRICS
 from analysis.claims.proofs import Eval
 from analysis.claims.table import Table
-
-NAME, FILE = "shells_modes", "claims/confirmation/registry.json"
-CLAIM = read_claim("K12")
-
-
-class Repository:
-    """A checkout with the confirmation sweep of K12, its own git, and time as commits are told."""
-
-    def __init__(self, root):
-        self.root = root
-        for file in (f"claims/confirmation/{NAME}.json", "configs/scenes/hang.json"):
-            (root / file).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(ROOT / file, root / file)
-        self.git("init", "--quiet", "--initial-branch=main")
-
-    def git(self, *words, at="2026-12-01T12:00:00+00:00"):
-        made = {**os.environ, "GIT_AUTHOR_DATE": at, "GIT_COMMITTER_DATE": at}
-        subprocess.run(["git", "-C", str(self.root), "-c", "user.name=t", "-c", "user.email=t@t", *words], check=True, capture_output=True, env=made)
-
-    def commit(self, at="2026-12-01T12:00:00+00:00"):
-        self.git("add", "-A")
-        self.git("commit", "--quiet", "--allow-empty", "-m", "x", at=at)
-
-    def sweep(self, name):
-        return read_sweep.__wrapped__(name, self.root / "claims")
-
-    def register(self, claim=CLAIM, table=None):
-        return registry.register(claim, table or Table(), self.root / FILE)
-
-    def entries(self):
-        return registry.read(self.root / FILE)
-
-    def state(self, table, claim=CLAIM):
-        return registry.state(claim, table, self.entries(), self.root)
-
-    def run(self, started="2026-12-02T00:00:00Z", factor=2.0):
-        """Records of the sweep, in which clamping takes `factor` times the iterations."""
-        sweep = self.sweep(NAME)
-        places = sweep.cases.values()
-        scenes, levels = (tuple(dict.fromkeys(p[k] for p in places)) for k in (0, 1))
-        made = runs(lambda s, lv, c, k: {"newton": 10 * factor if c == "clamped" else 10.0, "seconds": 1.0, "factorizations": 9}, scenes=scenes, levels=levels,
-                    cases=("clamped", "exact_or_clamped", "progressive"), seeds=(1,))
-        made.about |= {"sha256": sweep.sha256, "inputs_sha256": inputs_of(sweep), "first_started_utc": started}
-        return Table({NAME: made})
-
-
-@pytest.fixture
-def repository(tmp_path, monkeypatch):
-    made = Repository(tmp_path / "repository")
-    monkeypatch.setattr(registry, "read_sweep", made.sweep)
-    return made
-
-
-def test_an_earlier_run_of_the_scenes_is_said(repository):
-    registry.register(CLAIM, Table(), repository.root / FILE, "2026-11-30, by another rule")
-    repository.commit()
-    state = repository.state(repository.run())
-    assert state.verified and "before the run of these numbers; an earlier run of these scenes was seen: 2026-11-30, by another rule" in state.why
 
 
 def test_the_code_of_the_common_success_is_in_the_rule(repository, monkeypatch):
@@ -221,67 +161,6 @@ def test_records_of_another_sweep_are_refused(repository):
     assert repository.state(table).word == "registered, 3 of 90 runs" and not repository.state(table).verified
 
 
-@pytest.mark.parametrize("started, refused", [("2026-12-01T11:59:59Z", True), ("2026-12-01T12:00:00Z", True), ("2026-12-01T12:00:01Z", False)])
-def test_registered_after_the_first_run_is_refused(repository, started, refused):
-    repository.register()
-    repository.commit()
-    state = repository.state(repository.run(started))
-    assert state.refused == refused and state.verified != refused and (not refused or "2026-12-01 12:00:00 UTC" in state.why and "after the first run" in state.why)
-
-
-def test_the_commit_is_the_one_since_which_the_entry_stands(repository):
-    """An old entry that was replaced by another one proves nothing for that."""
-    parts = copy.deepcopy(list(CLAIM.parts))
-    parts[0]["above"] = 2
-    repository.register(replace(CLAIM, parts=tuple(parts)))
-    repository.commit("2026-11-01T12:00:00+00:00")
-    repository.register()
-    repository.commit("2026-12-03T12:00:00+00:00")
-    assert repository.state(repository.run("2026-12-02T00:00:00Z")).refused and repository.state(repository.run("2026-12-04T00:00:00Z")).verified
-
-
-def test_an_entry_that_came_back_is_as_old_as_its_return(repository):
-    parts = copy.deepcopy(list(CLAIM.parts))
-    parts[0]["above"] = 2
-    for month, claim in (("10", CLAIM), ("11", replace(CLAIM, parts=tuple(parts))), ("12", CLAIM)):
-        repository.register(claim)
-        repository.commit(f"2026-{month}-03T12:00:00+00:00")
-    assert repository.state(repository.run("2026-12-02T00:00:00Z")).refused and repository.state(repository.run("2026-12-04T00:00:00Z")).verified
-
-
-def test_entries_of_other_claims_may_come_later(repository):
-    repository.register()
-    repository.commit()
-    repository.register(read_claim("K13"))
-    repository.commit("2026-12-09T12:00:00+00:00")
-    assert repository.state(repository.run("2026-12-02T00:00:00Z")).verified
-    assert repository.state(repository.run("2026-12-02T00:00:00Z"), read_claim("K13")).refused
-
-
-def test_an_entry_of_no_commit_or_of_another_branch_is_refused(repository):
-    repository.commit()
-    repository.git("checkout", "--quiet", "-b", "other")
-    repository.register()
-    repository.commit()
-    kept = (repository.root / FILE).read_text()
-    repository.git("checkout", "--quiet", "main")
-    (repository.root / FILE).write_text(kept)
-    assert repository.state(repository.run()).refused and "in no commit that leads to HEAD" in repository.state(repository.run()).why
-
-
-def test_nothing_is_run_before_the_entry_is_committed(repository):
-    repository.commit()
-    repository.register()
-    with pytest.raises(UserError, match="K12: commit claims/confirmation/registry.json before the first run of shells_modes"):
-        registry.ready(CLAIM, repository.entries(), repository.root)
-    repository.commit()
-    registry.ready(CLAIM, repository.entries(), repository.root)
-    parts = copy.deepcopy(list(CLAIM.parts))
-    parts[0]["above"] = 2
-    with pytest.raises(UserError, match="no confirmation is run: claims/K12.json: the rule is another"):
-        registry.ready(replace(CLAIM, parts=tuple(parts)), repository.entries(), repository.root)
-
-
 def test_the_verb_runs_what_is_registered_and_no_more(monkeypatch, tmp_path):
     asked = []
     monkeypatch.setattr(verb, "run_sweep", lambda file, out, **_: asked.append(str(file)) or subprocess.CompletedProcess([], 0))
@@ -291,30 +170,6 @@ def test_the_verb_runs_what_is_registered_and_no_more(monkeypatch, tmp_path):
     monkeypatch.setattr(registry, "read", lambda: {"K12": {}})
     verb.run_sweeps([CLAIM], tmp_path, [])
     assert [word.rpartition("/")[2] for word in asked] == ["hessian_modes.json", "hessian_modes.json", "shells_modes.json"]
-
-
-def test_without_a_history_nothing_is_confirmed(repository):
-    repository.register()
-    repository.commit()
-    shutil.rmtree(repository.root / ".git")
-    state = repository.state(repository.run())
-    assert (state.word, state.verified) == ("not verifiable here", False) and "no git history here" in state.why
-
-
-def test_records_that_keep_no_time(repository):
-    repository.register()
-    repository.commit()
-    assert repository.state(repository.run(started="")).word == "not verifiable here"
-
-
-def test_a_shallow_clone_does_not_accuse(repository, tmp_path):
-    repository.register()
-    repository.commit()
-    (repository.root / "x").write_text("x")
-    repository.commit("2026-12-05T12:00:00+00:00")
-    subprocess.run(["git", "clone", "--quiet", "--depth", "1", f"file://{repository.root}", str(tmp_path / "shallow")], check=True, capture_output=True)
-    state = registry.state(CLAIM, repository.run(), repository.entries(), tmp_path / "shallow")
-    assert (state.word, state.verified) == ("not verifiable here", False) and "shallow" in state.why
 
 
 def test_a_registry_that_was_edited_by_hand(repository):

@@ -256,6 +256,9 @@ def test_a_comparison_goes_on_where_an_engine_is_missing(program, here, tmp_path
 
     page = text_of(record)
     assert "mujoco cg: not_installed" in page and "template plain: stretch_factor" in page
+    assert ours["notes"]["contacts_most"] == 0 and "Nothing touches in our runs" in page
+    ours["notes"]["contacts_most"] = 7
+    assert "Contacts at a step end in our runs: up to 7." in text_of(record)
     paint(record, tmp_path / "engines.png")
     assert (tmp_path / "engines.png").stat().st_size > 5000
 

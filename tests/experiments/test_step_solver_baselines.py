@@ -75,7 +75,8 @@ def test_settings_of_later_solvers_stand_in_a_config_that_has_one(program, tmp_p
     ("penalty", ["/formulation/argument=squared_gap"], ["/formulation/argument", "gap: the step solver is penalty"]),
     ("augmented_lagrangian", ["/step_solver/al_reduction=1"], ["/step_solver/al_reduction"]),
     ("projection", ["/step_solver/projection_stiffness=0"], ["/step_solver/projection_stiffness"]),
-    ("projection", ["/step_solver/saddle=escape"], ["/step_solver/saddle"]),
+    ("projection", ["/step_solver/saddle=escape"], ["/step_solver/saddle", "line_search", "augmented_lagrangian"]),
+    ("projection", ["/friction/lag_iterations=2"], ["/friction/lag_iterations", "penalty", "augmented_lagrangian"]),
 ])
 def test_what_does_not_go_with_them_is_refused_by_name(program, tmp_path, solver, words, said):
     sets = [word for each in words for word in ("--set", each)]

@@ -40,6 +40,16 @@ def test_the_help_has_every_verb_once_in_its_group_with_an_example(capsys):
     assert max(map(len, text.splitlines())) <= 170
 
 
+@pytest.mark.parametrize("asked", ["-h", "--help"])
+def test_help_of_a_verb_without_options_of_its_own_does_nothing_else(monkeypatch, capsys, asked):
+    plain = [verb for verb in verbs.TABLE if not verb.own_help]
+    assert {"build", "test", "python"} <= {verb.name for verb in plain}
+    monkeypatch.setattr(door, "run", lambda verb, arguments: pytest.fail(f"{verb.name} was run"))
+    for verb in plain:
+        assert door.main([verb.name, asked]) == 0
+        assert verb.help.split()[0] in (said := capsys.readouterr().out) and verb.example in said
+
+
 def test_every_row_of_python_has_its_file_with_a_main():
     for verb in verbs.TABLE:
         if verb.module:

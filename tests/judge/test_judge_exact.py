@@ -134,4 +134,5 @@ def test_states_agree_with_the_toolkit_where_it_is_right(program):
     print(json.dumps(counts))
     assert (ours == (proper + other > 0)).all()
     assert (ours == theirs)[kinds == 0].all() and theirs[kinds == 0].any()
-    assert (sliver | nudged)[invents].all()  # what they invent has one of these reasons; of 20,000 frames they miss 3 crossings
+    assert (sliver | nudged)[invents].all()  # what they invent has one of these reasons
+    assert (misses & (proper > 0)).sum() <= len(frames) // 5000  # of 5,000 frames they miss no crossing, of 20,000 three

@@ -3,12 +3,15 @@
 import doctest
 import importlib
 import json
+import os
 import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-MODULES = ("shape", "geometry", "condition", "eval", "scene", "python_policies", "python_shapes", "simulation")
+MODULES = ("shape", "geometry", "condition", "queries", "scene", "python_policies", "python_shapes", "simulation")
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -47,6 +50,25 @@ def test_shapes_broadcast_and_say_what_is_wrong(bb):
         log([0.1, -0.1], 0.01)
     with pytest.raises(bb.ConfigError, match=r"did you mean log\?"):
         bb.Shape("logg")
+
+
+def test_arguments_and_rules_are_told_apart(bb):
+    """The cubic on the squared gap: D = d^2, b' = -4 d (1 - u^2)^2, b'' = -4 (1 - u^2)^2 + 16 u^2 (1 - u^2)."""
+    d_hat, u = 0.01, 0.75
+    squared, plain = bb.Shape("cubic", argument="squared_gap"), bb.Shape("cubic")
+    e = 1 - u * u
+    assert squared(u * d_hat, d_hat).db == pytest.approx(-4 * u * d_hat * e**2, rel=1e-12)
+    assert squared.rho(u) == pytest.approx((16 * u**2 * e - 4 * e**2) / (4 * u * e**2), rel=1e-12)
+    assert plain.equal_curvature(d_hat, 3.0, theta=u) == pytest.approx(3 / (4 * (1 - u)), rel=1e-12)
+    assert plain.equal_force(d_hat, 3.0, theta=u) == pytest.approx(3 / (2 * d_hat * (1 - u) ** 2), rel=1e-12)
+    assert plain.equal_curvature(d_hat, 3.0) == pytest.approx(1.5) and plain.equal_force(d_hat, 3.0) == pytest.approx(3 / (2 * d_hat * 0.81))
+
+
+def test_lists_are_those_of_the_registries(bb):
+    from barrierbench import scene
+
+    for entries, name in ((scene.policies, "elasticity_inclusive"), (scene.step_solvers, "line_search"), (scene.linear_solvers, "pcg"), (scene.generators, "grid")):
+        assert name in [entry.name for entry in entries()]
 
 
 def test_matching_inverts_equilibrium(bb):
@@ -103,8 +125,18 @@ def test_condition_number_is_that_of_numpy(bb):
         found = bb.condition_number(matrix, tier=tier)
         assert found.status == "ok" and found.cond == pytest.approx(np.linalg.cond(matrix.toarray()), rel=1e-5)
     assert bb.condition_number(-matrix).status == "not_pd"
+    assert bb.condition_number(sparse.tril(matrix), tier=3) == bb.condition_number(matrix, tier=3)
+    twice = sparse.coo_matrix(([1.0, 1.0, 5.0], ([0, 0, 1], [0, 0, 1])))
+    assert bb.condition_number(twice, tier=3).cond == 2.5
     with pytest.raises(bb.ConfigError, match="scaling.*jacobi"):
         bb.condition_number(matrix, scaling="jacoby")
+    with pytest.raises(bb.ConfigError, match="across the diagonal"):
+        bb.condition_number(sparse.triu(matrix))
+    for shape in ((2, 3), (3, 2)):
+        with pytest.raises(bb.ConfigError, match="a square matrix"):
+            bb.condition_number(np.ones(shape))
+    with pytest.raises(bb.ConfigError, match="tier"):
+        bb.condition_number(matrix, tier=0)
 
 
 def test_evaluate_is_the_verb(bb, program):
@@ -117,6 +149,24 @@ def test_evaluate_is_the_verb(bb, program):
     assert [bb.evaluate(query) for query in queries] == [json.loads(line) for line in done.stdout.splitlines()]
     with pytest.raises(bb.ConfigError, match="kind"):
         bb.evaluate({"kind": "shap"})
+
+
+@pytest.mark.parametrize("text", ['{"id": 1, "kind": "svd", "F": [[3, 0], [0, 1]]}\n', '{"id": 2, "kind": "svd"}\n', "nonsense\n", "\n"])
+def test_the_script_is_the_verb(bb, program, tmp_path, text):
+    """The same bytes and exit code, from a file and from the standard input."""
+    script = [sys.executable, "-m", "barrierbench.eval"]
+    environment = os.environ | {"PYTHONPATH": str(Path(bb.__file__).parents[1])}
+    file = tmp_path / "queries.jsonl"
+    file.write_text(text)
+    for words, fed in ((["-"], text), ([str(file)], ""), (["--schema"], "")):
+        own, verb = (
+            subprocess.run([*command, *words], input=fed, capture_output=True, text=True, env=environment, check=False)
+            for command in (script, [program, "eval"])
+        )
+        assert (own.returncode, own.stdout, own.stderr) == (verb.returncode, verb.stdout, verb.stderr)
+    for words in ([str(file), str(file)], [str(tmp_path / "nowhere.jsonl")], ["--no-such"]):
+        own = subprocess.run([*script, *words], capture_output=True, text=True, env=environment, check=False)
+        assert own.returncode == 2 and own.stdout == "" and own.stderr
 
 
 def test_a_scene_is_that_of_the_config(bb, drape):

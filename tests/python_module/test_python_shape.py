@@ -1,5 +1,8 @@
 """A Python class as a shape: the bits of the built-in one, what its declaration is held to, what it raises."""
 
+import hashlib
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -47,6 +50,7 @@ def test_it_runs_in_steps(bb, drape):
     assert record["steps"][-1]["contacts"]["total"] > 0 and record["labels"]["shape"] == "python_cubic"
     (plugin,) = record["provenance"]["plugins"]
     assert plugin["name"] == "python_cubic" and plugin["file"].endswith("test_python_shape.py")
+    assert plugin["sha256"] == hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
 
 
 def test_what_it_raises_ends_the_step_and_nothing_is_lost(bb, drape):
@@ -80,6 +84,7 @@ def test_what_it_raises_ends_the_step_and_nothing_is_lost(bb, drape):
     [
         ({"terms": lambda self, d, h: ((h - d) ** 3, -3 * (h - d) ** 2, 6 * (h - d))}, r"b at d = 0.05 d_hat changes by 8"),
         ({"terms": lambda self, d, h: (s := h - d) is None or (s**2, -s, s * 0 + 2)}, r"b' = .* at d = 0.05 d_hat"),
+        ({"terms": lambda self, d, h: (s := h - d) is None or (s**3 / h, -3 * s**2 / h, 3 * s / h)}, r"b'' = .*; allowed: the derivative"),
         ({"terms": lambda self, d, h: (-((h - d) ** 2), 2 * (h - d), 0 * d - 2)}, r"b' = .* > 0"),
         ({"terms": lambda self, d, h: ((h - d) ** 2, -2 * (h - d), 0 * d + 2)}, r"b'' = 2 just below d_hat"),
         ({"terms": lambda self, d, h: (d / 0, d, d)}, r"b = inf at d"),
