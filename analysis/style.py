@@ -190,11 +190,15 @@ def name_of(row: pd.Series) -> str:
     return f"{row['series']} ({'; '.join(words)})" if words else row["series"]
 
 
+def marker_face(row: pd.Series) -> str:
+    """What the markers of a run are filled with."""
+    return "none" if verdict_word(row) else look(row["formulation"], int(row.get("variant", 0))).color
+
+
 def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "default") -> None:
     """One run's line. Hollow markers: see HOLLOW; a failure ends in a cross. steps: matplotlib's drawstyle,
     `steps-mid` for a count of each time step, `steps-post` for a share."""
     style = look(row["formulation"], int(row.get("variant", 0)))
-    solid = not verdict_word(row)
     axis.plot(
         x,
         y,
@@ -203,7 +207,7 @@ def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "defaul
         drawstyle=steps,
         marker=style.marker,
         markevery=marks(len(x)),
-        markerfacecolor=style.color if solid else "none",
+        markerfacecolor=marker_face(row),
         markeredgewidth=0.8,
         label=name_of(row),
     )
