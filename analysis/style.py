@@ -41,6 +41,7 @@ VERDICT, JUDGED = (
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
+WITH_MARGINS = 1.1  # the span of an axis over that of its data: no marker is cut
 REFERENCE = "reference"  # marks lines that are no data
 MARKERS = (
     "A formulation has one colour and one marker in every figure; {hollow} A cross ends the line of a run"
@@ -345,12 +346,14 @@ def keep_span(axis, which: str = "y") -> None:
         values = values[values > 0]
         if len(values) and values.max() < LEAST_RATIO * values.min():
             middle = np.sqrt(values.max() * values.min())
-            limits(middle / LEAST_RATIO**0.5, middle * LEAST_RATIO**0.5)
+            half = max(LEAST_RATIO, (values.max() / values.min()) ** WITH_MARGINS) ** 0.5
+            limits(middle / half, middle * half)
         return
     least = LEAST_SPAN * np.abs(values).max(initial=0.0)
     if len(values) and np.ptp(values) < least:
         middle = (values.max() + values.min()) / 2
-        limits(middle - least / 2, middle + least / 2)
+        half = max(least, WITH_MARGINS * np.ptp(values)) / 2
+        limits(middle - half, middle + half)
 
 
 def save(fig, stem: Path, numbers: pd.DataFrame, shown: str, runs: pd.DataFrame | None = None) -> list[Path]:

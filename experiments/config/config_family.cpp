@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_checked = 2048;  // sections that are kept, some kilobytes each
+constexpr std::size_t most_checked = 4096;  // sections that are kept, some kilobytes each
 
 /// The rows of a config. Each is one of these or stands in for_each_section. Errors: logic_error: one that is not.
 ParameterList known_rows() {
@@ -42,9 +42,9 @@ const std::vector<Parameter>& config_rows() {
 }
 
 /// The key that an override acts below; empty where it is none ("/pointer=value").
-std::string section_of(const std::string& text) {
+std::string_view section_of(std::string_view text) {
   const std::size_t end = text.find_first_of("/=", 1);
-  if (text.empty() || text[0] != '/' || end == std::string::npos) return {};
+  if (text.empty() || text[0] != '/' || end == std::string_view::npos) return {};
   return text.substr(1, end - 1);
 }
 
@@ -73,7 +73,7 @@ bool ConfigFamily::make_base(std::span<const std::string> overrides) {
   for (const std::string& text : overrides) {
     if (section_of(text) != "method") continue;
     of_method.push_back(text);
-    joined += text + "\n";
+    joined.append(text).push_back('\0');
   }
   if (known_ && joined == method_) return true;
   known_ = false;
@@ -91,22 +91,23 @@ bool ConfigFamily::make_base(std::span<const std::string> overrides) {
 
 bool ConfigFamily::read_sections(std::span<const std::string> overrides) {
   if (!make_base(overrides)) return false;
-  std::map<std::string, std::vector<const std::string*>> of_section;
+  const std::vector<Parameter>& rows = config_rows();
+  overrides_.resize(rows.size());
+  given_.resize(rows.size());
+  for (std::string& joined : given_) joined.clear();
   for (const std::string& text : overrides) {
-    const std::string name = section_of(text);
-    if (find_named(config_rows(), name) == nullptr || name == "extends") return false;
-    if (name != "method") of_section[name].push_back(&text);  // base_ has it
+    const std::string_view name = section_of(text);
+    const Parameter* row = find_named(rows, name);
+    if (row == nullptr || name == "extends") return false;
+    if (name == "method") continue;  // base_ has it
+    given_[static_cast<std::size_t>(row - rows.data())].append(text).push_back('\0');
   }
-  std::vector<std::string> anew;
-  for (const Parameter& row : config_rows()) {
-    const auto& texts = of_section[row.name];
-    std::string joined;
-    for (const std::string* text : texts) joined += *text + "\n";
-    std::string& earlier = overrides_[row.name];
-    if (known_ && earlier == joined) continue;
-    earlier = std::move(joined);
-    if (!read_section(row.name, texts)) return false;
-    anew.push_back(row.name);
+  std::vector<std::string_view> anew;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (known_ && overrides_[r] == given_[r]) continue;
+    overrides_[r] = given_[r];
+    if (!read_section(rows[r], overrides_[r], overrides)) return false;
+    anew.push_back(rows[r].name);
   }
   const auto is_anew = [&](const char* name) { return std::find(anew.begin(), anew.end(), name) != anew.end(); };
 
@@ -132,15 +133,18 @@ bool ConfigFamily::read_sections(std::span<const std::string> overrides) {
   return violations.empty();
 }
 
-bool ConfigFamily::read_section(const std::string& name, const std::vector<const std::string*>& overrides) {
-  const auto [kept, is_new] = checked_.try_emplace(name + "\n" + overrides_[name]);
+bool ConfigFamily::read_section(const Parameter& row, const std::string& own,
+                                std::span<const std::string> overrides) {
+  const std::string& name = row.name;
+  const auto [kept, is_new] = checked_.try_emplace(name + "\n" + own);
   json& value = kept->second;
   if (is_new) {
     json alone = json::object();
     if (base_.contains(name)) alone[name] = base_[name];
     std::vector<Violation> violations;
-    for (const std::string* text : overrides) apply_override(alone, *text, folder_, violations);
-    const Parameter& row = *find_named(config_rows(), name);
+    for (const std::string& text : overrides) {
+      if (!own.empty() && section_of(text) == name) apply_override(alone, text, folder_, violations);
+    }
     if (alone.contains(name)) {
       value = std::move(alone[name]);
       const std::string where = path_ + "#/" + name;
@@ -166,10 +170,10 @@ void ConfigFamily::write_section(const std::string& name) {
   Written& out = texts_[name];
   out = {};
   if (value.is_null()) return;
-  const json placeless = without_places(value);
   const std::string text = value.dump();
-  out.member = json(name).dump() + ":" + (placeless == value ? text : placeless.dump());
-  if (placeless != value) out.places = sha256_hex(text);
+  const bool has_places = text.find("\"sha256\"") != std::string::npos;
+  out.member = json(name).dump() + ":" + (has_places ? without_places(value).dump() : text);
+  if (has_places) out.places = sha256_hex(text);
   if (name == "scene") scene_hash_ = sha256_hex(text);
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "experiments/config/run_config.hpp"
@@ -43,7 +44,8 @@ class ConfigFamily {
 
   /// False where parse_config has to say what is wrong.
   bool read_sections(std::span<const std::string> overrides);
-  bool read_section(const std::string& name, const std::vector<const std::string*>& overrides);
+  /// own: the overrides of that section, as in overrides_.
+  bool read_section(const Parameter& row, const std::string& own, std::span<const std::string> overrides);
   void write_section(const std::string& name);
   bool make_base(std::span<const std::string> overrides);
 
@@ -52,10 +54,11 @@ class ConfigFamily {
   std::string method_;       // overrides of the method that base_ was made with
   nlohmann::json base_;      // the document under all other overrides
   nlohmann::json document_;  // of the config that was read last
-  std::map<std::string, std::string> overrides_;  // of each section, those that it was read with, one a line
+  std::vector<std::string> overrides_;  // of each row of a config, those that it was read with, each ended by a zero byte
+  std::vector<std::string> given_;      // the same of the config that is being read
   /// What sections were checked to, with presets and formulas expanded, by name and overrides; null: not given. Most sections of
   /// a sweep come again.
-  std::map<std::string, nlohmann::json> checked_;
+  std::unordered_map<std::string, nlohmann::json> checked_;
   const ProceduralScene* scene_ = nullptr;
   RunConfig blank_;    // defaults and scene, before any other section is read
   RunConfig read_;     // with every section, before they are settled
