@@ -12,6 +12,7 @@ import json
 import math
 import re
 from collections.abc import Iterable, Iterator
+from functools import cache, cached_property
 from pathlib import Path
 
 from . import fields
@@ -85,53 +86,93 @@ def _shown(value) -> str:
     return json.dumps(value)[:60]
 
 
-def _fault(value, rule: dict, place: str, complete: bool, words: bool) -> str:
-    """What is wrong with the first value that is not as the schema says; empty when all is well. complete:
-    every field has to be there. words: only the words of the schema are allowed; a later version may have
-    more. Unknown fields are passed over.
-    """
-    while "$ref" in rule:
-        rule = fields.schema("run")["$defs"][rule["$ref"].rsplit("/", 1)[1]]
-    if "enum" in rule:
-        return (
-            ""
-            if value in rule["enum"] or not words and isinstance(value, str)
-            else f"{place}: found {_shown(value)}; allowed: {', '.join(map(str, rule['enum']))}"
+class _Rule:
+    """A rule of the schema as it is asked of every value of a record, looked up once."""
+
+    def __init__(self, rule: dict) -> None:
+        while "$ref" in rule:
+            rule = fields.schema("run")["$defs"][rule["$ref"].rsplit("/", 1)[1]]
+        self.rule, self.words, self.minimum = rule, rule.get("enum"), rule.get("minimum")
+        kinds = rule.get("type", ())
+        self.kinds = [kinds] if isinstance(kinds, str) else kinds
+        self.types = tuple(TYPES[kind] for kind in self.kinds if kind in TYPES)
+        self.number, self.integer = "number" in self.kinds, "integer" in self.kinds
+        self.required = rule.get("required", ())
+
+    @cached_property
+    def known(self) -> dict[str, _Rule]:
+        return {name: _Rule(below) for name, below in self.rule.get("properties", {}).items()}
+
+    @cached_property
+    def other(self) -> _Rule | None:
+        other = self.rule.get("additionalProperties")
+        return _Rule(other) if isinstance(other, dict) else None
+
+    @cached_property
+    def items(self) -> _Rule | None:
+        return _Rule(self.rule["items"]) if self.rule.get("items") else None
+
+    def fault(self, value, complete: bool, words: bool) -> str:
+        """What is wrong with the first value that is not as the schema says, behind its place; empty when all is
+        well. complete: every field has to be there. words: only the words of the schema are allowed; a later
+        version may have more. Unknown fields are passed over.
+        """
+        if self.words is not None:
+            if value in self.words or not words and isinstance(value, str):
+                return ""
+            return f": found {_shown(value)}; allowed: {', '.join(map(str, self.words))}"
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        right = isinstance(value, self.types) or (
+            is_number and (self.number or self.integer and value == int(value))
         )
-    kinds = rule.get("type", ())
-    kinds = [kinds] if isinstance(kinds, str) else kinds
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    right = any(
-        isinstance(value, TYPES[k]) if k in TYPES else is_number and (k == "number" or value == int(value))
-        for k in kinds
-    )
-    if kinds and not right:
-        return f"{place}: found {_shown(value)}; allowed: {' or '.join(kinds)}"
-    if is_number and "minimum" in rule and value < rule["minimum"]:
-        return f"{place}: found {value}; allowed: {rule['minimum']} or more"
+        if self.kinds and not right:
+            return f": found {_shown(value)}; allowed: {' or '.join(self.kinds)}"
+        if is_number:
+            few = self.minimum is not None and value < self.minimum
+            return f": found {value}; allowed: {self.minimum} or more" if few else ""
+        if isinstance(value, dict):
+            return self._object_fault(value, complete, words)
+        if isinstance(value, list) and self.items:
+            for k, below in enumerate(value):
+                if fault := self.items.fault(below, complete, words):
+                    return f"/{k}{fault}"
+        return ""
+
+    def _object_fault(self, value: dict, complete: bool, words: bool) -> str:
+        if complete:
+            for name in self.required:
+                if name not in value:
+                    return f": no field {name}; allowed: a record as it was written"
+        known, other = self.known, self.other
+        for name, below in value.items():
+            inner = known.get(name, other)
+            if inner is not None and (fault := inner.fault(below, complete, words)):
+                return f"/{name}{fault}"
+        return ""
+
+
+@cache
+def _rule_of_a_record() -> _Rule:
+    return _Rule(fields.schema("run"))
+
+
+def _all_finite(value) -> bool:
+    if isinstance(value, float):
+        return math.isfinite(value)
     if isinstance(value, dict):
-        return _object_fault(value, rule, place, complete, words)
-    items = rule.get("items") if isinstance(value, list) else None
+        return all(map(_all_finite, value.values()))
+    return all(map(_all_finite, value)) if isinstance(value, list) else True
+
+
+def _not_finite(value) -> tuple[str, object] | None:
+    """The first number below that is not finite, with its place."""
+    if _all_finite(value):
+        return None
     return next(
-        (
-            fault
-            for k, below in enumerate(value if items else ())
-            if (fault := _fault(below, items, f"{place}/{k}", complete, words))
-        ),
-        "",
+        (place, found)
+        for place, found in leaves(value)
+        if isinstance(found, float) and not math.isfinite(found)
     )
-
-
-def _object_fault(value: dict, rule: dict, place: str, complete: bool, words: bool) -> str:
-    known, other = rule.get("properties", {}), rule.get("additionalProperties")
-    for name in rule.get("required", ()) if complete else ():
-        if name not in value:
-            return f"{place}: no field {name}; allowed: a record as it was written"
-    for name, below in value.items():
-        inner = known.get(name, other if isinstance(other, dict) else None)
-        if inner is not None and (fault := _fault(below, inner, f"{place}/{name}", complete, words)):
-            return fault
-    return ""
 
 
 def _needed_fault(record: dict) -> str:
@@ -159,25 +200,13 @@ def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = Fals
     if not isinstance(record, dict):
         raise RecordError(f"{path}: not JSON of a record: found {_shown(record)}; allowed: an object")
     _check_schema(record, path)
-    bad = (
-        None
-        if allow_not_finite
-        else next(
-            (
-                f"{place}: found {value}"
-                for place, value in leaves(record)
-                if isinstance(value, float) and not math.isfinite(value)
-            ),
-            None,
+    if not allow_not_finite and (bad := _not_finite(record)):
+        raise RecordError(
+            f"{path}#{bad[0]}: found {bad[1]}; allowed: a finite number, or null with the word that says why"
         )
-    )
-    if bad:
-        raise RecordError(f"{path}#{bad}; allowed: a finite number, or null with the word that says why")
     if not foreign:
         version = _version(record)
-        fault = _needed_fault(record) or _fault(
-            record, fields.schema("run"), "", version == OURS, version <= OURS
-        )
+        fault = _needed_fault(record) or _rule_of_a_record().fault(record, version == OURS, version <= OURS)
         if fault:
             raise RecordError(f"{path}#{fault}")
     return record
@@ -281,13 +310,10 @@ def read_trace(record: dict, folder: Path) -> list[dict]:
             " one for each Newton iteration of the record beside it"
         )
     for number, row in enumerate(rows, 1):
-        bad = next(
-            (place for place, value in leaves(row) if isinstance(value, float) and not math.isfinite(value)),
-            None,
-        )
+        bad = _not_finite(row)
         if bad:
             raise RecordError(
-                f"{path}:{number}: {bad} is not finite; allowed: a finite number, or null with the word that"
+                f"{path}:{number}: {bad[0]} is not finite; allowed: a finite number, or null with the word that"
                 " says why"
             )
     return rows

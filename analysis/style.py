@@ -25,6 +25,7 @@ NARROW_IN, WIDE_IN = 3.33, 7.0
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
+WITH_MARGINS = 1.1  # the span of an axis over that of its data: no marker is cut
 REFERENCE = "reference"  # marks lines that are no data
 MARKERS = (
     "A formulation has one colour and one marker in every figure; {hollow} A cross ends the line of a run"
@@ -125,12 +126,16 @@ def marks(length: int, wanted: int = 12) -> int:
     return max(1, length // wanted)
 
 
+def marker_face(row: pd.Series) -> str:
+    """What the markers of a run are filled with."""
+    return "none" if verdict_word(row) else look(row["formulation"], int(row.get("variant", 0))).color
+
+
 def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "default") -> None:
     """One run's line. Hollow markers: run_words.HOLLOW; a failure ends in a cross. steps: matplotlib's
     drawstyle, `steps-mid` for a count of each time step, `steps-post` for a share.
     """
     style = look(row["formulation"], int(row.get("variant", 0)))
-    solid = not verdict_word(row)
     axis.plot(
         x,
         y,
@@ -139,7 +144,7 @@ def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "defaul
         drawstyle=steps,
         marker=style.marker,
         markevery=marks(len(x)),
-        markerfacecolor=style.color if solid else "none",
+        markerfacecolor=marker_face(row),
         markeredgewidth=0.8,
         label=name_of(row),
     )
@@ -257,12 +262,14 @@ def keep_span(axis, which: str = "y") -> None:
         values = values[values > 0]
         if len(values) and values.max() < LEAST_RATIO * values.min():
             middle = np.sqrt(values.max() * values.min())
-            limits(middle / LEAST_RATIO**0.5, middle * LEAST_RATIO**0.5)
+            half = max(LEAST_RATIO, (values.max() / values.min()) ** WITH_MARGINS) ** 0.5
+            limits(middle / half, middle * half)
         return
     least = LEAST_SPAN * np.abs(values).max(initial=0.0)
     if len(values) and np.ptp(values) < least:
         middle = (values.max() + values.min()) / 2
-        limits(middle - least / 2, middle + least / 2)
+        half = max(least, WITH_MARGINS * np.ptp(values)) / 2
+        limits(middle - half, middle + half)
 
 
 def save(fig, stem: Path, numbers: pd.DataFrame, shown: str, runs: pd.DataFrame | None = None) -> list[Path]:

@@ -70,6 +70,8 @@ def draw_ends(axis, found: pd.DataFrame, row: pd.Series) -> None:
             linestyle=look.dash,
             marker=look.marker,
             markersize=2.5,
+            markerfacecolor=style.marker_face(row),
+            markeredgewidth=0.6,
             markevery=style.marks(len(sure), 8),
         )
 

@@ -16,14 +16,21 @@ BAND = "band"  # gid of its edges
 
 def swings_from(values: np.ndarray) -> int | None:
     """From which index on, to the end and for at least WINDOW values, at least half of every WINDOW values
-    turn back; None where it does not.
+    turn back; None where it does not. A turn counts by the smaller of its two moves; where that finds nothing, a
+    swing of unlike moves, one large among small ones, counts by the range of its WINDOW.
     """
     if len(values) < WINDOW + 2:
         return None
     moves = np.diff(values)
-    turns = (moves[1:] * moves[:-1] < 0) & (
-        np.minimum(abs(moves[1:]), abs(moves[:-1])) > LEAST_SWING * abs(values[1:-1])
-    )
+    back = moves[1:] * moves[:-1] < 0
+    small = np.minimum(abs(moves[1:]), abs(moves[:-1])) > LEAST_SWING * abs(values[1:-1])
+    low, high = band(values[1:-1])
+    wide = high - low > LEAST_SWING * abs(values[1:-1])
+    starts = [_start(back & small), _start(back & wide)]
+    return next((start for start in starts if start is not None), None)
+
+
+def _start(turns: np.ndarray) -> int | None:
     share = np.convolve(turns, np.ones(WINDOW) / WINDOW, mode="valid")
     calm = np.flatnonzero(share < 0.5)
     start = int(calm[-1]) + 1 if len(calm) else 0

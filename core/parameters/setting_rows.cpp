@@ -1,5 +1,8 @@
 #include "core/parameters/setting_rows.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace bb {
 
 namespace {
@@ -85,6 +88,23 @@ void SettingRows::read_all(const json& checked, void* out) const {
     const auto at = checked.find(one.row.name);
     one.read(at == checked.end() ? nullptr : &*at, out);
   }
+}
+
+const SettingRows::Setting& SettingRows::row_named(std::string_view name) const {
+  const auto found = std::find_if(settings_.begin(), settings_.end(),
+                                  [&](const Setting& one) { return one.row.name == name; });
+  if (found == settings_.end()) throw std::logic_error("no row " + std::string(name));
+  return *found;
+}
+
+void SettingRows::read_row(std::string_view name, const json* given, void* out) const {
+  const Setting& one = row_named(name);
+  if (one.read) one.read(given, out);
+}
+
+nlohmann::json SettingRows::write_row(std::string_view name, const void* from) const {
+  const Setting& one = row_named(name);
+  return one.write ? one.write(from) : json();
 }
 
 nlohmann::json SettingRows::write_all(const void* from) const {

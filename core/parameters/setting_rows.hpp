@@ -60,6 +60,9 @@ class SettingRows {
 
   void read_all(const json& checked, void* out) const;
   json write_all(const void* from) const;
+  /// What these do of one row. Precondition: there is a row of that name.
+  void read_row(std::string_view name, const json* given, void* out) const;
+  json write_row(std::string_view name, const void* from) const;
   void check_all_numbers(const void* from, const Found& found) const;
 
  private:
@@ -70,6 +73,8 @@ class SettingRows {
     Place place;  // of a value, with its type
     const ValueType* type = nullptr;
   };
+
+  const Setting& row_named(std::string_view name) const;
 
   std::string doc_;
   std::vector<Setting> settings_;

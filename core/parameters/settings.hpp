@@ -62,6 +62,9 @@ class Settings : public SettingRows {
   /// Settings that are not given stay as they stand in `out`, except in nested maps of parameters.
   void read(const json& checked, S& out) const { read_all(checked, &out); }
   json write(const S& from) const { return write_all(&from); }
+  /// The same of one row, which there is; null: nothing is given, nothing is written.
+  void read_one(std::string_view name, const json* given, S& out) const { read_row(name, given, &out); }
+  json write_one(std::string_view name, const S& from) const { return write_row(name, &from); }
 
   /// Calls found(name, value, what is allowed) for every number of `from` that its rule does not allow. Values that no JSON
   /// gave: a scene made in C++.

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/record/places.hpp"
 #include "core/record/provenance.hpp"
 
 namespace bb {
@@ -51,7 +52,6 @@ class Sha256 {
 
 namespace {
 
-/// A file is known by its content and by the suffix that chooses its reader, never by where it lies.
 void drop_places(nlohmann::json& j) {
   if (!j.is_structured()) return;
   if (j.is_object() && j.contains("sha256") && j.contains("file") && j["file"].is_string()) {
@@ -130,10 +130,14 @@ std::string config_id(std::string_view config_json) {
   return config_id_of(std::move(j));
 }
 
+nlohmann::json without_places(nlohmann::json value) {
+  drop_places(value);
+  return value;
+}
+
 std::string config_id_of(nlohmann::json config) {
   if (config.is_object()) config.erase("threads");  // no bit of a result depends on it
-  drop_places(config);
-  return sha256_hex(config.dump());
+  return sha256_hex(without_places(std::move(config)).dump());
 }
 
 }  // namespace bb

@@ -17,6 +17,7 @@
 
 #include "core/linear/blas_info.hpp"
 #include "core/record/build_info.hpp"
+#include "core/record/kept_hash.hpp"
 #include "core/record/program_file.hpp"
 
 namespace bb {
@@ -113,7 +114,7 @@ std::string program_file() {
 }
 
 void fill_ids(RunRecord& record) {
-  static const std::string this_program = sha256_file(program_file());
+  static const std::string this_program = kept_sha256(program_file(), hashes_folder());
   Ids& ids = record.ids;
   ids.config_id = config_id(record.config.text);
   ids.build_id = this_program;

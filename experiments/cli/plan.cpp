@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <nlohmann/json.hpp>
+#include <mutex>
 
 #include "core/math/error.hpp"
 #include "experiments/cli/options.hpp"
@@ -51,6 +51,21 @@ void print_total(const Sweep& sweep, const Total& total) {
   }
 }
 
+/// Sizes of the scenes. Errors: ConfigError: of every case whose scene cannot be built.
+void measure(const Sweep& sweep, CostBook& book, std::vector<RunSize>& sizes) {
+  std::vector<Violation> violations;
+  for (std::size_t i = 0; i < sizes.size() && violations.size() < max_violations; ++i) {
+    const SweepCase& one = sweep.spec.cases[i];
+    sizes[i].config_id = one.config_id;
+    try {
+      book.measure(sizes[i], [&] { return resolved(sweep.spec, one); });
+    } catch (const ConfigError& error) {
+      append_violations(sweep.verb.spec, one, error, violations);
+    }
+  }
+  if (!violations.empty()) throw ConfigError(violations);
+}
+
 int plan(const PlanVerb& verb, const CommonOptions& common) {
   CostBook book;
   for (const std::string& folder : verb.records) {
@@ -59,20 +74,28 @@ int plan(const PlanVerb& verb, const CommonOptions& common) {
     book.add_records(folder);
   }
   std::vector<RunSize> sizes;
-  Sweep sweep = open_sweep(
-      verb.sweep, common, [&](const SweepCase& one, const RunConfig& config, const nlohmann::json& document) {
-        sizes.push_back(book.size_of(config, document, one.config_id));
-      });
+  std::mutex of_sizes;
+  Sweep sweep = open_sweep(verb.sweep, common,
+                           [&](std::size_t i, const RunConfig& config, const std::string& scene) {
+                             RunSize size = size_of(config, scene);
+                             const std::lock_guard lock(of_sizes);
+                             if (sizes.size() <= i) sizes.resize(i + 1);
+                             sizes[i] = std::move(size);
+                           });
+  measure(sweep, book, sizes);
   sweep.options.argv = common.argv;
   sweep.options.plugins = common.loaded;
   if (verb.records.empty()) book.add_records(sweep.out);
   if (verb.write) write_sweep_files(sweep);
   Total total;
+  std::error_code none;
+  const bool any_there = std::filesystem::exists(sweep.out, none);
   fmt::print("{:>6} {:<16} {:>9} {:<8} {}\n", "index", "config_id", "core_s", "by", "run");
   for (const std::size_t i : sweep.chosen) {
     const SweepCase& one = sweep.spec.cases[i];
     std::error_code unreachable;
-    const bool has_record = std::filesystem::exists(sweep.folder(i) / "run.json", unreachable);
+    const bool has_record =
+        any_there && std::filesystem::exists(sweep.folder(i) / "run.json", unreachable);
     const bool done = has_record && why_to_run(sweep, i, resolved(sweep.spec, one)).empty();
     const ExpectedCost cost = book.expected(sizes[i]);
     const auto source = static_cast<std::size_t>(cost.source);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/math/error.hpp"
+#include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/sweep_folder.hpp"
 #include "experiments/config/parse.hpp"
@@ -34,7 +35,7 @@ RunSize size_of_record(const RunRecord& record) {
   out.config_id = config_id(record.config.text);
   out.scene = record.labels.scene;
   out.formulation = record.labels.formulation;
-  out.of_scene = json::parse(record.config.text).value("scene", json()).dump();
+  out.of_scene = sha256_hex(json::parse(record.config.text).value("scene", json()).dump());
   out.steps = static_cast<double>(record.steps.size());
   out.unknowns = static_cast<double>(record.scene.free_dofs);
   return out;
@@ -61,26 +62,30 @@ void CostBook::add_records(const fs::path& folder) {
   }
 }
 
-RunSize CostBook::size_of(const RunConfig& config, const json& document, const std::string& config_id) {
+RunSize size_of(const RunConfig& config, const std::string& scene) {
   RunSize out;
-  out.config_id = config_id;
   out.scene = config.scene.name;
   out.formulation = label_of(config.formulation);
-  out.of_scene = document.value("scene", json()).dump();
+  out.linear_solver = config.linear_solver.name;
+  out.of_scene = scene;
   out.steps = config.time.steps;
   out.passes = (config.passes.time ? 1 : 0) + (has_observed_run(config) ? 1 : 0) +
                (config.matching.rule != MatchingRule::as_given ? 1 : 0);
-  if (of_config_.contains(out.config_id)) return out;
-  const auto [found, is_new] = of_scene_and_solver_.try_emplace(out.of_scene + config.linear_solver.name);
+  return out;
+}
+
+void CostBook::measure(RunSize& size, const std::function<RunConfig()>& config_of) {
+  if (of_config_.contains(size.config_id)) return;
+  const auto [found, is_new] = of_scene_and_solver_.try_emplace(size.of_scene + size.linear_solver);
   if (is_new) {
+    const RunConfig config = config_of();
     const Scene scene = build_scene(config);
     found->second.unknowns = (scene.planar ? 2.0 : 3.0) *
                              static_cast<double>(scene.n_vertices() - static_cast<int>(scene.pins.size()));
     found->second.solve_s = expected_solve_s(config).value_or(0);
   }
-  out.unknowns = found->second.unknowns;
-  out.solve_s = found->second.solve_s;
-  return out;
+  size.unknowns = found->second.unknowns;
+  size.solve_s = found->second.solve_s;
 }
 
 ExpectedCost CostBook::expected(const RunSize& size) const {

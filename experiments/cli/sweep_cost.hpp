@@ -2,8 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -14,12 +14,15 @@ namespace bb::cli {
 
 /// What decides how long a run takes.
 struct RunSize {
-  std::string config_id, scene, formulation;
-  std::string of_scene;  // the settings of the scene, as text
+  std::string config_id, scene, formulation, linear_solver;
+  std::string of_scene;  // SHA-256 of the settings of the scene
   double steps = 0, unknowns = 0;
   int passes = 1;      // with the pilot of a matching rule
   double solve_s = 0;  // a linear solve, where this processor has a model; else 0
 };
+
+/// What the config tells without its scene being built. scene: SHA-256 of the section `scene`.
+RunSize size_of(const RunConfig& config, const std::string& scene);
 
 /// Where an expectation is from: a record of this very config; of the same scene, the nearer the better; the model.
 enum class CostSource { own_record, same_scene, model };
@@ -36,9 +39,9 @@ class CostBook {
  public:
   /// Every run.json below a folder; what cannot be read is passed over. Cost: reading them.
   void add_records(const std::filesystem::path& folder);
-  /// Sizes are made from configs; scenes of the same settings are built once. Errors: ConfigError, as build_scene.
-  /// document: resolved_document of the config; config_id: of it.
-  RunSize size_of(const RunConfig& config, const nlohmann::json& document, const std::string& config_id);
+  /// Fills in unknowns and solve_s, where no record of the config is known. Scenes of the same settings are built once.
+  /// config: makes the config that the size is of. Errors: ConfigError, as build_scene.
+  void measure(RunSize& size, const std::function<RunConfig()>& config);
   /// A record of the same config as it stands; else the median over records of the same scene of their core seconds a step and
   /// unknown, those with the same settings of it before others, then those of the same formulation.
   ExpectedCost expected(const RunSize& size) const;

@@ -1,22 +1,24 @@
 #include "experiments/cli/sweep_spec.hpp"
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <unordered_map>
 
 #include "core/input/names.hpp"
 #include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
 #include "core/record/provenance.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/cli/sweep_cases.hpp"
+#include "experiments/config/config_family.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
 
 namespace bb {
-
-constexpr std::size_t max_violations = 50;  // of all cases together; each is named once
 
 namespace {
 
@@ -33,7 +35,59 @@ void check_overrides(const SweepSpec& spec, const std::vector<std::string>& over
   }
 }
 
-/// What is wrong with a case, named by its label.
+/// What one case is: its id, or what is wrong with it.
+struct Resolved {
+  std::string config_id;
+  std::string key;                     // that no other case may have: the number of threads belongs to it, and the repetition
+  std::optional<RunConfig> undecided;  // a config whose linear solver is `auto`
+  std::optional<ConfigError> error;
+};
+
+/// The threads of one call, each with a family of configs of its own.
+using Families = oneapi::tbb::enumerable_thread_specific<std::optional<ConfigFamily>>;
+
+Resolved resolve(const SweepSpec& spec, std::size_t i, Families& families, const SeenCase& seen) {
+  Resolved out;
+  try {
+    std::optional<ConfigFamily>& family = families.local();
+    if (!family) family.emplace(spec.base);
+    const RunConfig& config = family->read(spec.cases[i].set);
+    if (spec.seeded && config.seeds.jitter == 0) {
+      throw ConfigError("#/seeds/jitter_m", "0",
+                        "a number above 0 beside `seed` in the sweep file: nothing else reads the seed");
+    }
+    if (config.linear_solver.name == linear_solver_auto) {
+      out.undecided = config;
+      return out;
+    }
+    ConfigFamily::Identity identity = family->identity();
+    if (seen) seen(i, config, identity.scene);
+    out.config_id = std::move(identity.config_id);
+    out.key = std::move(identity.document);
+  } catch (const ConfigError& error) {
+    out.error = error;
+  }
+  return out;
+}
+
+/// One case after the other: the choice of `auto` orders a matrix by METIS, whose random numbers are the process's.
+void decide(Resolved& found, std::size_t i, const SeenCase& seen) {
+  if (!found.undecided) return;
+  decide_linear_solver(*found.undecided);
+  const nlohmann::json document = resolved_document(*found.undecided);
+  found.config_id = config_id_of(document);
+  found.key = sha256_hex(document.dump());
+  if (seen) seen(i, *found.undecided, sha256_hex(document["scene"].dump()));
+}
+
+/// Cases that are resolved side by side before the next are begun, and those of them that a thread takes one after the other: neighbours
+/// share most of their settings.
+constexpr std::size_t side_by_side = 4096, in_a_row = 128;
+
+}  // namespace
+
+RunConfig resolved(const SweepSpec& spec, const SweepCase& one) { return load_run(spec.base, one.set); }
+
 void append_violations(const std::string& path, const SweepCase& one, const ConfigError& error,
                        std::vector<Violation>& violations) {
   for (Violation v : error.violations()) {
@@ -42,74 +96,45 @@ void append_violations(const std::string& path, const SweepCase& one, const Conf
   }
 }
 
-/// What one case is: its config, or what is wrong with it.
-struct Resolved {
-  RunConfig config;
-  nlohmann::json document;
-  std::string key;  // that no other case may have: the number of threads belongs to it, and the repetition
-  std::optional<ConfigError> error;
-};
-
-Resolved resolve(const SweepSpec& spec, SweepCase& one) {
-  Resolved out;
-  try {
-    out.config = load_config(spec.base, one.set);
-    if (spec.seeded && out.config.seeds.jitter == 0) {
-      throw ConfigError("#/seeds/jitter_m", "0",
-                        "a number above 0 beside `seed` in the sweep file: nothing else reads the seed");
-    }
-  } catch (const ConfigError& error) {
-    out.error = error;
-  }
-  return out;
-}
-
-/// The rest, one case after the other: the choice of `auto` orders a matrix by METIS, whose random numbers are the process's.
-void identify(Resolved& found, SweepCase& one, const SeenCase& seen) {
-  decide_linear_solver(found.config);
-  found.document = resolved_document(found.config);
-  one.config_id = config_id_of(found.document);
-  const auto repetition = one.swept.find("repetition");
-  found.key =
-      sha256_hex(found.document.dump()) + (repetition == one.swept.end() ? "" : " " + repetition->second);
-  if (seen) seen(one, found.config, found.document);
-}
-
-/// Cases that are resolved side by side before the next are begun: a document has tens of kilobytes.
-constexpr std::size_t side_by_side = 256;
-
-}  // namespace
-
-RunConfig resolved(const SweepSpec& spec, const SweepCase& one) { return load_run(spec.base, one.set); }
-
 SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& overrides,
                      std::optional<std::size_t> only, const SeenCase& seen) {
   SweepSpec out = parse_sweep(read_input_file(path, sweep_file), path);
   out.base = (std::filesystem::path(path).parent_path() / out.base).string();
   std::vector<Violation> violations;
   check_overrides(out, overrides, violations);
-  std::map<std::string, const std::string*> label_of;  // key of a run -> the first case that is it
+  std::unordered_map<std::string, const std::string*> label_of;  // key of a run -> the first case that is it
   std::vector<std::size_t> asked;
   for (std::size_t i = 0; i < out.cases.size(); ++i) {
     out.cases[i].set.insert(out.cases[i].set.end(), overrides.begin(), overrides.end());
     if (!only || *only == i) asked.push_back(i);
   }
+  Families families;
   std::vector<Resolved> found;
   for (std::size_t begin = 0; begin < asked.size() && violations.size() < max_violations;
        begin += side_by_side) {
+    found.clear();
     found.resize(std::min(side_by_side, asked.size() - begin));
-    oneapi::tbb::parallel_for(std::size_t{0}, found.size(),
-                              [&](std::size_t k) { found[k] = resolve(out, out.cases[asked[begin + k]]); });
+    const oneapi::tbb::blocked_range<std::size_t> all(0, found.size(), in_a_row);
+    oneapi::tbb::parallel_for(
+        all,
+        [&](const oneapi::tbb::blocked_range<std::size_t>& some) {
+          for (std::size_t k = some.begin(); k < some.end(); ++k)
+            found[k] = resolve(out, asked[begin + k], families, seen);
+        },
+        oneapi::tbb::simple_partitioner());
     for (std::size_t k = 0; k < found.size() && violations.size() < max_violations; ++k) {
       SweepCase& one = out.cases[asked[begin + k]];
       check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
       try {
         if (found[k].error) throw ConfigError(*found[k].error);
-        identify(found[k], one, seen);
+        decide(found[k], asked[begin + k], seen);
       } catch (const ConfigError& error) {
         append_violations(path, one, error, violations);
         continue;
       }
+      one.config_id = std::move(found[k].config_id);
+      if (const auto at = one.swept.find("repetition"); at != one.swept.end())
+        found[k].key += " " + at->second;
       const auto [first, is_new] = label_of.emplace(std::move(found[k].key), &one.label);
       if (is_new) continue;
       violations.push_back({path + " [" + one.label + "]", "the same run as [" + *first->second + "]",

@@ -242,6 +242,23 @@ bool set_value(json& document, const json::json_pointer& pointer, json value) {
   return true;
 }
 
+/// The method that overrides name; nothing where they name none, or where the value cannot be read, which apply_override
+/// tells.
+std::optional<json> named_method(std::span<const std::string> overrides) {
+  const std::string key = "/method=";
+  std::optional<json> out;
+  for (const std::string& text : overrides) {
+    if (!text.starts_with(key)) continue;
+    try {
+      out = override_value(text.substr(key.size()), text);
+    } catch (const JsonError&) {
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 void apply_override(json& document, const std::string& text, const std::string& folder,
                     std::vector<Violation>& violations) {
   const std::size_t equals = text.find('=');
@@ -272,23 +289,6 @@ void apply_override(json& document, const std::string& text, const std::string& 
   }
   absolute_mesh_paths(document, folder);
 }
-
-/// The method that overrides name; nothing where they name none, or where the value cannot be read, which apply_override
-/// tells.
-std::optional<json> named_method(std::span<const std::string> overrides) {
-  const std::string key = "/method=";
-  std::optional<json> out;
-  for (const std::string& text : overrides) {
-    if (!text.starts_with(key)) continue;
-    try {
-      out = override_value(text.substr(key.size()), text);
-    } catch (const JsonError&) {
-    }
-  }
-  return out;
-}
-
-}  // namespace
 
 json make_document(const std::string& text, const std::string& source, const std::string& folder,
                    std::span<const std::string> overrides, std::vector<Violation>& violations) {

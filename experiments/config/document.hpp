@@ -21,4 +21,9 @@ namespace bb {
 nlohmann::json make_document(const std::string& text, const std::string& source, const std::string& folder,
                              std::span<const std::string> overrides, std::vector<Violation>& violations);
 
+/// One of these overrides. It reads and changes nothing but the section that its pointer begins with, so that a document with
+/// that section alone does as well.
+void apply_override(nlohmann::json& document, const std::string& text, const std::string& folder,
+                    std::vector<Violation>& violations);
+
 }  // namespace bb

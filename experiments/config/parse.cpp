@@ -21,20 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-/// d_hat, dt and the length of a run have a default only where a scene supplies it.
-void require_scales(const json& document, const Reader& reader) {
-  if (!child(document, "formulation").contains("d_hat_m")) {
-    reader.missing("/formulation/d_hat_m", "a number > 0 (m): a scene given as bodies has no default");
-  }
-  const json& time = child(document, "time");
-  if (!time.contains("dt_s")) {
-    reader.missing("/time/dt_s", "a value: a scene given as bodies has no default");
-  }
-  if (!time.contains("steps") && !time.contains("duration_s")) {
-    reader.missing("/time/steps", "a value, or duration_s: a scene given as bodies has no default");
-  }
-}
-
 /// 1e-4 d_hat, and never more than a tenth of the fall in one step from rest (the bound that
 /// check_contradictions holds a given tolerance to).
 double default_tolerance(const RunConfig& config) {
@@ -56,9 +42,60 @@ void fill_hessians(const json& document, RunConfig& config) {
   }
 }
 
+}  // namespace
+
+void require_scales(const json& document, const Reader& reader) {
+  if (!child(document, "formulation").contains("d_hat_m")) {
+    reader.missing("/formulation/d_hat_m", "a number > 0 (m): a scene given as bodies has no default");
+  }
+  const json& time = child(document, "time");
+  if (!time.contains("dt_s")) {
+    reader.missing("/time/dt_s", "a value: a scene given as bodies has no default");
+  }
+  if (!time.contains("steps") && !time.contains("duration_s")) {
+    reader.missing("/time/steps", "a value, or duration_s: a scene given as bodies has no default");
+  }
+}
+
+const ProceduralScene* begin_config(const json& document, const Reader& reader, RunConfig& config) {
+  config.source = reader.source;
+  const ProceduralScene* scene = read_scene(child(document, "scene"), reader, config.scene);
+  const SceneDefaults defaults = scene ? scene->defaults : SceneDefaults();
+  config.time = {defaults.dt, defaults.steps};
+  config.formulation.d_hat = defaults.d_hat;
+  if (follows_article(config.scene)) config.step_solver.name = "article_literal";
+  if (document.value("device", word_of(Device::cpu)) != word_of(Device::cpu)) {
+    config.linear_solver.name = linear_solver_at(MatrixPlace::executor).name;
+  }
+  return scene;
+}
+
+void finish_config(const json& document, const ProceduralScene* scene, const Reader& reader,
+                   RunConfig& config) {
+  const SceneDefaults defaults = scene ? scene->defaults : SceneDefaults();
+  const json& time = child(document, "time");
+  if (!config.method.empty() && scene && !time.contains("steps") && !time.contains("duration_s")) {
+    config.time.duration = defaults.dt * defaults.steps;  // whatever dt the method has
+  }
+  settle_time(time, reader, config.time);
+  settle_formulation(child(document, "formulation"), reader, config.formulation);
+  settle_strain_limit(child(document, "strain_limit"), reader, config.formulation, defaults.limit,
+                      config.strain_limit);
+  settle_matching(child(document, "matching"), reader, follows_article(config.scene), config);
+  if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
+    config.step_solver.tol_velocity = default_tolerance(config);
+  }
+  if (!child(document, "step_solver").contains("saddle") && !needs_of(config).minimum) {
+    config.step_solver.saddle = SaddleRule::ignore;
+  }
+  fill_hessians(document, config);
+  check_contradictions(config, reader.source, reader.violations);
+}
+
+namespace {
+
 RunConfig read_document(json document, const std::string& source, std::vector<Violation>& violations) {
   RunConfig config;
-  config.source = source;
   const std::size_t before = violations.size();
   if (!check_value(document, settings_of<RunConfig>().rule(), source + "#", violations)) {
     document = json::object();
@@ -69,35 +106,10 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   const Reader reader{source, violations, violations.size() == before};
   if (document.contains("formulation")) expand_preset(document["formulation"], source, violations);
 
-  const ProceduralScene* scene = read_scene(child(document, "scene"), reader, config.scene);
-  const SceneDefaults defaults = scene ? scene->defaults : SceneDefaults();
+  const ProceduralScene* scene = begin_config(document, reader, config);
   if (config.scene.name == "bodies") require_scales(document, reader);
-  const bool literal = follows_article(config.scene);
-  config.time = {defaults.dt, defaults.steps};
-  config.formulation.d_hat = defaults.d_hat;
-  if (literal) config.step_solver.name = "article_literal";
-  if (document.value("device", word_of(Device::cpu)) != word_of(Device::cpu)) {
-    config.linear_solver.name = linear_solver_at(MatrixPlace::executor).name;
-  }
-
   settings_of<RunConfig>().read(document, config);
-  const json& time = child(document, "time");
-  if (!config.method.empty() && scene && !time.contains("steps") && !time.contains("duration_s")) {
-    config.time.duration = defaults.dt * defaults.steps;  // whatever dt the method has
-  }
-  settle_time(time, reader, config.time);
-  settle_formulation(child(document, "formulation"), reader, config.formulation);
-  settle_strain_limit(child(document, "strain_limit"), reader, config.formulation, defaults.limit,
-                      config.strain_limit);
-  settle_matching(child(document, "matching"), reader, literal, config);
-  if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
-    config.step_solver.tol_velocity = default_tolerance(config);
-  }
-  if (!child(document, "step_solver").contains("saddle") && !needs_of(config).minimum) {
-    config.step_solver.saddle = SaddleRule::ignore;
-  }
-  fill_hessians(document, config);
-  check_contradictions(config, source, violations);
+  finish_config(document, scene, reader, config);
   return config;
 }
 
@@ -117,10 +129,10 @@ RunConfig load_config(const std::string& path, std::span<const std::string> over
   return parse_config(read_input_file(path, config_file), path, folder.empty() ? "." : folder, overrides);
 }
 
-/// A scene without pressure, or without stitches that have a length, has no choice of their Hessian, and the id that it had
-/// before there was one. So it is with the settings of step solvers that came later.
-json resolved_document(const RunConfig& config) {
-  json out = settings_of<RunConfig>().write(config);
+namespace {
+
+/// Settings of step solvers that came later than ids that are known stand where a solver is chosen that has them.
+void leave_out_later_settings(const RunConfig& config, json& out) {
   const auto stated = [&](const Parameter& row) {
     return std::any_of(step_solvers().begin(), step_solvers().end(), [&](const StepSolverEntry& entry) {
       return (entry.stated_always || entry.name == config.step_solver.name) &&
@@ -129,19 +141,36 @@ json resolved_document(const RunConfig& config) {
   };
   for (const StepSolverEntry& entry : step_solvers()) {
     for (const Parameter& own : entry.parameters) {
-      if (!stated(own)) out["step_solver"].erase(own.name);
+      if (!stated(own)) out.erase(own.name);
     }
   }
+}
+
+/// A scene without pressure, or without stitches that have a length, has no choice of their Hessian, and the id that it had
+/// before there was one.
+void leave_out_unused_hessians(const RunConfig& config, json& out) {
   const auto presses = [](const BodyConfig& body) {
     return body.spec.pressure != 0 || !body.spec.pressure_keys.empty();
   };
-  if (std::none_of(config.scene.bodies.begin(), config.scene.bodies.end(), presses)) {
-    out["hessian"].erase("inflation");
-  }
+  if (std::none_of(config.scene.bodies.begin(), config.scene.bodies.end(), presses)) out.erase("inflation");
   const auto has_length = [](const StitchSpec& stitch) { return stitch.rest_length > 0; };
-  if (std::none_of(config.scene.stitches.begin(), config.scene.stitches.end(), has_length)) {
-    out["hessian"].erase("stitch");
-  }
+  if (std::none_of(config.scene.stitches.begin(), config.scene.stitches.end(), has_length))
+    out.erase("stitch");
+}
+
+}  // namespace
+
+json resolved_section(const std::string& name, const RunConfig& config) {
+  json out = settings_of<RunConfig>().write_one(name, config);
+  if (name == "step_solver") leave_out_later_settings(config, out);
+  if (name == "hessian") leave_out_unused_hessians(config, out);
+  return out;
+}
+
+json resolved_document(const RunConfig& config) {
+  json out = settings_of<RunConfig>().write(config);
+  leave_out_later_settings(config, out["step_solver"]);
+  leave_out_unused_hessians(config, out["hessian"]);
   return out;
 }
 

@@ -35,6 +35,19 @@ inline const nlohmann::json& child(const nlohmann::json& object, const char* key
 /// The scene section; null when it names no registered scene.
 const ProceduralScene* read_scene(const nlohmann::json& object, const Reader& reader, SceneConfig& scene);
 
+/// A config is read in three strides, which ConfigFamily takes section by section. First the scene, and the defaults that it and
+/// the device decide, into a config of defaults. Then the rows of every other section. Last what sections decide and forbid
+/// each other. The document has been checked, its presets and formulas are expanded. begin_config answers the registered scene, or
+/// null.
+const ProceduralScene* begin_config(const nlohmann::json& document, const Reader& reader, RunConfig& config);
+/// d_hat, dt and the length of a run have a default only where a scene supplies it.
+void require_scales(const nlohmann::json& document, const Reader& reader);
+void finish_config(const nlohmann::json& document, const ProceduralScene* scene, const Reader& reader,
+                   RunConfig& config);
+/// A section as it stands in a resolved document; null where it does not stand. It is made from that section of the config, that of
+/// `hessian` from the scene too.
+nlohmann::json resolved_section(const std::string& name, const RunConfig& config);
+
 /// What the rows of these sections alone cannot tell: defaults that other settings decide, and settings that
 /// exclude each other. The sections have been read.
 void settle_time(const nlohmann::json& object, const Reader& reader, TimeConfig& time);

@@ -19,7 +19,8 @@ ROW = pd.Series({"series": "cubic", "formulation": "cubic", "outcome": "newton_s
 
 @pytest.mark.parametrize(("values", "start"), [
     (CALM, None), (CYCLE, 0), (np.concatenate([CALM, CYCLE]), 19), (np.concatenate([CYCLE, CALM]), None),  # it settles
-    (1 + 1e-3 * CYCLE, None), (CYCLE[:6], None), (np.tile([0.1, 0.3, 0.6, 0.3], 10), 0)])
+    (1 + 1e-3 * CYCLE, None), (CYCLE[:6], None), (np.tile([0.1, 0.3, 0.6, 0.3], 10), 0),
+    (np.concatenate([CALM, np.tile([0.5, 0.502, 0.5, 0.8], 10)]), 19), (np.tile([0.5, 0.502, 0.5, 0.52], 10), None)])  # one large move of four
 def test_where_a_series_swings(values, start):
     found = swings.swings_from(values)
     assert (found is None) if start is None else abs(found - start) <= swings.WINDOW // 2

@@ -50,6 +50,18 @@ def by_slurm(spec: Path, out: Path, environment: dict) -> None:
     assert "NodeList=n1" in jobs and "NodeList=n2" in jobs
 
 
+def by_snakemake_on_slurm(spec: Path, out: Path, environment: dict) -> None:
+    """This Slurm has no accounting, so the state of a job is asked of squeue."""
+    if snakemake() is None:
+        pytest.skip("Snakemake is not installed (examples/cluster/snakemake.sh SPEC DIR SHARDS installs it)")
+    options = ["--executor", "slurm", "--jobs", 2, "--slurm-no-account", "--slurm-status-command", "squeue",
+               "--slurm-init-seconds-before-status-checks", 2, "--seconds-between-status-checks", 2]
+    called([TWO_NODES, out.parent / "slurm", CLUSTER / "snakemake.sh", spec, out, 2, *options], {**environment, "SNAKEMAKE": snakemake()})
+    assert (out / "table.csv").is_file()
+    jobs = (out.parent / "slurm/jobs.txt").read_text().splitlines()
+    assert len(jobs) == 2 and all("JobState=COMPLETED" in job for job in jobs)
+
+
 def table(out: Path) -> pd.DataFrame:
     file = out.parent / f"{out.name}.csv"
     done = subprocess.run([sys.executable, ROOT / "analysis", "collect", out, file], capture_output=True, text=True, check=False)
@@ -58,7 +70,7 @@ def table(out: Path) -> pd.DataFrame:
     return found[[name for name in found.columns if not name.endswith(OF_THE_RUN) and not name.startswith("provenance_env_")]]  # Snakemake sets OMP_NUM_THREADS
 
 
-@pytest.mark.parametrize("engine", [by_parallel, by_snakemake, by_slurm], ids=lambda engine: engine.__name__[3:])
+@pytest.mark.parametrize("engine", [by_parallel, by_snakemake, by_slurm, by_snakemake_on_slurm], ids=lambda engine: engine.__name__[3:])
 def test_every_engine_collects_the_table_of_one_process(program, tmp_path, engine):
     spec = write_sweep(tmp_path, STEPS, SHAPES, settings={"/time/dt_s": 0.01})
     front = tmp_path / "bench"

@@ -79,6 +79,10 @@ NodeName=n2 NodeHostname=$host NodeAddr=127.0.0.1 Port=$two CPUs=1 RealMemory=40
 PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
 CONF
 export SLURM_CONF="$dir/slurm.conf"
+# Jobs of Snakemake's executor call srun without this variable. On a cluster the configuration lies in /etc; here srun is told.
+mkdir -p "$dir/bin"
+printf '#!/bin/sh\nSLURM_CONF="%s" exec "%s" "$@"\n' "$SLURM_CONF" "$(command -v srun)" > "$dir/bin/srun" && chmod 755 "$dir/bin/srun"
+PATH="$dir/bin:$PATH"
 
 slurmctld -D -i > "$dir/slurmctld.out" 2>&1 &
 started+=($!)
