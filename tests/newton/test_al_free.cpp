@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/archive/archive.hpp"
 #include "core/contact/motion_pairs.hpp"
 #include "core/contact/step_bound.hpp"
 #include "core/math/error.hpp"
@@ -190,7 +191,9 @@ TEST(MotionPairs, their_earliest_is_the_step_bound_and_gaps_are_linear_to_first_
   Positions to = scene.x0;
   for (Eigen::Index i = 0; i < to.cols(); ++i) {
     const double at = static_cast<double>(i);
-    to.col(i) += Vec3d(2e-3 * std::sin(3 * at), 2e-3 * std::cos(5 * at), -0.02 + 4e-3 * std::sin(7 * at));
+    to.col(i) +=
+        Vec3d(2e-3 * std::sin(3 * at), 2e-3 * std::cos(5 * at),
+              (scene.body[static_cast<std::size_t>(i)] == 0 ? -0.03 : -0.006) + 1e-3 * std::sin(7 * at));
   }
   const std::vector<MotionHit>& hits = pairs.hits(scene.x0, to);
   system.update_candidates(scene.x0, to);
@@ -199,10 +202,11 @@ TEST(MotionPairs, their_earliest_is_the_step_bound_and_gaps_are_linear_to_first_
   EXPECT_EQ(pairs.earliest().alpha, bound.alpha);
   EXPECT_EQ(pairs.earliest().key, bound.key);
   EXPECT_LT(bound.alpha, 1);
-  int compared = 0;
+  int compared = 0, of_list[7] = {};
   for (const MotionHit& hit : hits) {
     const LinearGap gap = pairs.gap(hit.pair, scene.x0);
     EXPECT_GT(gap.d, 0);
+    ++of_list[pair_list(hit.pair)];
     const double step = 1e-6;
     const Positions moved = scene.x0 + step * (to - scene.x0) / (to - scene.x0).norm();
     double opening = 0, of_all = 0;
@@ -217,6 +221,28 @@ TEST(MotionPairs, their_earliest_is_the_step_bound_and_gaps_are_linear_to_first_
     compared += opening != 0;
   }
   EXPECT_GT(compared, 30);
+  EXPECT_GT(of_list[static_cast<int>(PairKind::point_triangle)], 5);
+  EXPECT_GT(of_list[static_cast<int>(PairKind::edge_edge)], 5);
+  EXPECT_GT(of_list[obstacle_pairs], 5);
+}
+
+/// Constraints, their multipliers and how long they have been quiet go on from an archive.
+TEST(AlFree, goes_on_from_an_archive_bit_for_bit) {
+  const Scene scene = cloth_on(true, 4);
+  Method method = method_of(0), same = method_of(0);
+  Simulation whole(scene, method, 0.01, 8), later(scene, same, 0.01, 8);
+  StepObserver none;
+  for (int i = 0; i < 5; ++i) whole.step(none);
+  Archive memory;
+  whole.keep(memory);
+  Archive again(memory.bytes());
+  later.keep(again);
+  for (int i = 5; i < 8; ++i) {
+    const StepReport one = whole.step(none), other = later.step(none);
+    EXPECT_GT(one.solver.values.at("al_free_force_N"), 0);
+    EXPECT_EQ(one.solver.values, other.solver.values) << i;
+  }
+  EXPECT_EQ(whole.history().x, later.history().x);
 }
 
 TEST(AlFree, refuses_what_it_cannot_step) {
