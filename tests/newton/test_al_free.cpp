@@ -138,6 +138,8 @@ Scene cloth_on(bool floor, int n) {
   SceneBuilder builder("cloth", false, Vec3d(0, 0, -10), "test");
   BodySpec top = test::cloth_spec(n, 0.012, d_hat), below = test::cloth_spec(n - 1, 0.004, d_hat);
   below.name = "below";
+  const Mat3d turn = Eigen::AngleAxisd(0.3, Vec3d::UnitZ()).toRotationMatrix();  // no edges in parallel
+  below.mesh.vertices = turn * below.mesh.vertices;
   top.velocity = Vec3d(0, 0, -3);
   builder.add_body(top);
   builder.add_body(below);
