@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..figures.kappa_cycle import SETTLED, UNSETTLED_ITERATIONS
 from ..record_file import read_trace
+from .locking import bound_share
 from .success import FAILURES, RESIDUAL, TIME, residual_max, time_asked
 
 
@@ -78,6 +79,11 @@ def _kappa_cycles(record) -> float | None:
     return float(sum(longest_run(changes) >= UNSETTLED_ITERATIONS for changes in steps.values())) if steps else None
 
 
+def _bound_share(record) -> float | None:
+    """Counted in the trace beside the record (FOLDER); None without a trace."""
+    return bound_share(record, FOLDER)
+
+
 def _stopped(record) -> float:
     """1 when the run did not come to its end, or went through a surface."""
     return float(record["status"]["outcome"] not in ("ok", "unproven"))
@@ -112,6 +118,7 @@ METRICS = {
     "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
     "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),
     "kappa_cycles": ("steps in which a contact's kappa changes by more than 1% in ten iterations in a row", "1", False, _kappa_cycles),
+    "bound_share": ("share of iterations whose motion contact stops", "1", False, _bound_share),
     "stopped": ("1 when a step failed or a surface was crossed", "1", False, _stopped),
     "unsettled": ("1 when a stiffness did not settle", "1", False, _unsettled),
     TIME: ("simulated time that a run was asked for", "s", False, time_asked),

@@ -3,6 +3,8 @@
 #include "core/math/error.hpp"
 #include "core/newton/host_potential.hpp"
 #include "core/newton/newton_state.hpp"
+#include "core/terms/contact.hpp"
+#include "core/terms/linear_contact.hpp"
 
 namespace bb {
 namespace {
@@ -63,6 +65,14 @@ const std::vector<const ConstraintBatch*>& ConstraintSystem::find(const Position
                                   potential_.clock()};
   for (const auto& term : potential_.terms_) term->add_constraints(request, found_);
   return found_;
+}
+
+ContactTerm* ConstraintSystem::contact() { return potential_.terms_.find<ContactTerm>(); }
+LinearContact* ConstraintSystem::linear_contact() { return potential_.terms_.find<LinearContact>(); }
+
+double ConstraintSystem::stiffest() const {
+  potential_.sum_clamped(TermSet::all().without(TermGroup::contact));
+  return potential_.blocks_->reduce(potential_.blocks_->values()).lower.diagonal().maxCoeff();
 }
 
 }  // namespace bb

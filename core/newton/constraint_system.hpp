@@ -9,7 +9,9 @@
 
 namespace bb {
 
+class ContactTerm;
 class HostPotential;
+class LinearContact;
 struct Method;
 struct NewtonState;
 
@@ -33,6 +35,12 @@ class ConstraintSystem {
   /// All constraints at x [3 x n] m in the order of the terms, always as many batches; those that come and go are found anew.
   /// They are valid until the next call.
   const std::vector<const ConstraintBatch*>& find(const Positions& x, Inequalities inequalities);
+
+  /// The contact term whose multipliers a step solver updates, with a barrier and without; null where nothing can touch.
+  ContactTerm* contact();
+  LinearContact* linear_contact();
+  /// Largest diagonal entry of the matrix of an assembled iterate without contact, N/m. Cost: an assembly.
+  double stiffest() const;
 
  private:
   HostPotential& potential_;

@@ -35,7 +35,8 @@ class LineSearch final : public StepSolver {
         armijo_(number(options.parameters, "armijo")),
         cap_fraction_(rules.cap_fraction),
         bounded_(rules.bounded),
-        renewals_(rules.renewals) {}
+        renewals_(rules.renewals),
+        after_motion_(rules.after_motion) {}
   std::string_view name() const override { return options_.name; }
 
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
@@ -69,6 +70,11 @@ class LineSearch final : public StepSolver {
       error_.took(report.detours > 0 || truncated_ ? 0 : report.alpha);  // the direction itself was not taken
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
+      if (moved && after_motion_ && after_motion_(system)) {
+        collapsed = 0;
+        if (iteration + 1 < options_.max_iterations) error_.reset();
+        continue;
+      }
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
       const bool enough = (report.alpha == 1 && !truncated_) || report.dx_inf_m < tolerance;
       // Of a body at rest without a force, E is rounding and so is the direction.
@@ -271,6 +277,7 @@ class LineSearch final : public StepSolver {
   double armijo_, cap_fraction_;
   bool bounded_;
   double* renewals_;
+  std::function<bool(StepSystem&)> after_motion_;
   double bound_ = 1;    // of the step taken last
   bool noise_ = false;  // its change of E is
   double share_ = 1;    // of the fall that dx promises, in the motion that is tried

@@ -1,6 +1,7 @@
 // Newton with a line search on E, for step solvers that differ in what bounds its motions.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "core/newton/step_solver.hpp"
@@ -11,6 +12,8 @@ struct LineSearchRules {
   double cap_fraction = 1;     // of a bound that binds, in (0, 1]; not read without a bound
   bool bounded = true;         // by ACCD and the strain limit; false: trials are judged as states alone
   double* renewals = nullptr;  // gets how often terms renewed what they lag, step by step
+  /// After a motion that was accepted: whether E is another one now, so that the step goes on from there.
+  std::function<bool(StepSystem&)> after_motion = {};
 };
 
 /// options: with `armijo`. Its steps say two counters, `feasibility_trials` and `truncations`.

@@ -5,6 +5,7 @@
 #include "core/contact/contact_loads.hpp"
 #include "core/contact/pair_name.hpp"
 #include "core/math/error.hpp"
+#include "core/terms/linear_contact.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
@@ -37,6 +38,7 @@ ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const Contact
   families_.resize(2);
   if (options.stiffness->has_potential()) folded_.emplace(options.contact);
   if (options.multipliers) multipliers_.emplace(*options.multipliers);
+  if (options.barrier_multipliers) beside_.emplace(*options.barrier_multipliers);
   use_state();
 }
 
@@ -64,6 +66,7 @@ void ContactTerm::use_state() {
 void ContactTerm::begin_step(const StepFrame& frame, PhaseClock& clock) {
   stiffness_.begin_step();
   if (multipliers_) multipliers_->begin_step();
+  if (beside_) beside_->begin_step();
   change_frame(frame);
   first_iterate_ = true;
   {
@@ -97,9 +100,13 @@ void ContactTerm::linearise(const PositionsView& x, const TermContext& context) 
 void ContactTerm::fill_shape(ContactState& state) {
   const auto fill = [this](auto& rows) {
     if (multipliers_) return multipliers_->fill(rows);
-    if (folded_) return fill_folded(*folded_, rows);
-    options_.contact.eval(rows.size(), rows.d.data(), rows.d_hat.data(), rows.b.data(), rows.db.data(),
-                          rows.d2b.data());
+    if (folded_) {
+      fill_folded(*folded_, rows);
+    } else {
+      options_.contact.eval(rows.size(), rows.d.data(), rows.d_hat.data(), rows.b.data(), rows.db.data(),
+                            rows.d2b.data());
+    }
+    if (beside_) beside_->add(rows);
   };
   fill(state.rows);
   fill(state.mollified);
@@ -119,6 +126,12 @@ void ContactTerm::scale_multipliers() {
 
 bool ContactTerm::renew_lag(const PositionsView&) {
   return multipliers_ && multipliers_->update(state_.rows, state_.mollified);
+}
+
+// The rows of a state that was tried without energies have none of their shape.
+bool ContactTerm::update_beside() {
+  fill_shape(state_);
+  return beside_->update(state_.rows, state_.mollified);
 }
 
 // Gradients and Hessians of the current rows, from the kappa that they have.
@@ -235,8 +248,9 @@ void ContactTerm::add_constraints(const ConstraintRequest& request,
 
 const ContactState& contact_state(const TermList& terms) {
   static const ContactState none;
-  const ContactTerm* term = terms.find<ContactTerm>();
-  return term ? term->state() : none;
+  if (const ContactTerm* term = terms.find<ContactTerm>()) return term->state();
+  const LinearContact* linear = terms.find<LinearContact>();
+  return linear ? linear->state() : none;
 }
 
 PlanItem needs_contact(const TermNeeds& needs) {
@@ -244,6 +258,9 @@ PlanItem needs_contact(const TermNeeds& needs) {
 }
 
 void make_contact(const TermInputs& inputs, TermList& terms) {
+  if (inputs.options.linear_contact) {
+    return terms.add(std::make_unique<LinearContact>(inputs.scene, inputs.options, inputs.contacts));
+  }
   terms.add(
       std::make_unique<ContactTerm>(inputs.scene, inputs.options, inputs.contacts, inputs.fixed, terms));
 }

@@ -59,7 +59,9 @@ class ContactTerm final : public Term {
   void end_step(const PositionsView& x, PhaseClock& clock) override;
   void adopt(const KnownStep& known) override { adopt_stiffness(known.stiffness); }
   void adopt_from(const Term& other) override {
-    adopt_stiffness(static_cast<const ContactTerm&>(other).stiffness_.known());
+    const auto& of = static_cast<const ContactTerm&>(other);
+    adopt_stiffness(of.stiffness_.known());
+    if (beside_) beside_->adopt(*of.beside_);
   }
   void keep(Archive& archive) override;
   void linearise(const PositionsView& x, const TermContext& context) override;
@@ -88,6 +90,10 @@ class ContactTerm final : public Term {
   const ContactState& state() const { return state_; }
   const ContactSystem& contacts() const { return contacts_; }
   StiffnessUpdate& stiffness() { return stiffness_; }
+  /// The iterate was accepted: updates the multipliers beside the barrier (barrier_multipliers.hpp). Whether E has changed,
+  /// so that the iterate has to be linearised again. Requires options with barrier_multipliers.
+  bool update_beside();
+  const BarrierMultiplierCounts& beside() const { return beside_->counts(); }
 
  private:
   void adopt_stiffness(const KnownStiffness& known) {
@@ -112,6 +118,7 @@ class ContactTerm final : public Term {
   StiffnessUpdate stiffness_;
   std::optional<FoldedBarrier> folded_;  // where the policy has a potential
   std::optional<ContactMultipliers> multipliers_;
+  std::optional<BarrierMultipliers> beside_;  // the barrier
   ContactState state_, trial_;
   ContactState constrained_;  // rows that add_constraints() found last
   ContactConstraints constraints_;
@@ -123,6 +130,10 @@ class ContactTerm final : public Term {
   std::vector<PairGap> gaps_, previous_gaps_;  // by pair
   std::vector<StiffnessPolicy::PairEnd> pair_ends_;
 };
+
+/// What is said of rows that have kappa, b and its derivatives, where there are some.
+void report_rows(const ContactState& state, IterateNumbers& out);
+void report_rows(const ContactState& state, Precision precision, const PositionsView& x, StepNumbers& out);
 
 /// The rows among these terms; empty tables where the plan has no contact.
 const ContactState& contact_state(const TermList& terms);

@@ -98,30 +98,38 @@ void fill(const RowNumbers& rows, Numbers& out) {
 
 void ContactTerm::report(const PositionsView&, IterateNumbers& out, PhaseClock&) {
   out.kappa_change_rel = kappa_change_;
-  out.contacts = count_contacts(state_);
+  report_rows(state_, out);
+}
+
+void report_rows(const ContactState& state, IterateNumbers& out) {
+  out.contacts = count_contacts(state);
   if (out.contacts.total() == 0) return;
-  const RowNumbers rows = measure(state_);
+  const RowNumbers rows = measure(state);
   fill(rows, out);
-  out.gap_min_iterates_m = state_.gap_min;
+  out.gap_min_iterates_m = state.gap_min;
   out.gap_min_iterates_rel = rows.gap_min_rel;
   out.contact_curvature_max_N_per_m = rows.curvature_max;
 }
 
 void ContactTerm::report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) {
-  out.contacts = count_contacts(state_);
+  report_rows(state_, options_.precision, x, out);
+}
+
+void report_rows(const ContactState& state, Precision precision, const PositionsView& x, StepNumbers& out) {
+  out.contacts = count_contacts(state);
   if (out.contacts.total() == 0) return;
-  const RowNumbers rows = measure(state_);
+  const RowNumbers rows = measure(state);
   fill(rows, out);
   out.contact_load_sum_N = rows.load_sum;
-  list_loads(state_.rows, out.contact_loads);
-  out.gap_min_m = state_.gap_min;
+  list_loads(state.rows, out.contact_loads);
+  out.gap_min_m = state.gap_min;
   out.gap_min_rel = rows.gap_min_rel;
   const double largest = x.cwiseAbs().maxCoeff();
-  const double ulp = with_value_scalar(options_.precision, [&]<class T>() -> double {
+  const double ulp = with_value_scalar(precision, [&]<class T>() -> double {
     const T at = static_cast<T>(largest);
     return std::nextafter(at, 2 * at) - at;
   });
-  out.gap_min_ulps = state_.gap_min / ulp;
+  out.gap_min_ulps = state.gap_min / ulp;
 }
 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and

@@ -8,7 +8,7 @@ struct StepNeeds {
   bool energies = true;      // changes of E at trials; false: feasibility alone judges them
   bool minimum = true;       // steps end in a minimum of E: exact Hessians, and that one is looked at
   bool step_bound = true;    // false: steps may pass through surfaces, barriers are read beyond their end
-  bool multipliers = false;  // contact has multipliers in the place of its barrier
+  bool multipliers = false;  // contact has multipliers in the place of its barrier or beside it: on the host
   bool overlap =
       false;  // without a step bound: states beyond contact are as good as others, a bounded shape goes on there
 };

@@ -12,6 +12,7 @@
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/math/precision.hpp"
+#include "core/terms/barrier_multipliers.hpp"
 #include "core/terms/contact_multipliers.hpp"
 
 namespace bb {
@@ -24,11 +25,24 @@ struct FrictionOptions {
   double eps_v = 1e-3;     // m/s, sliding speed from which the force is whole
 };
 
+/// Contact without a barrier (core/terms/linear_contact.hpp).
+struct LinearContactRules {
+  double standoff = 0.1;       // d_hat of the pair, gap that constraints ask for
+  double penalty = 0;          // N/m; 0: set_penalty()
+  double decay = 0.9;          // of the weight of a constraint that is not active, an update
+  double least_weight = 0.01;  // below which it goes
+  double advance = 0.9;        // part of the way to the first contact that is gone
+  double stall_time = 1e-4;    // smaller advances count as none
+  int stall_updates = 50;      // that many of them in a row double the penalty and halve the standoff
+};
+
 struct TermOptions {
   BarrierFunction contact;
   bool overlap =
       false;  // states with d <= 0 are feasible; contact goes on there by the formula of its bounded shape
-  std::optional<MultiplierRules> multipliers;  // of contact, in the place of its barrier
+  std::optional<MultiplierRules> multipliers;                 // of contact, in the place of its barrier
+  std::optional<BarrierMultiplierRules> barrier_multipliers;  // of contact, beside its barrier
+  std::optional<LinearContactRules> linear_contact;           // in the place of all of contact
   std::unique_ptr<StiffnessPolicy> stiffness;
   Precision precision = Precision::full;  // of all terms; contact and limit have in_float set accordingly
   HessianMode hessian_mode = HessianMode::gauss_newton;

@@ -68,7 +68,7 @@ void check_device(const RunConfig& config, const Complain& complain) {
     complain("/contact/hessian_mode", '"' + word_of(config.contact.hessian_mode) + '"',
              "gauss_newton or projected_full " + on);
   }
-  if (!needs_of(config).step_bound) {
+  if (!needs_of(config).step_bound || needs_of(config).multipliers) {
     complain("/step_solver/name", '"' + config.step_solver.name + '"', "another step solver " + on);
   }
   const LinearSolverEntry* solver = find_named(linear_solvers(), config.linear_solver.name);

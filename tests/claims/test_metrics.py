@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.claims.metrics import METRICS
+from analysis.claims.metrics import FOLDER, METRICS
 
 MATRICES = ("full/none", "full/block_jacobi", "without_contact/none", "without_contact_and_limit/none", "without_limit/none")
 
@@ -18,7 +18,7 @@ def record() -> dict:
 
 WANTED = {"cond_max": 1e9, "cond_p95": 1e5, "cond_median": 10.0, "cond_bj_p95": 10**5.125, "cond_bj_max": 10**9.25, "cond_bj_median": 100.0, "cond_no_contact_p95": 10**5.25,
           "cond_no_contact_no_limit_p95": 10**5.375, "pcg_probe": 37.0, "pcg_solve": 43.0, "newton": 20.0, "factorizations": 23.0, "seconds": 29.0, "contact_seconds": 0.35,
-          "gap_min": 0.11, "gap_median": 0.13, "gap_end": 0.17, "stretch": 0.04, "stretch_of_limit": 0.5, "climb_of_limit": None, "kappa_cycles": None, "stopped": 0.0,
+          "gap_min": 0.11, "gap_median": 0.13, "gap_end": 0.17, "stretch": 0.04, "stretch_of_limit": 0.5, "climb_of_limit": None, "kappa_cycles": None, "bound_share": None, "stopped": 0.0,
           "unsettled": 0.0, "time_asked": 3.0, "residual_max": None, "short_of_time": 1.0, "without_residual": 1.0, "close_gap": 0.0, "failed_audit": 1.0, "not_valid": 0.0}
 
 
@@ -26,6 +26,18 @@ def test_every_metric_has_its_number():
     assert set(WANTED) == set(METRICS)
     found = {name: metric[3](record()) for name, metric in METRICS.items()}
     assert found == {name: None if value is None else pytest.approx(value) for name, value in WANTED.items()}
+
+
+def test_a_bound_counts_where_contact_stops_an_iteration(monkeypatch):
+    lines = [{"alpha_ccd": 1.0}, {"alpha_ccd": 0.25}, {"alpha_ccd": 1e-6}, {"alpha_ccd": 1.0}, {"alpha_ccd": None}]
+    monkeypatch.setattr("analysis.claims.locking.read_trace", lambda record, folder: iter(lines))
+    read = METRICS["bound_share"][3]
+    assert read(record()) is None  # no folder, no trace
+    assert read(record() | {FOLDER: "somewhere"}) == 0.5
+    lines[1:3] = []
+    assert read(record() | {FOLDER: "somewhere"}) == 0.0
+    lines.clear()
+    assert read(record() | {FOLDER: "somewhere"}) is None
 
 
 @pytest.mark.parametrize("missing", ["onset", "width", "max_stretch"])
