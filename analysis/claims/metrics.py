@@ -54,6 +54,11 @@ def _gap_end(record) -> float | None:
     return _at(steps[-1], "gap_min_rel")
 
 
+def _load_end(record) -> float | None:
+    steps = record.get("steps") or [{}]
+    return _at(steps[-1], "contact_load_sum_N")
+
+
 def _unsettled(record) -> float:
     """1 when the run ended because a stiffness did not settle."""
     status = record["status"]
@@ -114,6 +119,7 @@ METRICS = {
     "gap_min": ("smallest gap at a step end", "d_hat", False, _summary("gap_min_rel", "min")),
     "gap_median": ("median over the steps of the smallest gap at a step end", "d_hat", False, _summary("gap_min_rel", "median")),
     "gap_end": ("smallest gap at the end of the last step", "d_hat", False, _gap_end),
+    "load_end": ("sum of the contact forces at the end of the last step", "N", False, _load_end),
     "stretch": ("largest stretch", "1", False, _summary("max_stretch")),
     "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
     "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),

@@ -56,4 +56,12 @@ std::string bad_diagonal_text(const ReducedSystem& system, int dof) {
   return "the diagonal block of " + vertex_text(system, dof) + " is 0 or singular; ";
 }
 
+std::string zero_diagonal_text(const ReducedSystem& system) {
+  for (int i = 0; i < system.lower.rows(); ++i) {
+    const Eigen::SparseMatrix<double>::InnerIterator first(system.lower, i);
+    if (!first || first.row() != i || first.value() == 0) return bad_diagonal_text(system, i);
+  }
+  return {};
+}
+
 }  // namespace bb

@@ -20,5 +20,7 @@ std::string vertex_text(const ReducedSystem& system, int dof);
 /// "the diagonal block of vertex 17 is 0 or singular; ", of a block row where the system knows no vertices.
 /// dof: a degree of freedom of it.
 std::string bad_diagonal_text(const ReducedSystem& system, int dof);
+/// That text of the first degree of freedom whose entry on the diagonal is 0 or missing; empty without one.
+std::string zero_diagonal_text(const ReducedSystem& system);
 
 }  // namespace bb

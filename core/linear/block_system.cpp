@@ -108,6 +108,8 @@ void BlockSystem::keep(Archive& archive) {
   set_contacts(families);
 }
 
+void BlockSystem::set_mesh(const PositionsView& x) { data_->reduction.set_mesh(data_->element_pattern, x); }
+
 void BlockSystem::clear() {
   Values& values = data_->values;
   parallel_blocks(values.size(), [&](std::size_t, std::size_t begin, std::size_t end) {

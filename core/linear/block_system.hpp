@@ -22,6 +22,13 @@ struct Stencils {
   std::size_t size() const { return width == 0 ? 0 : vertices.size() / static_cast<std::size_t>(width); }
 };
 
+/// What is known of the blocks of a reduced system beside its matrix; an empty list: not known.
+struct BlockMesh {
+  std::vector<Vec3d> point;     // [n_blocks] m, where their vertices start
+  std::vector<int> row_start;   // [n_blocks + 1] into neighbour
+  std::vector<int> neighbour;   // the blocks that an element joins with a block, ascending, without itself
+};
+
 /// What a linear solver and a condition estimator see: lower triangle, free degrees of freedom only.
 struct ReducedSystem {
   Eigen::SparseMatrix<double> lower;  // [n x n] column-major, lower triangle with diagonal
@@ -29,6 +36,7 @@ struct ReducedSystem {
   std::vector<int> block_vertex;  // [n_blocks] vertex of each, for messages; empty: the number of the block
   std::uint64_t pattern_id =
       0;  // a hash of the pattern of lower: changes exactly with it; 0 = unknown, never reused
+  std::shared_ptr<const BlockMesh> mesh;  // null where no solver asked for it (LinearSolver::wants_mesh)
 };
 
 class BlockSystem {
@@ -39,6 +47,8 @@ class BlockSystem {
 
   /// Families that never change (elements). Called once.
   void set_elements(std::vector<Stencils> families);
+  /// Makes the mesh of the reduced systems, of these elements: x [3 x n_vertices] m, where vertices start. Cost: O(blocks).
+  void set_mesh(const PositionsView& x);
   /// Families of this iterate (contacts). Returns true when the block pattern changed: values() is then zero,
   /// of another length, and copies of it are void. Same stencils cost one comparison. A contact stencil whose
   /// blocks all exist already does not change the pattern (pattern_id stays); blocks of no stencil

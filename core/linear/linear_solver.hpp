@@ -63,6 +63,8 @@ class LinearSolver {
   virtual std::string_view name() const = 0;
   /// A step begins: what earlier right-hand sides say of the tolerance no longer holds.
   virtual void begin_step() {}
+  /// Whether it reads ReducedSystem::mesh where there is one.
+  virtual bool wants_mesh() const { return false; }
   /// What earlier solves decide of later ones: clusters, the matrix that an earlier factor is of, the pattern that was
   /// analysed. A solver that read it goes on as the one that wrote it, bit for bit. Cost: at most a copy of a matrix.
   virtual void keep(Archive&) {}

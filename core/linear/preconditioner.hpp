@@ -17,6 +17,8 @@ class Preconditioner {
   virtual LinearStatus setup(const ReducedSystem& system, const SymmetricProduct& rows) = 0;
   /// z = M^-1 r; z is resized. Deterministic for any thread count.
   virtual void apply(const VecXd& r, VecXd& z) const = 0;
+  /// Whether setup() reads ReducedSystem::mesh where there is one.
+  virtual bool wants_mesh() const { return false; }
   /// What earlier matrices decide of M for later ones.
   virtual void keep(Archive&) {}
   /// What about the matrix made setup() fail, where that is known.

@@ -87,6 +87,29 @@ void Reduction::build(const BlockPattern& pattern) {
   system_.pattern_id = hash == 0 ? 1 : hash;  // 0 is kept for "unknown"
 }
 
+void Reduction::set_mesh(const BlockPattern& elements, const PositionsView& x) {
+  const std::vector<int>& vertices = system_.block_vertex;
+  std::vector<int> block_of(at(elements.n_vertices()), -1);
+  for (std::size_t b = 0; b < vertices.size(); ++b) block_of[at(vertices[b])] = static_cast<int>(b);
+  std::vector<std::vector<int>> joined(vertices.size());
+  for (int v = 0; v < elements.n_vertices(); ++v) {
+    for (int k = elements.column_start[at(v)] + 1; k < elements.column_start[at(v) + 1]; ++k) {
+      const int a = block_of[at(v)], b = block_of[at(elements.row[at(k)])];
+      if (a < 0 || b < 0) continue;
+      joined[at(a)].push_back(b);
+      joined[at(b)].push_back(a);  // ascending: columns come in order, and rows below their column
+    }
+  }
+  auto mesh = std::make_shared<BlockMesh>();
+  mesh->row_start.push_back(0);
+  for (std::size_t b = 0; b < vertices.size(); ++b) {
+    mesh->point.push_back(x.col(vertices[b]));
+    mesh->neighbour.insert(mesh->neighbour.end(), joined[b].begin(), joined[b].end());
+    mesh->row_start.push_back(static_cast<int>(mesh->neighbour.size()));
+  }
+  system_.mesh = std::move(mesh);
+}
+
 const ReducedSystem& Reduction::fill(const std::vector<double>& values) {
   double* out = system_.lower.valuePtr();
   parallel_items(static_cast<int>(map_.size()), 16384, [&](int k) { out[k] = values[at(map_[at(k)])]; });

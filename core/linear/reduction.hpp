@@ -21,6 +21,9 @@ class Reduction {
   /// Copies block values into the scalar matrix. Cost: O(nonzeros), no allocation.
   const ReducedSystem& fill(const std::vector<double>& values);
 
+  /// The mesh of the systems to come: start positions, and the blocks of `elements` between free vertices.
+  void set_mesh(const BlockPattern& elements, const PositionsView& x);
+
   int n_free() const { return static_cast<int>(free_.size()); }
   const ReducedSystem& system() const { return system_; }
   void restrict_vector(const PositionsView& full, VecXd& reduced) const;

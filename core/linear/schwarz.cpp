@@ -30,7 +30,6 @@ class Schwarz final : public Preconditioner {
  private:
   void build(const ReducedSystem& system, const SymmetricProduct& rows);
   void build_coarse(const ReducedSystem& system, const SymmetricProduct& rows);
-  bool zero_diagonal(const ReducedSystem& system);
   bool factorize_cluster(const SymmetricProduct& rows, int cluster);
   void fill_coarse(const SymmetricProduct& rows);
   int n_local(int cluster) const { return first_[at(cluster) + 1] - first_[at(cluster)]; }
@@ -124,17 +123,6 @@ void Schwarz::build_coarse(const ReducedSystem& system, const SymmetricProduct& 
   }
 }
 
-bool Schwarz::zero_diagonal(const ReducedSystem& system) {
-  detail_.clear();
-  for (int i = 0; i < system.lower.rows() && detail_.empty(); ++i) {
-    const Eigen::SparseMatrix<double>::InnerIterator first(system.lower, i);
-    if (!first || first.row() != i || first.value() == 0) {
-      detail_ = bad_diagonal_text(system, i) + "schwarz needs positive definite ones";
-    }
-  }
-  return !detail_.empty();
-}
-
 bool Schwarz::factorize_cluster(const SymmetricProduct& rows, int cluster) {
   const int n = n_local(cluster);
   Dense a(local_.data() + offset_[at(cluster)], n, n);
@@ -165,7 +153,11 @@ void Schwarz::fill_coarse(const SymmetricProduct& rows) {
 }
 
 LinearStatus Schwarz::setup(const ReducedSystem& system, const SymmetricProduct& rows) {
-  if (zero_diagonal(system)) return LinearStatus::preconditioner_indefinite;
+  detail_ = zero_diagonal_text(system);
+  if (!detail_.empty()) {
+    detail_ += "schwarz needs positive definite ones";
+    return LinearStatus::preconditioner_indefinite;
+  }
   const bool known = key_.same_as_last(system);
   if (!known) clusters_ = cluster_vertices(rows, cluster_vertices_);
   if (!known || !built_) build(system, rows);

@@ -43,6 +43,7 @@ void HostPotential::set_fixed_families(const Method& method) {
     for (const TermFamily& family : term->families()) families.push_back(family.stencils);
   }
   blocks_->set_elements(families);
+  if (solver_ && solver_->wants_mesh()) blocks_->set_mesh(scene_.x0);
   std::stable_partition(matrix_order_.begin(), matrix_order_.end(),
                         [this](std::size_t i) { return slots_[i].term->group() == TermGroup::elastic; });
 }

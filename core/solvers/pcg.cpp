@@ -18,6 +18,7 @@ class Pcg final : public LinearSolver {
         preconditioner_(make_preconditioner(text(parameters, "preconditioner"), parameters)) {}
   std::string_view name() const override { return "pcg"; }
   void begin_step() override { forcing_.begin_step(); }
+  bool wants_mesh() const override { return preconditioner_->wants_mesh(); }
   void keep(Archive& archive) override { preconditioner_->keep(archive); }
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
   Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {

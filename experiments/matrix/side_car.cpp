@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -232,6 +233,9 @@ class Reader {
       stored_.coordinates.emplace_back(point[0].get<double>(), point[1].get<double>(),
                                        point[2].get<double>());
     }
+    auto mesh = std::make_shared<BlockMesh>();
+    mesh->point = stored_.coordinates;
+    stored_.system.mesh = std::move(mesh);
   }
 
   void read_rhs() {
