@@ -36,8 +36,8 @@ Eigen::MatrixXd inverse_of(const ReducedSystem& system, const std::string& block
 }
 
 /// The connected components of A within blocks, by block and first member: the dense twin of a level.
-std::vector<int> components(const Eigen::MatrixXd& a, const std::vector<int>& node_of_dof, const VertexClusters& blocks,
-                            int& n_found) {
+std::vector<int> components(const Eigen::MatrixXd& a, const std::vector<int>& node_of_dof,
+                            const VertexClusters& blocks, int& n_found) {
   const int n = static_cast<int>(blocks.of.size());
   Eigen::MatrixXi joined = Eigen::MatrixXi::Zero(n, n);
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
@@ -204,7 +204,8 @@ LinearReport solve(const ReducedSystem& system, const ParameterMap& more, VecXd&
 TEST(Mas, SavesIterationsAndEndsAtTheSameSolution) {
   const ReducedSystem system = sheets(24, 10);
   VecXd truth, x;
-  const int jacobi = solve(system, {{"preconditioner", "block_jacobi"}, {"tol_rel", 1e-12}}, truth).iterations;
+  const int jacobi =
+      solve(system, {{"preconditioner", "block_jacobi"}, {"tol_rel", 1e-12}}, truth).iterations;
   EXPECT_GT(jacobi, 100);
   for (const std::string blocks : {"morton", "metis"}) {
     const LinearReport report =
