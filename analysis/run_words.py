@@ -1,4 +1,4 @@
-"""What legends, tables and captions say of a run: outcome, verdict on comparability, the rule of that verdict."""
+"""What legends, tables and captions say of a run: outcome, verdict on comparability and the rule of that."""
 
 from __future__ import annotations
 
