@@ -1,5 +1,6 @@
 // Settings that contradict each other across sections.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,6 +50,15 @@ void check_overlap(const RunConfig& config, const Complain& complain) {
   }
 }
 
+/// Step solvers whose steps end in a minimum of E: a list of names.
+std::string solvers_with_minimum() {
+  std::vector<std::string> names;
+  for (const StepSolverEntry& entry : step_solvers()) {
+    if (entry.needs.minimum) names.emplace_back(entry.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 void check_step_solver(const RunConfig& config, const Complain& complain) {
   const StepSolverConfig& solver = config.step_solver;
   const StepNeeds needs = needs_of(config);
@@ -69,11 +79,11 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   }
   if (solver.saddle == SaddleRule::escape && !needs.minimum) {
     complain("/step_solver/saddle", "\"escape\"",
-             "report or ignore: only line_search and penalty, which test energies, can leave a saddle");
+             "report or ignore: of step solvers only these can leave a saddle: " + solvers_with_minimum());
   }
   if (config.friction.lag_iterations > 1 && !needs.minimum) {
     complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
-             "1: only line_search and penalty solve a step again");
+             "1: of step solvers only these solve a step again: " + solvers_with_minimum());
   }
   if (needs.overlap) check_overlap(config, complain);
   const int min_newton_steps = integer(solver.parameters, "min_newton_steps");

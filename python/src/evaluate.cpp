@@ -2,12 +2,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
-#include <fstream>
-#include <iostream>
 #include <sstream>
 #include <tuple>
 
-#include "core/input/read_file.hpp"
 #include "experiments/eval/eval.hpp"
 #include "python/src/bindings.hpp"
 
@@ -27,10 +24,7 @@ void bind_evaluate(nb::module_& m) {
       "run_eval",
       [](const std::string& file) {
         const nb::gil_scoped_release unlocked;
-        if (file == "-") return run_eval(std::cin, std::cout, std::cerr);
-        require_regular_file(file, query_file);
-        std::ifstream in(file);
-        return run_eval(in, std::cout, std::cerr);
+        return run_eval(file);
       },
       nb::arg("file"), "The verb eval on a file, or - for the standard input; its exit code.");
   m.def("eval_schema", [] {
