@@ -75,13 +75,13 @@ int plan(const PlanVerb& verb, const CommonOptions& common) {
   }
   std::vector<RunSize> sizes;
   std::mutex of_sizes;
-  Sweep sweep = open_sweep(verb.sweep, common,
-                           [&](std::size_t i, const RunConfig& config, const std::string& scene) {
-                             RunSize size = size_of(config, scene);
-                             const std::lock_guard lock(of_sizes);
-                             if (sizes.size() <= i) sizes.resize(i + 1);
-                             sizes[i] = std::move(size);
-                           });
+  Sweep sweep =
+      open_sweep(verb.sweep, common, [&](std::size_t i, const RunConfig& config, const std::string& scene) {
+        RunSize size = size_of(config, scene);
+        const std::lock_guard lock(of_sizes);
+        if (sizes.size() <= i) sizes.resize(i + 1);
+        sizes[i] = std::move(size);
+      });
   measure(sweep, book, sizes);
   sweep.options.argv = common.argv;
   sweep.options.plugins = common.loaded;
@@ -94,8 +94,7 @@ int plan(const PlanVerb& verb, const CommonOptions& common) {
   for (const std::size_t i : sweep.chosen) {
     const SweepCase& one = sweep.spec.cases[i];
     std::error_code unreachable;
-    const bool has_record =
-        any_there && std::filesystem::exists(sweep.folder(i) / "run.json", unreachable);
+    const bool has_record = any_there && std::filesystem::exists(sweep.folder(i) / "run.json", unreachable);
     const bool done = has_record && why_to_run(sweep, i, resolved(sweep.spec, one)).empty();
     const ExpectedCost cost = book.expected(sizes[i]);
     const auto source = static_cast<std::size_t>(cost.source);

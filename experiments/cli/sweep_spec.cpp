@@ -38,7 +38,7 @@ void check_overrides(const SweepSpec& spec, const std::vector<std::string>& over
 /// What one case is: its id, or what is wrong with it.
 struct Resolved {
   std::string config_id;
-  std::string key;                     // that no other case may have: the number of threads belongs to it, and the repetition
+  std::string key;  // that no other case may have: the number of threads belongs to it, and the repetition
   std::optional<RunConfig> undecided;  // a config whose linear solver is `auto`
   std::optional<ConfigError> error;
 };

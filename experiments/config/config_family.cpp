@@ -109,7 +109,9 @@ bool ConfigFamily::read_sections(std::span<const std::string> overrides) {
     if (!read_section(rows[r], overrides_[r], overrides)) return false;
     anew.push_back(rows[r].name);
   }
-  const auto is_anew = [&](const char* name) { return std::find(anew.begin(), anew.end(), name) != anew.end(); };
+  const auto is_anew = [&](const char* name) {
+    return std::find(anew.begin(), anew.end(), name) != anew.end();
+  };
 
   std::vector<Violation> violations;
   const Reader reader{path_, violations};

@@ -54,15 +54,16 @@ class ConfigFamily {
   std::string method_;       // overrides of the method that base_ was made with
   nlohmann::json base_;      // the document under all other overrides
   nlohmann::json document_;  // of the config that was read last
-  std::vector<std::string> overrides_;  // of each row of a config, those that it was read with, each ended by a zero byte
-  std::vector<std::string> given_;      // the same of the config that is being read
+  std::vector<std::string>
+      overrides_;  // of each row of a config, those that it was read with, each ended by a zero byte
+  std::vector<std::string> given_;  // the same of the config that is being read
   /// What sections were checked to, with presets and formulas expanded, by name and overrides; null: not given. Most sections of
   /// a sweep come again.
   std::unordered_map<std::string, nlohmann::json> checked_;
   const ProceduralScene* scene_ = nullptr;
-  RunConfig blank_;    // defaults and scene, before any other section is read
-  RunConfig read_;     // with every section, before they are settled
-  RunConfig config_;   // settled
+  RunConfig blank_;   // defaults and scene, before any other section is read
+  RunConfig read_;    // with every section, before they are settled
+  RunConfig config_;  // settled
   std::map<std::string, Written> texts_;
   RunConfig written_;  // what texts_ are of, but for the scene
   bool scene_is_written_ = false;

@@ -40,7 +40,9 @@ void for_each_section(const Visit& visit) {
 template <class T>
 bool same(const T& a, const T& b);
 
-#define SECTION(type, doc) inline bool same_members(const type& a, const type& b) { return true
+#define SECTION(type, doc)                                 \
+  inline bool same_members(const type& a, const type& b) { \
+    return true
 #define SETTING(type, member, name, rule, doc, ...) &&same(a.member, b.member)
 #define NEST(type, member, name, settings) &&same(a.member, b.member)
 #define OWN(...) &&same(a.parameters, b.parameters)

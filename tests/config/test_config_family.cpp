@@ -109,7 +109,8 @@ std::vector<Overrides> entries_of(const json& axis) {
         out[k].insert(out[k].end(), entries[k].begin(), entries[k].end());
     }
   } else {
-    const json values = axis.contains("range") ? json{axis["range"]["from"], axis["range"]["to"]} : axis["values"];
+    const json values =
+        axis.contains("range") ? json{axis["range"]["from"], axis["range"]["to"]} : axis["values"];
     for (const json& value : values) out.push_back({axis["pointer"].get<std::string>() + "=" + value.dump()});
   }
   return out;
@@ -131,7 +132,8 @@ std::vector<Overrides> some_cases(const json& sweep, std::mt19937& random) {
     std::size_t index = k < most_of_a_sweep / 2 || all <= most_of_a_sweep ? k : random() % all;
     Overrides one = set_of(sweep.value("set", json::object()));
     std::vector<Overrides> parts(axes.size());
-    for (std::size_t a = axes.size(); a-- > 0; index /= axes[a].size()) parts[a] = axes[a][index % axes[a].size()];
+    for (std::size_t a = axes.size(); a-- > 0; index /= axes[a].size())
+      parts[a] = axes[a][index % axes[a].size()];
     for (const Overrides& part : parts) one.insert(one.end(), part.begin(), part.end());
     out.push_back(std::move(one));
   }
@@ -166,8 +168,8 @@ const std::vector<Overrides>& settings() {
        "/formulation/stiffness_policy/name=ipc_adaptive", "/formulation/stiffness_policy/nothing=1"},
       {"", "/time/dt_s=0.001", "/time/dt_s=0.02", "/time/duration_s=0.1", "/time/dt_s=0"},
       {"", "/time/steps=3", "/time/steps=7"},
-      {"", "/step_solver/name=accumulated_toi", "/step_solver/name=penalty", "/step_solver/tol_velocity_m_per_s=1e-6",
-       "/step_solver/saddle=report"},
+      {"", "/step_solver/name=accumulated_toi", "/step_solver/name=penalty",
+       "/step_solver/tol_velocity_m_per_s=1e-6", "/step_solver/saddle=report"},
       {"", "/integrator/name=bdf2", "/integrator/name=quasi_static"},
       {"", "/strain_limit/limit=0.1", "/strain_limit/enabled=false", "/strain_limit/shape=cubic"},
       {"", "/matching/rule=equal_curvature", "/matching/theta=0.5", "/matching/rule=as_given"},
