@@ -113,9 +113,9 @@ class _Rule:
         return _Rule(self.rule["items"]) if self.rule.get("items") else None
 
     def fault(self, value, complete: bool, words: bool) -> str:
-        """What is wrong with the first value that is not as the schema says, behind its place; empty when all is
-        well. complete: every field has to be there. words: only the words of the schema are allowed; a later
-        version may have more. Unknown fields are passed over.
+        """What is wrong with the first value that is not as the schema says, behind its place; empty when
+        all is well. complete: every field has to be there. words: only the words of the schema are allowed; a
+        later version may have more. Unknown fields are passed over.
         """
         if self.words is not None:
             if value in self.words or not words and isinstance(value, str):
@@ -313,7 +313,7 @@ def read_trace(record: dict, folder: Path) -> list[dict]:
         bad = _not_finite(row)
         if bad:
             raise RecordError(
-                f"{path}:{number}: {bad[0]} is not finite; allowed: a finite number, or null with the word that"
-                " says why"
+                f"{path}:{number}: {bad[0]} is not finite; allowed: a finite number, or null with the word"
+                " that says why"
             )
     return rows
