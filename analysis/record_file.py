@@ -113,8 +113,8 @@ class _Rule:
         return _Rule(self.rule["items"]) if self.rule.get("items") else None
 
     def fault(self, value, complete: bool, words: bool) -> str:
-        """What is wrong with the first value that is not as the schema says, behind its place; empty when all
-        is well. complete: every field has to be there. words: only the words of the schema are allowed; a
+        """What is wrong with the first value that is not as the schema says, behind its place; empty when
+        all is well. complete: every field has to be there. words: only the words of the schema are allowed; a
         later version may have more. Unknown fields are passed over.
         """
         if self.words is not None:

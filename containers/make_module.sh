@@ -2,7 +2,8 @@
 # A folder that runs barrierbench on nodes without its packages, and a module file for it: make_module.sh DIR.
 # DIR must be on a file system that the nodes share. Run it where ./bench build has been run; nodes need the same C library
 # or a newer one. Afterwards: module use DIR/modulefiles && module load barrierbench, then barrierbench sweep ...
-# The program finds configs by the paths it is given; verbs in Python (status, collect) need the Python environment of ./bench.
+# Presets, methods and cost models are copied too (BARRIERBENCH_CONFIGS); sweeps and base configs are found by the paths that are
+# given. Verbs in Python (status, collect) need the Python environment of ./bench.
 set -euo pipefail
 dir="$(realpath -m "$1")" root="$(cd "$(dirname "$0")/.." && pwd)"
 program="${BARRIERBENCH_PROGRAM:-$root/build/release/experiments/barrierbench}"
@@ -10,6 +11,7 @@ program="${BARRIERBENCH_PROGRAM:-$root/build/release/experiments/barrierbench}"
 
 mkdir -p "$dir"/{bin,lib,modulefiles/barrierbench}
 cp "$program" "$dir/bin/barrierbench"
+cp -r "$root/configs" "$dir/"
 # All libraries but those of the C library, which belong to the node.
 ldd "$program" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' | grep -vE '/(libc|libm|libdl|librt|libpthread|ld-linux[^/]*)\.so' |
   while read -r library; do cp -L "$library" "$dir/lib/"; done
@@ -19,6 +21,7 @@ module-whatis "barrierbench: contact barriers compared on the same scenes"
 prepend-path PATH $dir/bin
 prepend-path LD_LIBRARY_PATH $dir/lib
 setenv OPENBLAS_NUM_THREADS 1
+setenv BARRIERBENCH_CONFIGS $dir/configs
 MODULE
-LD_LIBRARY_PATH="$dir/lib" "$dir/bin/barrierbench" list shapes > /dev/null
+BARRIERBENCH_CONFIGS="$dir/configs" LD_LIBRARY_PATH="$dir/lib" "$dir/bin/barrierbench" list shapes > /dev/null
 echo "$dir: $(ls "$dir/lib" | wc -l) libraries; module use $dir/modulefiles && module load barrierbench"

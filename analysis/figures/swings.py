@@ -16,8 +16,8 @@ BAND = "band"  # gid of its edges
 
 def swings_from(values: np.ndarray) -> int | None:
     """From which index on, to the end and for at least WINDOW values, at least half of every WINDOW values
-    turn back; None where it does not. A turn counts by the smaller of its two moves; where that finds
-    nothing, a swing of unlike moves, one large among small ones, counts by the range of its WINDOW.
+    turn back; None where it does not. A turn counts by the smaller of its two moves; where that finds none, a
+    swing of unlike moves, one large among small ones, counts by the range of its WINDOW.
     """
     if len(values) < WINDOW + 2:
         return None

@@ -1,6 +1,7 @@
 """The recipes of examples/cluster, with stand-ins for GNU parallel and Slurm that run their jobs here, one after the other."""
 
 import os
+import shutil
 import subprocess
 import sys
 
@@ -59,3 +60,18 @@ def test_a_task_whose_time_is_over_goes_back_into_the_queue(tmp_path, environmen
     task = [ROOT / "examples/cluster/slurm_task.sh", stopped, "s.json", "out", "4"]
     done = subprocess.run(task, env={**environment, "SLURM_ARRAY_JOB_ID": "7", "SLURM_ARRAY_TASK_ID": "3"}, check=False)
     assert done.returncode == 75 and (tmp_path / "calls").read_text() == "scontrol requeue 7_3\n"
+
+
+def test_a_module_has_its_own_libraries_and_presets(program, tmp_path):
+    """Nodes do not see the tree that the program was built in: what only the folder of the module has is found."""
+    folder = tmp_path / "module"
+    done = subprocess.run([ROOT / "containers/make_module.sh", folder], env={**os.environ, "BARRIERBENCH_PROGRAM": str(program)},
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    shutil.copy(folder / "configs/formulations/cubic.json", folder / "configs/formulations/only_here.json")
+    lines = [line.split(maxsplit=2) for line in (folder / "modulefiles/barrierbench/1").read_text().splitlines()[1:]]
+    environment = {name: value for word, name, value in lines if word in ("setenv", "prepend-path")}
+    run = subprocess.run([folder / "bin/barrierbench", "check", ROOT / "configs/scenes/hang.json", "--set", "/formulation=only_here"],
+                         env={**os.environ, **environment, "PATH": f"{environment['PATH']}:{os.environ['PATH']}"}, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert len(list((folder / "lib").iterdir())) > 5
