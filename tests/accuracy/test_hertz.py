@@ -1,4 +1,4 @@
-"""A ball on a plane converges to Hertz's contact as its mesh is refined. The finest level takes a minute or two of one core and is run where
+"""A ball on a plane converges to Hertz's contact as its mesh is refined. The finest level takes a minute of one core and is run where
 BARRIERBENCH_HERTZ_RINGS says 20; the first two are always. Both readings of it are within 5 %. What limits the approach is how fine the
 tetrahedra are down to two radii below the contact, where linear ones are too stiff: rings that crowd in the contact alone do not help.
 """
