@@ -1,4 +1,4 @@
-// Stiffness policy `fixed`: one kappa (N/m) for every contact, one k_s (N/m) for a strain limit.
+// Stiffness policy `fixed`: one kappa (N/m) for every contact, one k_s for a strain limit (N/m; Pa in solids).
 #pragma once
 
 #include "core/barrier/stiffness_policy.hpp"
@@ -9,7 +9,8 @@ namespace bb {
 struct Fixed {
   double stiffness = 0;  // N/m
 
-  static constexpr const char* limit_doc = "kappa_e = k_s x rest area";
+  static constexpr const char* limit_doc =
+      "kappa_e = k_s x rest area (of tetrahedra: solid_k_s_Pa x rest volume)";
   template <class List>
   static void describe(List& list) {
     if (list.of_limit()) {
@@ -28,7 +29,7 @@ struct Fixed {
   double uniform_kappa() const { return stiffness; }
   template <class T>
   BB_HD KappaPartsOf<T> element_parts(const ElementSums<T>& sums, T, const StiffnessTime&) const {
-    return {T(stiffness) * sums.area, T(0)};
+    return {T(stiffness) * sums.measure, T(0)};
   }
 };
 

@@ -1,5 +1,5 @@
 // What the pipeline knows of a stiffness policy: batch calls over columns that fill the kappa of contacts (N/m) and of
-// limited triangles (J).
+// limited elements (J).
 // The policies themselves live in barriers/stiffness/.
 #pragma once
 
@@ -41,7 +41,7 @@ struct StiffnessBatch {
   StiffnessTime time;
 };
 
-/// Columns of n limited triangles.
+/// Columns of n limited triangles, or tetrahedra.
 struct ElementStiffnessBatch {
   std::size_t n = 0;
   const ElementSums<double>* sums = nullptr;  // [n] elastic is 0 unless the policy says needs_hessian
@@ -90,7 +90,7 @@ class StiffnessPolicy {
   virtual bool has_potential() const { return false; }
   /// kappa of every row as a function of its gap; d is not read. Called when has_potential().
   virtual void fill_parts(const StiffnessBatch&, KappaParts*) const {}
-  /// kappa_e (J) of limited triangles: the number at their gap, or where has_potential() as a function of it. A policy
+  /// kappa_e (J) of limited elements: the number at their gap, or where has_potential() as a function of it. A policy
   /// that does not serve strain limits has none.
   virtual void fill_elements(const ElementStiffnessBatch&, double*) const {}
   virtual void fill_element_parts(const ElementStiffnessBatch&, KappaParts*) const {}

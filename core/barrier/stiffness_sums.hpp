@@ -1,4 +1,4 @@
-// The sums from which policies make the kappa of one item: of a contact, or of a strain-limited triangle. Element math,
+// The sums from which policies make the kappa of one item: of a contact, or of a strain-limited element. Element math,
 // the same for hosts and kernels; no policy is named here.
 #pragma once
 
@@ -33,13 +33,13 @@ struct ContactSums {
   T w_sq = T(0);     // w^T w, 1
 };
 
-/// Of one limited triangle, w_i = x_i - centroid at the start of the step.
+/// Of one limited triangle or tetrahedron, w_i = x_i - centroid at the start of the step.
 template <class T>
 struct ElementSums {
   T mass = T(0);          // w^T M w, kg m^2
   T elastic = T(0);       // w^T H w, J
   T element_mass = T(0);  // kg
-  T area = T(0);          // m^2, at rest
+  T measure = T(0);       // m^2 or m^3, at rest
 };
 
 /// A matrix in memory, column-major with a leading dimension, as a function of row and column.

@@ -12,9 +12,10 @@
 
 namespace bb {
 
-/// Hard limit 1 + onset + width on the singular values of a membrane element (docs/design.md).
+/// Hard limit 1 + onset + width on the stretches of triangles, and of tetrahedra where `solids` asks for it (docs/design.md).
 struct StrainLimitSpec {
   double onset = 0.01, width = 0.01;  // 1
+  bool solids = false;
   /// A bare limit means onset = width = limit/2.
   static StrainLimitSpec from_limit(double limit) { return {0.5 * limit, 0.5 * limit}; }
 };

@@ -190,6 +190,16 @@ void SceneBuilder::append_elements(const BodySpec& spec, int first) {
     scene_.limit.width.push_back(spec.material.limit->width);
     scene_.limit.mass.push_back(spec.material.density * area_vector(spec.mesh.vertices, local).norm());
   }
+  if (!spec.material.limit->solids) return;
+  for (const auto& local : spec.mesh.tetrahedra) {
+    const auto t = to.in_scene(local);
+    if (to.all_prescribed(t)) continue;
+    scene_.solid_limit.tetrahedra.push_back(t);
+    scene_.solid_limit.onset.push_back(spec.material.limit->onset);
+    scene_.solid_limit.width.push_back(spec.material.limit->width);
+    scene_.solid_limit.mass.push_back(spec.material.solid_density *
+                                      tetrahedron_volume(spec.mesh.vertices, local));
+  }
 }
 
 void SceneBuilder::append_surface(const BodySpec& spec, int first) {

@@ -23,6 +23,16 @@ struct SolidModel {
   Terms terms;
 };
 
+/// Rest data in another scalar.
+template <class T>
+TetrahedronRest<T> rest_in(const TetrahedronRest<double>& rest) {
+  return {rest.dm_inv.template cast<T>(), static_cast<T>(rest.volume)};
+}
+
+/// Rest data of tetrahedra at x_rest [3 x n_vertices] (m). ConfigError: one whose volume is not positive.
+std::vector<TetrahedronRest<double>> tetrahedron_rests(std::span<const std::array<int, 4>> tetrahedra,
+                                                       const PositionsView& x_rest);
+
 /// Every registered model, in the order of solids.inc. T: float or double.
 template <class T>
 const Registry<SolidModel<T>>& solid_models();

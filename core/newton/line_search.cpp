@@ -77,8 +77,10 @@ class LineSearch final : public StepSolver {
       }
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
       const bool enough = (report.alpha == 1 && !truncated_) || report.dx_inf_m < tolerance;
-      // Of a body at rest without a force, E is rounding and so is the direction.
-      const bool nothing_left = !moved && bound_ >= collapsed_step && report.dx_beyond_m == 0;
+      // Of a body at rest without a force, E is rounding and so is the direction: a part of it that lowers E where the whole
+      // does not was found by noise, and the next one would be too.
+      const bool whole = moved && (report.alpha == 1 || truncated_ || bound_ < 1);
+      const bool nothing_left = !whole && bound_ >= collapsed_step && report.dx_beyond_m == 0;
       if (small && (nothing_left || (enough && (report.contraction.finite() || as_modelled(report))))) {
         if (system.renew_lag()) {
           if (renewals_) ++*renewals_;

@@ -42,6 +42,8 @@ struct MatchingRecord {
   BB_FIELD(Number, limit_curvature, "the same of the strain limit");
   BB_FIELD(Number, kappa_N_per_m, "chosen; absent where the policy makes its own");
   BB_FIELD(Number, limit_stiffness_N_per_m, "k_s chosen");
+  BB_FIELD(Number, solid_limit_load_Pa, "of the strain limit of solids, as given");
+  BB_FIELD(Number, solid_limit_stiffness_Pa, "k_s chosen for solids");
   BB_FIELD(Number, scale, "factor on a contact policy that makes its own kappa; absent: as given");
   BB_FIELD(Number, limit_scale, "factor on a limit policy that makes its own kappa_e; absent: as given");
   BB_FIELD(Number, capacity_N, "largest load of the shape at that kappa; absent: unbounded");

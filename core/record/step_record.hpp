@@ -60,7 +60,10 @@ struct StepRecord : WorkCounts {
   BB_FIELD(Number, restitution_dissipation_J,
            "sum over contacts of what restitution takes of the speed of their gaps, force times way",
            "no_restitution");
-  BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma at its end", "no_limit");
+  BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma of triangles at its end",
+           "no_limit");
+  BB_FIELD(Number, solid_limit_load_max_Pa, "largest (1/volume) dS_e/dsigma of tetrahedra at its end",
+           "no_limit");
   BB_FIELD(
       Number, contact_overload,
       "largest load / capacity of a contact where no progress was made; 0: unbounded capacity, or no load",

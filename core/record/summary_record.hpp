@@ -96,6 +96,7 @@ struct Summary : WorkCounts {
   BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element over step ends");
   BB_FIELD(Number, contact_load_max_N, "largest of the steps");
   BB_FIELD(Number, limit_load_max_N_per_m, "largest of the steps");
+  BB_FIELD(Number, solid_limit_load_max_Pa, "largest of the steps");
   BB_FIELD(StiffnessRecord, stiffness, "policies with one global kappa");
   BB_FIELD(CondMap, cond,
            "stage/scaling -> condition numbers of clamped matrices, solved/stage/scaling of those that were "

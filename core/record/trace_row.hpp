@@ -209,7 +209,8 @@ struct TraceRow : WorkCounts {
   BB_FIELD(Number, contact_curvature_max_N_per_m, "largest kappa b'' of a pair", "no_contacts");
   BB_FIELD(Number, contact_load_max_N, "largest kappa |b'| of a pair", "no_contacts");
   BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element", "no_limit");
-  BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma", "no_limit");
+  BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma of triangles", "no_limit");
+  BB_FIELD(Number, solid_limit_load_max_Pa, "largest (1/volume) dS_e/dsigma of tetrahedra", "no_limit");
   BB_FIELD(std::vector<ConditionSample>, cond, "condition estimates; empty when not due");
   BB_FIELD(PhaseTimes, time, "of the same iteration in the pass `time`; empty without it");
   BB_RECORD_END;

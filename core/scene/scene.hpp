@@ -97,11 +97,16 @@ struct Body {
   std::optional<double> restitution = std::nullopt;  // share of the speed of meeting that is kept; absent: 1
 };
 
-/// Elements with a hard limit 1 + onset + width on their singular values.
-struct StrainLimitPart {
-  std::vector<std::array<int, 3>> triangles;
+/// Elements with a hard limit 1 + onset + width on their stretches.
+struct StrainBands {
   std::vector<double> onset, width;  // [n] 1
   std::vector<double> mass;          // [n] element mass, kg
+};
+struct StrainLimitPart : StrainBands {
+  std::vector<std::array<int, 3>> triangles;
+};
+struct SolidLimitPart : StrainBands {
+  std::vector<std::array<int, 4>> tetrahedra;
 };
 
 enum class ObstacleKind { plane, sphere, cylinder };
@@ -141,6 +146,7 @@ struct Scene : parts::AllColumns {
   Inflation inflation;
 
   StrainLimitPart limit;
+  SolidLimitPart solid_limit;
 
   std::vector<std::array<int, 3>> surface_triangles;  // collision surface
   std::vector<std::array<int, 2>> surface_edges;  // of triangles and rods; planar: boundary edges and rods

@@ -28,8 +28,11 @@ void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const 
                                   "feasibility alone judges the trials of the step solver");
   plan.end_check = plan_item(options.end_check, "step_solver.saddle", "step_solver.saddle is ignore");
   const bool contact_reads = contact && terms.stiffness && terms.stiffness->needs_hessian();
-  const bool limit_reads =
-      plan.term("strain_limit").needed && terms.limit_stiffness && terms.limit_stiffness->needs_hessian();
+  const auto reads = [](const std::unique_ptr<StiffnessPolicy>& policy) {
+    return policy && policy->needs_hessian();
+  };
+  const bool limit_reads = plan.term("strain_limit").needed &&
+                           (reads(terms.limit_stiffness) || reads(terms.solid_limit_stiffness));
   plan.policy_submatrix = plan_item(
       options.step.matrix && (contact_reads || limit_reads), "a stiffness policy reads the elastic matrix",
       options.step.matrix ? "no stiffness policy of a term in use reads it" : no_matrix);

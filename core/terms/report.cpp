@@ -36,7 +36,7 @@ IterateNumbers::IterateNumbers() {
   contraction = error_estimate_m = Number::missing("not_estimated");
   kappa_change_rel = 0;
   limit_kappa_change_rel = limit_gap_min_rel = max_stretch = limit_load_max_N_per_m =
-      Number::missing("no_limit");
+      solid_limit_load_max_Pa = Number::missing("no_limit");
 }
 
 void IterateNumbers::forget_changes() {
@@ -49,7 +49,7 @@ StepNumbers::StepNumbers() {
       kappa_max_N_per_m = contact_load_max_N = contact_load_sum_N = Number::missing("no_contacts");
   friction_dissipation_J = Number::missing("no_friction");
   restitution_dissipation_J = Number::missing("no_restitution");
-  max_stretch = limit_load_max_N_per_m = Number::missing("no_limit");
+  max_stretch = limit_load_max_N_per_m = solid_limit_load_max_Pa = Number::missing("no_limit");
   saddle_curvature_N_per_m = Number::missing("none_found");
   end_error_m = end_error_tolerances = Number::missing("not_estimated");
 }

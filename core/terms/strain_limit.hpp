@@ -1,8 +1,10 @@
-// The strain limit S as a term: barrier, stiffness per element, exact step bound.
+// The strain limit S as a term, one of triangles and one of tetrahedra: barrier, stiffness per element, exact step bound.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "core/barrier/folded_barrier.hpp"
@@ -13,10 +15,22 @@
 
 namespace bb {
 
-class StrainLimitTerm final : public Term {
+/// The elements of both kinds in the same words.
+inline const std::vector<std::array<int, 3>>& limited_elements(const StrainLimitPart& part) {
+  return part.triangles;
+}
+inline const std::vector<std::array<int, 4>>& limited_elements(const SolidLimitPart& part) {
+  return part.tetrahedra;
+}
+
+/// Batch: StrainLimitBatch or SolidLimitBatch.
+template <class Batch>
+class StrainLimitTermOf final : public Term {
  public:
+  static constexpr bool of_solids = std::is_same_v<Batch, SolidLimitBatch>;
+
   /// All arguments must outlive the term. fixed: [3 n] prescribed or locked degrees of freedom.
-  StrainLimitTerm(const Scene& scene, const TermOptions& options, const std::vector<std::uint8_t>& fixed);
+  StrainLimitTermOf(const Scene& scene, const TermOptions& options, const std::vector<std::uint8_t>& fixed);
   std::string_view name() const override { return "strain_limit"; }
   TermGroup group() const override { return TermGroup::limit; }
   Phase phase() const override { return Phase::strain_limit; }
@@ -26,7 +40,9 @@ class StrainLimitTerm final : public Term {
   void linearise(const PositionsView& x, const TermContext& context) override;
   void clamp(const PositionsView& x) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
-  std::string describe_bound() const override { return "the strain limit"; }
+  std::string describe_bound() const override {
+    return of_solids ? "the strain limit of solids" : "the strain limit";
+  }
   bool admits(const PositionsView& x, PhaseClock& clock) override;
   void evaluate(const PositionsView& x) override;
   void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
@@ -43,7 +59,21 @@ class StrainLimitTerm final : public Term {
   void fill_sums(const TermContext& context, bool with_hessian);
   void fold();
   double stiffness_change() const;
-  double smaller_gap(std::size_t e) const;
+  const auto& part() const {
+    if constexpr (of_solids) {
+      return scene_.solid_limit;
+    } else {
+      return scene_.limit;
+    }
+  }
+  const StiffnessPolicy& policy() const {
+    return of_solids ? *options_.solid_limit_stiffness : *options_.limit_stiffness;
+  }
+  /// Whether triangles have said their part of what is reported before.
+  bool adds() const { return of_solids && !scene_.limit.triangles.empty(); }
+  double smaller_gap(std::size_t e) const { return batch_.smaller_gap(e); }
+  template <class Numbers>
+  void say_state(Numbers& out) const;
   double force(std::size_t e, double gap) const;
   double load_max() const;
   std::string element_name(std::size_t e) const;
@@ -52,13 +82,13 @@ class StrainLimitTerm final : public Term {
   const Scene& scene_;
   const TermOptions& options_;
   const std::vector<std::uint8_t>& fixed_;
-  StrainLimitBatch batch_;
+  Batch batch_;
   Positions x_n_;
   StiffnessTime time_;
-  /// kappa_e(y) (J) with its potential, as the batch asks a barrier: at both pseudo-gaps of every element.
+  /// kappa_e(y) (J) with its potential, as the batch asks a barrier: at all pseudo-gaps of every element.
   struct Folded {
     FoldedBarrier barrier;
-    std::vector<KappaParts> parts;  // [2 n] both of an element equal
+    std::vector<KappaParts> parts;  // [N n] all of an element equal
     void eval(std::size_t n, const double* y, const double* width, double* s, double* ds, double* d2s) {
       barrier.eval(n, y, width, parts.data(), s, ds, d2s);
     }
@@ -68,9 +98,12 @@ class StrainLimitTerm final : public Term {
   std::vector<double> kappa_;                // [n] J, at the smaller pseudo-gap; 1 where folded_ has it
   std::vector<ElementSums<double>> sums_;    // [n]
   std::vector<double> smaller_gaps_;         // [n]
-  std::vector<double> kappa_before_, hess_;  // [n] J, [81 n] N/m
+  std::vector<double> kappa_before_, hess_;  // [n] J, [(3 P)^2 n] N/m
   bool kappa_fresh_ = false, first_iterate_ = true;
   double kappa_change_ = 0;
 };
+
+using StrainLimitTerm = StrainLimitTermOf<StrainLimitBatch>;
+using SolidLimitTerm = StrainLimitTermOf<SolidLimitBatch>;
 
 }  // namespace bb

@@ -47,9 +47,10 @@ struct TermOptions {
   Precision precision = Precision::full;  // of all terms; contact and limit have in_float set accordingly
   HessianMode hessian_mode = HessianMode::gauss_newton;
   ContactOptions contact_options;
-  bool strain_limit = true;  // false: limits of the scene are left out
+  bool strain_limit = true;  // false: limits of the scene are left out, those of solids too
   BarrierFunction limit;
-  std::unique_ptr<StiffnessPolicy> limit_stiffness;  // of the elements; read where an element has a limit
+  std::unique_ptr<StiffnessPolicy> limit_stiffness;  // of the elements; read where a triangle has a limit
+  std::unique_ptr<StiffnessPolicy> solid_limit_stiffness;  // the same of tetrahedra
   FrictionOptions friction;
 };
 

@@ -60,8 +60,9 @@ void print_formulation(const RunConfig& config) {
   fmt::print("contact   {} on {}, d_hat {:g} m, {}\n", contact.shape, to_string(contact.argument),
              contact.d_hat, stiffness_text(contact.stiffness_policy));
   if (limit.enabled) {
-    fmt::print("limit     {} on {}, onset {:g}, width {:g}, {}\n", limit.shape, to_string(limit.argument),
-               limit.onset, limit.width, stiffness_text(limit.stiffness_policy));
+    fmt::print("limit     {} on {}, onset {:g}, width {:g}, {}{}\n", limit.shape, to_string(limit.argument),
+               limit.onset, limit.width, stiffness_text(limit.stiffness_policy),
+               limit.solids.value_or(false) ? ", of triangles and tetrahedra" : "");
   }
   fmt::print("guarantee {}: {}\n", config.step_solver.name,
              step_solvers().require(config.step_solver.name, "/step_solver/name").guarantee);

@@ -152,7 +152,10 @@ void check_places(const RunConfig& config, const Scene& scene) {
 
 Scene build_scene(const RunConfig& config) {
   std::optional<StrainLimitSpec> limit;
-  if (config.strain_limit.enabled) limit = {config.strain_limit.onset, config.strain_limit.width};
+  if (config.strain_limit.enabled) {
+    limit = {config.strain_limit.onset, config.strain_limit.width,
+             config.strain_limit.solids.value_or(false)};
+  }
   Scene scene;
   if (config.scene.name == "bodies") {
     scene = build_bodies(config, limit);

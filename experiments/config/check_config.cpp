@@ -269,9 +269,37 @@ void check_matching(const RunConfig& config, const Complain& complain) {
                        config.matching.limit_load, limit.stiffness_policy,
                        needs_k_s(limit.stiffness_policy)});
   }
+  const MatchedBarrier of_solids{limit.shape,
+                                 limit.argument,
+                                 limit.width,
+                                 "/matching/solid_limit_load_Pa",
+                                 config.matching.solid_limit_load,
+                                 limit.stiffness_policy,
+                                 true};
+  if (config.matching.solid_limit_load) check_matched_barrier(config.matching, of_solids, complain);
   for (const MatchedBarrier& m : matched) {
     check_matched_barrier(config.matching, m, complain);
     check_pilot(config, m, complain);
+  }
+}
+
+/// Numbers of a limit of solids, where it is asked for.
+void check_solid_limit(const RunConfig& config, const Complain& complain) {
+  const StrainLimitConfig& limit = config.strain_limit;
+  const bool by_number = limits_solids(limit) && needs_k_s(limit.stiffness_policy);
+  const char* const allowed = "nothing: it is read with strain_limit/solids true and policy fixed";
+  if (limit.solid_k_s && !by_number) {
+    complain("/strain_limit/solid_k_s_Pa", fmt::format("{}", *limit.solid_k_s), allowed);
+  }
+  if (config.matching.solid_limit_load && !limits_solids(limit)) {
+    complain("/matching/solid_limit_load_Pa", fmt::format("{}", *config.matching.solid_limit_load),
+             "nothing: it is read with strain_limit/solids true");
+  }
+  if (limit.solids.value_or(false) && !limit.enabled) {
+    complain("/strain_limit/solids", "true", "false, or a limit: strain_limit is not enabled");
+  }
+  if (limits_solids(limit) && config.device != Device::cpu) {
+    complain("/strain_limit/solids", "true", "false, or /device cpu: a limit of tetrahedra has no kernel");
   }
 }
 
@@ -349,6 +377,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   check_policies(config, complain);
   check_adaptive_start(config, complain);
   check_matching(config, complain);
+  check_solid_limit(config, complain);
   check_tolerance(config, complain);
   check_protocol(config, complain);
   check_ritz(config, complain);

@@ -21,6 +21,8 @@ std::optional<double> given_k_s(const PolicyConfig& policy) {
   return optional_number(policy.parameters, matched(policy, PolicyUse::limit));
 }
 
+bool limits_solids(const StrainLimitConfig& limit) { return limit.enabled && limit.solids.value_or(false); }
+
 PolicyConfig policy_request(PolicyConfig policy, PolicyUse use, double stiffness, double scale) {
   policy.scale *= scale;
   const std::string setting = matched(policy, use);

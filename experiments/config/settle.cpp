@@ -145,7 +145,9 @@ void settle_matching(const json& object, const Reader& reader, bool literal, Run
   const PolicyConfig& limit = config.strain_limit.stiffness_policy;
   const bool contact_given = !needs_kappa(contact) || given_kappa(contact);
   const bool limit_given = !config.strain_limit.enabled || !needs_k_s(limit) || given_k_s(limit);
-  const bool as_given = literal || (contact_given && limit_given);
+  const bool of_solids = limits_solids(config.strain_limit) && needs_k_s(limit);
+  const bool solid_given = !of_solids || config.strain_limit.solid_k_s;
+  const bool as_given = literal || (contact_given && limit_given && solid_given);
   MatchingConfig& out = config.matching;
   if (!object.contains("rule")) out.rule = as_given ? MatchingRule::as_given : MatchingRule::equal_force;
   if (out.rule != MatchingRule::equal_curvature) {
@@ -155,7 +157,18 @@ void settle_matching(const json& object, const Reader& reader, bool literal, Run
                       std::string("nothing: the rule is ") + to_string(out.rule));
     }
   }
-  if (out.rule != MatchingRule::as_given) return;
+  if (out.rule != MatchingRule::as_given) {
+    if (!solid_given && !out.solid_limit_load) {
+      reader.missing("/matching/solid_limit_load_Pa",
+                     "a load > 0 (Pa) of the strain limit of solids, which no pilot measures, or "
+                     "/strain_limit/solid_k_s_Pa");
+    }
+    return;
+  }
+  if (!solid_given) {
+    reader.missing("/strain_limit/solid_k_s_Pa",
+                   "a number > 0 (Pa), or matching rule equal_force and solid_limit_load_Pa");
+  }
   if (!contact_given) {
     reader.missing("/formulation/stiffness_policy/kappa_N_per_m",
                    "a number > 0 (N/m), or matching rule equal_force");

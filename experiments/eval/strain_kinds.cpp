@@ -16,10 +16,11 @@ struct LimitTerms {
   bool beyond = false;
 };
 
-template <class T>
-StrainShape<T> shape_at(const BarrierFunction& barrier, const Vec<T, 2>& sigma, const StrainBand<T>& band) {
-  StrainShape<T> out;
-  for (int k = 0; k < 2; ++k) {
+template <class T, int N>
+StrainShape<T, N> shape_at(const BarrierFunction& barrier, const Vec<T, N>& sigma,
+                           const StrainBand<T>& band) {
+  StrainShape<T, N> out;
+  for (int k = 0; k < N; ++k) {
     const ShapeTerms<T> terms = barrier.eval(strain_gap(sigma[k], band), band.width);
     out.b[k] = terms.b;
     out.db[k] = terms.db;
@@ -41,7 +42,8 @@ LimitTerms<T> limit_terms(const BarrierFunction& barrier, const std::vector<doub
       continue;
     }
     const Vec<T, 2> both(s, s);  // the density is a sum over two: each term once
-    const Density2<T> density = strain_limit_density<T>(both, band, shape_at(barrier, both, band), T(1));
+    const Density2<T> density =
+        strain_limit_density<T, 2>(both, band, shape_at<T, 2>(barrier, both, band), T(1));
     out.energy.push_back(static_cast<double>(density.psi / T(2)));
     out.first.push_back(static_cast<double>(density.dpsi[0]));
     out.second.push_back(static_cast<double>(density.d2psi(0, 0)));
@@ -50,10 +52,41 @@ LimitTerms<T> limit_terms(const BarrierFunction& barrier, const std::vector<doub
 }
 
 template <class T>
-Mat<T, 3, 2> limit_pk1(const BarrierFunction& barrier, const Svd<T, 3, 2>& svd, const StrainBand<T>& band) {
-  const Density2<T> density =
-      strain_limit_density<T>(svd.sigma, band, shape_at(barrier, svd.sigma, band), T(1));
-  return isotropic_terms<T, 3>(svd, density, Projection::none).pk1;
+void add_terms(const LimitTerms<T>& terms, Answer& a) {
+  a.list("E", terms.energy);
+  a.list("dE", terms.first);
+  a.list("d2E", terms.second);
+  if (terms.beyond) a.status("beyond_limit");
+}
+
+/// Stretches of F, the absolute values of its singular values, and PK1 where all are below the limit.
+template <class T, int N>
+struct LimitOfF {
+  std::vector<double> stretches;
+  Mat<T, 3, N> pk1;
+
+  LimitOfF(const BarrierFunction& barrier, const Mat<T, 3, N>& f, const StrainBand<T>& band) {
+    const Svd<T, 3, N> svd = signed_svd(f);
+    const Vec<T, N> sizes = svd.sigma.cwiseAbs();
+    for (int k = 0; k < N; ++k) stretches.push_back(static_cast<double>(sizes[k]));
+    if (!(strain_gap(sizes[0], band) > T(0))) return;
+    const Density<T, N> density =
+        strain_limit_density<T, N>(svd.sigma, band, shape_at<T, N>(barrier, sizes, band), T(1));
+    pk1 = isotropic_terms<T, 3, N>(svd, density, Projection::none).pk1;
+  }
+};
+
+template <class T, int N>
+void answer_of_f(const BarrierFunction& barrier, const MatX<double>& f, const StrainBand<T>& band,
+                 Answer& a) {
+  const LimitOfF<T, N> of_f(barrier, Mat<T, 3, N>(f.cast<T>()), band);
+  const LimitTerms<T> terms = limit_terms(barrier, of_f.stretches, band);
+  add_terms(terms, a);
+  if (terms.beyond) {
+    a.null("PK1");
+  } else {
+    a.matrix("PK1", of_f.pk1);
+  }
 }
 
 template <class T, int M, int N>
@@ -76,20 +109,17 @@ Answer answer::strain_limit(Query& q) {
   const bool from_sigma = q.has("sigma");
   if (from_f && from_sigma) q.complain("sigma", "sigma and F", "one of the two");
   if (!from_f && !from_sigma) q.complain("sigma", "neither /sigma nor /F", "one of the two is required");
-  const Mat<T, 3, 2> f = from_f ? Mat<T, 3, 2>(q.rows("F", 3, 2).cast<T>()) : Mat<T, 3, 2>::Zero();
-  std::vector<double> sigma = from_sigma ? q.list("sigma", -1, kFinite) : std::vector<double>();
+  const MatX<double> f = from_f ? q.rows("F", 3, -1) : MatX<double>::Zero(3, 2);
+  if (!q.wrong() && f.cols() != 2 && f.cols() != 3) {
+    q.complain("F", "3x" + std::to_string(f.cols()), "3x2 of a triangle, or 3x3 of a tetrahedron");
+  }
+  const std::vector<double> sigma = from_sigma ? q.list("sigma", -1, kFinite) : std::vector<double>();
   q.finish();
 
-  const Svd<T, 3, 2> svd = signed_svd<T>(f);
-  if (from_f) sigma = {static_cast<double>(svd.sigma[0]), static_cast<double>(svd.sigma[1])};
-  const LimitTerms<T> terms = limit_terms(barrier, sigma, band);
   Answer a;
-  a.list("E", terms.energy);
-  a.list("dE", terms.first);
-  a.list("d2E", terms.second);
-  if (from_f && terms.beyond) a.null("PK1");
-  if (from_f && !terms.beyond) a.matrix("PK1", limit_pk1(barrier, svd, band));
-  if (terms.beyond) a.status("beyond_limit");
+  if (from_f && f.cols() == 2) answer_of_f<T, 2>(barrier, f, band, a);
+  if (from_f && f.cols() == 3) answer_of_f<T, 3>(barrier, f, band, a);
+  if (from_sigma) add_terms(limit_terms(barrier, sigma, band), a);
   return a;
 }
 

@@ -210,6 +210,25 @@ void match_limit(const Matching& m, Calibration& out) {
   }
 }
 
+/// k_s of solids for the load that is given; their policy stays as given where it makes its own kappa_e.
+void match_solid_limit(const Matching& m, Calibration& out) {
+  const MatchingConfig& matching = m.config.matching;
+  const StrainLimitConfig& limit = m.config.strain_limit;
+  if (!needs_k_s(limit.stiffness_policy)) {
+    note(m.record, "the policy of the limit stays as given in solids: no pilot measures their load");
+    return;
+  }
+  if (matching.solid_limit_load) {
+    const BarrierFunction barrier{require_shape(limit.shape), limit.argument};
+    const Match match{matching.rule, matching.theta, *matching.solid_limit_load, std::nullopt};
+    m.record.solid_limit_load_Pa = *matching.solid_limit_load;
+    out.solid_k_s = match.stiffness(barrier, m.scene.solid_limit.width.front());
+  } else {
+    out.solid_k_s = limit.solid_k_s;
+  }
+  if (out.solid_k_s) m.record.solid_limit_stiffness_Pa = *out.solid_k_s;
+}
+
 /// Whether a load is missing, or a policy has to be asked about the contacts or elements that carried it.
 bool needs_pilot(const RunConfig& config, bool limited) {
   const bool contact = !config.matching.load || !needs_kappa(config.formulation.stiffness_policy);
@@ -230,6 +249,7 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOpti
     if (const auto kappa = given_kappa(policy)) record.kappa_N_per_m = *kappa;
     const std::optional<double> k_s = given_k_s(config.strain_limit.stiffness_policy);
     if (out.limited && k_s) record.limit_stiffness_N_per_m = *k_s;
+    if (config.strain_limit.solid_k_s) record.solid_limit_stiffness_Pa = *config.strain_limit.solid_k_s;
     return out;
   }
   record.theta = config.matching.theta;
@@ -241,6 +261,7 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOpti
     if (const int steps = matching.pilot->unanswered; steps > 0)
       note(record, fmt::format("of {} steps it is not known which forces are loads: all count", steps));
   }
+  if (!scene.solid_limit.tetrahedra.empty()) match_solid_limit(matching, out);
   if (out.limited) match_limit(matching, out);  // first: the contact's policy may have to be followed
   match_contact(matching, out);
   return out;

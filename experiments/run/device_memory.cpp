@@ -68,7 +68,7 @@ double estimated_contacts(const Scene& scene) {
 DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, const Plan& plan,
                                  const ContactDemand& demand) {
   Calibration any;  // numbers of the stiffness need no memory
-  any.kappa = any.k_s = 1;
+  any.kappa = any.k_s = any.solid_k_s = 1;
   Method method = make_method(config, any);
   DeviceMemory out;
   out.source = "--contacts";

@@ -107,7 +107,7 @@ void check_device_forms(const RunConfig& config, const Scene& scene) {
   if (config.device == Device::cpu) return;
   at_config(config, "/scene", [&] { require_kernels(part_entries(), scene, "/scene"); });
   Calibration any;  // numbers of the stiffness do not matter
-  any.kappa = any.k_s = 1;
+  any.kappa = any.k_s = any.solid_k_s = 1;
   Method method = make_method(config, any);
   resident::require_kernel(*method.stiffness, config.source + "#/formulation/stiffness_policy/name");
   at_config(config, "/formulation",

@@ -110,7 +110,7 @@ LinearModel model_of_this_machine() {
 LinearWork work_of(const RunConfig& config) {
   const Scene scene = build_scene(config);
   Calibration any;  // stiffness does not change a pattern
-  any.kappa = any.k_s = 1;
+  any.kappa = any.k_s = any.solid_k_s = 1;
   Method method = make_method(config, any);
   method.linear = {};  // any solver will do: nothing is solved
   NewtonSystem system(scene, method);

@@ -52,6 +52,17 @@ std::unique_ptr<StiffnessPolicy> make_limit_policy(const PolicyConfig& policy,
                      PolicyUse::limit);
 }
 
+std::unique_ptr<StiffnessPolicy> make_solid_limit_policy(const StrainLimitConfig& limit,
+                                                         const Calibration& calibration) {
+  if (!limits_solids(limit)) return nullptr;
+  const PolicyConfig& policy = limit.stiffness_policy;
+  double k_s = 0;
+  if (needs_k_s(policy)) {
+    k_s = require_stiffness(calibration.solid_k_s, limit.solid_k_s, "/strain_limit/solid_k_s_Pa");
+  }
+  return make_policy(policy_request(policy, PolicyUse::limit, k_s), PolicyUse::limit);
+}
+
 Method make_method(const RunConfig& config, const Calibration& calibration) {
   Method method;
   method.contact = {require_shape(config.formulation.shape), config.formulation.argument};
@@ -60,6 +71,7 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   if (method.strain_limit) {
     method.limit = {require_shape(config.strain_limit.shape), config.strain_limit.argument};
     method.limit_stiffness = make_limit_policy(config.strain_limit.stiffness_policy, calibration);
+    method.solid_limit_stiffness = make_solid_limit_policy(config.strain_limit, calibration);
   }
   method.precision = config.precision;
   method.contact.in_float = method.limit.in_float = values_in_float(config.precision);

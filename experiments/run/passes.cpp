@@ -15,7 +15,7 @@ namespace bb {
 
 // found by its argument, so outside of the namespace without a name
 static void keep(Archive& archive, Calibration& c) {
-  archive(c.kappa, c.k_s, c.scale, c.limit_scale, c.limited);
+  archive(c.kappa, c.k_s, c.solid_k_s, c.scale, c.limit_scale, c.limited);
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "barriers/shapes/registry.hpp"
 #include "core/archive/archive.hpp"
 #include "core/math/error.hpp"
+#include "core/mesh/topology.hpp"
 #include "core/newton/simulation.hpp"
 #include "core/record/phase_times.hpp"
 #include "experiments/config/parse.hpp"
@@ -34,6 +35,9 @@ StaticLoads static_loads(const RunConfig& config, const Scene& scene) {
   }
   StaticLoads out;
   out.contact = weight / n_free;
+  double volume = 0;
+  for (const auto& t : scene.solid_limit.tetrahedra) volume += tetrahedron_volume(scene.rest, t);
+  if (volume > 0) out.solid_limit = weight / std::cbrt(volume * volume);
   if (scene.limit.triangles.empty()) return out;
   double area = 0;
   for (const auto& t : scene.limit.triangles) {
@@ -57,6 +61,7 @@ RunConfig pilot_config(const RunConfig& config) {
   pilot.strain_limit.argument = Argument::gap;
   pilot.strain_limit.stiffness_policy = {};
   pilot.matching = {};
+  pilot.strain_limit.solid_k_s.reset();  // that of its own log
   pilot.step_solver.name = "line_search";
   pilot.step_solver.saddle = SaddleRule::escape;  // loads are those of minima
   pilot.step_solver.retries = 0;                  // its steps are all as long as those that read its loads
@@ -74,6 +79,9 @@ Calibration pilot_stiffness(const RunConfig& pilot, const Scene& scene, const St
   Calibration out;
   out.limited = !scene.limit.triangles.empty();
   out.kappa = match_equal_force(log_barrier(), pilot.formulation.d_hat, loads.contact, 0.5);
+  if (!scene.solid_limit.tetrahedra.empty()) {
+    out.solid_k_s = match_equal_force(log_barrier(), scene.solid_limit.width.front(), loads.solid_limit, 0.5);
+  }
   if (out.limited) {
     out.k_s = match_equal_force(log_barrier(), scene.limit.width.front(), loads.limit, 0.5);
   }

@@ -17,6 +17,8 @@ namespace bb {
 struct StaticLoads {
   double contact = 0;  // N per free vertex
   double limit = 0;    // N/m, weight over the side of a square of the limited area; 0 without a limit
+  double solid_limit =
+      0;  // Pa, weight over the side of a cube of the limited volume; 0 without a limit of solids
 };
 
 /// What the pilot leaves. Memory: 24 bytes a vertex and step, what terms remember a step (rest shapes that creep), 16 a

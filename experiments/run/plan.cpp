@@ -12,7 +12,7 @@ namespace {
 /// The terms of the config. The numbers of their stiffness do not matter to a plan.
 Method uncalibrated(const RunConfig& config) {
   Calibration any;
-  any.kappa = any.k_s = 1;
+  any.kappa = any.k_s = any.solid_k_s = 1;
   return make_method(config, any);
 }
 

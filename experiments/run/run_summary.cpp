@@ -27,6 +27,7 @@ void summarize_steps(const std::vector<SolverCounter>& counters, RunRecord& reco
     keep_larger(summary.max_stretch, step.max_stretch);
     keep_larger(summary.contact_load_max_N, step.contact_load_max_N);
     keep_larger(summary.limit_load_max_N_per_m, step.limit_load_max_N_per_m);
+    keep_larger(summary.solid_limit_load_max_Pa, step.solid_limit_load_max_Pa);
   }
   summary.newton_per_step = summarize(newton);
   summary.contacts = summarize(contacts);

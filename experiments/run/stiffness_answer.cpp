@@ -89,9 +89,7 @@ void fill_elements(StrainLimitBatch& limit, const BarrierFunction& barrier, cons
 
 }  // namespace
 
-double smaller_gap(const StrainLimitBatch& limit, std::size_t element) {
-  return std::min(limit.gaps()[2 * element], limit.gaps()[2 * element + 1]);
-}
+double smaller_gap(const StrainLimitBatch& limit, std::size_t element) { return limit.smaller_gap(element); }
 
 void AnswerSums::add_contact(const ContactTable& rows, std::size_t row, double force, double answer) {
   for (std::size_t k = 4 * row; k < 4 * row + 4 && rows.vertex[k] >= 0; ++k) {

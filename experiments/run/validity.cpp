@@ -14,8 +14,11 @@ void add_check(RunRecord& record, const char* name, double value, double bound, 
 // The largest stretch that any limited element may have, minus 1; 0 without a limit.
 double hard_limit(const Scene& scene) {
   double largest = 0;
-  for (std::size_t e = 0; e < scene.limit.width.size(); ++e) {
-    largest = std::max(largest, scene.limit.onset[e] + scene.limit.width[e]);
+  for (const StrainBands* bands :
+       {static_cast<const StrainBands*>(&scene.limit), static_cast<const StrainBands*>(&scene.solid_limit)}) {
+    for (std::size_t e = 0; e < bands->width.size(); ++e) {
+      largest = std::max(largest, bands->onset[e] + bands->width[e]);
+    }
   }
   return largest;
 }

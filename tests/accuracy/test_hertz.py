@@ -1,5 +1,6 @@
-"""A ball on a plane converges to Hertz's contact as its mesh is refined. The finest level takes half a minute of one core and is run where
-BARRIERBENCH_HERTZ_RINGS says 16; the first two are always.
+"""A ball on a plane converges to Hertz's contact as its mesh is refined. The finest level takes a minute of one core and is run where
+BARRIERBENCH_HERTZ_RINGS says 20; the first two are always. Both readings of it are within 5 %. What limits the approach is how fine the
+tetrahedra are down to two radii below the contact, where linear ones are too stiff: rings that crowd in the contact alone do not help.
 """
 
 import os
@@ -39,3 +40,5 @@ def test_the_contact_of_a_ball_is_that_of_hertz(program, tmp_path, formulation):
     assert all(b < 0.3 * a for a, b in zip(errors, errors[1:])), errors
     if FINEST >= 16:
         assert errors[-1] < 0.05
+    if FINEST >= 20:
+        assert found[-1].by_delta == pytest.approx(1, abs=0.05)

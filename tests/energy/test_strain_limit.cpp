@@ -84,7 +84,7 @@ TEST(StrainLimit, ProjectionIsThatOfTheHessianInF) {
       shape.db[k] = db;
       shape.d2b[k] = d2b;
     }
-    const auto density = strain_limit_density(svd.sigma, band, shape, kappa);
+    const auto density = strain_limit_density<double, 2>(svd.sigma, band, shape, kappa);
     // a concave stand-in for a dip in the shape: only the projection sees it
     Density2<double> bent = density;
     bent.d2psi(1, 1) -= 1.0;
@@ -184,7 +184,7 @@ TEST(StrainStiffness, SumsMatchHandComputedTerms) {
   EXPECT_NEAR(sums.elastic, 2 + 2 + 4 - 1, 1e-14);
   EXPECT_NEAR(sums.mass, 2 * 2 + 3 * 2 + 4 * 4, 1e-14);
   EXPECT_EQ(sums.element_mass, 6);
-  EXPECT_EQ(sums.area, 0.7);
+  EXPECT_EQ(sums.measure, 0.7);
   EXPECT_EQ(element_sums<double>(x, Vec3d(2, 3, 4), 6, 0.7, hessian, false).elastic, 0);
 }
 

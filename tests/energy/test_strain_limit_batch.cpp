@@ -144,7 +144,7 @@ TEST(StrainLimitBatch, SumsForPoliciesAreThoseOfTheElements) {
   EXPECT_NEAR(sums[4].elastic, 5 * w_sq, 1e-14);
   EXPECT_NEAR(sums[4].mass, 0.01 * w_sq, 1e-16);
   EXPECT_EQ(sums[4].element_mass, 0.3);
-  EXPECT_EQ(sums[4].area, batch.rests()[4].area);
+  EXPECT_EQ(sums[4].measure, batch.rests()[4].area);
   batch.stiffness_sums(strip.deformed, nullptr, mass.data(), element_mass.data(), sums.data());
   EXPECT_EQ(sums[4].elastic, 0);
 }

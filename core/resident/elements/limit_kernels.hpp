@@ -53,7 +53,7 @@ BB_HD void measure_stretch(const LimitColumns& limit, const double* x, Index e) 
   const Vec2d sigma = signed_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
   for (int k = 0; k < 2; ++k) {
     limit.sigma[k * limit.n + e] = sigma[k];
-    limit.gap[k * limit.n + e] = strain_gap(sigma[k], limit.band(e));
+    limit.gap[k * limit.n + e] = stretch_gap(sigma[k], limit.band(e));
   }
 }
 template <int R>
@@ -134,7 +134,7 @@ struct ElementKappa {
   BB_HD ElementSums<double> sums_of(Index e) const {
     if constexpr (requires { policy.values.uniform_kappa(); }) {
       ElementSums<double> out;
-      out.area = limit.rest.area[e];
+      out.measure = limit.rest.area[e];
       return out;
     } else {
       Vec3d p[3], mass;

@@ -301,6 +301,9 @@ void require_limit_kernels(const TermOptions& options) {
 
 void make_resident_strain_limit(const ResidentInputs& inputs, ResidentTermList& terms) {
   require_limit_kernels(inputs.options);
+  if (!inputs.scene.solid_limit.tetrahedra.empty()) {
+    throw ConfigError("strain_limit/solids", "true", "false: a limit of tetrahedra has no kernel");
+  }
   const Scene& scene = inputs.scene;
   const StrainLimitPart& part = scene.limit;
   const StrainLimitBatch batch(part.triangles, scene.rest, part.onset, part.width, scene.planar);
