@@ -24,9 +24,9 @@ struct Stencils {
 
 /// What is known of the blocks of a reduced system beside its matrix; an empty list: not known.
 struct BlockMesh {
-  std::vector<Vec3d> point;     // [n_blocks] m, where their vertices start
-  std::vector<int> row_start;   // [n_blocks + 1] into neighbour
-  std::vector<int> neighbour;   // the blocks that an element joins with a block, ascending, without itself
+  std::vector<Vec3d> point;    // [n_blocks] m, where their vertices start
+  std::vector<int> row_start;  // [n_blocks + 1] into neighbour
+  std::vector<int> neighbour;  // the blocks that an element joins with a block, ascending, without itself
 };
 
 /// What a linear solver and a condition estimator see: lower triangle, free degrees of freedom only.

@@ -103,11 +103,13 @@ PreconditionerEntry preconditioner_mas() {
   PreconditionerEntry entry;
   entry.parameters = {
       {"mas_blocks", word({"morton", "metis"}), "morton",
-       "what a block of vertices is: a stretch of a Morton curve through the start positions (of a matrix without "
+       "what a block of vertices is: a stretch of a Morton curve through the start positions (of a matrix "
+       "without "
        "mesh, of its order), or a part of the mesh's graph by METIS (without mesh, of the matrix)"},
       {"block_vertices", count(2, 1000), 32, "most nodes of a block, on every level; GIPC 32, StiffGIPC 16"}};
   entry.make = [](const ParameterMap& complete) -> std::unique_ptr<Preconditioner> {
-    return std::make_unique<Mas>(text(complete, "mas_blocks") == "metis", integer(complete, "block_vertices"));
+    return std::make_unique<Mas>(text(complete, "mas_blocks") == "metis",
+                                 integer(complete, "block_vertices"));
   };
   return entry;
 }

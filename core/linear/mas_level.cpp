@@ -16,10 +16,7 @@ using ConstDense = Eigen::Map<const Eigen::MatrixXd>;
 }  // namespace
 
 MasLevel::MasLevel(const SymmetricProduct& rows, VertexClusters blocks)
-    : start_(rows.start()),
-      row_start_(rows.row_start()),
-      column_(rows.column()),
-      blocks_(std::move(blocks)) {
+    : start_(rows.start()), row_start_(rows.row_start()), column_(rows.column()), blocks_(std::move(blocks)) {
   place_members();
   find_components();
   make_coarse_graph();
@@ -150,7 +147,8 @@ const double* MasLevel::solve(const double* residual) {
       for (int i = 0; i < width(node); ++i) {
         const double r = residual[start_[at(node)] + i];
         x[place_[at(node)] + i] = r;
-        residual_above_[at(above_start_[at(above_[at(node)])] + i)] += r;  // its members are all in this block
+        residual_above_[at(above_start_[at(above_[at(node)])] + i)] +=
+            r;  // its members are all in this block
       }
     }
     const ConstDense l(factor_.data() + offset_[at(block)], n, n);

@@ -40,7 +40,7 @@ class MasLevel {
   int width(int node) const { return start_[at(node) + 1] - start_[at(node)]; }
   int n_dofs(int block) const { return block_first_[at(block) + 1] - block_first_[at(block)]; }
 
-  std::vector<int> start_;              // [n_nodes + 1] degrees of freedom before a node
+  std::vector<int> start_;               // [n_nodes + 1] degrees of freedom before a node
   std::vector<int> row_start_, column_;  // the graph, with the diagonal, both triangles, ascending
   VertexClusters blocks_;
   std::vector<int> place_;           // [n_nodes] degrees of freedom before a node in its block
@@ -53,9 +53,10 @@ class MasLevel {
   std::vector<int> above_;        // [n_nodes] node of the level above
   std::vector<int> above_start_;  // [n_above + 1] degrees of freedom before one of them
   std::vector<int> above_row_start_, above_column_;
-  std::vector<int> gather_start_, gather_;  // of every block above the blocks of this matrix that it is the sum of
-  std::vector<double> coarse_;              // its values
-  std::vector<double> work_;                // by blocks
+  std::vector<int> gather_start_,
+      gather_;                  // of every block above the blocks of this matrix that it is the sum of
+  std::vector<double> coarse_;  // its values
+  std::vector<double> work_;    // by blocks
   std::vector<double> solution_, residual_above_;
 };
 

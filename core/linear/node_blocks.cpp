@@ -95,8 +95,9 @@ std::vector<idx_t> parts_of(const std::vector<int>& nodes, const std::vector<int
     start.push_back(static_cast<idx_t>(list.size()));
   }
   idx_t n = static_cast<idx_t>(nodes.size()), n_constraints = 1, cut_edges = 0;
-  const int status = METIS_PartGraphKway(&n, &n_constraints, start.data(), list.data(), nullptr, nullptr, nullptr,
-                                         &n_parts, nullptr, nullptr, nullptr, &cut_edges, part.data());
+  const int status =
+      METIS_PartGraphKway(&n, &n_constraints, start.data(), list.data(), nullptr, nullptr, nullptr, &n_parts,
+                          nullptr, nullptr, nullptr, &cut_edges, part.data());
   if (status != METIS_OK) throw std::runtime_error("METIS_PartGraphKway: status " + std::to_string(status));
   return part;
 }

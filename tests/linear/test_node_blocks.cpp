@@ -43,8 +43,7 @@ TEST(NodeBlocks, MortonCurveIsThatOfInterleavedBits) {
   const VertexClusters blocks = morton_blocks(points, 4);
   expect_partition(blocks, 17, 4);
   // along y first: of two bits at one height that of x stands before that of y
-  EXPECT_EQ(blocks.member,
-            (std::vector<int>{0, 4, 1, 5, 8, 12, 9, 13, 2, 6, 3, 7, 10, 14, 11, 15, 16}));
+  EXPECT_EQ(blocks.member, (std::vector<int>{0, 4, 1, 5, 8, 12, 9, 13, 2, 6, 3, 7, 10, 14, 11, 15, 16}));
 }
 
 /// The noise of a flat sheet is no axis: the order is that of the sheet without it.
