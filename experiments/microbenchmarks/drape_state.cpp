@@ -25,7 +25,9 @@ RunConfig drape_config(int n) {
 Calibration stiffness(const RunConfig& config, const Scene& scene) {
   double weight = 0;
   for (const double mass : scene.mass) weight += mass * scene.gravity.norm();
-  const Method probe = make_method(config, {1.0, 1.0, 1.0});
+  Calibration ones;
+  ones.kappa = ones.k_s = 1.0;
+  const Method probe = make_method(config, ones);
   const double d_hat = config.formulation.d_hat, width = config.strain_limit.width;
   const double per_vertex = weight / (scene.n_vertices() / 5.0);
   Calibration out;
