@@ -34,24 +34,22 @@ double VertexBounds::floor_of(double largest) const {
 }
 
 /// Vertices of the first side, below `split`, come down from their height (m) above the others by `towards`; those of the
-/// second rise by it. The plane divides the room (m) between the two sides as these approach it: a side as its vertex does
-/// that goes farthest beyond where the nearest one stands now; in halves where none does.
+/// second rise by it. The plane divides the room (m) between the two sides as those vertices approach it that carry the
+/// closest points, in halves where none does.
 template <int N>
 void VertexBounds::divide(const std::array<int, N>& vertex, int split, const SideOf (&of)[N], double keep) {
   double approach[2] = {0, 0}, edge[2] = {of[0].height, of[split].height};
   for (int k = 0; k < N; ++k) {
     const int side = k < split ? 0 : 1;
+    if (of[k].carries) approach[side] = std::max(approach[side], of[k].towards);
     edge[side] = side == 0 ? std::min(edge[0], of[k].height) : std::max(edge[1], of[k].height);
-  }
-  const auto behind = [&](int k) { return k < split ? of[k].height - edge[0] : edge[1] - of[k].height; };
-  for (int k = 0; k < N; ++k) {
-    double& of_side = approach[k < split ? 0 : 1];
-    of_side = std::max(of_side, of[k].towards - behind(k));
   }
   const double both = approach[0] + approach[1], room = edge[0] - edge[1] - keep;
   for (int k = 0; k < N; ++k) {
-    const double share = both > 0 ? approach[k < split ? 0 : 1] / both : 0.5;
-    const double own = room > 0 ? behind(k) + room * share : 0;
+    const int side = k < split ? 0 : 1;
+    const double extra = side == 0 ? of[k].height - edge[0] : edge[1] - of[k].height;
+    const double share = both > 0 ? approach[side] / both : 0.5;
+    const double own = room > 0 ? extra + room * share : 0;
     keep_smaller(vertex[static_cast<std::size_t>(k)], part_of(gamma_ * own, of[k].towards));
   }
 }
@@ -76,7 +74,8 @@ void VertexBounds::bound_pair(const ContactPair<K>& pair, const Motion& motion) 
   SideOf of[N];
   for (int k = 0; k < N; ++k) {
     const double along = n.dot(dx.col(k));
-    of[k] = {n.dot(x.col(k) - x.col(0)), apart ? (k < split ? -along : along) : dx.col(k).norm()};
+    of[k] = {n.dot(x.col(k) - x.col(0)), apart ? (k < split ? -along : along) : dx.col(k).norm(),
+             closest.weights[k] != 0};
   }
   divide<N>(pair.vertex, split, of, pair.law.offset + floor);
 }
@@ -95,6 +94,7 @@ void VertexBounds::bound_at_obstacle(const std::array<int, N>& vertex, const Sid
   const bool ball = rule_ == StepBoundRule::per_vertex || (s.inside && s.kind != ObstacleKind::plane);
   Vec3d n = s.axis;
   double gap = 0;
+  bool carries[N] = {true};
   if constexpr (N == 1) {
     const SurfaceGap<double> at = surface_gap<double>(s, x);
     n = at.normal, gap = at.d;
@@ -102,6 +102,7 @@ void VertexBounds::bound_at_obstacle(const std::array<int, N>& vertex, const Sid
     const Closest<double, N + 1> closest =
         closest_points<centre_pair<N>, double>(about_centre<N, double>(s, x));
     n = closest.r / -closest.d, gap = closest.d - s.radius;
+    for (int k = 0; k < N; ++k) carries[k] = closest.weights[k + 1] != 0;
   }
   const double own = s.vertex < 0 ? gamma_ : gamma_ / 2;
   if (ball) {
@@ -116,10 +117,10 @@ void VertexBounds::bound_at_obstacle(const std::array<int, N>& vertex, const Sid
   SideOf of[N + 1];
   for (int k = 0; k < N; ++k) {
     all[static_cast<std::size_t>(k)] = vertex[static_cast<std::size_t>(k)];
-    of[k] = {n.dot(x.col(k) - s.point), -n.dot(dx.col(k))};
+    of[k] = {n.dot(x.col(k) - s.point), -n.dot(dx.col(k)), carries[k]};
   }
   all[N] = s.vertex < 0 ? vertex[0] : s.vertex;
-  of[N] = {s.kind == ObstacleKind::plane ? 0 : s.radius, s.vertex < 0 ? 0 : n.dot(moved)};
+  of[N] = {s.kind == ObstacleKind::plane ? 0 : s.radius, s.vertex < 0 ? 0 : n.dot(moved), true};
   divide<N + 1>(all, N, of, law.offset + floor);
 }
 

@@ -48,9 +48,10 @@ class VertexBounds {
   template <int N>
   void bound_at_obstacle(const std::array<int, N>& vertex, const Side& law,
                          const AnalyticSurface<double>& given, const Motion& motion);
-  /// Of a vertex across a plane, m: its height, how far it goes towards the other side.
+  /// Of a vertex across a plane, m: its height, how far it goes towards the other side, whether it carries the closest point.
   struct SideOf {
     double height = 0, towards = 0;
+    bool carries = false;
   };
   template <int N>
   void divide(const std::array<int, N>& vertex, int split, const SideOf (&of)[N], double keep);

@@ -212,9 +212,9 @@ class LineSearch final : public StepSolver {
     return false;
   }
 
-  // Each vertex as far as contact lets it; or, where no part of that motion falls by as much as dx promises of all of them
-  // going as far as the one that may go least, that. What is taken is said as the part of the fall that dx promises to first
-  // order; of a motion that is asked for no energies, as that of prescribed vertices.
+  // Each vertex as far as contact lets it, or where that does not descend all of them as far as the one that may go least.
+  // What is taken is said as the part of the fall that dx promises to first order; of a motion that is asked for no
+  // energies, as that of prescribed vertices.
   bool go_truncated(StepSystem& system, IterationReport& report, const TruncatedMotion& motion,
                     bool energy_test) {
     const double slope = system.direction_size().slope_J, whole = -2 * report.decrement_J;
@@ -224,8 +224,7 @@ class LineSearch final : public StepSolver {
       share_ = energy_test ? slope / whole : motion.of_pins;
       truncated_ = true;
       ++*truncations_;
-      const double least = energy_test ? cap_fraction_ * of_all / share_ : 0;
-      if (go_along(system, report, std::max(smallest_alpha, least), energy_test)) return true;
+      if (go_along(system, report, smallest_alpha, energy_test)) return true;
       bound_ = of_all;
     }
     share_ = 1, truncated_ = false;

@@ -62,25 +62,6 @@ TEST(VertexBounds, APlaneDividesTheGapAsBothSidesApproach) {
   EXPECT_EQ(found.bound.queries, 0);
 }
 
-/// The closest point lies on an edge, whose ends stand still; the third corner is hardly behind them and goes the same
-/// way as the point, towards the other side. A plane at the edge would leave it nothing but that, and less each time.
-TEST(VertexBounds, AVertexBehindTheClosestPointsHasItsShare) {
-  const double behind = 1e-3, root = std::sqrt(5.0);
-  const Vec3d n(0, -1 / root, 2 / root);
-  const Vec3d corner(0, 1, 0.5 - behind * root / 2);  // n . corner = -behind
-  Scene scene;
-  add_body(scene, "triangle", {Vec3d(-1, 0, 0), Vec3d(1, 0, 0), corner}, {{0, 1, 2}}, d_hat);
-  add_body(scene, "point", {0.05 * root * n}, {}, 1);
-  Positions x1 = scene.x0;
-  x1.col(2) += 0.5 * n;
-  x1.col(3) -= 0.5 * n;
-  const Found found = parts_of(scene, x1, StepBoundRule::planar_truncation);
-  const double gap = 0.05 * root, both = 0.5 - behind + 0.5;
-  EXPECT_NEAR(found.part[2], gamma * (behind + gap * (0.5 - behind) / both) / 0.5, 1e-12);
-  EXPECT_NEAR(found.part[3], gamma * gap * 0.5 / both / 0.5, 1e-12);
-  EXPECT_EQ(found.part[0], 1);
-}
-
 TEST(VertexBounds, ThicknessIsNoGap) {
   const Scene scene = point_over_triangle(0.1, 0.02);
   Positions x1 = scene.x0;
