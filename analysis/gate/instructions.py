@@ -33,10 +33,11 @@ def count(case: Case) -> tuple[float, dict] | None:
     if valgrind is None:
         return None
     # The kernel is named beforehand: the program would start itself again to get it, which callgrind does
-    # not follow.
-
+    # not follow. The hash of the program is kept between processes: with a cache of its own every count has
+    # it.
     environment = {**os.environ, "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE", "Haswell")}
     with tempfile.TemporaryDirectory() as folder:
+        environment["BARRIERBENCH_CACHE"] = str(Path(folder) / "cache")
         out = Path(folder) / "run"
         under = [valgrind, "--tool=callgrind", f"--callgrind-out-file={folder}/out"]
         done = started(*words_of(case, out, 1, WITHOUT_TIMES), under=under, env=environment)

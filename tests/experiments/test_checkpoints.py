@@ -14,7 +14,7 @@ SOLVERS = {
     "cholmod": {"/linear_solver/name": "cholmod"},
     "lagged_cholesky": {"/linear_solver/name": "lagged_cholesky"},
     **{f"pcg {name}": {"/linear_solver/name": "pcg", "/linear_solver/preconditioner": name}
-       for name in ("none", "jacobi", "block_jacobi", "ic0", "schwarz")},
+       for name in ("none", "jacobi", "block_jacobi", "ic0", "schwarz", "mas")},
     **{f"pcg_resident {name}": {"/linear_solver/name": "pcg_resident", "/linear_solver/resident_preconditioner": name}
        for name in ("block_jacobi", "schwarz")},
     **{f"device host {name}": {"/device": "host", "/linear_solver/resident_preconditioner": name}
