@@ -30,6 +30,13 @@ nb::ndarray<nb::numpy, T> array_of(std::vector<T> values, N... sizes) {
   return nb::ndarray<nb::numpy, T>(kept->data(), sizeof...(N), shape, owner);
 }
 
+/// A numpy array of this shape that only looks at the values.
+template <class T, class... N>
+nb::ndarray<nb::numpy, T> view_of(T* values, N... sizes) {
+  const std::size_t shape[] = {static_cast<std::size_t>(sizes)...};
+  return nb::ndarray<nb::numpy, T>(values, sizeof...(N), shape, nb::capsule(values, [](void*) noexcept {}));
+}
+
 void bind_shapes(nb::module_& module);
 void bind_geometry(nb::module_& module);
 void bind_condition(nb::module_& module);

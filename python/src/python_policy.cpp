@@ -20,13 +20,6 @@ struct PythonCall {
   bool needs_hessian;
 };
 
-/// A numpy array that only looks at the values.
-template <class T, class... N>
-nb::ndarray<nb::numpy, T> view_of(T* values, N... sizes) {
-  const std::size_t shape[] = {static_cast<std::size_t>(sizes)...};
-  return nb::ndarray<nb::numpy, T>(values, sizeof...(N), shape, nb::capsule(values, [](void*) noexcept {}));
-}
-
 class PythonPolicy final : public StiffnessPolicy {
  public:
   PythonPolicy(std::string name, const PythonCall& call, Refresh refresh, double multiplier)

@@ -16,12 +16,6 @@ struct PythonShape {
   nb::object fill;  // fill(d, d_hat, b, db, d2b) writes the last three
 };
 
-/// A numpy array that only looks at the values.
-template <class T>
-nb::ndarray<nb::numpy, T> view_of(T* values, std::size_t n) {
-  return nb::ndarray<nb::numpy, T>(values, {n}, nb::capsule(values, [](void*) noexcept {}));
-}
-
 /// Called by threads of the run. An exception of Python goes on as nb::python_error.
 void fill_double(void* self, std::size_t n, const double* d, const double* d_hat, double* b, double* db,
                  double* d2b) {
