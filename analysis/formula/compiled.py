@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from . import cache
 from .grammar import POLICY, Formula, FormulaError, read
@@ -17,10 +17,7 @@ def compiled(text: str, declared: str | None = None) -> cache.Compiled:
     """declared: what `at_zero` says, or None. Cost: 0.1 s from the cache, else some seconds. Errors:
     FormulaError.
     """
-    formula = read(text)
-    words = cache.command()
-    key = cache.key_of(formula, words)
-    found = cache.find(key) or _made(formula, key, words)
+    found = _kept(read(text), _made)
     if declared is not None and declared != found.about["at_zero"]:
         allowed = f'"{found.about["at_zero"]}": b -> {found.about["b_at_zero"]} at d = 0'
         raise FormulaError(f'at_zero "{declared}"', allowed)
@@ -29,10 +26,14 @@ def compiled(text: str, declared: str | None = None) -> cache.Compiled:
 
 def compiled_policy(text: str) -> cache.Compiled:
     """The same of a stiffness, kappa in N/m of a contact."""
-    formula = read(text, POLICY)
+    return _kept(read(text, POLICY), _made_policy)
+
+
+def _kept(formula: Formula, make: Callable[[Formula, str, list[str]], cache.Compiled]) -> cache.Compiled:
+    """From the cache, else made."""
     words = cache.command()
     key = cache.key_of(formula, words)
-    return cache.find(key) or _made_policy(formula, key, words)
+    return cache.find(key) or make(formula, key, words)
 
 
 def _made_policy(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
