@@ -22,7 +22,8 @@ METRICS = {
 }  # the smaller the better
 COSTS = ("newton", "pcg", "cond_p95", "bj_p95")
 GAPS = (0.8, 0.5, 0.2, 0.1, 0.05)  # over d_hat, at which it is held against the log
-BETTER, WORSE, EVEN = "better", "worse", "even"
+BETTER, WORSE, EVEN, OPEN = "better", "worse", "even", "not judged"
+LEAST_SCENES = 2  # scenes are the samples: one of them tells nothing of others
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,9 @@ class Comparison:
 
     @property
     def verdict(self) -> str:
-        """Beyond SAME, and in the same direction in every scene."""
+        """Beyond SAME, and in the same direction in every scene, of which there are LEAST_SCENES."""
+        if self.scenes < LEAST_SCENES:
+            return OPEN
         if self.ratio <= 1 / SAME and self.high <= 1:
             return BETTER
         return WORSE if self.ratio >= SAME and self.low >= 1 else EVEN
@@ -150,7 +153,7 @@ def decides(rows: list[dict], starts: list[dict], cases: list[dict], label: str)
             f"{mine['of'] - mine['ok']} of {mine['of']} jittered starts do not end ok:"
             f" {', '.join(mine['others'])}."
         )
-    found = [one for one in comparisons(rows, label) if one.verdict != EVEN]
+    found = [one for one in comparisons(rows, label) if one.verdict in (BETTER, WORSE)]
     for one in sorted(found, key=lambda one: -abs(math.log(one.ratio)))[:4]:
         said.append(
             f"{METRICS[one.metric].capitalize()}: {one.ratio:.2f} times those of {one.rival} at theta"

@@ -8,6 +8,10 @@
 
 namespace bb {
 
+/// What the right-hand side of a Newton direction is: the residual alone, or with the forces of what prescribed vertices have to
+/// move yet.
+enum class RightSide { residual, with_motion };
+
 /// Tolerances on |r|/|b| from the norms of successive right-hand sides of one step, which are the residuals of
 /// Newton's method.
 class Forcing {
@@ -23,7 +27,10 @@ class Forcing {
   /// iterate, so the same tolerance. eisenstat_walker: choice 2 of Eisenstat, Walker 1996, eta = 0.9 (|b| over
   /// the |b| before)^2, at least 0.9 eta_before^2 where that is above 0.1 (their safeguard), at most 0.1 and at
   /// least tol_rel; 0.1 for the first of a step.
-  double tolerance(double b_norm);
+  /// with_motion: 1e-3, and the next residual is as the first of a step. Its norm is that of the stiffest contacts of what is
+  /// moved, so with a tenth of it left their neighbours do not follow, and gaps close instead (belt of the catalogue, 80 steps:
+  /// 505 iterations with a direct solver, 590 with 1e-3, 1932 with 1e-2, and with 0.1 step 35 does not end).
+  double tolerance(double b_norm, RightSide of = RightSide::residual);
 
  private:
   bool adaptive_;

@@ -25,7 +25,8 @@ std::string_view to_string(LinearStatus status) {
   return "";
 }
 
-LinearReport LinearSolver::solve(const ReducedSystem& system, const VecXd& b, VecXd& x) {
+LinearReport LinearSolver::solve(const ReducedSystem& system, const VecXd& b, VecXd& x, RightSide of) {
+  of_ = of;
   if (b.size() != system.lower.rows()) {
     throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
   }

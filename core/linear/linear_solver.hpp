@@ -10,6 +10,7 @@
 
 #include "core/linear/block_system.hpp"
 #include "core/linear/definiteness.hpp"
+#include "core/linear/forcing.hpp"
 #include "core/parameters/parameter.hpp"
 #include "core/parameters/registry.hpp"
 
@@ -70,14 +71,20 @@ class LinearSolver {
   virtual void keep(Archive&) {}
   /// x is resized to b. Analysis is reused while pattern_id stays. Never silently falls back
   /// to another method. A factor that is too large is the status factor_too_large.
+  /// of: what b is; how far an inexact solve goes depends on it.
   /// Errors: ConfigError when b has not one entry a row of the matrix; std::bad_alloc.
-  LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x);
+  LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x,
+                     RightSide of = RightSide::residual);
   /// Whether A is positive definite: a direct solver by its factor, an iterative one by its own iterations. near: for
   /// the preconditioner. What solve() keeps from earlier matrices may change. Cost: a factorisation, two more and
   /// some solves where there is none; or a solve to 1e-6.
   virtual Definiteness examine(const ReducedSystem& a, const NearMatrix& near);
 
+ protected:
+  RightSide right_side() const { return of_; }  // of the solve that runs
+
  private:
+  RightSide of_ = RightSide::residual;
   /// x is 0, b fits.
   virtual LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) = 0;
 };

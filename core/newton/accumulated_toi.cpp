@@ -3,6 +3,8 @@
 // of the motion that was feasible, beta; once beta >= target the step is shortened to beta dt and one more
 // iteration with the shortened prediction reduces the error. Only with implicit Euler, whose prediction
 // scales with dt.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/newton/iteration.hpp"
@@ -107,6 +109,13 @@ class AccumulatedToi final : public StepSolver {
   int min_newton_steps_;
 };
 
+std::optional<Violation> too_many_newton_steps(const ParameterMap& parameters, int max_iterations) {
+  const int least = integer(parameters, "min_newton_steps");
+  if (least <= max_iterations) return std::nullopt;
+  return Violation{"min_newton_steps", fmt::format("{}", least),
+                   fmt::format("an integer <= max_iterations = {}", max_iterations)};
+}
+
 }  // namespace
 
 StepSolverEntry step_solver_accumulated_toi() {
@@ -126,6 +135,8 @@ StepSolverEntry step_solver_accumulated_toi() {
   };
   entry.needs.energies = entry.needs.minimum = false;
   entry.asked_to_converge = false;
+  entry.settings.implicit_euler = true;
+  entry.settings.contradiction = too_many_newton_steps;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AccumulatedToi>(options);
   };

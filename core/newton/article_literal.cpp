@@ -71,6 +71,7 @@ StepSolverEntry step_solver_article_literal() {
   entry.guarantee = "none: nothing keeps a step from passing through a surface or beyond the strain limit";
   entry.parameters = {{"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"}};
   entry.needs.minimum = entry.needs.step_bound = false;
+  entry.settings = {.implicit_euler = true, .clamped = true, .protocol = "article_literal"};
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<ArticleLiteral>(options);
   };

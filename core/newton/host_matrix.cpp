@@ -145,12 +145,12 @@ void HostPotential::add_given_motion(const Column& x, const Column& motion, Colu
 }
 
 // The solver measures its own parts; what is neither analysis nor factorisation is solution.
-void HostPotential::solve(const Column& b, Column& step, SolveReport& report) {
+void HostPotential::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {
   blocks_->restrict_vector(points(b), rhs_);
   const ReducedSystem& reduced = blocks_->reduce(full_);
   nnz_ = static_cast<std::size_t>(reduced.lower.nonZeros());
   const ScopedPhase timer(clock(), Phase::linear_solve);
-  const LinearReport linear = solver_->solve(reduced, rhs_, solution_);
+  const LinearReport linear = solver_->solve(reduced, rhs_, solution_, of);
   clock().move(Phase::linear_solve, Phase::linear_analyze, linear.analyze_s);
   clock().move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
   report.add_attempt(linear);

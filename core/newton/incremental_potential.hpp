@@ -7,6 +7,7 @@
 
 #include "core/exec/buffer.hpp"
 #include "core/linear/definiteness.hpp"
+#include "core/linear/forcing.hpp"
 #include "core/newton/energy_change.hpp"
 #include "core/newton/hessian_level.hpp"
 #include "core/newton/report.hpp"
@@ -65,8 +66,8 @@ class IncrementalPotential {
   virtual void multiply(const Column& v, Column& out) = 0;
   /// force (N) += how the gradient changes along the motion of prescribed vertices, as far as it is in no block of A.
   virtual void add_given_motion(const Column& x, const Column& motion, Column& force) = 0;
-  /// step = A^-1 b over free degrees of freedom, A of the last fill_matrix(). Adds its work to the report.
-  virtual void solve(const Column& b, Column& step, SolveReport& report) = 0;
+  /// step = A^-1 b over free degrees of freedom, A of the last fill_matrix(); of: what b is. Adds its work to the report.
+  virtual void solve(const Column& b, RightSide of, Column& step, SolveReport& report) = 0;
   /// Whether the exact matrix at x is positive definite; if not, `direction` becomes one of negative curvature. near: the
   /// level of a matrix that was solved. b, step: for its own use.
   virtual Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,

@@ -312,6 +312,7 @@ StepSolverEntry step_solver_line_search() {
       {"truncations",
        "line_search: iterations in which vertices went each as far as contact let it (/contact/step_bound)",
        OverSteps::sum}};
+  entry.settings.vertex_steps = true;
   entry.make = [](const StepSolverOptions& options) {
     return make_line_search(options, {number(options.parameters, "cap_fraction"), true});
   };

@@ -69,7 +69,8 @@ bool NewtonSystem::find_one_direction(SolveReport& report) {
   const ScopedPhase timer(clock(), Phase::assembly);
   const bool moving = set_right_hand_side();
   report.t = state_.level.t();
-  state_.potential->solve(state_.b, state_.step, report);
+  state_.potential->solve(state_.b, moving ? RightSide::with_motion : RightSide::residual, state_.step,
+                          report);
   factored_ = report.linear.factorized;
   if (report.linear.status != LinearStatus::ok) return false;
   take_solution();
@@ -157,7 +158,7 @@ bool NewtonSystem::make_detour(double bound, SolveReport& report) {
   const ScopedPhase timer(clock(), Phase::assembly);
   if (!state_.potential->make_room(state_.x, state_.dx, bound, state_.b)) return false;
   SolveReport detour;
-  state_.potential->solve(state_.b, state_.step, detour);
+  state_.potential->solve(state_.b, RightSide::residual, state_.step, detour);
   factored_ = detour.linear.factorized;
   report.add_detour(detour);
   if (detour.linear.status != LinearStatus::ok) return false;

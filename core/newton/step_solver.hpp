@@ -3,9 +3,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/math/error.hpp"
 #include "core/newton/method.hpp"
 #include "core/newton/report.hpp"
 #include "core/newton/step_system.hpp"
@@ -38,6 +40,17 @@ class StepSolver {
                              StepObserver& observer) = 0;
 };
 
+/// What it asks of the settings of a run.
+struct StepSettings {
+  bool implicit_euler = false;  // no other integrator
+  bool clamped = false;         // every Hessian clamped
+  bool vertex_steps =
+      false;             // it can go another part of a step at each vertex, so bounds of vertices are allowed
+  std::string protocol;  // of a scene that no other solver follows, and that it follows alone; empty: none
+  /// The first of its own settings that contradicts another; where: its name.
+  std::optional<Violation> (*contradiction)(const ParameterMap& complete, int max_iterations) = nullptr;
+};
+
 struct StepSolverEntry {
   std::string name, doc;
   std::string guarantee;              // what every state that a step ends in has, in plain words
@@ -45,6 +58,7 @@ struct StepSolverEntry {
   bool stated_always = true;          // false: a resolved config has its own settings only where it is chosen
   std::vector<SolverCounter> counters;  // that its steps fill in StepReport::solver, all of them
   StepNeeds needs;
+  StepSettings settings;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
   void (*set_terms)(const StepSolverOptions& complete,
                     TermOptions&) = nullptr;  // what it asks of terms by numbers

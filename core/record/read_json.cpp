@@ -120,7 +120,7 @@ Number number_of(const Place& place, const Json& object, const FieldText& field)
   return Number::missing(kept(word));
 }
 
-void get_field(const Place& place, const Json& object, const FieldText& field, Number& out) {
+BB_ONCE_A_TYPE void get_field(const Place& place, const Json& object, const FieldText& field, Number& out) {
   out = number_of(place, object, field);
 }
 /// The same with the infinity that a reason says.
@@ -129,7 +129,7 @@ double double_of(const Number& number) {
   const double infinity = std::numeric_limits<double>::infinity();
   return reason == "infinite" ? infinity : reason == "minus_infinite" ? -infinity : number.value;
 }
-void get_field(const Place& place, const Json& object, const FieldText& field, double& out) {
+BB_ONCE_A_TYPE void get_field(const Place& place, const Json& object, const FieldText& field, double& out) {
   out = double_of(number_of(place, object, field));
 }
 void get(const Place& place, const Json& j, SolverCounts& out) {
@@ -140,8 +140,15 @@ void get(const Place& place, const Json& j, SolverCounts& out) {
   }
 }
 template <class T>
-void get_field(const Place& place, const Json& object, const FieldText& field, T& out) {
+BB_ONCE_A_TYPE void get_field(const Place& place, const Json& object, const FieldText& field, T& out) {
   get(place / field.name, object[field.name], out);
+}
+
+/// Whether the object has it. Errors: ConfigError where it must.
+BB_ONCE_A_TYPE bool present(const Place& place, const Json& object, const FieldText& field, bool optional) {
+  if (object.contains(field.name)) return true;
+  if (!optional && !place.may_lack) throw ConfigError(place.at + "/" + field.name, "nothing", field.doc);
+  return false;
 }
 
 template <Record T>
@@ -150,11 +157,8 @@ void get(const Place& place, const Json& j, T& out) {
   for_each_field<T>([&](const FieldText& field, auto member) {
     if constexpr (std::is_member_object_pointer_v<decltype(member)>) {
       auto& value = out.*member;
-      if (j.contains(field.name)) {
-        get_field(place, j, field, value);
-      } else if constexpr (!std::is_same_v<decltype(value), std::optional<std::string>&>) {
-        if (!place.may_lack) throw ConfigError(place.at + "/" + field.name, "nothing", field.doc);
-      }
+      constexpr bool optional = std::is_same_v<decltype(value), std::optional<std::string>&>;
+      if (present(place, j, field, optional)) get_field(place, j, field, value);
     }
   });
 }

@@ -67,7 +67,7 @@ Json record_schema(Json& defs);
 
 /// Of a value of type T; `defs` gets the records in it.
 template <class T>
-Json schema_of(Json& defs, const FieldText& field) {
+BB_ONCE_A_TYPE Json schema_of(Json& defs, const FieldText& field) {
   const auto define = [&defs](const char* name, auto make) {
     if (!defs.contains(name)) {
       defs[name] = nullptr;  // keeps its place before those of its fields
@@ -103,24 +103,40 @@ Json schema_of(Json& defs, const FieldText& field) {
   }
 }
 
+/// What a record holds: `reasons` are the words beside a number that is null, empty for what is no number.
+struct Properties {
+  Json all = Json::object(), required = Json::array();
+  BB_ONCE_A_TYPE void add(const FieldText& field, Json schema, const char* reasons, bool optional) {
+    schema["description"] = field.doc;
+    all[field.name] = std::move(schema);
+    if (*reasons != '\0') {
+      const std::vector<std::string> words = words_in(std::string(field.allowed) + " " + reasons);
+      all[std::string(field.name) + "_status"] = {{"enum", words}};
+    }
+    if (!optional) required.push_back(field.name);
+  }
+};
+
+/// Words beside a null, of a field of type T; empty: it is none that may be null.
+template <class T>
+constexpr const char* reasons_of = "";
+template <>
+constexpr const char* reasons_of<Number> = absent_words;
+template <>
+constexpr const char* reasons_of<double> = non_finite_words;
+
 template <class T>
 Json record_schema(Json& defs) {
-  Json properties = Json::object(), required = Json::array();
+  Properties properties;
   for_each_field<T>([&](const FieldText& field, auto member) {
     using Value = std::remove_cvref_t<std::invoke_result_t<decltype(member), const T&>>;
-    Json& property = properties[field.name] = schema_of<Value>(defs, field);
-    property["description"] = field.doc;
-    if constexpr (std::same_as<Value, Number> || std::same_as<Value, double>) {
-      const char* reasons = std::same_as<Value, Number> ? absent_words : non_finite_words;
-      const std::vector<std::string> words = words_in(std::string(field.allowed) + " " + reasons);
-      properties[std::string(field.name) + "_status"] = {{"enum", words}};
-    }
-    if constexpr (!std::same_as<Value, std::optional<std::string>>) required.push_back(field.name);
+    properties.add(field, schema_of<Value>(defs, field), reasons_of<Value>,
+                   std::same_as<Value, std::optional<std::string>>);
   });
   return {{"type", "object"},
           {"description", T::record_doc},
-          {"properties", properties},
-          {"required", required},
+          {"properties", properties.all},
+          {"required", properties.required},
           {"additionalProperties", false}};
 }
 

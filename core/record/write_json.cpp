@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Sets j[name]; a missing value is null plus j["<name>_status"], the reason.
-void put(Json& j, const std::string& name, const Number& n) {
+BB_ONCE_A_TYPE void put(Json& j, const std::string& name, const Number& n) {
   if (n.finite()) {
     j[name] = n.value;
   } else {
@@ -61,13 +61,15 @@ Json json_of(const std::map<std::string, T>& map) {
   return j;
 }
 
-void put(Json& j, const FieldText& field, const Number& v) { put(j, std::string(field.name), v); }
-void put(Json& j, const FieldText& field, double v) { put(j, std::string(field.name), v); }
-void put(Json& j, const FieldText& field, const std::optional<std::string>& v) {
+BB_ONCE_A_TYPE void put(Json& j, const FieldText& field, const Number& v) {
+  put(j, std::string(field.name), v);
+}
+BB_ONCE_A_TYPE void put(Json& j, const FieldText& field, double v) { put(j, std::string(field.name), v); }
+BB_ONCE_A_TYPE void put(Json& j, const FieldText& field, const std::optional<std::string>& v) {
   if (v) j[field.name] = *v;
 }
 template <class T>
-void put(Json& j, const FieldText& field, const T& v) {
+BB_ONCE_A_TYPE void put(Json& j, const FieldText& field, const T& v) {
   j[field.name] = json_of(v);
 }
 

@@ -88,7 +88,7 @@ class LaggedCholesky final : public LinearSolver {
       report.status = LinearStatus::non_finite;
       fail(x, report);
     } else if (b_norm > 0) {
-      report.tolerance = forcing_.tolerance(b_norm);
+      report.tolerance = forcing_.tolerance(b_norm, right_side());
       if (to_make_ && factor_.make() != LinearStatus::ok) n_ = -1;
       to_make_ = false;
       const bool settled = n_ == b.size() && iterate(b, max_pcg_iterations_, x, report);

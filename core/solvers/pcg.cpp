@@ -52,7 +52,7 @@ LinearReport Pcg::solve_checked(const ReducedSystem& system, const VecXd& b, Vec
   report.residual_true = report.residual_recurrence = 1;
   if (report.status != LinearStatus::ok) return report;
 
-  report.tolerance = forcing_.tolerance(b_norm);
+  report.tolerance = forcing_.tolerance(b_norm, right_side());
   report.status = cg_.solve(product_, *preconditioner_, b, report.tolerance, max_iterations_, x, report);
   report.solve_s = stopwatch.seconds() - report.factor_s;
   return report;

@@ -79,8 +79,8 @@ LinearReport PcgResident::solve_checked(const ReducedSystem& system, const VecXd
     return report;
   }
   if (b_norm == 0) return report;
-  report = pcg_->solve(system_.matrix(), system_.fixed(), b_.data(), x_.data(), forcing_.tolerance(b_norm),
-                       max_iterations_, system.pattern_id);
+  report = pcg_->solve(system_.matrix(), system_.fixed(), b_.data(), x_.data(),
+                       forcing_.tolerance(b_norm, right_side()), max_iterations_, system.pattern_id);
   system_.download(x_, x);
   const bool vertex = pcg_->fault() >= 0 && pcg_->fault() < system_.n_vertices();
   if (vertex && report.status == LinearStatus::preconditioner_indefinite) {

@@ -38,7 +38,7 @@ template void ContactMultipliers::fill(MollifiedTable&) const;
 
 ContactMultipliers::Entry ContactMultipliers::updated(const Entry& before, double d, double d_hat) const {
   Entry next = before;
-  next.force = std::min(std::max(0.0, before.force - before.penalty * d), 1e7);
+  next.force = std::min(std::max(0.0, before.force - before.penalty * d), rules_.largest_force);
   next.violation = std::max(0.0, -d);
   if (next.violation > rules_.reduction * before.violation) {
     next.penalty = std::min(before.penalty * rules_.factor, rules_.largest);

@@ -18,11 +18,12 @@
 namespace bb {
 
 struct MultiplierRules {
-  double initial = 0;         // N/m of a pair that is new; 0: 10 max(1, 2 E)
-  double factor = 4;          // of rho, where the violation does not shrink
-  double largest = 1e7;       // N/m, of rho
-  double reduction = 0.5;     // of the violation from update to update, else rho grows
-  double tolerance_m = 1e-6;  // m, and N in the place of it
+  double initial = 0;          // N/m of a pair that is new; 0: 10 max(1, 2 E)
+  double factor = 4;           // of rho, where the violation does not shrink
+  double largest = 1e7;        // N/m, of rho
+  double largest_force = 1e7;  // N, of lambda: their lambda_max
+  double reduction = 0.5;      // of the violation from update to update, else rho grows
+  double tolerance_m = 1e-6;   // m, and N in the place of it
 };
 
 class ContactMultipliers {

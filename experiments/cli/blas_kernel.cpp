@@ -16,12 +16,14 @@ namespace {
 
 constexpr const char* flag = "--blas-kernel";
 
-/// Returns only when the program could not be started again; why.
+/// Returns only when the program could not be started again; why. The program uses one thread of BLAS; OpenBLAS starts
+/// one a core while it is loaded, which spin for the first 20 ms, most of a short run.
 std::string restart(const std::vector<std::string>& argv) {
   std::vector<char*> pointers;
   for (const std::string& word : argv) pointers.push_back(const_cast<char*>(word.c_str()));
   pointers.push_back(nullptr);
   const char* before = std::getenv("OPENBLAS_CORETYPE");
+  ::setenv("OPENBLAS_NUM_THREADS", "1", 1);
   const std::string kept = before != nullptr ? before : "";
   ::setenv("OPENBLAS_CORETYPE", fixed_blas_kernel, 1);
   ::execv("/proc/self/exe", pointers.data());

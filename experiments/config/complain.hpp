@@ -1,10 +1,12 @@
 // How checks across sections say what contradicts what, and those that have a file of their own.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/barrier/shape.hpp"
 #include "core/math/error.hpp"
 #include "experiments/config/run_config.hpp"
 
@@ -19,10 +21,16 @@ struct Complain {
   }
 };
 
+/// A barrier of a known shape; nothing for an unknown name, which has a violation already.
+std::optional<BarrierFunction> barrier_of(const std::string& shape, Argument argument);
 /// Says of every restitution below 1 what is allowed.
 void refuse_restitution(const RunConfig& config, const std::string& allowed, const Complain& complain);
 /// Says of every coefficient of friction above 0 what is allowed.
 void refuse_friction(const RunConfig& config, const std::string& allowed, const Complain& complain);
+/// What a step solver asks of the other sections (check_step_solver.cpp).
+void check_step_solver(const RunConfig& config, const Complain& complain);
+/// What matching asks of them (check_matching.cpp).
+void check_matching(const RunConfig& config, const Complain& complain);
 /// What kernels do not have (check_device.cpp).
 void check_device(const RunConfig& config, const Complain& complain);
 

@@ -63,7 +63,8 @@ const ProceduralScene* begin_config(const json& document, const Reader& reader, 
   const SceneDefaults defaults = scene ? scene->defaults : SceneDefaults();
   config.time = {defaults.dt, defaults.steps};
   config.formulation.d_hat = defaults.d_hat;
-  if (follows_article(config.scene)) config.step_solver.name = "article_literal";
+  if (const std::string solver = solver_of_protocol(config.scene); !solver.empty())
+    config.step_solver.name = solver;
   if (document.value("device", word_of(Device::cpu)) != word_of(Device::cpu)) {
     config.linear_solver.name = linear_solver_at(MatrixPlace::executor).name;
   }
@@ -81,7 +82,7 @@ void finish_config(const json& document, const ProceduralScene* scene, const Rea
   settle_formulation(child(document, "formulation"), reader, config.formulation);
   settle_strain_limit(child(document, "strain_limit"), reader, config.formulation, defaults.limit,
                       config.strain_limit);
-  settle_matching(child(document, "matching"), reader, follows_article(config.scene), config);
+  settle_matching(child(document, "matching"), reader, !solver_of_protocol(config.scene).empty(), config);
   if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
     config.step_solver.tol_velocity = default_tolerance(config);
   }

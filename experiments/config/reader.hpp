@@ -60,8 +60,8 @@ void settle_matching(const nlohmann::json& object, const Reader& reader, bool li
 /// What the step solver of a config needs; all of an unknown one, which has a violation already.
 StepNeeds needs_of(const RunConfig& config);
 
-/// Whether the scene follows the protocol of the drape article.
-bool follows_article(const SceneConfig& scene);
+/// The step solver that a scene's protocol asks for; empty: any.
+std::string solver_of_protocol(const SceneConfig& scene);
 
 /// Contradictions between sections (check_config.cpp); no JSON.
 void check_contradictions(const RunConfig& config, const std::string& source,

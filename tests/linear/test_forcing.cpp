@@ -46,6 +46,16 @@ TEST(Forcing, AStepBeginsWithoutMemory) {
   EXPECT_EQ(adaptive.tolerance(0.5), 0.1);
 }
 
+TEST(Forcing, PrescribedMotionAsksForMoreAndIsNoResidual) {
+  Forcing adaptive = forcing("eisenstat_walker");
+  adaptive.tolerance(8);
+  EXPECT_EQ(adaptive.tolerance(8000, RightSide::with_motion), 1e-3);
+  EXPECT_EQ(adaptive.tolerance(8, RightSide::with_motion), 1e-3);
+  EXPECT_EQ(adaptive.tolerance(0.5), 0.1);  // as the first of a step
+  EXPECT_EQ(forcing("eisenstat_walker", 0.01).tolerance(8, RightSide::with_motion), 0.01);
+  EXPECT_EQ(forcing("fixed", 1e-5).tolerance(8, RightSide::with_motion), 1e-5);
+}
+
 /// Every solver that has a forcing solves as far as it says, and not all the way.
 TEST(Forcing, SolversStopWhereItSays) {
   const ReducedSystem system = grid_system(14, 1e-2, 1);

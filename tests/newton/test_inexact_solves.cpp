@@ -140,6 +140,28 @@ TEST(InexactSolves, are_as_loose_as_newton_allows) {
   }
 }
 
+/// A corner that is led 5 mm along the cloth: it is at its pose after the first iteration.
+TEST(InexactSolves, go_further_while_a_prescribed_vertex_has_to_move) {
+  for (const char* name : {"pcg", "lagged_cholesky"}) {
+    Scene scene = buckling_cloth(mild);
+    scene.pins = {{0, 0}};
+    scene.motions.resize(1);
+    scene.motions[0].velocity = Vec3d(0.5, 0, 0);
+    Method method = solved_by(name);
+    Simulation simulation(scene, method, dt, 1);
+    Tolerances tolerances;
+    const StepReport report = simulation.step(tolerances);
+    ASSERT_EQ(report.status, StepStatus::converged) << report.detail;
+    EXPECT_NEAR(simulation.history().x(0, 0), scene.x0(0, 0) + 0.5 * dt, 1e-15);
+    const auto moving = std::count(tolerances.of.begin(), tolerances.of.end(), 1e-3);
+    ASSERT_GE(moving, 1) << name;
+    ASSERT_LT(static_cast<std::size_t>(moving), tolerances.of.size()) << name;
+    EXPECT_EQ(tolerances.of.front(), 1e-3) << name;
+    EXPECT_EQ(tolerances.of[static_cast<std::size_t>(moving)], 0.1) << "at its pose, as the first of a step";
+    EXPECT_LE(tolerances.residual.front(), 1e-3);
+  }
+}
+
 TEST(InexactSolves, have_the_same_bits_for_any_number_of_threads) {
   for (const Choice& choice : choices()) {
     if (choice.forcing == "fixed" || choice.preconditioner == "none") continue;

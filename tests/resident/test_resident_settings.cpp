@@ -99,6 +99,29 @@ TEST(ResidentSettings, LoadStepsWithoutInertia) {
   }
 }
 
+struct FirstTolerances final : StepObserver {
+  void on_iteration(const IterationReport& report) override {
+    if (of.size() < 2) of.push_back(report.solve.linear.tolerance);
+  }
+  std::vector<double> of;
+};
+
+/// A rim that rises takes more exact directions, until it is at its pose.
+TEST(ResidentSettings, PrescribedMotionIsSolvedForFurther) {
+  Scene scene = held_sheet();
+  for (Pin& pin : scene.pins) pin.motion = static_cast<int>(scene.motions.size());
+  scene.motions.emplace_back();
+  scene.motions.back().velocity = Vec3d(0, 0, 0.1);
+  Method method = test::fixed_method("cubic", 20);
+  test::run_resident(method);
+  method.linear.parameters["forcing"] = std::string("eisenstat_walker");
+  Simulation simulation(scene, method, 0.01, 1);
+  FirstTolerances tolerances;
+  ASSERT_EQ(simulation.step(tolerances).status, StepStatus::converged);
+  EXPECT_EQ(tolerances.of, (std::vector<double>{1e-3, 0.1}));
+  EXPECT_NEAR(simulation.history().x(2, 0), scene.x0(2, 0) + 1e-3, 1e-12);
+}
+
 Method with_step_solver(const std::string& name, const ParameterMap& parameters) {
   Method method = cubic();
   method.step_solver.name = name;

@@ -17,7 +17,7 @@ def made(shape, scene="a", theta=0.1, **more):
 
 
 def rows(**more):
-    return [made(label, scene) for label in RIVALS for scene in "ab"] + [made("new", scene, **more) for scene in "ab"]
+    return [made(label, scene) for label in RIVALS for scene in "abc"] + [made("new", scene, **more) for scene in "abc"]
 
 
 def found(of, metric):
@@ -38,14 +38,22 @@ def test_scenes_that_disagree_are_even():
 def test_a_run_that_failed_is_in_no_ratio_and_is_said_first():
     broken = rows(newton=10)
     broken[-1]["outcome"] = "stall_overload"
-    assert all(one.scenes == 1 for one in judge.comparisons(broken, "new"))
+    assert all(one.scenes == 2 for one in judge.comparisons(broken, "new"))
     starts = [{"method": "new", "ok": 4, "of": 5, "others": ["timeout"], "newton": []}]
     cases = [{"test": "M10", "case": "load", "method": "new", "outcome": "stall_overload"}, {"test": "M10", "case": "load", "method": "log", "outcome": "ok"},
              {"test": "S09", "case": "r", "method": "new", "outcome": "ok"}, {"test": "S09", "case": "r", "method": "log", "outcome": "timeout"}]
     said = judge.decides(broken, starts, cases, "new")
-    assert "b, theta 0.1: stall_overload" in said[0]
+    assert "c, theta 0.1: stall_overload" in said[0]
     assert "M10 load: stall_overload" in said[1] and "S09 r: log not ok" in said[2] and "1 of 5 jittered" in said[3]
     assert "Newton iterations" in said[4] and "better" in said[4]
+
+
+def test_one_scene_decides_nothing():
+    few = [row for row in rows(newton=10) if row["scene"] == "a"]
+    assert found(few, "newton") == dict.fromkeys(RIVALS, judge.OPEN)
+    ok = [{"method": "new", "ok": 5, "of": 5, "others": [], "newton": []}]
+    [said] = judge.decides(few, ok, [], "new")
+    assert "Nothing here" in said
 
 
 def test_off_target_counts_in_both_directions():
@@ -56,7 +64,7 @@ def test_off_target_counts_in_both_directions():
 
 def test_one_slow_run_does_not_make_a_row_slow():
     busy = rows()
-    for one, ns in zip((row for row in busy if row["shape"] == "log"), (100.0, None), strict=True):
+    for one, ns in zip((row for row in busy if row["shape"] == "log"), (100.0, None, None), strict=True):
         one["row_ns"] = ns
     busy += [made("log", "c", row_ns=110.0), made("log", "d", row_ns=9000.0)]
     assert judge.row_times(busy)["log"] == (110.0, 3) and "row_ns" not in {one.metric for one in judge.comparisons(busy, "new")}

@@ -94,7 +94,7 @@ void ResidentPotential::add_given_motion(const Column& x, const Column& motion, 
   for (const auto& term : terms_) term->add_given_motion(x, motion, force);
 }
 
-void ResidentPotential::solve(const Column& b, Column& step, SolveReport& report) {
+void ResidentPotential::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {
   const ScopedPhase timer(clock(), Phase::linear_solve);
   const double b_norm = pcg_->norm(vectors_.fixed().data(), b.data());
   LinearReport linear;
@@ -104,8 +104,8 @@ void ResidentPotential::solve(const Column& b, Column& step, SolveReport& report
     linear.status = LinearStatus::non_finite;
     linear.residual_true = linear.residual_recurrence = 1;
   } else if (b_norm != 0) {
-    linear = pcg_->solve(matrix(), vectors_.fixed().data(), b.data(), step.data(), forcing_.tolerance(b_norm),
-                         max_pcg_iterations_, pattern_id_);
+    linear = pcg_->solve(matrix(), vectors_.fixed().data(), b.data(), step.data(),
+                         forcing_.tolerance(b_norm, of), max_pcg_iterations_, pattern_id_);
   }
   report.add_attempt(linear);
 }

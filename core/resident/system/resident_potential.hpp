@@ -44,7 +44,7 @@ class ResidentPotential final : public IncrementalPotential {
   double add_tikhonov(double relative, double absolute) override;
   void multiply(const Column& v, Column& out) override;
   void add_given_motion(const Column& x, const Column& motion, Column& force) override;
-  void solve(const Column& b, Column& step, SolveReport& report) override;
+  void solve(const Column& b, RightSide of, Column& step, SolveReport& report) override;
   Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
                        Column& step, Column& direction) override;
   std::size_t nnz() const override;
