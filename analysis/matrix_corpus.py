@@ -24,7 +24,7 @@ from .spec_file import read_spec
 from .text_table import markdown as table_lines
 
 MOST_BYTES = 8 << 20
-SOLVERS = ["cholmod", "lagged_cholesky", "none", "jacobi", "block_jacobi", "ic0", "schwarz"]
+SOLVERS = ["cholmod", "lagged_cholesky", "none", "jacobi", "block_jacobi", "ic0", "schwarz", "mas"]
 HEAD = """# Hard systems as data
 
 Linear systems A x = b of Newton's method that are hard for different reasons, from small runs of this program. `NAME.mtx` is the matrix (Matrix

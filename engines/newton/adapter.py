@@ -44,9 +44,22 @@ def add_body(builder, scene, body, settings):
         particle_radius=common.reach(body, settings["radius_m"]),
     )
     stiffness = body["hinge_J"] * settings["bending_factor"]
-    for k in range(begin, len(builder.edge_indices)):  # VBD multiplies by the length of the edge
-        per = builder.edge_rest_length[k] if settings["solver"] == "vbd" else 1.0
-        builder.edge_bending_properties[k] = (stiffness / per, 0.0)
+    for k in range(begin, len(builder.edge_indices)):
+        builder.edge_bending_properties[k] = (stiffness / hinge_unit(builder, k, settings), 0.0)
+
+
+def hinge_unit(builder, k, settings):
+    """By what a solver multiplies the stiffness of hinge k: VBD by the length of its edge, m; XPBD, whose gradient of
+    the angle is that of the edge's length in the place of one over a height, by twice the mean area of its triangles, m^2.
+    """
+    if settings["solver"] == "vbd":
+        return builder.edge_rest_length[k]
+    indices = builder.edge_indices[k]
+    if min(indices) < 0:  # at the rim: no hinge
+        return 1.0
+    a, b, c, d = (np.array(builder.particle_q[i]) for i in indices)
+    areas = [np.linalg.norm(np.cross(c - end, d - end)) for end in (a, b)]
+    return float(np.mean(areas))
 
 
 def add_obstacle(builder, o):
