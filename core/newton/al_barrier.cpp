@@ -89,8 +89,10 @@ StepSolverEntry step_solver_al_barrier() {
       throw ConfigError("/step_solver/al_barrier_release", std::to_string(of("al_barrier_release")),
                         "a number above al_barrier_near = " + std::to_string(of("al_barrier_near")));
     }
-    terms.barrier_multipliers = BarrierMultiplierRules{of("al_barrier_near"), of("al_barrier_release"),
-                                                       of("al_barrier_growth"), of("al_barrier_growth_most")};
+    terms.barrier_multipliers = BarrierMultiplierRules{.near = of("al_barrier_near"),
+                                                       .release = of("al_barrier_release"),
+                                                       .growth = of("al_barrier_growth"),
+                                                       .growth_most = of("al_barrier_growth_most")};
   };
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AlBarrier>(options);

@@ -74,9 +74,11 @@ StepSolverEntry step_solver_augmented_lagrangian() {
   entry.needs.overlap = entry.needs.multipliers = true;
   entry.set_terms = [](const StepSolverOptions& options, TermOptions& terms) {
     const auto of = [&](const char* name) { return number(options.parameters, name); };
-    terms.multipliers =
-        MultiplierRules{of("al_penalty_initial_N_per_m"), of("al_penalty_factor"),
-                        of("al_penalty_largest_N_per_m"), of("al_reduction"), of("al_tolerance_m")};
+    terms.multipliers = MultiplierRules{.initial = of("al_penalty_initial_N_per_m"),
+                                        .factor = of("al_penalty_factor"),
+                                        .largest = of("al_penalty_largest_N_per_m"),
+                                        .reduction = of("al_reduction"),
+                                        .tolerance_m = of("al_tolerance_m")};
   };
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AugmentedLagrangian>(options);
