@@ -60,6 +60,11 @@ def results(out: Path) -> dict[str, dict]:
             for label, record in records(out).items()}
 
 
+def left_over(out: Path) -> list[str]:
+    """What no finished sweep leaves."""
+    return sorted(path.name for path in out.rglob("*") if ".tmp." in path.name or path.suffix == ".part" or path.name.startswith("checkpoint"))
+
+
 @contextmanager
 def started(program: str, *words, **options):
     """A process that never outlives the test."""

@@ -8,17 +8,13 @@ import time
 from pathlib import Path
 
 import pytest
-from sweep_files import SHAPES, STEPS, bench, records, refused, results, started, verb, wait_until, write_sweep
+from sweep_files import SHAPES, STEPS, bench, left_over, records, refused, results, started, verb, wait_until, write_sweep
 
 LONG = {"/time/steps": 600, "/output/checkpoint_every": 20}
 
 
 def locks(out: Path) -> list[Path]:
     return list(out.glob("*/bench.lock"))
-
-
-def left_over(out: Path) -> list[str]:
-    return sorted(path.name for path in out.rglob("*") if ".tmp." in path.name or path.suffix == ".part" or path.name.startswith("checkpoint"))
 
 
 @pytest.fixture(scope="module")
