@@ -113,8 +113,7 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   if (bounds_each_vertex(config.contact.step_bound.value_or(StepBoundRule::accd)) && !settings.vertex_steps) {
     complain(
         "/contact/step_bound", '"' + word_of(*config.contact.step_bound) + '"',
-        fmt::format("accd, or a step solver that goes another part of a step at each vertex ({}): {} goes "
-                    "one for all",
+        fmt::format("accd, or step solver {}: {} takes one part of a step for all vertices",
                     solvers_where([](const StepSolverEntry& entry) { return entry.settings.vertex_steps; }),
                     solver.name));
   }
