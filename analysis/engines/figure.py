@@ -10,6 +10,7 @@ from .level import lines
 COLUMNS = 3
 COLOURS = ("#000000", "#0072b2", "#56b4e9", "#005a5a", "#d55e00", "#e69f00", "#a03060", "#009e73")
 MARKS = "osD^vP<>"
+MOST = 100  # % of width: who is farther off has flown away, and would take the axis with it
 
 
 def _crossed(row: dict) -> bool:
@@ -27,7 +28,7 @@ def paint(record: dict, path: Path) -> None:
     for axis, one in zip(axes.flat, scenes):
         for name, line in lines(one["rows"]).items():
             colour, mark = looks[name]
-            seconds, error = [r["seconds"] for r in line], [100 * r["error_mean"] for r in line]
+            seconds, error = [r["seconds"] for r in line], [min(100 * r["error_mean"], MOST) for r in line]
             axis.plot(seconds, error, "-", marker=mark, color=colour, ms=4, lw=1)
             bad = [k for k, row in enumerate(line) if _crossed(row)]
             axis.plot([seconds[k] for k in bad], [error[k] for k in bad], "x", color="#cc0000", ms=8, mew=1.4)
@@ -47,6 +48,7 @@ def paint(record: dict, path: Path) -> None:
     for name, (colour, mark) in looks.items():
         key.plot([], [], "-", marker=mark, color=colour, ms=4, lw=1, label=" ".join(name))
     key.plot([], [], "x", color="#cc0000", ms=8, mew=1.4, label="surfaces cross, or are in an obstacle")
+    key.plot([], [], " ", label=f"{MOST} %: that or more")
     key.plot([], [], ":", color="#999999", lw=0.8, label="reference, against twice its time step")
     key.legend(loc="center", frameon=False)
     path.parent.mkdir(parents=True, exist_ok=True)
