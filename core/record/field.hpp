@@ -24,8 +24,7 @@ inline constexpr const char* absent_words = "not_measured nan infinite minus_inf
 template <int>
 struct FieldLine {};
 
-/// Before what is made of one field: its code stands once for a type and not once for each of some 400 fields, which took
-/// the compiler five times as long.
+/// Before what is made of one field: its code stands once for a type and not once for each of almost 400 fields.
 #define BB_ONCE_A_TYPE [[gnu::noinline]]
 
 /// First in a record struct, BB_RECORD_END last: the fields between them are its list. A struct with the

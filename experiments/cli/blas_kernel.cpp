@@ -16,8 +16,8 @@ namespace {
 
 constexpr const char* flag = "--blas-kernel";
 
-/// Returns only when the program could not be started again; why. The program uses one thread of BLAS; OpenBLAS starts
-/// one a core while it is loaded, which spin for the first 20 ms, most of a short run.
+/// Returns only when the program could not be started again; why. The program uses one thread of BLAS, but OpenBLAS starts
+/// one a core while it is loaded, which wait for work by sched_yield, some 1500 times in a run of one small step.
 std::string restart(const std::vector<std::string>& argv) {
   std::vector<char*> pointers;
   for (const std::string& word : argv) pointers.push_back(const_cast<char*>(word.c_str()));
