@@ -4,7 +4,7 @@
 //   2 solve A dx = -g, prescribed motion lifted to the right-hand side; A is the Hessian, as near to the exact
 //     one as positive definiteness allows
 //   3 stop when the estimated error of x + dx is below h tol_velocity, every prescribed vertex is at its pose
-//     and the exact Hessian is positive definite; from a saddle go on along negative curvature
+//     and the exact Hessian is positive definite; from a saddle go on along negative curvature, from its side too where steps only crawl
 //   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds. Where contact bounds each
 //     vertex by itself, dx of each is cut to what it may go, as long as that descends
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
@@ -27,6 +27,7 @@ constexpr double collapsed_step = 1e-8;   // a step below it counts as no progre
 constexpr int collapse_iterations = 10;   // that many in a row end the step
 constexpr double smallest_alpha = 1e-14;  // below it x does not move any more
 constexpr int most_escapes = 10;          // in a step; a saddle after that many is said to be one
+constexpr int crawl_iterations = 20;      // that many whole steps in a row without a bend of E: is it a saddle's side?
 
 class LineSearch final : public StepSolver {
  public:
@@ -46,7 +47,7 @@ class LineSearch final : public StepSolver {
     truncations_ = &(step.solver.values["truncations"] = 0);
     error_.reset();
     const double tolerance = tolerance_of(system, task.dt);
-    int collapsed = 0, escapes = 0;
+    int collapsed = 0, escapes = 0, crawled = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);
       find_direction(system, report, observer);
@@ -57,9 +58,12 @@ class LineSearch final : public StepSolver {
         fail_step(system, step, *failed, report);
         return step;
       }
-      const EndCheck end = small ? check_end(system, options_.saddle, step, report) : EndCheck();
-      if (end.proof == EndProof::saddle && options_.saddle == SaddleRule::escape && escapes < most_escapes &&
-          escape(system, report, tolerance)) {
+      const bool may_escape = options_.saddle == SaddleRule::escape && escapes < most_escapes;
+      const bool crawls = crawled == crawl_iterations && at_pose && may_escape;
+      const EndCheck end =
+          small || crawls ? check_end(system, options_.saddle, step, report) : EndCheck();
+      if (crawls) crawled = 0;
+      if (end.proof == EndProof::saddle && may_escape && escape(system, report, tolerance)) {
         ++escapes;
         error_.took(0);
         finish_iteration(system, step, report, observer);
@@ -68,6 +72,7 @@ class LineSearch final : public StepSolver {
       }
       const bool moved = search(system, report, at_pose, small);
       error_.took(report.detours > 0 || truncated_ ? 0 : report.alpha);  // the direction itself was not taken
+      crawled = in_a_row(crawled, moved && falls_as_its_slope(report));
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
       if (moved && after_motion_ && after_motion_(system)) {
@@ -173,6 +178,14 @@ class LineSearch final : public StepSolver {
     const double modelled = -report.alpha * (2 - report.alpha) * report.decrement_J;
     if (report.alpha == 0) return report.decrement_J == 0;
     return noise_ || std::abs(report.energy_change_J.value - modelled) <= tolerance * std::abs(modelled);
+  }
+
+  // Whether E has fallen along the whole of dx as its slope alone says, by twice what the model promises: the matrix was raised
+  // to be positive definite and is stiffer than E along dx, which may be flat or bend down. Such steps are as short as the
+  // matrix is stiff, and leave the side of a saddle by hundreds of iterations.
+  bool falls_as_its_slope(const IterationReport& report) const {
+    return report.solve.t > 0 && report.alpha == 1 && !truncated_ && !noise_ &&
+           report.energy_change_J.finite() && report.energy_change_J.value < -1.5 * report.decrement_J;
   }
 
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its

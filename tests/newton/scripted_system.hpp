@@ -26,6 +26,7 @@ struct ScriptedIteration {
   bool at_target = true;
   double curvature = -1;    // that the check of the end finds at a saddle, N/m
   double detour_bound = 0;  // of the direction round curved gaps; 0: there is none
+  double t = 0;             // of the matrix that was solved, 0 exact to 1 clamped
 };
 
 /// What the system says of itself in every iteration.
@@ -63,6 +64,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
     SolveReport out;
     out.attempts = 1;
     out.linear.residual_true = now().residual;
+    out.t = now().t;
     return out;
   }
   DirectionSize direction_size() override {
