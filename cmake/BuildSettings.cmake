@@ -13,7 +13,7 @@ endif()
 
 # With CMAKE_UNITY_BUILD (presets release and cuda-compile) the compiler reads up to so many files of a target at once: most of its
 # time goes into headers.
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 24)
 
 find_program(BB_CCACHE ccache)
 if(BB_CCACHE)

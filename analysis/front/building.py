@@ -14,7 +14,7 @@ from ..errors import BUILD_FAILED, UserError
 from ..places import ROOT
 from ..program import RELEASE
 
-KIB_A_JOB = 1572864  # 1.5 GiB
+KIB_A_JOB = 2097152  # 2 GiB: g++ on many files at once
 MINUTE = 60  # seconds between two words about a build off the terminal
 
 
@@ -23,7 +23,7 @@ def say(text: str) -> None:
 
 
 def job_count() -> int:
-    """One job a core, and 1.5 GiB of memory for each."""
+    """One job a core, and 2 GiB of memory for each."""
     try:
         lines = Path("/proc/meminfo").read_text().splitlines()
         free_kib = next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))

@@ -10,9 +10,9 @@ namespace bb::audit {
 namespace {
 
 // A pair in lasting contact would be split for ever; a proper pair needs some tens of spans.
-constexpr int max_pair_spans = 2000;
+constexpr int max_pair_spans = 20000;
 // The same for spans tried by integers, which cost some tens of microseconds each.
-constexpr int max_exact_spans = 200;
+constexpr int max_exact_spans = 2000;
 // A span in which nothing moves by more than this part of the pair's size is left to the integers: the
 // allowance of the floating certificate is a few 2^-50 of it.
 constexpr double rounding = 0x1p-50;

@@ -82,7 +82,7 @@ void decide(Resolved& found, std::size_t i, const SeenCase& seen) {
 
 /// Cases that are resolved side by side before the next are begun, and those of them that a thread takes one after the other: neighbours
 /// share most of their settings.
-constexpr std::size_t side_by_side = 4096, in_a_row = 128;
+constexpr std::size_t side_by_side = 4096, a_thread_at_once = 128;
 
 }  // namespace
 
@@ -114,7 +114,7 @@ SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& ov
        begin += side_by_side) {
     found.clear();
     found.resize(std::min(side_by_side, asked.size() - begin));
-    const oneapi::tbb::blocked_range<std::size_t> all(0, found.size(), in_a_row);
+    const oneapi::tbb::blocked_range<std::size_t> all(0, found.size(), a_thread_at_once);
     oneapi::tbb::parallel_for(
         all,
         [&](const oneapi::tbb::blocked_range<std::size_t>& some) {

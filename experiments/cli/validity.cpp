@@ -28,9 +28,9 @@ BuildValidity build_validity(const CommonOptions& common) {
 namespace {
 
 /// The checks of the block as a table, or the report itself; exit_wrong_answer when one failed.
-int validity(bool json, const CommonOptions& common) {
+int validity(bool as_json, const CommonOptions& common) {
   const StoredBlock block = block_of_this_build(validity_folder(), common.loaded);
-  if (json) {
+  if (as_json) {
     fmt::print("{}", block.report);
   } else {
     const nlohmann::json report = nlohmann::json::parse(block.report);

@@ -136,9 +136,6 @@ void check_solid_limit(const RunConfig& config, const Complain& complain) {
   if (limit.solids.value_or(false) && !limit.enabled) {
     complain("/strain_limit/solids", "true", "false, or a limit: strain_limit is not enabled");
   }
-  if (limits_solids(limit) && config.device != Device::cpu) {
-    complain("/strain_limit/solids", "true", "false, or /device cpu: a limit of tetrahedra has no kernel");
-  }
 }
 
 /// Above this tolerance nothing falls: the first Newton step is already below it.

@@ -15,6 +15,7 @@
 #include "core/scene/contact_plan.hpp"
 #include "experiments/matrix/matrix_market.hpp"
 #include "experiments/run/keep_record.hpp"
+#include "experiments/run/vector_json.hpp"
 
 namespace bb {
 
@@ -22,13 +23,11 @@ namespace {
 
 using nlohmann::json;
 
-json to_json(const Vec3d& v) { return json::array({v[0], v[1], v[2]}); }
-
 json to_json(const Obstacle& o) {
   constexpr const char* kinds[] = {"plane", "sphere", "cylinder"};
-  json out = {{"name", o.name}, {"kind", kinds[static_cast<int>(o.kind)]}, {"point_m", to_json(o.point)}};
+  json out = {{"name", o.name}, {"kind", kinds[static_cast<int>(o.kind)]}, {"point_m", vector_json(o.point)}};
   if (o.vertex >= 0) out["vertex"] = o.vertex;  // of the frames: where point_m is there
-  if (o.kind != ObstacleKind::sphere) out["axis"] = to_json(o.axis);
+  if (o.kind != ObstacleKind::sphere) out["axis"] = vector_json(o.axis);
   if (o.kind == ObstacleKind::plane) return out;
   out["radius_m"] = o.radius;
   out["inside"] = o.inside;

@@ -112,7 +112,7 @@ void check_device_forms(const RunConfig& config, const Scene& scene) {
   resident::require_kernel(*method.stiffness, config.source + "#/formulation/stiffness_policy/name");
   at_config(config, "/formulation",
             [&] { resident::ResidentBarrier(method.contact, method.stiffness->has_potential()); });
-  if (method.strain_limit && !scene.limit.triangles.empty()) {
+  if (method.strain_limit && !(scene.limit.triangles.empty() && scene.solid_limit.tetrahedra.empty())) {
     at_config(config, "/strain_limit", [&] { resident::require_limit_kernels(method); });
   }
 }

@@ -10,6 +10,7 @@
 
 #include "core/math/error.hpp"
 #include "experiments/run/runner.hpp"
+#include "experiments/run/vector_json.hpp"
 
 namespace bb {
 namespace {
@@ -19,11 +20,9 @@ using nlohmann::json;
 /// Terms that the file says everything of.
 const std::set<std::string_view> said = {"inertia", "external_force", "membrane", "hinges", "contact"};
 
-json to_json(const Vec3d& v) { return json::array({v[0], v[1], v[2]}); }
-
 json to_json(const Positions& x) {
   json out = json::array();
-  for (Eigen::Index i = 0; i < x.cols(); ++i) out.push_back(to_json(Vec3d(x.col(i))));
+  for (Eigen::Index i = 0; i < x.cols(); ++i) out.push_back(vector_json(Vec3d(x.col(i))));
   return out;
 }
 
@@ -136,9 +135,10 @@ json obstacles_json(const Scene& scene) {
   constexpr std::array<const char*, 3> kinds = {"plane", "sphere", "cylinder"};
   json out = json::array();
   for (const Obstacle& o : scene.obstacles) {
-    json row = {
-        {"name", o.name}, {"kind", kinds[static_cast<std::size_t>(o.kind)]}, {"point_m", to_json(o.point)}};
-    if (o.kind != ObstacleKind::sphere) row["axis"] = to_json(o.axis);
+    json row = {{"name", o.name},
+                {"kind", kinds[static_cast<std::size_t>(o.kind)]},
+                {"point_m", vector_json(o.point)}};
+    if (o.kind != ObstacleKind::sphere) row["axis"] = vector_json(o.axis);
     if (o.kind != ObstacleKind::plane) row.update({{"radius_m", o.radius}, {"inside", o.inside}});
     out.push_back(row);
   }
@@ -171,7 +171,7 @@ json neutral_scene(const RunConfig& config, const Scene& scene, const Plan& plan
           {"name", run_label(config)},
           {"dt_s", config.time.dt},
           {"steps", config.time.steps},
-          {"gravity_m_s2", to_json(scene.gravity)},
+          {"gravity_m_s2", vector_json(scene.gravity)},
           {"positions_m", to_json(scene.x0)},
           {"rest_m", to_json(scene.rest)},
           {"velocities_m_s", to_json(scene.v0)},

@@ -50,6 +50,15 @@ def test_a_hanging_block_is_held_at_its_limit(program, tmp_path, formulation):
     assert planned(record) == {"item": "strain_limit", "active": True, "reason": "96 limited tetrahedra"}
 
 
+def test_the_executor_of_the_host_has_the_same_run(program, tmp_path):
+    one, other = (record_of(program, tmp_path / device, f'/device="{device}"', "/time/steps=10") for device in ("cpu", "host"))
+    assert one["status"]["outcome"] == other["status"]["outcome"] == "ok" and other["summary"]["max_stretch"] > ONSET
+    assert other["summary"]["newton_iterations"] == one["summary"]["newton_iterations"]
+    for key in ("max_stretch", "solid_limit_load_max_Pa"):
+        assert other["summary"][key] == pytest.approx(one["summary"][key], rel=1e-6)
+    assert planned(other) == planned(one)
+
+
 def test_without_it_the_block_is_stretched_far_beyond(program, tmp_path):
     record = record_of(program, tmp_path / "out", "/strain_limit/solids=false", "/matching/solid_limit_load_Pa=null", "/time/steps=10")
     assert record["status"]["outcome"] == "ok" and record["summary"]["max_stretch"] is None
@@ -71,7 +80,6 @@ def test_k_s_is_matched_to_the_load_at_theta(program, tmp_path):
 @pytest.mark.parametrize(
     "settings, words",
     [
-        (('/device="host"',), ("#/strain_limit/solids", "no kernel")),
         (("/matching/solid_limit_load_Pa=null",), ("#/matching/solid_limit_load_Pa", "no pilot measures")),
         (("/strain_limit/solids=false",), ("#/matching/solid_limit_load_Pa", "read with strain_limit/solids true")),
         (("/strain_limit/solids=false", "/matching/solid_limit_load_Pa=null", "/strain_limit/solid_k_s_Pa=1"), ("#/strain_limit/solid_k_s_Pa", "nothing")),

@@ -1,9 +1,9 @@
 // The strain limit of an executor against the term of the CPU path: stiffness, feasibility, bound, reports.
 #include <cmath>
-#include <optional>
 
 #include "core/math/error.hpp"
 #include "tests/barriers/host_policy.hpp"
+#include "tests/resident/limit_rules.hpp"
 #include "tests/resident/on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"
 
@@ -12,46 +12,12 @@ namespace {
 
 using namespace bb::test;
 
-struct Rule {
-  const char* shape;
-  std::optional<ElasticityInclusive> elastic;  // else fixed
-  double tolerance;                            // relative: 0 where the arithmetic is the same
-
-  std::unique_ptr<StiffnessPolicy> policy() const {
-    return elastic ? elastic_limit(*elastic, 1.7) : fixed_limit(30);
-  }
-};
-
-ElasticityInclusive elastic(MassTerm mass, bool with_h, Refresh refresh, KappaDerivative derivative) {
-  return {mass, with_h, refresh, 0.01, derivative};
-}
-
-std::vector<Rule> all_rules() {
-  std::vector<Rule> out;
-  constexpr std::nullopt_t fixed = std::nullopt;
-  out.push_back({"quadratic", fixed, 0});
-  out.push_back({"log", fixed, 1e-13});
-  out.push_back({"log_squared", fixed, 1e-12});
-  out.push_back({"two_stage", fixed, 1e-13});
-  out.push_back({"exponential", fixed, 1e-13});
-  constexpr auto dropped = KappaDerivative::dropped;
-  for (const MassTerm mass : {MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
-    out.push_back({"cubic", elastic(mass, true, Refresh::per_iteration, dropped), 0});
-  }
-  out.push_back({"cubic", elastic(MassTerm::paper, false, Refresh::per_step, dropped), 0});
-  for (const char* shape : {"quadratic", "cubic"}) {
-    out.push_back(
-        {shape, elastic(MassTerm::paper, true, Refresh::per_step, KappaDerivative::included), 1e-12});
-  }
-  return out;
-}
-
 // Two iterates of one step, so that kappa is refreshed or kept.
 TEST(ResidentLimit, HasTheTermsOfTheCpuForEveryRule) {
   for (const bool planar : {false, true}) {
     const Scene scene = cloth_scene("corotational", planar);
     const StepFrame frame = step_frame(scene);
-    for (const Rule& rule : all_rules()) {
+    for (const LimitRule& rule : limit_rules()) {
       TermOptions options = element_options(rule.shape);
       options.limit_stiffness = rule.policy();
       CpuElements cpu(scene, options, frame);

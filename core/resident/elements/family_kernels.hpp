@@ -12,17 +12,22 @@
 
 namespace bb::resident {
 
-/// Rest shapes of n triangles.
-struct RestColumns {
-  const double* dm_inv;  // [4, n] 1/m, column-major entries
-  const double* area;    // [n] m^2
-  BB_HD TriangleRest<double> at(Index e, Index n) const {
-    TriangleRest<double> rest;
-    for (int k = 0; k < 4; ++k) rest.dm_inv.data()[k] = dm_inv[k * n + e];
-    rest.area = area[e];
-    return rest;
+/// Rest shapes of n triangles or tetrahedra. Rest: TriangleRest or TetrahedronRest.
+template <class Rest>
+struct RestColumnsOf {
+  using Inverse = decltype(Rest::dm_inv);
+  static constexpr int n_inverse = Inverse::SizeAtCompileTime;
+
+  const double* dm_inv;   // [4 or 9, n] 1/m, column-major entries
+  const double* measure;  // [n] m^2 or m^3
+  BB_HD Rest at(Index e, Index n) const {
+    Inverse inverse;
+    for (int k = 0; k < n_inverse; ++k) inverse.data()[k] = dm_inv[k * n + e];
+    return {inverse, measure[e]};
   }
 };
+using RestColumns = RestColumnsOf<TriangleRest<double>>;
+using SolidRestColumns = RestColumnsOf<TetrahedronRest<double>>;
 
 /// Rest shapes [5, n] that change with time: those that are given [5, n], a factor on their lengths, a plastic part.
 struct PlaceTriangles {
@@ -159,24 +164,17 @@ struct Rods : ElementVertices<3> {
 /// Model: a name of core/energy/solids.inc in bb::solid.
 template <class Model>
 struct Tetrahedra : ElementVertices<4> {
-  const double* dm_inv;                 // [9, n] 1/m, column-major entries
-  const double* volume;                 // [n] m^3, at rest
+  SolidRestColumns rest;
   const double *lame_mu, *lame_lambda;  // [n] Pa
-  BB_HD TetrahedronRest<double> rest(Index e) const {
-    TetrahedronRest<double> out;
-    for (int k = 0; k < 9; ++k) out.dm_inv.data()[k] = dm_inv[k * n + e];
-    out.volume = volume[e];
-    return out;
-  }
   BB_HD double value(const double* x, Index e) const {
     Vec3d p[4];
     points(x, e, p);
-    return tetrahedron_value<Model, double>(rest(e), p, lame_mu[e], lame_lambda[e]);
+    return tetrahedron_value<Model, double>(rest.at(e, n), p, lame_mu[e], lame_lambda[e]);
   }
   BB_HD ElementTerms<double, 12> terms(const double* x, Index e, Projection projection) const {
     Vec3d p[4];
     points(x, e, p);
-    return tetrahedron_terms<Model, double>(rest(e), p, lame_mu[e], lame_lambda[e], projection);
+    return tetrahedron_terms<Model, double>(rest.at(e, n), p, lame_mu[e], lame_lambda[e], projection);
   }
 };
 

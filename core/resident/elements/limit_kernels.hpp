@@ -1,4 +1,5 @@
-// The strain limit: pseudo-gaps, barrier terms, stiffness, energies and step bound of limited triangles.
+// The strain limit: pseudo-gaps, barrier terms, stiffness, energies and step bound of limited triangles (N = 2 singular values)
+// and tetrahedra (N = 3).
 #pragma once
 
 #include "barriers/shapes/gap_potential.hpp"
@@ -14,64 +15,97 @@
 
 namespace bb::resident {
 
-/// Columns of n limited triangles; those of two numbers an element are [2, n].
-struct LimitColumns : ElementVertices<3> {
-  RestColumns rest;
+template <int N>
+struct LimitedShape;
+template <>
+struct LimitedShape<2> {
+  using Rest = TriangleRest<double>;
+};
+template <>
+struct LimitedShape<3> {
+  using Rest = TetrahedronRest<double>;
+};
+template <int N>
+using LimitedRest = typename LimitedShape<N>::Rest;
+
+/// Columns of n limited elements; those of a number a singular value are [N, n].
+template <int N>
+struct LimitColumns : ElementVertices<N + 1> {
+  using ElementVertices<N + 1>::n;
+
+  RestColumnsOf<LimitedRest<N>> rest;
   const double *onset, *band_width;  // [n] 1
-  double *sigma, *gap;   // [2, n] singular values, descending, and pseudo-gaps, at the measured state
-  double *b, *db, *d2b;  // [2, n] barrier terms there, for kappa = 1; with kappa where it has a potential
+  double *sigma, *gap;   // [N, n] singular values, descending in size, and pseudo-gaps, at the measured state
+  double *b, *db, *d2b;  // [N, n] barrier terms there, for kappa = 1; with kappa where it has a potential
   double* kappa;         // [n] J; 1 where it has a potential
 
   BB_HD StrainBand<double> band(Index e) const { return {onset[e], band_width[e]}; }
-  BB_HD StrainShape<double> shape(Index e) const {
-    return {Vec2d(b[e], b[n + e]), Vec2d(db[e], db[n + e]), Vec2d(d2b[e], d2b[n + e])};
+  /// The N numbers of element e.
+  BB_HD Vec<double, N> of_element(const double* column, Index e) const {
+    Vec<double, N> out;
+    for (int k = 0; k < N; ++k) out[k] = column[k * n + e];
+    return out;
   }
-  BB_HD double smaller_gap(Index e) const { return gap[n + e] < gap[e] ? gap[n + e] : gap[e]; }
+  BB_HD StrainShape<double, N> shape(Index e) const {
+    return {of_element(b, e), of_element(db, e), of_element(d2b, e)};
+  }
+  BB_HD double smaller_gap(Index e) const {
+    double least = gap[e];
+    for (int k = 1; k < N; ++k) least = gap[k * n + e] < least ? gap[k * n + e] : least;
+    return least;
+  }
+  BB_HD double energy(Index e) const {
+    double sum = b[e];
+    for (int k = 1; k < N; ++k) sum += b[k * n + e];
+    return kappa[e] * sum;
+  }
 };
 
 /// As a family of elements. x is the measured state. R: 3 in space, 2 in the x-y plane.
-template <int R>
-struct Limit : LimitColumns {
-  BB_HD double value(const double*, Index e) const { return kappa[e] * (b[e] + b[n + e]); }
-  BB_HD ElementTerms<double, 9> terms(const double* x, Index e, Projection projection) const {
-    Vec3d p[3];
-    points(x, e, p);
-    const TriangleRest<double> at_rest = rest.at(e, n);
-    Svd<double, R, 2> svd{{}, Vec2d(sigma[e], sigma[n + e]), {}};  // an inactive element needs no factors
-    if (gap[e] < band_width[e]) svd = signed_svd(deformation_gradient<R>(at_rest, p));
-    return strain_limit_terms<R, double>(at_rest, svd, band(e), shape(e), kappa[e], projection);
+template <int R, int N>
+struct Limit : LimitColumns<N> {
+  BB_HD double value(const double*, Index e) const { return this->energy(e); }
+  BB_HD ElementTerms<double, 3 * (N + 1)> terms(const double* x, Index e, Projection projection) const {
+    Vec3d p[N + 1];
+    this->points(x, e, p);
+    const LimitedRest<N> at_rest = this->rest.at(e, this->n);
+    Svd<double, R, N> svd{{}, this->of_element(this->sigma, e), {}};  // an inactive element needs no factors
+    if (this->gap[e] < this->band_width[e]) svd = signed_svd(deformation_gradient<R>(at_rest, p));
+    return strain_limit_terms<R, double>(at_rest, svd, this->band(e), this->shape(e), this->kappa[e],
+                                         projection);
   }
 };
-using SpaceLimit = Limit<3>;
-using PlanarLimit = Limit<2>;
+using SpaceLimit = Limit<3, 2>;
+using PlanarLimit = Limit<2, 2>;
+using SolidLimit = Limit<3, 3>;
 
 /// Singular values and pseudo-gaps of an element at x.
-template <int R>
-BB_HD void measure_stretch(const LimitColumns& limit, const double* x, Index e) {
-  Vec3d p[3];
+template <int R, int N>
+BB_HD void measure_stretch(const LimitColumns<N>& limit, const double* x, Index e) {
+  Vec3d p[N + 1];
   limit.points(x, e, p);
-  const Vec2d sigma = signed_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
-  for (int k = 0; k < 2; ++k) {
+  const Vec<double, N> sigma = signed_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
+  for (int k = 0; k < N; ++k) {
     limit.sigma[k * limit.n + e] = sigma[k];
     limit.gap[k * limit.n + e] = stretch_gap(sigma[k], limit.band(e));
   }
 }
-template <int R>
+template <int R, int N>
 struct MeasureStretch {
-  LimitColumns limit;
+  LimitColumns<N> limit;
   const double* x;
-  BB_HD void operator()(Index e) const { measure_stretch<R>(limit, x, e); }
+  BB_HD void operator()(Index e) const { measure_stretch<R, N>(limit, x, e); }
 };
 
-/// Barrier terms at the measured pseudo-gaps, one an item of [2, n]; infinite at or beyond the limit.
-template <class S>
+/// Barrier terms at the measured pseudo-gaps, one an item of [N, n]; infinite at or beyond the limit.
+template <int N, class S>
 struct LimitShape {
-  LimitColumns limit;
+  LimitColumns<N> limit;
   Argument argument;
   bool literal;
   const KappaParts* parts;  // [n] J, where kappa has a potential; else null
   BB_HD void operator()(Index i) const {
-    const Index e = i < limit.n ? i : i - limit.n;
+    const Index e = i % limit.n;
     const double gap = limit.gap[i], width = limit.band_width[e];
     const bool inside = literal || gap > 0;
     ShapeTerms<double> terms = barrier_row<S, double>(argument, literal, inside ? gap : width, width);
@@ -89,26 +123,25 @@ struct LimitShape {
 };
 
 /// Both, and energies and the first element at or beyond its limit, or without a number: of a state whose kappa is known.
-template <int R, class S>
+template <int R, int N, class S>
 struct MeasureLimit {
-  LimitShape<S> shape;
+  LimitShape<N, S> shape;
   const double* x;
   double* energy;  // [n] J
   Key* beyond;
   BB_HD void operator()(Index e) const {
-    const LimitColumns& limit = shape.limit;
-    measure_stretch<R>(limit, x, e);
-    shape(e);
-    shape(limit.n + e);
-    energy[e] = limit.kappa[e] * (limit.b[e] + limit.b[limit.n + e]);
+    const LimitColumns<N>& limit = shape.limit;
+    measure_stretch<R, N>(limit, x, e);
+    for (int k = 0; k < N; ++k) shape(k * limit.n + e);
+    energy[e] = limit.energy(e);
     if (!(limit.smaller_gap(e) > 0)) exec::atomic_min(beyond, static_cast<Key>(e));
   }
 };
 
 /// kappa_e at the measured pseudo-gaps by a policy of strain limits, P a struct of barriers/stiffness.
-template <class P>
+template <int N, class P>
 struct ElementKappa {
-  LimitColumns limit;
+  LimitColumns<N> limit;
   ScaledPolicy<P> policy;
   bool with_hessian;
   StiffnessTime time;
@@ -130,36 +163,39 @@ struct ElementKappa {
   }
 
  private:
-  /// A policy of one stiffness reads the area alone.
+  /// A policy of one stiffness reads the area or volume alone.
   BB_HD ElementSums<double> sums_of(Index e) const {
     if constexpr (requires { policy.values.uniform_kappa(); }) {
       ElementSums<double> out;
-      out.measure = limit.rest.area[e];
+      out.measure = limit.rest.measure[e];
       return out;
     } else {
-      Vec3d p[3], mass;
+      Vec3d p[N + 1];
+      Vec<double, N + 1> mass;
       limit.points(x_n, e, p);
-      for (int k = 0; k < 3; ++k) mass[k] = vertex_mass[limit.vertex(k, e)];
+      for (int k = 0; k <= N; ++k) mass[k] = vertex_mass[limit.vertex(k, e)];
       return element_sums<double>(
-          p, mass, element_mass ? element_mass[e] : 0.0, limit.rest.area[e], [&] { return elastic_block(e); },
-          with_hessian);
+          p, mass, element_mass ? element_mass[e] : 0.0, limit.rest.measure[e],
+          [&] { return elastic_block(e); }, with_hessian);
     }
   }
-  BB_HD Mat<double, 9, 9> elastic_block(Index e) const {
-    const int vertices[3] = {limit.vertex(0, e), limit.vertex(1, e), limit.vertex(2, e)};
-    const SubMatrix h(elastic, vertices, 3);
-    Mat<double, 9, 9> out;
-    for (int j = 0; j < 9; ++j) {
-      for (int i = 0; i < 9; ++i) out(i, j) = h(i, j);
+  BB_HD Mat<double, 3 * (N + 1), 3 * (N + 1)> elastic_block(Index e) const {
+    constexpr int size = 3 * (N + 1);
+    int vertices[N + 1];
+    for (int k = 0; k <= N; ++k) vertices[k] = limit.vertex(k, e);
+    const SubMatrix h(elastic, vertices, N + 1);
+    Mat<double, size, size> out;
+    for (int j = 0; j < size; ++j) {
+      for (int i = 0; i < size; ++i) out(i, j) = h(i, j);
     }
     return out;
   }
 };
 
 /// Least of the elements' step bounds below `alpha`, as ordered bits. R as in Limit.
-template <int R>
+template <int R, int N>
 struct StretchBound {
-  LimitColumns limit;
+  LimitColumns<N> limit;
   const double *x, *dx;
   double alpha, park;
   const Key* before;  // the bits of alpha instead, all ones where this is no bound; or null
@@ -167,7 +203,7 @@ struct StretchBound {
   BB_HD void operator()(Index e) const {
     if (before && *before == ~Key{0}) return;
     const double most = before ? exec::from_ordered_bits(*before) : alpha;
-    Vec3d p[3], step[3];
+    Vec3d p[N + 1], step[N + 1];
     limit.points(x, e, p);
     limit.points(dx, e, step);
     const double bound =
@@ -178,8 +214,9 @@ struct StretchBound {
 
 // --- keys (sum_kernels.hpp)
 /// Largest change of the kappa of active elements.
+template <int N>
 struct LimitKappaChange {
-  LimitColumns limit;
+  LimitColumns<N> limit;
   const double* before;
   BB_HD Key operator()(Index e) const {
     const bool active = limit.smaller_gap(e) < limit.band_width[e];
@@ -187,7 +224,7 @@ struct LimitKappaChange {
   }
 };
 /// What is said of a state: complements of keys (sum_kernels.hpp) of the largest singular value, of the largest force of
-/// an active element over its rest area, N/m, and of the smallest pseudo-gap in units of the width.
+/// an active element over its rest area or volume, N/m or Pa, and of the smallest pseudo-gap in units of the width.
 struct LimitNumbers {
   Key stretch, load, gap;
   BB_HD static LimitNumbers zero() { return {0, 0, 0}; }
@@ -197,18 +234,18 @@ struct LimitNumbers {
     return out;
   }
 };
+template <int N>
 struct LimitParts {
   using Sum = LimitNumbers;
-  LimitColumns limit;
+  LimitColumns<N> limit;
   BB_HD double load(Index i, Index e) const {
     using std::abs;
     const bool active = limit.gap[i] < limit.band_width[e];
-    return active ? abs(limit.kappa[e] * limit.db[i]) / limit.rest.area[e] : 0.0;
+    return active ? abs(limit.kappa[e] * limit.db[i]) / limit.rest.measure[e] : 0.0;
   }
   BB_HD void operator()(Index e, LimitNumbers& sum) const {
     raise_key(sum.stretch, ~largest_key(limit.sigma[e]));
-    raise_key(sum.load, ~largest_key(load(e, e)));
-    raise_key(sum.load, ~largest_key(load(limit.n + e, e)));
+    for (int k = 0; k < N; ++k) raise_key(sum.load, ~largest_key(load(k * limit.n + e, e)));
     raise_key(sum.gap, ~smallest_key(limit.smaller_gap(e) / limit.band_width[e]));
   }
 };

@@ -1,11 +1,11 @@
 // Membranes on an executor: one term a model in use.
 #include "core/energy/membrane_batch.hpp"
 #include "core/math/error.hpp"
+#include "core/resident/elements/element_columns.hpp"
 #include "core/resident/elements/element_term.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/family_kernels.hpp"
 #include "core/resident/elements/rest_memory.hpp"
-#include "core/resident/elements/triangle_columns.hpp"
 
 namespace bb::resident {
 namespace {

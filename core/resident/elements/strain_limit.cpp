@@ -1,16 +1,20 @@
-// The strain limit on an executor: a family of elements whose barrier and stiffness change with the state.
+// The strain limit on an executor, one term of triangles and one of tetrahedra: a family of elements whose barrier and
+// stiffness change with the state.
 #include "barriers/shapes/shape_list.hpp"
 #include "barriers/stiffness/item_policy.hpp"
 #include "barriers/stiffness/policy_list.hpp"
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
+#include "core/resident/elements/element_columns.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/limit_forms.hpp"
 #include "core/resident/elements/limit_kernels.hpp"
-#include "core/resident/elements/triangle_columns.hpp"
 
 namespace bb::resident {
 namespace {
+
+template <int N>
+using LimitPartOf = std::conditional_t<N == 2, StrainLimitPart, SolidLimitPart>;
 
 /// Where kappa is known: the state x is measured, with its energies.
 struct MeasureAt {
@@ -18,30 +22,30 @@ struct MeasureAt {
   double* energy;
   Key* beyond;
 };
+template <int N>
 struct ShapeLaunches {
-  void (*shape)(exec::Executor&, const LimitColumns&, const BarrierFunction&, const KappaParts*);
-  void (*measure[2])(exec::Executor&, const LimitColumns&, const BarrierFunction&, const KappaParts*,
-                     const MeasureAt&);  // in the plane, in space
+  void (*shape)(exec::Executor&, const LimitColumns<N>&, const BarrierFunction&, const KappaParts*);
+  void (*measure)(exec::Executor&, const LimitColumns<N>&, const BarrierFunction&, const KappaParts*,
+                  const MeasureAt&);
 };
 
-template <class S>
-void launch_shape(exec::Executor& executor, const LimitColumns& limit, const BarrierFunction& barrier,
+template <int N, class S>
+void launch_shape(exec::Executor& executor, const LimitColumns<N>& limit, const BarrierFunction& barrier,
                   const KappaParts* parts) {
-  executor.each(2 * limit.n, LimitShape<S>{limit, barrier.argument, barrier.literal, parts});
+  executor.each(N * limit.n, LimitShape<N, S>{limit, barrier.argument, barrier.literal, parts});
 }
-template <int R, class S>
-void launch_measure(exec::Executor& executor, const LimitColumns& limit, const BarrierFunction& barrier,
+template <int R, int N, class S>
+void launch_measure(exec::Executor& executor, const LimitColumns<N>& limit, const BarrierFunction& barrier,
                     const KappaParts* parts, const MeasureAt& at) {
-  executor.each(limit.n, MeasureLimit<R, S>{
+  executor.each(limit.n, MeasureLimit<R, N, S>{
                              {limit, barrier.argument, barrier.literal, parts}, at.x, at.energy, at.beyond});
 }
 
-ShapeLaunches shape_kernels(const BarrierFunction& barrier) {
-#define SHAPE(id, Struct)                                                              \
-  if (barrier.shape.name == #id && !barrier.shape.self) {                              \
-    return {&launch_shape<shapes::Struct>,                                             \
-            {&launch_measure<2, shapes::Struct>, &launch_measure<3, shapes::Struct>}}; \
-  }
+template <int R, int N>
+ShapeLaunches<N> shape_kernels(const BarrierFunction& barrier) {
+#define SHAPE(id, Struct)                               \
+  if (barrier.shape.name == #id && !barrier.shape.self) \
+    return {&launch_shape<N, shapes::Struct>, &launch_measure<R, N, shapes::Struct>};
   BB_FOR_EACH_SHAPE(SHAPE)
 #undef SHAPE
   throw ConfigError("shape", barrier.shape.name,
@@ -49,13 +53,16 @@ ShapeLaunches shape_kernels(const BarrierFunction& barrier) {
 }
 
 /// What everything but the sums is computed from is measured: singular values, pseudo-gaps and barrier terms of one state.
-template <int R>
-class LimitTerm final : public TermOf<Limit<R>> {
-  using Base = TermOf<Limit<R>>;
+/// R: 3 in space, 2 in the x-y plane. N: 2 singular values of triangles, 3 of tetrahedra.
+template <int R, int N>
+class LimitTerm final : public TermOf<Limit<R, N>> {
+  using Base = TermOf<Limit<R, N>>;
+  static constexpr bool of_solids = N == 3;
+  using Batch = StrainLimitBatchOf<LimitedRest<N>>;
   using Base::elements_, Base::executor_, Base::size;
 
  public:
-  LimitTerm(const ResidentInputs& inputs, const StrainLimitBatch& batch);
+  LimitTerm(const ResidentInputs& inputs, const Batch& batch, const LimitPartOf<N>& part);
 
   void begin_step(const ResidentFrame& frame) override {
     fresh_ = false, first_ = true;
@@ -77,7 +84,9 @@ class LimitTerm final : public TermOf<Limit<R>> {
 
   void look_along(const ResidentMotion& motion, PhaseClock& clock) override;
   double bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) override;
-  std::string describe_bound() const override { return "the strain limit"; }
+  std::string describe_bound() const override {
+    return of_solids ? "the strain limit of solids" : "the strain limit";
+  }
   void look_at(const Column&, const Column& trial, PhaseClock&) override {
     measure(trial, Base::trial_energies(), State::trial);
   }
@@ -107,16 +116,20 @@ class LimitTerm final : public TermOf<Limit<R>> {
     Key first, second;
   };
   struct Numbers {
-    double max_stretch, load_max, gap_min_rel;  // 1, N/m, 1: of the width
+    double max_stretch, load_max, gap_min_rel;  // 1, N/m or Pa, 1: of the width
   };
 
-  const StiffnessPolicy& policy() const { return *options_.limit_stiffness; }
+  const StiffnessPolicy& policy() const {
+    return of_solids ? *options_.solid_limit_stiffness : *options_.limit_stiffness;
+  }
   KappaParts* parts() { return policy().has_potential() ? parts_.data() : nullptr; }
   void set_columns(Index n);
   void refresh(const Column& x, const MatrixPart& elastic);
   void fill_kappa(const MatrixPart& elastic);
   Numbers numbers(const Column& x);
-  void measure_stretch(const Column& x) { executor_.each(size(), MeasureStretch<R>{elements_, x.data()}); }
+  template <class Out>
+  void say_state(const Numbers& found, Out& out) const;
+  void measure_stretch(const Column& x) { executor_.each(size(), MeasureStretch<R, N>{elements_, x.data()}); }
   /// Barrier terms at the measured pseudo-gaps.
   void fill_barrier() { launches_.shape(executor_, elements_, options_.limit, parts()); }
   void measure_iterate(const Column& x) {
@@ -125,16 +138,16 @@ class LimitTerm final : public TermOf<Limit<R>> {
   /// Stretches, barrier terms and energies at x, with the kappa that there is.
   void measure(const Column& x, double* energy, State state) {
     beyond_.clear();
-    launches_.measure[R - 2](executor_, elements_, options_.limit, parts(),
-                             {x.data(), energy, beyond_.data()});
+    launches_.measure(executor_, elements_, options_.limit, parts(), {x.data(), energy, beyond_.data()});
     measured_ = state;
     announced_ = false;
   }
 
   const TermOptions& options_;
   const Buffer<double>& vertex_mass_;
-  ShapeLaunches launches_;
-  TriangleColumns triangles_;
+  ShapeLaunches<N> launches_;
+  const bool adds_;  // triangles have said their part of what is reported before
+  ElementColumns<LimitedRest<N>> columns_;
   Buffer<double> band_, mass_, state_, kappa_, before_;
   Buffer<KappaParts> parts_;
   ResidentLeast least_, beyond_;
@@ -149,53 +162,52 @@ class LimitTerm final : public TermOf<Limit<R>> {
   double kappa_change_ = 0;            // of the last linearise()
 };
 
-Index n_of(const StrainLimitBatch& batch) { return static_cast<Index>(batch.size()); }
-
-template <int R>
-LimitTerm<R>::LimitTerm(const ResidentInputs& inputs, const StrainLimitBatch& batch)
+template <int R, int N>
+LimitTerm<R, N>::LimitTerm(const ResidentInputs& inputs, const Batch& batch, const LimitPartOf<N>& part)
     : Base(inputs, "strain_limit", batch.vertices(), TermGroup::limit, Phase::strain_limit),
       options_(inputs.options),
       vertex_mass_(inputs.mass),
-      launches_(shape_kernels(options_.limit)),
-      triangles_(executor_, "limit", batch.vertices(), batch.rests()),
+      launches_(shape_kernels<R, N>(options_.limit)),
+      adds_(of_solids && !inputs.scene.limit.triangles.empty()),
+      columns_(executor_, of_solids ? "solid limit" : "limit", batch.vertices(), batch.rests()),
       band_(executor_, "limit bands"),
       mass_(executor_, "limit element masses"),
-      state_(executor_, "limit stretches and barrier terms", 10 * n_of(batch)),
-      kappa_(executor_, "limit stiffness", n_of(batch)),
+      state_(executor_, "limit stretches and barrier terms", 5 * N * static_cast<Index>(batch.size())),
+      kappa_(executor_, "limit stiffness", static_cast<Index>(batch.size())),
       before_(executor_, "limit stiffness before"),
       parts_(executor_, "limit stiffness parts"),
       least_(executor_),
       beyond_(executor_),
       bounds_(executor_),
       numbers_(executor_) {
-  const StrainLimitPart& part = inputs.scene.limit;
+  const Index n = kappa_.size();
   upload_pair(part.onset, part.width, band_);
   if (!policy().uniform()) {
     mass_.upload(part.mass);
-    before_.resize(n_of(batch));
+    before_.resize(n);
   }
-  if (policy().has_potential()) parts_.resize(n_of(batch));
-  set_columns(n_of(batch));
+  if (policy().has_potential()) parts_.resize(n);
+  set_columns(n);
 }
 
-template <int R>
-void LimitTerm<R>::set_columns(Index n) {
-  elements_.of = triangles_.vertex.data();
+template <int R, int N>
+void LimitTerm<R, N>::set_columns(Index n) {
+  elements_.of = columns_.vertex.data();
   elements_.n = n;
-  elements_.rest = triangles_.rest();
+  elements_.rest = columns_.rest();
   elements_.onset = band_.data(), elements_.band_width = band_.data() + n;
   double* column = state_.data();
   for (double** pointer : {&elements_.sigma, &elements_.gap, &elements_.b, &elements_.db, &elements_.d2b}) {
     *pointer = column;
-    column += 2 * n;
+    column += N * n;
   }
   elements_.kappa = kappa_.data();
 }
 
 // kappa at the iterate, as its rule has it, and its largest relative change among active elements; 0 where the rule
 // keeps it.
-template <int R>
-void LimitTerm<R>::refresh(const Column& x, const MatrixPart& elastic) {
+template <int R, int N>
+void LimitTerm<R, N>::refresh(const Column& x, const MatrixPart& elastic) {
   const bool first = first_, keep = fresh_ && policy().frozen_in_step();
   first_ = false, fresh_ = true;
   announced_ = false;
@@ -213,25 +225,25 @@ void LimitTerm<R>::refresh(const Column& x, const MatrixPart& elastic) {
   kappa_change_ = 0;
   if (keep || first || policy().uniform() || policy().has_potential()) return;
   least_.clear();
-  least_.add(size(), LimitKappaChange{elements_, before_.data()});
+  least_.add(size(), LimitKappaChange<N>{elements_, before_.data()});
   kappa_change_ = least_.largest();
 }
 
-template <int R>
-void LimitTerm<R>::fill_kappa(const MatrixPart& elastic) {
+template <int R, int N>
+void LimitTerm<R, N>::fill_kappa(const MatrixPart& elastic) {
   LimitPolicies::with(policy(), [&]<class P>(const ScaledPolicy<P>& values) {
-    executor_.each(
-        size(), ElementKappa<P>{elements_, values, policy().needs_hessian(), time_, x_n_, vertex_mass_.data(),
-                                mass_.data(), elastic, parts(), before_.data()});
+    executor_.each(size(),
+                   ElementKappa<N, P>{elements_, values, policy().needs_hessian(), time_, x_n_,
+                                      vertex_mass_.data(), mass_.data(), elastic, parts(), before_.data()});
   });
 }
 
 // A second look: one element's bound may, by rounding alone, be beyond another's limit.
-template <int R>
-void LimitTerm<R>::look_along(const ResidentMotion& motion, PhaseClock& clock) {
+template <int R, int N>
+void LimitTerm<R, N>::look_along(const ResidentMotion& motion, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_bound);
   bounds_.fill(0xff);
-  StretchBound<R> look{
+  StretchBound<R, N> look{
       elements_, motion.x0.data(),          motion.dx.data(), 1, options_.contact_options.ccd_park,
       nullptr,   &bounds_.to_write()->first};
   executor_.each(size(), look);
@@ -239,8 +251,8 @@ void LimitTerm<R>::look_along(const ResidentMotion& motion, PhaseClock& clock) {
   executor_.each(size(), look);
 }
 
-template <int R>
-double LimitTerm<R>::bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) {
+template <int R, int N>
+double LimitTerm<R, N>::bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_bound);
   if (executor_.counts_only()) return out.alpha_strain = 1;
   const Bounds found = bounds_.get();
@@ -249,69 +261,89 @@ double LimitTerm<R>::bound(const ResidentMotion& motion, IterateNumbers& out, Ph
   for (Key key = found.second; key != ResidentLeast::none && alpha != 0; key = least_.get()) {
     alpha = exec::from_ordered_bits(key);
     least_.clear();
-    executor_.each(size(), StretchBound<R>{elements_, motion.x0.data(), motion.dx.data(), alpha,
-                                           options_.contact_options.ccd_park, nullptr, least_.data()});
+    executor_.each(size(), StretchBound<R, N>{elements_, motion.x0.data(), motion.dx.data(), alpha,
+                                              options_.contact_options.ccd_park, nullptr, least_.data()});
   }
   return out.alpha_strain = alpha;
 }
 
-template <int R>
-bool LimitTerm<R>::admits(const Column&, const Column&, PhaseClock&) {
+template <int R, int N>
+bool LimitTerm<R, N>::admits(const Column&, const Column&, PhaseClock&) {
   return options_.limit.literal || beyond_.first() < 0;
 }
 
-template <int R>
-void LimitTerm<R>::announce(const Column& x) {
+template <int R, int N>
+void LimitTerm<R, N>::announce(const Column& x) {
   measure_iterate(x);
   numbers_.clear();
-  numbers_.add(size(), LimitParts{elements_});
+  numbers_.add(size(), LimitParts<N>{elements_});
   announced_ = true;
 }
 
-template <int R>
-typename LimitTerm<R>::Numbers LimitTerm<R>::numbers(const Column& x) {
+template <int R, int N>
+typename LimitTerm<R, N>::Numbers LimitTerm<R, N>::numbers(const Column& x) {
   if (!announced_) announce(x);
   const LimitNumbers found = numbers_.get();
   return {largest_of(found.stretch) - 1, largest_of(found.load), smallest_of(found.gap)};
 }
 
-template <int R>
-void LimitTerm<R>::report(const Column& x, IterateNumbers& out, PhaseClock& clock) {
-  const ScopedPhase timer(clock, Phase::strain_limit);
-  const Numbers found = numbers(x);
-  out.max_stretch = found.max_stretch;
-  out.limit_load_max_N_per_m = found.load_max;
-  out.limit_kappa_change_rel = kappa_change_;
-  out.limit_gap_min_rel = found.gap_min_rel;
+// Stretch and load of a state; those of triangles stay where they are said before.
+template <int R, int N>
+template <class Out>
+void LimitTerm<R, N>::say_state(const Numbers& found, Out& out) const {
+  if (adds_) {
+    keep_larger(out.max_stretch, Number(found.max_stretch));
+  } else {
+    out.max_stretch = found.max_stretch;
+  }
+  (of_solids ? out.solid_limit_load_max_Pa : out.limit_load_max_N_per_m) = found.load_max;
 }
 
-template <int R>
-void LimitTerm<R>::report_end(const Column& x, StepNumbers& out) {
+template <int R, int N>
+void LimitTerm<R, N>::report(const Column& x, IterateNumbers& out, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::strain_limit);
   const Numbers found = numbers(x);
-  out.max_stretch = found.max_stretch;
-  out.limit_load_max_N_per_m = found.load_max;
+  say_state(found, out);
+  if (adds_) {
+    keep_larger(out.limit_kappa_change_rel, Number(kappa_change_));
+    keep_smaller(out.limit_gap_min_rel, Number(found.gap_min_rel));
+  } else {
+    out.limit_kappa_change_rel = kappa_change_;
+    out.limit_gap_min_rel = found.gap_min_rel;
+  }
+}
+
+template <int R, int N>
+void LimitTerm<R, N>::report_end(const Column& x, StepNumbers& out) {
+  say_state(numbers(x), out);
+}
+
+template <int R, int N>
+void add_limit(const ResidentInputs& inputs, std::span<const std::array<int, N + 1>> elements,
+               const LimitPartOf<N>& part, ResidentTermList& terms) {
+  if (elements.empty()) return;
+  const StrainLimitBatchOf<LimitedRest<N>> batch(elements, inputs.scene.rest, part.onset, part.width, R == 2);
+  terms.add(std::make_unique<LimitTerm<R, N>>(inputs, batch, part));
 }
 
 }  // namespace
 
 void require_limit_kernels(const TermOptions& options) {
-  shape_kernels(options.limit);
-  LimitPolicies::require(*options.limit_stiffness, "stiffness_policy/name");
+  shape_kernels<3, 2>(options.limit);
+  for (const auto* policy : {&options.limit_stiffness, &options.solid_limit_stiffness}) {
+    if (*policy) LimitPolicies::require(**policy, "stiffness_policy/name");
+  }
 }
 
 void make_resident_strain_limit(const ResidentInputs& inputs, ResidentTermList& terms) {
   require_limit_kernels(inputs.options);
-  if (!inputs.scene.solid_limit.tetrahedra.empty()) {
-    throw ConfigError("strain_limit/solids", "true", "false: a limit of tetrahedra has no kernel");
-  }
   const Scene& scene = inputs.scene;
-  const StrainLimitPart& part = scene.limit;
-  const StrainLimitBatch batch(part.triangles, scene.rest, part.onset, part.width, scene.planar);
   if (scene.planar) {
-    terms.add(std::make_unique<LimitTerm<2>>(inputs, batch));
+    add_limit<2, 2>(inputs, scene.limit.triangles, scene.limit, terms);
   } else {
-    terms.add(std::make_unique<LimitTerm<3>>(inputs, batch));
+    add_limit<3, 2>(inputs, scene.limit.triangles, scene.limit, terms);
   }
+  add_limit<3, 3>(inputs, scene.solid_limit.tetrahedra, scene.solid_limit, terms);
 }
 
 }  // namespace bb::resident
