@@ -174,7 +174,7 @@ if wanted same; then
   for formulation in log cubic quadratic cubic_dynamic_lagged ipc2020; do
     same_run "drape_$formulation" "$root/configs/scenes/drape.json" --set /scene/n=16 --set /time/steps=15 --set "/formulation=\"$formulation\"" &
   done
-  for scene in strip_on_disk sphere_on_sheet sheets_on_ball noodle solid_ball solid_stack twist_cloth hang balloon bounce curtain_wind friction_slope; do
+  for scene in strip_on_disk sphere_on_sheet sheets_on_ball noodle solid_ball solid_stack solid_limit twist_cloth hang balloon bounce curtain_wind friction_slope; do
     same_run "$scene" "$root/configs/scenes/$scene.json" --set /time/steps=20 &
   done
   same_run dense_patch "$root/configs/gpu/dense_patch.json" &

@@ -4,11 +4,11 @@
 //   2 solve A dx = -g, prescribed motion lifted to the right-hand side; A is the Hessian, as near to the exact
 //     one as positive definiteness allows
 //   3 stop when the estimated error of x + dx is below h tol_velocity, every prescribed vertex is at its pose
-//     and the exact Hessian is positive definite; from a saddle go on along negative curvature, from its side too where steps only crawl
+//     and the exact Hessian is positive definite; from a saddle go on along negative curvature
 //   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds. Where contact bounds each
 //     vertex by itself, dx of each is cut to what it may go, as long as that descends
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
-//     with a detour round them
+//     with a detour round them; where steps crawl, first along a longer dx
 //   6 accept; what converged goes on where terms renew what they lag
 
 #include <fmt/format.h>
@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/newton/crawl_watch.hpp"
 #include "core/newton/error_estimate.hpp"
 #include "core/newton/iteration.hpp"
 #include "core/newton/line_search.hpp"
@@ -27,7 +28,6 @@ constexpr double collapsed_step = 1e-8;   // a step below it counts as no progre
 constexpr int collapse_iterations = 10;   // that many in a row end the step
 constexpr double smallest_alpha = 1e-14;  // below it x does not move any more
 constexpr int most_escapes = 10;          // in a step; a saddle after that many is said to be one
-constexpr int crawl_iterations = 20;      // that many whole steps in a row without a bend of E: is it a saddle's side?
 
 class LineSearch final : public StepSolver {
  public:
@@ -45,9 +45,11 @@ class LineSearch final : public StepSolver {
     StepReport step = start_step(system, task, used);
     feasibility_trials_ = &(step.solver.values["feasibility_trials"] = 0);
     truncations_ = &(step.solver.values["truncations"] = 0);
+    lengthened_ = &(step.solver.values["lengthened"] = 0);
     error_.reset();
+    crawl_.begin_step();
     const double tolerance = tolerance_of(system, task.dt);
-    int collapsed = 0, escapes = 0, crawled = 0;
+    int collapsed = 0, escapes = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);
       find_direction(system, report, observer);
@@ -58,25 +60,25 @@ class LineSearch final : public StepSolver {
         fail_step(system, step, *failed, report);
         return step;
       }
-      const bool may_escape = options_.saddle == SaddleRule::escape && escapes < most_escapes;
-      const bool crawls = crawled == crawl_iterations && at_pose && may_escape;
-      const EndCheck end =
-          small || crawls ? check_end(system, options_.saddle, step, report) : EndCheck();
-      if (crawls) crawled = 0;
-      if (end.proof == EndProof::saddle && may_escape && escape(system, report, tolerance)) {
+      const EndCheck end = small ? check_end(system, options_.saddle, step, report) : EndCheck();
+      if (end.proof == EndProof::saddle && options_.saddle == SaddleRule::escape && escapes < most_escapes &&
+          escape(system, report, tolerance)) {
         ++escapes;
         error_.took(0);
+        crawl_.reset();
         finish_iteration(system, step, report, observer);
         show_motion(system, task.step, observer);
         continue;
       }
       const bool moved = search(system, report, at_pose, small);
-      error_.took(report.detours > 0 || truncated_ ? 0 : report.alpha);  // the direction itself was not taken
-      crawled = in_a_row(crawled, moved && falls_as_its_slope(report));
+      // another direction than dx, or another length of it, says nothing about the rate
+      error_.took(report.detours > 0 || truncated_ || taken_ > 1 ? 0 : report.alpha);
+      crawl_.took(moved && !truncated_ && !noise_ ? taken_ : 0, report);
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
       if (moved && after_motion_ && after_motion_(system)) {
         collapsed = 0;
+        crawl_.reset();
         if (iteration + 1 < options_.max_iterations) error_.reset();
         continue;
       }
@@ -91,6 +93,7 @@ class LineSearch final : public StepSolver {
           if (renewals_) ++*renewals_;
           // another minimum is looked for, by what is left of the iterations
           collapsed = 0;
+          crawl_.reset();
           if (iteration + 1 < options_.max_iterations) error_.reset();
           continue;
         }
@@ -180,19 +183,28 @@ class LineSearch final : public StepSolver {
     return noise_ || std::abs(report.energy_change_J.value - modelled) <= tolerance * std::abs(modelled);
   }
 
-  // Whether E has fallen along the whole of dx as its slope alone says, by twice what the model promises: the matrix was raised
-  // to be positive definite and is stiffer than E along dx, which may be flat or bend down. Such steps are as short as the
-  // matrix is stiff, and leave the side of a saddle by hundreds of iterations.
-  bool falls_as_its_slope(const IterationReport& report) const {
-    return report.solve.t > 0 && report.alpha == 1 && !truncated_ && !noise_ &&
-           report.energy_change_J.finite() && report.energy_change_J.value < -1.5 * report.decrement_J;
+  // Along a longer dx, halved as long as that is longer than dx itself.
+  bool go_far(StepSystem& system, IterationReport& report) {
+    const double length = crawl_.length();
+    system.scale_direction(length);
+    bound_again(system, report);
+    share_ = length;
+    if (go_along(system, report, 1 / length, true)) {
+      ++*lengthened_;
+      return true;
+    }
+    share_ = 1;
+    system.scale_direction(1 / length);
+    bound_again(system, report);
+    return false;
   }
 
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its
   // motion does work.
   bool search(StepSystem& system, IterationReport& report, bool energy_test, bool small) {
     find_bound(system, report);
-    share_ = 1, truncated_ = false;
+    share_ = 1, truncated_ = false, taken_ = 0;
+    if (crawl_.length() > 1 && energy_test && !small && bound_ == 1 && go_far(system, report)) return true;
     if (bounded_ && report.alpha_ccd < 1) {
       if (const auto motion = system.truncate_motion(report))
         return go_truncated(system, report, *motion, energy_test);
@@ -263,7 +275,8 @@ class LineSearch final : public StepSolver {
     for (; alpha > least; alpha /= 2) {
       ++report.line_search_trials;
       if (!(energy_test ? decreases(system, report, alpha) : is_feasible(system, report, alpha))) continue;
-      report.alpha = std::min(1.0, alpha * share_);
+      taken_ = alpha * share_;
+      report.alpha = std::min(1.0, taken_);
       system.accept();
       return true;
     }
@@ -297,8 +310,10 @@ class LineSearch final : public StepSolver {
   bool noise_ = false;  // its change of E is
   double share_ = 1;    // of the fall that dx promises, in the motion that is tried
   bool truncated_ = false;
-  double *feasibility_trials_ = nullptr, *truncations_ = nullptr;
+  double taken_ = 0;  // the part of dx that was, above 1 of one that was lengthened
+  double *feasibility_trials_ = nullptr, *truncations_ = nullptr, *lengthened_ = nullptr;
   ErrorEstimate error_;
+  CrawlWatch crawl_;
 };
 
 }  // namespace
@@ -324,6 +339,8 @@ StepSolverEntry step_solver_line_search() {
        OverSteps::sum},
       {"truncations",
        "line_search: iterations in which vertices went each as far as contact let it (/contact/step_bound)",
+       OverSteps::sum},
+      {"lengthened", "line_search: iterations in which dx was taken more than once, since steps crawled",
        OverSteps::sum}};
   entry.settings.vertex_steps = true;
   entry.make = [](const StepSolverOptions& options) {

@@ -16,7 +16,7 @@ struct LineSearchRules {
   std::function<bool(StepSystem&)> after_motion = {};
 };
 
-/// options: with `armijo`. Its steps say two counters, `feasibility_trials` and `truncations`.
+/// options: with `armijo`. Its steps say three counters, `feasibility_trials`, `truncations` and `lengthened`.
 std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options, const LineSearchRules& rules);
 
 }  // namespace bb

@@ -47,6 +47,15 @@ TEST(PairVerdict, sliding_at_a_tiny_gap_is_certified) {
             Verdict::certified);
 }
 
+/// No direction separates it for long: the spans of time grow as size over gap, to 8000 at 1e-4.
+TEST(PairVerdict, a_turning_pair_at_a_small_gap_is_certified) {
+  for (const double gap : {1e-2, 1e-3, 1e-4}) {
+    const Vec3d n0(0, 0, 1), n1(0, -0.8, 0.6), a(0, 0, 0), b(1, 0, 0), c0(0.5, 1, 0), c1(0.5, 0.6, 0.8);
+    const Vec3d m0 = (a + b + c0) / 3 + gap * n0, m1 = (a + b + c1) / 3 + gap * n1;
+    EXPECT_EQ(vertex_triangle({m0, a, b, c0}, {m1, a, b, c1}), Verdict::certified) << gap;
+  }
+}
+
 TEST(PairVerdict, a_gap_of_one_ulp_is_settled_by_integers) {
   const double z = std::nextafter(1.0, 2.0);
   const Vec3d a(0, 0, 1), b(4, 0, 1), c(0, 4, 1);

@@ -18,7 +18,7 @@ struct ScriptedIteration {
   double slope = -1;
   double bound = 1;
   std::function<Change(double)> change =
-      nullptr;  // of the direction at alpha; empty: as its quadratic model says
+      nullptr;  // of the direction, as it was found, at alpha; empty: as its quadratic model says
   EndProof end = EndProof::factor;
   // along negative curvature
   double escape_slope = 0, escape_curvature = -1, escape_bound = 1;
@@ -27,6 +27,7 @@ struct ScriptedIteration {
   double curvature = -1;    // that the check of the end finds at a saddle, N/m
   double detour_bound = 0;  // of the direction round curved gaps; 0: there is none
   double t = 0;             // of the matrix that was solved, 0 exact to 1 clamped
+  bool lengthens = false;   // scaling the direction changes what bound and change are of
 };
 
 /// What the system says of itself in every iteration.
@@ -45,6 +46,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   std::vector<double> tried;           // every alpha whose energy was asked for, in the order of trials
   std::vector<double> feasible_asked;  // those of which feasibility alone was
   std::vector<double> aimed;           // lengths of escapes
+  std::vector<double> scaled;          // factors on the direction
   int accepted = 0, checks = 0;
 
   void begin_step(const Positions&, const Prediction&, double, double) override { place_ = -1; }
@@ -58,6 +60,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   void assemble() override {
     if (place_ + 1 < static_cast<int>(script_.size())) ++place_;
     escaping_ = detouring_ = false;
+    length_ = 1;
   }
   double add_tikhonov(double, double) override { return 0; }
   SolveReport find_direction() override {
@@ -71,7 +74,10 @@ class ScriptedSystem final : public StepSystem, public StepView {
     const double slope = escaping_ ? now().escape_slope : now().slope;
     return {std::max(now().dx, now().rounding), now().dx, now().rounding, slope, now().dx};
   }
-  void scale_direction(double) override {}
+  void scale_direction(double factor) override {
+    scaled.push_back(factor);
+    if (now().lengthens) length_ *= factor;
+  }
   double direction_curvature() override { return now().escape_curvature; }
   EndCheck check_end() override {
     ++checks;
@@ -84,7 +90,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   void prepare_motion(MotionEnd, bool) override {}
   double bound_motion(IterationReport&) override {
     if (detouring_) return now().detour_bound;
-    return escaping_ ? now().escape_bound : now().bound;
+    return escaping_ ? now().escape_bound : std::min(1.0, now().bound / length_);
   }
   bool make_detour(double, SolveReport&) override { return detouring_ = now().detour_bound > 0; }
   void restore_direction() override { escaping_ = detouring_ = false; }
@@ -125,7 +131,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
  private:
   Change change_at(double alpha) const {
     const auto& change = escaping_ ? now().escape_change : now().change;
-    if (change) return change(alpha);
+    if (change) return change(alpha * length_);
     if (escaping_) return std::nullopt;
     return EnergyChange{now().slope * alpha * (2 - alpha) / 2, 1e-3};
   }
@@ -136,6 +142,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   ScriptedState state_;
   int place_ = -1;
   bool escaping_ = false, detouring_ = false;
+  double length_ = 1;
 };
 
 /// A step of line_search on a script: what it reports of the step and of every iteration. Tolerance 1e-3 m.

@@ -169,57 +169,5 @@ TEST(EscapeDecisions, LeaveNoRateOfConvergenceBehind) {
   EXPECT_NE(ScriptedStep(script).report.newton_iterations, 2);
 }
 
-/// A step far from any end, along which E falls by `fall` where the model promises 0.5, with a saddle nearby.
-ScriptedIteration crawl(double fall, double t = 0.125) {
-  ScriptedIteration at{.dx = 1, .slope = -1, .end = EndProof::saddle, .t = t};
-  at.change = [fall](double) -> Change { return EnergyChange{-fall, 1e-3}; };
-  at.escape_curvature = -2;
-  at.escape_change = at_one(-1);
-  return at;
-}
-
-/// Iterations until the first escape; 0: there was none among 60.
-int escape_after(const std::vector<ScriptedIteration>& script, SaddleRule rule = SaddleRule::escape) {
-  const ScriptedStep step(script, rule, 0.1, 60);
-  for (std::size_t i = 0; i < step.iterations.size(); ++i)
-    if (step.iterations[i].escapes > 0) return static_cast<int>(i);
-  EXPECT_EQ(step.system.checks, 0);
-  return 0;
-}
-
-/// Twenty steps whose fall is that of the slope alone, three quarters of it and more: the matrix is stiffer than E.
-TEST(EscapeDecisions, AreLookedForWhereStepsCrawl) {
-  EXPECT_EQ(escape_after({crawl(1)}), 20);
-  EXPECT_EQ(escape_after({crawl(0.751)}), 20);
-  EXPECT_EQ(escape_after({crawl(0.749)}), 0);
-  EXPECT_EQ(escape_after({crawl(1, 1)}), 20);
-  EXPECT_EQ(escape_after({crawl(1, 0)}), 0) << "the matrix is that of E: its model is no worse than E";
-  EXPECT_EQ(escape_after({crawl(1)}, SaddleRule::report), 0);
-  EXPECT_EQ(escape_after({crawl(1)}, SaddleRule::ignore), 0);
-}
-
-/// In a row, and along whole steps.
-TEST(EscapeDecisions, StepsThatCrawlCountInARowAndWhole) {
-  std::vector<ScriptedIteration> script(19, crawl(1));
-  script.push_back(crawl(0.5));
-  script.push_back(crawl(1));
-  EXPECT_EQ(escape_after(script), 40);
-  ScriptedIteration held = crawl(1);
-  held.bound = 0.5;
-  EXPECT_EQ(escape_after({held}), 0);
-}
-
-/// Where no saddle is found, or no way from it, they are asked again after as many.
-TEST(EscapeDecisions, StepsThatCrawlOnAreAskedAgain) {
-  ScriptedIteration minimum = crawl(1);
-  minimum.end = EndProof::factor;
-  EXPECT_EQ(ScriptedStep({minimum}, SaddleRule::escape, 0.1, 60).system.checks, 2);
-  ScriptedIteration stuck = crawl(1);
-  stuck.escape_curvature = 0;
-  const ScriptedStep step({stuck}, SaddleRule::escape, 0.1, 60);
-  EXPECT_EQ(step.system.checks, 2);
-  EXPECT_EQ(step.report.escapes, 0);
-}
-
 }  // namespace
 }  // namespace bb::escape_decisions_test

@@ -126,9 +126,11 @@ struct OnExecutor {
     x.swap(trial);
   }
   /// options.contact_options.ccd_park is read.
-  double bound(const Positions& direction) {
+  /// said: what the terms report of it, where asked.
+  double bound(const Positions& direction, IterateNumbers* said = nullptr) {
     dx.upload(numbers_of(direction));
-    IterateNumbers report;
+    IterateNumbers nobody;
+    IterateNumbers& report = said ? *said : nobody;
     double smallest = 1;
     for (const auto& term : terms) term->look_along({x, trial, dx}, clock);
     for (const auto& term : terms) smallest = std::min(smallest, term->bound({x, trial, dx}, report, clock));

@@ -10,7 +10,7 @@ namespace bb::resident_solid_limit_test {
 namespace {
 
 using namespace bb::test;
-// The CPU's singular values and products are the same arithmetic, in another order of fused operations.
+// Of sums over elements, and of barriers whose logarithms are those of another library; singular values are the same bits.
 constexpr double rounding = 1e-12;
 
 /// A block whose limit acts where it is strained(), and a cloth beside it.
@@ -62,15 +62,20 @@ struct Both {
   }
 };
 
-// Two iterates of one step, so that kappa is refreshed or kept.
+/// As far as strained(), and larger in all directions, so that all three stretches of elements are limited.
+Positions swollen(const Scene& scene) { return 1.07 * strained(scene, 0.006); }
+
+// Three iterates of one step, so that kappa is refreshed or kept.
 TEST(ResidentSolidLimit, HasTheTermsOfTheCpuForEveryRule) {
   for (const bool with_cloth : {false, true}) {
     for (const LimitRule& rule : limit_rules()) {
       SCOPED_TRACE(std::string(rule.shape) + (with_cloth ? " beside cloth" : ""));
       Both both(with_cloth, rule);
       ASSERT_EQ(both.limits().size(), with_cloth ? 2U : 1U);
-      for (const double size : {0.004, 0.006}) {
-        const Positions x = strained(both.scene, size);
+      const std::vector<Positions> states = {strained(both.scene, 0.004), strained(both.scene),
+                                             swollen(both.scene)};
+      for (std::size_t i = 0; i < states.size(); ++i) {
+        const Positions& x = states[i];
         both.cpu->linearise(x, StepHessian::clamped);
         both.resident->linearise(x);
         IterateNumbers expected;
@@ -84,18 +89,21 @@ TEST(ResidentSolidLimit, HasTheTermsOfTheCpuForEveryRule) {
         ASSERT_GT(load, 0);
         ASSERT_GT(expected.limit_gap_min_rel.value, 0);
         EXPECT_NEAR(found.solid_limit_load_max_Pa.value, load, rounding * load);
-        EXPECT_NEAR(found.max_stretch.value, expected.max_stretch.value, rounding);
-        EXPECT_NEAR(found.limit_gap_min_rel.value, expected.limit_gap_min_rel.value, rounding);
+        EXPECT_EQ(found.max_stretch.value, expected.max_stretch.value);
+        EXPECT_EQ(found.limit_gap_min_rel.value, expected.limit_gap_min_rel.value);
         EXPECT_NEAR(found.limit_kappa_change_rel.value, expected.limit_kappa_change_rel.value, rounding);
         EXPECT_EQ(found.limit_load_max_N_per_m.finite(), with_cloth);
         if (with_cloth) {
           const double of_cloth = expected.limit_load_max_N_per_m.value;
           EXPECT_NEAR(found.limit_load_max_N_per_m.value, of_cloth, rounding * of_cloth);
         }
+        const bool moves = rule.elastic && rule.elastic->refresh == Refresh::per_iteration && i > 0;
+        EXPECT_EQ(found.limit_kappa_change_rel.value > 1e-6, moves);
         ASSERT_GT(energy, 0);
         EXPECT_NEAR(both.resident->energy(TermGroup::limit).value(), energy, rounding * energy);
         EXPECT_LE(largest(both.resident->gradient() - both.cpu->gradient),
                   rounding * largest(both.cpu->gradient));
+        EXPECT_TRUE(both.resident->evaluate(x));
       }
     }
   }
@@ -104,7 +112,7 @@ TEST(ResidentSolidLimit, HasTheTermsOfTheCpuForEveryRule) {
 TEST(ResidentSolidLimit, HasTheMatrixOfTheCpu) {
   for (const StepHessian choice : {StepHessian::clamped, StepHessian::absolute, StepHessian::blend}) {
     Both both(true);
-    const Positions x = strained(both.scene);
+    const Positions x = swollen(both.scene);
     both.cpu->linearise(x, choice);
     both.resident->linearise(x);
     const HessianLevel level({choice});
@@ -118,7 +126,7 @@ TEST(ResidentSolidLimit, HasTheMatrixOfTheCpu) {
 }
 
 TEST(ResidentSolidLimit, BoundsAStepAsTheCpuDoes) {
-  int n_below = 0;
+  int n_below = 0, n_by_cloth = 0;
   for (const bool with_cloth : {false, true}) {
     Both both(with_cloth);
     const Positions x = strained(both.scene);
@@ -129,11 +137,15 @@ TEST(ResidentSolidLimit, BoundsAStepAsTheCpuDoes) {
       for (const double size : {1e-4, 0.03, 0.1, 0.7, 20.0}) {
         const Positions dx = wave(both.scene, size), x1 = x + dx;
         IterateNumbers report;
-        double expected = 1;
-        for (Term* term : both.limits())
-          expected = std::min(expected, term->bound({x, x1, dx}, report, both.cpu->clock));
-        const double found = both.resident->bound(dx);
-        EXPECT_NEAR(found, expected, rounding) << size << " " << park;
+        const double by_cloth =
+            with_cloth ? both.limits()[0]->bound({x, x1, dx}, report, both.cpu->clock) : 1;
+        const double by_block = both.limits().back()->bound({x, x1, dx}, report, both.cpu->clock);
+        const double expected = std::min(by_cloth, by_block);
+        IterateNumbers said;
+        const double found = both.resident->bound(dx, &said);
+        EXPECT_EQ(said.alpha_strain, report.alpha_strain);
+        n_by_cloth += with_cloth && by_cloth < by_block;
+        EXPECT_EQ(found, expected) << size << " " << park;
         n_below += found > 0 && found < 1;
         EXPECT_TRUE(both.resident->evaluate(x + found * dx));
         EXPECT_EQ(both.resident->evaluate(x + 1.01 * found * dx) || found == 1 || park > 0,
@@ -142,6 +154,35 @@ TEST(ResidentSolidLimit, BoundsAStepAsTheCpuDoes) {
     }
   }
   EXPECT_GT(n_below, 10);
+  EXPECT_GT(n_by_cloth, 2);
+}
+
+/// Literal barriers beyond the limit, and those of the squared gap.
+TEST(ResidentSolidLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
+    for (const bool literal : {false, true}) {
+      SCOPED_TRACE(std::string(shape) + (literal ? " literal" : " squared gap"));
+      Both both(false, {shape, std::nullopt, rounding});
+      both.options.limit.literal = literal;
+      if (!literal) both.options.limit.argument = Argument::squared_gap;
+      Positions x = swollen(both.scene);
+      if (literal) x *= 1.6;
+      both.cpu->linearise(x, StepHessian::clamped);
+      both.resident->linearise(x);
+      const double scale = largest(both.cpu->gradient);
+      ASSERT_TRUE(std::isfinite(scale));
+      EXPECT_LE(largest(both.resident->gradient() - both.cpu->gradient), rounding * scale);
+      const bool within = both.resident->evaluate(x);
+      EXPECT_TRUE(within || literal);
+      EXPECT_EQ(both.resident->evaluate(1.8 * x), literal);
+      both.resident->evaluate(x);
+      double energy = 0;
+      both.limits()[0]->evaluate(x);
+      for (const double e : both.limits()[0]->families()[0].trial_energy) energy += e;
+      ASSERT_TRUE(std::isfinite(energy));
+      EXPECT_NEAR(both.resident->energy(TermGroup::limit).value(), energy, rounding * std::abs(energy));
+    }
+  }
 }
 
 TEST(ResidentSolidLimit, RefusesStatesBeyondIt) {

@@ -132,6 +132,9 @@ struct MeasureLimit {
   BB_HD void operator()(Index e) const {
     const LimitColumns<N>& limit = shape.limit;
     measure_stretch<R, N>(limit, x, e);
+#ifdef __CUDACC__
+#pragma unroll 1  // the code of the shape once, and not once a singular value
+#endif
     for (int k = 0; k < N; ++k) shape(k * limit.n + e);
     energy[e] = limit.energy(e);
     if (!(limit.smaller_gap(e) > 0)) exec::atomic_min(beyond, static_cast<Key>(e));

@@ -1,6 +1,8 @@
 // The strain limit on an executor, one term of triangles and one of tetrahedra: a family of elements whose barrier and
 // stiffness change with the state.
-#include "barriers/shapes/shape_list.hpp"
+#include <algorithm>
+#include <type_traits>
+
 #include "barriers/stiffness/item_policy.hpp"
 #include "barriers/stiffness/policy_list.hpp"
 #include "core/energy/strain_limit_batch.hpp"
@@ -8,49 +10,13 @@
 #include "core/resident/elements/element_columns.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/limit_forms.hpp"
-#include "core/resident/elements/limit_kernels.hpp"
+#include "core/resident/elements/limit_launches.hpp"
 
 namespace bb::resident {
 namespace {
 
 template <int N>
 using LimitPartOf = std::conditional_t<N == 2, StrainLimitPart, SolidLimitPart>;
-
-/// Where kappa is known: the state x is measured, with its energies.
-struct MeasureAt {
-  const double* x;
-  double* energy;
-  Key* beyond;
-};
-template <int N>
-struct ShapeLaunches {
-  void (*shape)(exec::Executor&, const LimitColumns<N>&, const BarrierFunction&, const KappaParts*);
-  void (*measure)(exec::Executor&, const LimitColumns<N>&, const BarrierFunction&, const KappaParts*,
-                  const MeasureAt&);
-};
-
-template <int N, class S>
-void launch_shape(exec::Executor& executor, const LimitColumns<N>& limit, const BarrierFunction& barrier,
-                  const KappaParts* parts) {
-  executor.each(N * limit.n, LimitShape<N, S>{limit, barrier.argument, barrier.literal, parts});
-}
-template <int R, int N, class S>
-void launch_measure(exec::Executor& executor, const LimitColumns<N>& limit, const BarrierFunction& barrier,
-                    const KappaParts* parts, const MeasureAt& at) {
-  executor.each(limit.n, MeasureLimit<R, N, S>{
-                             {limit, barrier.argument, barrier.literal, parts}, at.x, at.energy, at.beyond});
-}
-
-template <int R, int N>
-ShapeLaunches<N> shape_kernels(const BarrierFunction& barrier) {
-#define SHAPE(id, Struct)                               \
-  if (barrier.shape.name == #id && !barrier.shape.self) \
-    return {&launch_shape<N, shapes::Struct>, &launch_measure<R, N, shapes::Struct>};
-  BB_FOR_EACH_SHAPE(SHAPE)
-#undef SHAPE
-  throw ConfigError("shape", barrier.shape.name,
-                    "a shape of barriers/shapes: a plugin's and another exponent have no kernel");
-}
 
 /// What everything but the sums is computed from is measured: singular values, pseudo-gaps and barrier terms of one state.
 /// R: 3 in space, 2 in the x-y plane. N: 2 singular values of triangles, 3 of tetrahedra.
@@ -254,9 +220,13 @@ void LimitTerm<R, N>::look_along(const ResidentMotion& motion, PhaseClock& clock
 template <int R, int N>
 double LimitTerm<R, N>::bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_bound);
-  if (executor_.counts_only()) return out.alpha_strain = 1;
+  const auto say = [&](double alpha) {
+    out.alpha_strain = adds_ ? std::min(out.alpha_strain, alpha) : alpha;
+    return alpha;
+  };
+  if (executor_.counts_only()) return say(1);
   const Bounds found = bounds_.get();
-  if (found.first == ResidentLeast::none) return out.alpha_strain = 1;
+  if (found.first == ResidentLeast::none) return say(1);
   double alpha = exec::from_ordered_bits(found.first);
   for (Key key = found.second; key != ResidentLeast::none && alpha != 0; key = least_.get()) {
     alpha = exec::from_ordered_bits(key);
@@ -264,7 +234,7 @@ double LimitTerm<R, N>::bound(const ResidentMotion& motion, IterateNumbers& out,
     executor_.each(size(), StretchBound<R, N>{elements_, motion.x0.data(), motion.dx.data(), alpha,
                                               options_.contact_options.ccd_park, nullptr, least_.data()});
   }
-  return out.alpha_strain = alpha;
+  return say(alpha);
 }
 
 template <int R, int N>
