@@ -23,6 +23,7 @@ LEAST_FREEDOM = 10  # of the residual of a scene: with few its value hangs on on
 LEVEL = 0.05
 SHARES = {"ok": got_through, "common": lambda row: not row["failed"]}
 TESTED = 1e-8  # of a column: how much of it the rows may leave undetermined
+NOTHING = 1e-9  # an effect below is the rounding of a fit, and no sign of anything
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,8 @@ def fitted(
 
 
 def over_scenes(metric: str, term: Term, scenes: dict[str, float]) -> Effect:
-    """Mean, Student's interval and p of the scene values."""
+    """Mean, Student's interval and p of the scene values, where rounding is taken for nothing."""
+    scenes = {scene: value if abs(value) > NOTHING else 0.0 for scene, value in scenes.items()}
     values = np.array(list(scenes.values()))
     if len(values) < 2:
         return Effect(metric, term, scenes, float(values[0]) if len(values) else None)

@@ -154,7 +154,7 @@ json given_json(const Scene& scene, double dt, int steps) {
   });
   for (int step = 0; step <= (rests ? 0 : steps); ++step) {
     json frame = json::array();
-    for (const Pin& pin : scene.pins) frame.push_back(to_json(pin_pose(scene, pin, step * dt)));
+    for (const Pin& pin : scene.pins) frame.push_back(vector_json(pin_pose(scene, pin, step * dt)));
     positions.push_back(frame);
   }
   return {{"vertices", vertices}, {"positions_m", positions}};

@@ -137,6 +137,13 @@ def test_a_direct_effect_needs_runs_of_both_levels(small):
     assert bound.direct(allowed, (0, 2), levels[:1], [1.0], {}) is None
 
 
+def test_an_effect_of_the_size_of_rounding_has_no_sign():
+    noise = {f"scene{k}": value for k, value in enumerate((3e-16, -2e-16, 8e-16, -1e-15, 0.0, 2e-16, 5e-16, 1e-16, 4e-16))}
+    found = effects.over_scenes("newton", effects.Term(((0, 1),)), {**noise, "one": 0.25})
+    assert found.signs == (1, 0) and found.scenes["scene3"] == 0.0
+    assert found.p == 1.0 and found.mean == pytest.approx(0.025)
+
+
 def test_an_interaction_is_no_main_effect():
     """Holm: the smallest of m p is multiplied by m, the next by m - 1."""
     term = [effects.Term(((0, k),)) for k in (1, 2, 3)]

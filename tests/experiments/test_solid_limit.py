@@ -53,7 +53,6 @@ def test_a_hanging_block_is_held_at_its_limit(program, tmp_path, formulation):
 def test_the_executor_of_the_host_has_the_same_run(program, tmp_path):
     one, other = (record_of(program, tmp_path / device, f'/device="{device}"', "/time/steps=10") for device in ("cpu", "host"))
     assert one["status"]["outcome"] == other["status"]["outcome"] == "ok" and other["summary"]["max_stretch"] > ONSET
-    assert other["summary"]["newton_iterations"] == one["summary"]["newton_iterations"]
     for key in ("max_stretch", "solid_limit_load_max_Pa"):
         assert other["summary"][key] == pytest.approx(one["summary"][key], rel=1e-6)
     assert planned(other) == planned(one)
