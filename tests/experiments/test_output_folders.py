@@ -27,10 +27,16 @@ def wait_for(path: Path, process: subprocess.Popen) -> None:
     raise AssertionError(f"{path} did not appear")
 
 
+def hears_hang_ups():
+    """Also where the tests themselves were started with nohup, which programs inherit."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 @contextmanager
 def start(program: str, *arguments, **options):
     """A process that never outlives the test."""
     command = [program, *map(str, arguments)]
+    options.setdefault("preexec_fn", hears_hang_ups)
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process:
         try:
             yield process
