@@ -57,3 +57,33 @@ def test_every_key_is_explained(program):
     commands = re.findall(r"^\./bench (\w+) +(examples\S+)", text, re.MULTILINE)
     assert commands == [("check", "examples/scenes/cloth_over_bar.json"), ("run", "examples/scenes/cloth_over_bar.json")]
     assert bench(program, "check", SCENE).returncode == 0
+
+
+def record_of(program, out, name, *settings):
+    """Of a scene of examples/scenes, which has to end ok and clean."""
+    words = [word for setting in ("/passes/time=false", *settings) for word in ("--set", setting)]
+    done = bench(program, "run", FOLDER / f"{name}.json", "--out", out, *words)
+    assert done.returncode == 0, done.stderr
+    record = json.loads((out / "run.json").read_text())
+    assert record["status"]["outcome"] == "ok" and record["status"]["valid"], record["status"]["detail"]
+    assert record["audit"]["crossings"] == 0 and record["audit"]["judged"] > 0
+    return record
+
+
+def test_blocks_stay_on_the_slope_above_its_tangent_and_slide_below(program, tmp_path):
+    kinetic = []
+    for mu in (0.6, 0.3):
+        record = record_of(program, tmp_path / f"{mu}", "blocks_on_slope", f"/friction/mu={mu}")
+        assert {"slope|upper", "lower|slope"} <= {"|".join(sorted(pair.split("|"))) for pair in record["summary"]["first_contact"]}
+        kinetic.append(record["steps"][-1]["kinetic_J"])
+    assert kinetic[0] < 0.02 * kinetic[1]  # 1.2 kg at g (sin - 0.3 cos) 0.3 s = 0.53 m/s: 0.17 J
+    assert 0.08 < kinetic[1] < 0.25
+
+
+@pytest.mark.parametrize("name, pair", [("coiled_rod", "rod|rod"), ("twisted_sheet", "sheet|sheet"), ("ball_on_cloth", "ball|cloth")])
+def test_the_others_touch_what_they_are_said_to_touch(program, tmp_path, name, pair):
+    record = record_of(program, tmp_path / name, name)
+    assert pair in {"|".join(sorted(each.split("|"))) for each in record["summary"]["first_contact"]}
+    if name == "ball_on_cloth":
+        assert 0.02 < record["summary"]["max_stretch"] < 0.05
+    assert f"`{name}.json`" in (FOLDER / "README.md").read_text()
