@@ -6,22 +6,19 @@
 #include "core/audit/obstacle_motion.hpp"
 #include "core/audit/obstacle_sign.hpp"
 #include "core/audit/state_audit.hpp"
+#include "core/audit/surface_edges.hpp"
 #include "core/audit/tally.hpp"
 
 namespace bb::audit {
 namespace {
-
-using Edge = std::array<int, 2>;
-
-Edge ascending(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 template <class Column>
 bool wholly_fixed(const AuditMesh& mesh, const Column& ids) {
   return std::all_of(ids.begin(), ids.end(), [&mesh](int v) { return mesh.is_fixed(v); });
 }
 
-std::vector<Edge> sides(const Eigen::Matrix3Xi& triangles) {
-  std::vector<Edge> out;
+std::vector<EdgeVertices> sides(const Eigen::Matrix3Xi& triangles) {
+  std::vector<EdgeVertices> out;
   out.reserve(static_cast<std::size_t>(triangles.size()));
   for (const auto& t : triangles.colwise()) {
     for (int k = 0; k < 3; ++k) out.push_back(ascending(t[k], t[(k + 1) % 3]));
@@ -48,7 +45,7 @@ class ObstacleJudge {
       }
       out.merge(over<1>(p.lone_vertices, PairKind::vertex_obstacle, o, &ObstacleCounts::vertices, vertex));
       out.merge(over<2>(p.lone_edges, PairKind::edge_obstacle, o, &ObstacleCounts::edges, [this](int e) {
-        return Edge{mesh_.edges(0, e), mesh_.edges(1, e)};
+        return EdgeVertices{mesh_.edges(0, e), mesh_.edges(1, e)};
       }));
       out.merge(
           over<3>(p.triangles, PairKind::triangle_obstacle, o, &ObstacleCounts::triangles, [this](int t) {
@@ -148,7 +145,7 @@ ObstacleCounts ObstaclePrimitives::needed(const std::vector<AuditObstacle>& obst
 /// moving: the obstacle comes to what is fixed.
 static PrimitiveLists primitive_lists(const AuditMesh& mesh, bool moving) {
   PrimitiveLists out;
-  const std::vector<Edge> of_triangles = sides(mesh.triangles);
+  const std::vector<EdgeVertices> of_triangles = sides(mesh.triangles);
   const std::vector<int> colliding = colliding_vertices(mesh);
   const auto n = static_cast<std::size_t>(colliding.empty() ? 0 : colliding.back() + 1);
   const auto n_all = std::max<std::size_t>(

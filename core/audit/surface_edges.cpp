@@ -11,8 +11,6 @@ struct Sharers {
   bool segment = false;
 };
 
-EdgeVertices in_order(int a, int b) { return a < b ? EdgeVertices{a, b} : EdgeVertices{b, a}; }
-
 }  // namespace
 
 void set_edges(const std::vector<TriangleVertices>& triangles, const std::vector<EdgeVertices>& segments,
@@ -20,11 +18,11 @@ void set_edges(const std::vector<TriangleVertices>& triangles, const std::vector
   std::map<EdgeVertices, Sharers> edges;
   for (const TriangleVertices& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      Sharers& edge = edges[in_order(t[k], t[(k + 1) % 3])];
+      Sharers& edge = edges[ascending(t[k], t[(k + 1) % 3])];
       ++edge.triangles, edge.third = t[(k + 2) % 3];
     }
   }
-  for (const EdgeVertices& e : segments) edges[in_order(e[0], e[1])].segment = true;
+  for (const EdgeVertices& e : segments) edges[ascending(e[0], e[1])].segment = true;
   if (mesh.planar) {
     std::erase_if(edges, [](const auto& edge) { return edge.second.triangles > 1 && !edge.second.segment; });
   }

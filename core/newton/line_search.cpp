@@ -183,14 +183,15 @@ class LineSearch final : public StepSolver {
     return noise_ || std::abs(report.energy_change_J.value - modelled) <= tolerance * std::abs(modelled);
   }
 
-  // Along a longer dx, halved as long as that is longer than dx itself.
+  // Along a longer dx, halved as long as that is longer than dx itself. Bounds are said of dx, which nothing ends.
   bool go_far(StepSystem& system, IterationReport& report) {
-    const double length = crawl_.length();
+    const double length = crawl_.length(), ccd = report.alpha_ccd, strain = report.alpha_strain;
     system.scale_direction(length);
     bound_again(system, report);
     share_ = length;
     if (go_along(system, report, 1 / length, true)) {
       ++*lengthened_;
+      report.alpha_ccd = ccd, report.alpha_strain = strain;
       return true;
     }
     share_ = 1;

@@ -15,7 +15,7 @@
 #include "core/scene/contact_plan.hpp"
 #include "experiments/matrix/matrix_market.hpp"
 #include "experiments/run/keep_record.hpp"
-#include "experiments/run/vector_json.hpp"
+#include "experiments/run/scene_json.hpp"
 
 namespace bb {
 
@@ -23,14 +23,9 @@ namespace {
 
 using nlohmann::json;
 
-json to_json(const Obstacle& o) {
-  constexpr const char* kinds[] = {"plane", "sphere", "cylinder"};
-  json out = {{"name", o.name}, {"kind", kinds[static_cast<int>(o.kind)]}, {"point_m", vector_json(o.point)}};
+json framed_json(const Obstacle& o) {
+  json out = obstacle_json(o);
   if (o.vertex >= 0) out["vertex"] = o.vertex;  // of the frames: where point_m is there
-  if (o.kind != ObstacleKind::sphere) out["axis"] = vector_json(o.axis);
-  if (o.kind == ObstacleKind::plane) return out;
-  out["radius_m"] = o.radius;
-  out["inside"] = o.inside;
   return out;
 }
 
@@ -43,7 +38,7 @@ std::string scene_json(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     if (!is_obstacle(body)) out["bodies"].push_back(body.name);
   }
-  for (const Obstacle& obstacle : scene.obstacles) out["obstacles"].push_back(to_json(obstacle));
+  for (const Obstacle& obstacle : scene.obstacles) out["obstacles"].push_back(framed_json(obstacle));
   return out.dump(2) + "\n";
 }
 

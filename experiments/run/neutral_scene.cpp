@@ -10,7 +10,7 @@
 
 #include "core/math/error.hpp"
 #include "experiments/run/runner.hpp"
-#include "experiments/run/vector_json.hpp"
+#include "experiments/run/scene_json.hpp"
 
 namespace bb {
 namespace {
@@ -132,16 +132,8 @@ json bodies_json(const Scene& scene) {
 }
 
 json obstacles_json(const Scene& scene) {
-  constexpr std::array<const char*, 3> kinds = {"plane", "sphere", "cylinder"};
   json out = json::array();
-  for (const Obstacle& o : scene.obstacles) {
-    json row = {{"name", o.name},
-                {"kind", kinds[static_cast<std::size_t>(o.kind)]},
-                {"point_m", vector_json(o.point)}};
-    if (o.kind != ObstacleKind::sphere) row["axis"] = vector_json(o.axis);
-    if (o.kind != ObstacleKind::plane) row.update({{"radius_m", o.radius}, {"inside", o.inside}});
-    out.push_back(row);
-  }
+  for (const Obstacle& o : scene.obstacles) out.push_back(obstacle_json(o));
   return out;
 }
 

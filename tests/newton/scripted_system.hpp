@@ -88,9 +88,9 @@ class ScriptedSystem final : public StepSystem, public StepView {
     escaping_ = true;
   }
   void prepare_motion(MotionEnd, bool) override {}
-  double bound_motion(IterationReport&) override {
+  double bound_motion(IterationReport& report) override {
     if (detouring_) return now().detour_bound;
-    return escaping_ ? now().escape_bound : std::min(1.0, now().bound / length_);
+    return report.alpha_ccd = escaping_ ? now().escape_bound : std::min(1.0, now().bound / length_);
   }
   bool make_detour(double, SolveReport&) override { return detouring_ = now().detour_bound > 0; }
   void restore_direction() override { escaping_ = detouring_ = false; }
