@@ -1,5 +1,5 @@
-"""Runs the sweeps of the README, as many at a time as there are cores, then makes their figures, their table
-and the page that says what they show. Records that this program has made are not run again.
+"""Runs the sweeps of the README, of each as many runs at a time as there are cores, then makes their figures,
+their table and the page that says what they show. Records that this program has made are not run again.
 
 Exit codes: 0 all is there, 1 a run does not keep what the demonstration promises, else that of the sweep that
 failed first.
@@ -8,9 +8,7 @@ failed first.
 from __future__ import annotations
 
 import importlib
-import subprocess
 import time
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from ..errors import UserError, tells
@@ -20,33 +18,22 @@ from .arguments import parser_of
 from .building import job_count, say
 
 OUT = ROOT / "results/runs/demo"
-# configs/sweeps/NAME.json, the longest first, so that none is left alone at the end
-SWEEPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")
+SWEEPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")  # configs/sweeps/NAME.json
 
 
 def run_all(out: Path, jobs: int) -> int:
-    """Every sweep into its folder below `out`, `jobs` at a time; what each says is printed when it ends. The
-    exit code of the first one that failed, or 0.
+    """Every sweep into its folder below `out`, `jobs` runs at a time; what each says is printed when it ends.
+    The exit code of the first one that failed, or 0.
     """
     begun = time.monotonic()
-
-    def one(name: str) -> subprocess.CompletedProcess:
-        return run_sweep(ROOT / f"configs/sweeps/{name}.json", out / name, "--progress", "none")
-
-    say(f"{', '.join(SWEEPS)}: {jobs} at a time, minutes")
+    say(f"{', '.join(SWEEPS)}: {jobs} runs at a time, minutes")
     failed = 0
-    with ThreadPoolExecutor(jobs) as pool:
-        running = {pool.submit(one, name): name for name in SWEEPS}
-        try:
-            for future in as_completed(running):
-                done = future.result()
-                print(done.stdout, flush=True)
-                seconds = time.monotonic() - begun
-                say(f"{running[future]} ended after {seconds:.0f} s {done.stderr}".rstrip())
-                failed = failed or done.returncode
-        except BaseException:
-            pool.shutdown(cancel_futures=True)  # an interrupt has reached the sweeps too; no other is begun
-            raise
+    for name in SWEEPS:
+        file = ROOT / f"configs/sweeps/{name}.json"
+        done = run_sweep(file, out / name, "--jobs", str(jobs), "--progress", "none")
+        print(done.stdout, flush=True)
+        say(f"{name} ended after {time.monotonic() - begun:.0f} s {done.stderr}".rstrip())
+        failed = failed or done.returncode
     return failed
 
 
@@ -61,7 +48,7 @@ def main(argv: list[str]) -> int:
         help="folder of the records (default: results/runs/demo)",
     )
     parser.add_argument(
-        "--jobs", type=int, default=job_count(), metavar="N", help="sweeps at a time (default: one a core)"
+        "--jobs", type=int, default=job_count(), metavar="N", help="runs at a time (default: one a core)"
     )
     args = parser.parse_args(argv)
     if args.jobs < 1:
