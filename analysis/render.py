@@ -11,90 +11,25 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize, to_rgb
-from matplotlib.patches import Patch
+from matplotlib.colors import Normalize
 
 from . import style
 from .captions import caption
+from .coloring import COLORINGS, annotate, colors_of_corners, palette
 from .errors import UserError, tells
 from .frames import Frame, frame_of, frame_paths, points_of_bodies, read_scene, scene_at, without_bodies
 from .frames_out.obstacle_mesh import obstacle_mesh
 from .frames_out.sequence import finer_frame
 from .front.arguments import parser_of
 from .obstacle_rays import primitive_gaps
-from .picture import OBSTACLE_COLOR, Surfaces, camera_of, picture
+from .picture import Surfaces, camera_of, picture
 from .record_file import read_record
 from .records import run_row
 from .rod_tubes import tubes
 from .whole_file import write_whole_bytes
 
-BODY_COLORS = (
-    "#0072B2",
-    "#E69F00",
-    "#009E73",
-    "#CC79A7",
-    "#56B4E9",
-    "#D55E00",
-    "#F0E442",
-    "#999999",
-)  # Okabe-Ito
 MOST_TIMES = 4  # 4^4 = 256 triangles for one
 THINNEST = 0.006  # radius of a rod for a metre of reach: thinner ones would have no pixels
-
-
-@dataclass(frozen=True)
-class Coloring:
-    """A field of a frame as colours: where it stands, how it is called, its unit factor and its colour
-    map."""
-
-    element: str  # vertex or triangle
-    key: str
-    label: str
-    factor: float
-    colors: str
-    top: float | None  # end of the scale; None: the largest value of the frame
-
-
-COLORINGS = {
-    "gap": Coloring(
-        "vertex", "gap_rel", r"smallest gap of a vertex / $\hat d$ (1: no contact)", 1, "YlGnBu_r", 1
-    ),
-    "load": Coloring("vertex", "load_N", "contact load of a vertex (N)", 1, "magma_r", None),
-    "stretch": Coloring("triangle", "stretch", "stretch of a triangle (%)", 100, "YlOrRd", None),
-}
-
-
-def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
-    """[m, 3]: the field at the corners of every triangle. Raises UserError when the frame has none."""
-    fields = frame.of_vertices if coloring.element == "vertex" else frame.of_triangles
-    if coloring.key not in fields:
-        raise UserError(
-            f"this frame has no {coloring.key}: nothing is solved before the first step; choose a step or"
-            " --color body"
-        )
-    values = np.asarray(fields[coloring.key], float) * coloring.factor
-    return values[frame.triangles] if coloring.element == "vertex" else np.repeat(values[:, None], 3, axis=1)
-
-
-def _scale(values: np.ndarray, coloring: Coloring) -> Normalize:
-    top = coloring.top if coloring.top is not None else float(values.max(initial=0.0))
-    return Normalize(0, top if top > 0 else 1)
-
-
-def _body_colors(frame: Frame, color: str) -> tuple[np.ndarray, Normalize | None]:
-    """[m, 3, 3] colours of the corners, and the scale behind them (None for bodies)."""
-    if color == "body":
-        return np.repeat(_palette(frame.of_triangles["body"])[:, None, :], 3, axis=1), None
-    coloring = COLORINGS[color]
-    values = _values(frame, coloring)
-    scale = _scale(values, coloring)
-    return plt.get_cmap(coloring.colors)(scale(values))[..., :3], scale
-
-
-def _palette(bodies: np.ndarray) -> np.ndarray:
-    """[n, 3] colours of bodies by their number."""
-    return np.array([to_rgb(c) for c in BODY_COLORS])[np.asarray(bodies) % len(BODY_COLORS)]
 
 
 def _assemble(
@@ -103,12 +38,12 @@ def _assemble(
     """radii: [n] m of rods, at their vertices. times: how often the frame was subdivided; sides of its
     triangles are drawn where it was not.
     """
-    colors, scale = _body_colors(frame, color)
+    colors, scale = colors_of_corners(frame, color)
     points, triangles, corners = [frame.vertices], [frame.triangles], [colors]
     if len(frame.edges):
         radii = np.maximum(0 if radii is None else radii, np.full(len(frame.vertices), THINNEST * reach))
         made, sides, of = tubes(frame.vertices, frame.edges, radii, 2**times)
-        rgb = _palette(frame.of_vertices["body"][of])[:, None, :] if color == "body" else np.zeros(3)
+        rgb = palette(frame.of_vertices["body"][of])[:, None, :] if color == "body" else np.zeros(3)
         triangles.append(sides + len(frame.vertices))
         points.append(made)
         corners.append(np.broadcast_to(rgb, (len(sides), 3, 3)))
@@ -162,29 +97,6 @@ def _round_obstacles(scene: dict) -> np.ndarray:
     """Points of the spheres, so that they are in the picture; planes and cylinders have none."""
     spheres = [o for o in scene["obstacles"] if o["kind"] == "sphere" and not o["inside"]]
     return np.concatenate([np.zeros((0, 3)), *(obstacle_mesh(o, np.zeros(3), 0.0)[0] for o in spheres)])
-
-
-def _annotate(fig, scene: dict, frame: Frame, color: str, scale: Normalize | None) -> None:
-    """Legend of the bodies, or the bar of the colours."""
-    axis = fig.axes[0]
-    names = ", ".join(o["name"] for o in scene["obstacles"])
-    patches = [Patch(color=OBSTACLE_COLOR, label=f"{names} (analytic)")] if names else []
-    if scale is None:
-        patches = [
-            Patch(color=BODY_COLORS[i % len(BODY_COLORS)], label=name)
-            for i, name in enumerate(scene["bodies"])
-        ] + patches
-    else:
-        coloring = COLORINGS[color]
-        fig.colorbar(
-            ScalarMappable(scale, coloring.colors), ax=axis, label=coloring.label, shrink=0.7, pad=0.01
-        )
-    shown = (
-        patches
-        if len(patches) <= 12
-        else patches[:11] + [Patch(color="none", label=f"and {len(patches) - 11} more")]
-    )
-    axis.legend(handles=shown, loc="upper left", frameon=False, fontsize=7)
 
 
 def _when(record: dict, step: int) -> str:
@@ -299,7 +211,7 @@ def render(
     if look.bare:
         _save(path, pixels)
     else:
-        _save_annotated(path, pixels, what, lambda fig: _annotate(fig, scene, frame, look.color, scale))
+        _save_annotated(path, pixels, what, lambda fig: annotate(fig, scene, frame, look.color, scale))
     text = f"{what}. {_shown(look)} {_at_obstacles(frame, scene)}".rstrip()
     path.with_suffix(".txt").write_text(caption(text, [run_row(record)]))
     return path

@@ -17,9 +17,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ..coloring import BODY_COLORS
 from ..errors import UserError
 from ..frames import points_of_bodies
-from ..render import BODY_COLORS, OBSTACLE_COLOR
+from ..picture import OBSTACLE_COLOR
 from .film import Film, shaded_mesh
 from .scales import FIELDS, NOT_COMPUTED, scale
 

@@ -46,7 +46,7 @@ class StrainLimitBatchOf {
   std::span<const double> sigma() const { return sigma_; }  // [N n] descending in size within an element
   std::span<const double> gaps() const { return gap_; }     // [N n] y; d_hat of the shape is the width
   /// Smallest y of an element.
-  double smaller_gap(std::size_t e) const { return *std::min_element(&gap_[N * e], &gap_[N * e] + N); }
+  double smallest_gap(std::size_t e) const { return *std::min_element(&gap_[N * e], &gap_[N * e] + N); }
   std::size_t n_active() const;  // elements with a stretch above 1 + onset
   double max_stretch() const;    // largest sigma - 1; 0 without elements
   double min_gap() const;        // smallest y; infinity without elements

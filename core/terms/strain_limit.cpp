@@ -79,9 +79,9 @@ void StrainLimitTermOf<Batch>::refresh_stiffness(const PositionsView& x, const T
     return fold();
   }
   batch_.measure(x);
-  smaller_gaps_.resize(batch_.size());
-  for (std::size_t e = 0; e < batch_.size(); ++e) smaller_gaps_[e] = smaller_gap(e);
-  batch.gap = smaller_gaps_.data();
+  smallest_gaps_.resize(batch_.size());
+  for (std::size_t e = 0; e < batch_.size(); ++e) smallest_gaps_[e] = smallest_gap(e);
+  batch.gap = smallest_gaps_.data();
   policy.fill_elements(batch, kappa_.data());
   kappa_change_ = first_iterate_ || policy.uniform() ? 0 : stiffness_change();
 }
@@ -116,7 +116,7 @@ template <class Batch>
 double StrainLimitTermOf<Batch>::stiffness_change() const {
   double change = 0;
   for (std::size_t e = 0; e < batch_.size(); ++e) {
-    if (!(smaller_gap(e) < part().width[e])) continue;
+    if (!(smallest_gap(e) < part().width[e])) continue;
     change = std::max(change, relative_change(kappa_before_[e], kappa_[e]));
   }
   return change;
@@ -186,7 +186,7 @@ void StrainLimitTermOf<Batch>::report(const PositionsView& x, IterateNumbers& ou
   say_state(out);
   double gap = std::numeric_limits<double>::infinity();
   for (std::size_t e = 0; e < batch_.size(); ++e) {
-    gap = std::min(gap, smaller_gap(e) / part().width[e]);
+    gap = std::min(gap, smallest_gap(e) / part().width[e]);
   }
   if (adds()) {
     keep_larger(out.limit_kappa_change_rel, Number(kappa_change_));
@@ -251,7 +251,7 @@ void StrainLimitTermOf<Batch>::report_overload(const PositionsView& x, const Pos
     const double capacity = slope(width);
     const double share = -options_.limit.eval(gap, width).db / capacity;
     const double times = std::max(share * times_larger(e, others),
-                                  newton_force(options_.limit, gap, smaller_gap(e), width) / capacity);
+                                  newton_force(options_.limit, gap, smallest_gap(e), width) / capacity);
     if (!(times > largest)) continue;
     largest = times;
     out.limit_overload_at = element_name(e);

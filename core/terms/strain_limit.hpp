@@ -71,7 +71,7 @@ class StrainLimitTermOf final : public Term {
   }
   /// Whether triangles have said their part of what is reported before.
   bool adds() const { return of_solids && !scene_.limit.triangles.empty(); }
-  double smaller_gap(std::size_t e) const { return batch_.smaller_gap(e); }
+  double smallest_gap(std::size_t e) const { return batch_.smallest_gap(e); }
   template <class Numbers>
   void say_state(Numbers& out) const;
   double force(std::size_t e, double gap) const;
@@ -97,7 +97,7 @@ class StrainLimitTermOf final : public Term {
   std::vector<KappaParts> parts_;            // [n] J
   std::vector<double> kappa_;                // [n] J, at the smaller pseudo-gap; 1 where folded_ has it
   std::vector<ElementSums<double>> sums_;    // [n]
-  std::vector<double> smaller_gaps_;         // [n]
+  std::vector<double> smallest_gaps_;        // [n]
   std::vector<double> kappa_before_, hess_;  // [n] J, [(3 P)^2 n] N/m
   bool kappa_fresh_ = false, first_iterate_ = true;
   double kappa_change_ = 0;

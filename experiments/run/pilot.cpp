@@ -116,7 +116,7 @@ void add_answers(const Pilot& pilot, const StiffnessAnswers& answers, const Cont
   if (!limit) return;
   limit->measure(x);
   for (std::size_t e = 0; e < limit->size(); ++e) {
-    const double y = smaller_gap(*limit, e), width = scene.limit.width[e];
+    const double y = smallest_gap(*limit, e), width = scene.limit.width[e];
     if (y < width)
       out.add_limit(e, -*pilot.stiffness.k_s * log_barrier().eval(y, width).db, answers.limit[e]);
   }

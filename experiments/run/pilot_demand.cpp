@@ -147,10 +147,10 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
     look_up(limits, pilot, step);
     if (own) replay.find_rows(step, own->refresh());
     limit.measure(replay.start(step));
-    for (std::size_t e = 0; e < limit.size(); ++e) y_start[e] = smaller_gap(limit, e);
+    for (std::size_t e = 0; e < limit.size(); ++e) y_start[e] = smallest_gap(limit, e);
     limit.measure(replay.end(step));
     for (std::size_t e = 0; e < limit.size(); ++e) {
-      const double y = smaller_gap(limit, e), width = part.width[e];
+      const double y = smallest_gap(limit, e), width = part.width[e];
       if (!(y < width)) continue;
       const double area = limit.rests()[e].area;
       const double load = -(*pilot.stiffness.k_s * area) * log.eval(y, width).db / area;

@@ -64,10 +64,10 @@ void fill_contacts(const ContactTable& rows, const Positions& dx, std::vector<do
   }
 }
 
-std::vector<double> smaller_gaps(StrainLimitBatch& limit, const Positions& x) {
+std::vector<double> smallest_gaps(StrainLimitBatch& limit, const Positions& x) {
   limit.measure(x);
   std::vector<double> out(limit.size());
-  for (std::size_t e = 0; e < limit.size(); ++e) out[e] = smaller_gap(limit, e);
+  for (std::size_t e = 0; e < limit.size(); ++e) out[e] = smallest_gap(limit, e);
   return out;
 }
 
@@ -78,8 +78,8 @@ void fill_elements(StrainLimitBatch& limit, const BarrierFunction& barrier, cons
   double area = std::numeric_limits<double>::infinity();
   for (const auto& rest : limit.rests()) area = std::min(area, rest.area);
   const double t = largest > 0 ? 1e-6 * std::sqrt(area) / largest : 1;
-  const std::vector<double> y = smaller_gaps(limit, x), less = smaller_gaps(limit, x - t * dx),
-                            more = smaller_gaps(limit, x + t * dx);
+  const std::vector<double> y = smallest_gaps(limit, x), less = smallest_gaps(limit, x - t * dx),
+                            more = smallest_gaps(limit, x + t * dx);
   for (std::size_t e = 0; e < limit.size(); ++e) {
     if (!(y[e] < width[e])) continue;
     const auto b = barrier.eval(y[e], width[e]);
@@ -89,7 +89,9 @@ void fill_elements(StrainLimitBatch& limit, const BarrierFunction& barrier, cons
 
 }  // namespace
 
-double smaller_gap(const StrainLimitBatch& limit, std::size_t element) { return limit.smaller_gap(element); }
+double smallest_gap(const StrainLimitBatch& limit, std::size_t element) {
+  return limit.smallest_gap(element);
+}
 
 void AnswerSums::add_contact(const ContactTable& rows, std::size_t row, double force, double answer) {
   for (std::size_t k = 4 * row; k < 4 * row + 4 && rows.vertex[k] >= 0; ++k) {

@@ -49,7 +49,7 @@ class AnswerSums {
 };
 
 /// The pseudo-gap y of the singular value of an element that is closer to its limit, as measured last.
-double smaller_gap(const StrainLimitBatch& limit, std::size_t element);
+double smallest_gap(const StrainLimitBatch& limit, std::size_t element);
 
 /// The answers of the quasi-static state: H dx/ds = -(grad B + grad S) with the clamped H of elements, limit and
 /// contacts, and f changes by 1 + b''/b' dd/ds. Inertia is left out but for 1e-6 of M/h^2, which holds bodies that

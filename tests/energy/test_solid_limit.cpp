@@ -198,7 +198,7 @@ TEST(SolidLimitBatch, columns_and_terms_are_those_of_the_elements) {
     for (std::size_t k = 0; k < 3; ++k) expected += 2 * LogStandIn{}(batch.gaps()[3 * e + k], 0.9).b;
     EXPECT_NEAR(energy[e], expected, 1e-15);
     EXPECT_NEAR(out.energy[e], expected, 1e-15);
-    EXPECT_EQ(batch.smaller_gap(e), batch.gaps()[3 * e]);
+    EXPECT_EQ(batch.smallest_gap(e), batch.gaps()[3 * e]);
     EXPECT_NEAR(batch.measure_of(e), 0.096 / static_cast<double>(n), 0.02);
   }
   const Positions dx = 20 * (block.deformed - block.mesh.vertices);

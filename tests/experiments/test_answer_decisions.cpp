@@ -92,7 +92,7 @@ LimitAtRest limit_at_rest(double k_s) {
     limit.measure(x);
     out.answer = answers.limit;
     for (std::size_t e = 0; e < limit.size(); ++e) {
-      const double y = smaller_gap(limit, e), width = part.width[e];
+      const double y = smallest_gap(limit, e), width = part.width[e];
       out.force.push_back(y < width ? -k_s * log_barrier().eval(y, width).db : 0);
     }
   });

@@ -2,6 +2,8 @@
 // and tetrahedra (N = 3).
 #pragma once
 
+#include <type_traits>
+
 #include "barriers/shapes/gap_potential.hpp"
 #include "barriers/stiffness/scaled_policy.hpp"
 #include "core/barrier/barrier_row.hpp"
@@ -16,17 +18,7 @@
 namespace bb::resident {
 
 template <int N>
-struct LimitedShape;
-template <>
-struct LimitedShape<2> {
-  using Rest = TriangleRest<double>;
-};
-template <>
-struct LimitedShape<3> {
-  using Rest = TetrahedronRest<double>;
-};
-template <int N>
-using LimitedRest = typename LimitedShape<N>::Rest;
+using LimitedRest = std::conditional_t<N == 2, TriangleRest<double>, TetrahedronRest<double>>;
 
 /// Columns of n limited elements; those of a number a singular value are [N, n].
 template <int N>
@@ -49,7 +41,7 @@ struct LimitColumns : ElementVertices<N + 1> {
   BB_HD StrainShape<double, N> shape(Index e) const {
     return {of_element(b, e), of_element(db, e), of_element(d2b, e)};
   }
-  BB_HD double smaller_gap(Index e) const {
+  BB_HD double smallest_gap(Index e) const {
     double least = gap[e];
     for (int k = 1; k < N; ++k) least = gap[k * n + e] < least ? gap[k * n + e] : least;
     return least;
@@ -137,7 +129,7 @@ struct MeasureLimit {
 #endif
     for (int k = 0; k < N; ++k) shape(k * limit.n + e);
     energy[e] = limit.energy(e);
-    if (!(limit.smaller_gap(e) > 0)) exec::atomic_min(beyond, static_cast<Key>(e));
+    if (!(limit.smallest_gap(e) > 0)) exec::atomic_min(beyond, static_cast<Key>(e));
   }
 };
 
@@ -162,7 +154,7 @@ struct ElementKappa {
       limit.kappa[e] = 1;
       return;
     }
-    limit.kappa[e] = policy.element_kappa(sums, limit.smaller_gap(e), limit.band_width[e], time);
+    limit.kappa[e] = policy.element_kappa(sums, limit.smallest_gap(e), limit.band_width[e], time);
   }
 
  private:
@@ -222,7 +214,7 @@ struct LimitKappaChange {
   LimitColumns<N> limit;
   const double* before;
   BB_HD Key operator()(Index e) const {
-    const bool active = limit.smaller_gap(e) < limit.band_width[e];
+    const bool active = limit.smallest_gap(e) < limit.band_width[e];
     return largest_key(active ? relative_change(before[e], limit.kappa[e]) : 0.0);
   }
 };
@@ -249,7 +241,7 @@ struct LimitParts {
   BB_HD void operator()(Index e, LimitNumbers& sum) const {
     raise_key(sum.stretch, ~largest_key(limit.sigma[e]));
     for (int k = 0; k < N; ++k) raise_key(sum.load, ~largest_key(load(k * limit.n + e, e)));
-    raise_key(sum.gap, ~smallest_key(limit.smaller_gap(e) / limit.band_width[e]));
+    raise_key(sum.gap, ~smallest_key(limit.smallest_gap(e) / limit.band_width[e]));
   }
 };
 
