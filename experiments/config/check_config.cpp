@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "barriers/shapes/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
+#include "core/barrier/gap_potential.hpp"
 #include "core/integrators/registry.hpp"
 #include "experiments/config/complain.hpp"
 #include "experiments/config/enum_words.hpp"
@@ -45,6 +47,27 @@ void check_policy(const std::string& section, const PolicyConfig& policy, Policy
   }
 }
 
+/// kappa as any function of the gap, for pairs of some masses and stiffnesses: what of it cannot be told before a run is not
+/// asked here.
+void check_gap_potential(const std::string& pointer, const BarrierFunction& barrier,
+                         const PolicyConfig& policy, const RunConfig& config, const Complain& complain) {
+  std::unique_ptr<StiffnessPolicy> made;
+  try {
+    made = make_policy(policy_request(policy, PolicyUse::contact, 1), PolicyUse::contact);
+  } catch (const ConfigError&) {
+    return;  // check_policy has said so
+  }
+  const GapStiffness* of = made->gap_stiffness();
+  if (!of) return;
+  made->set_time({config.time.dt, 1});
+  constexpr KappaParts pairs[] = {{0, 1e-6}, {1, 1e-4}, {1e4, 1e-2}};  // k in N/m and m in kg
+  const std::string fault = GapPotential(barrier, *of).fault(pairs, config.formulation.d_hat);
+  if (!fault.empty()) {
+    complain(pointer, "\"included\" with " + fault,
+             "dropped, or kappa(d) and a shape whose force grows smoothly as the gap closes");
+  }
+}
+
 /// A policy whose kappa has a potential asks for a shape that has one too.
 void check_potential(const std::string& section, const std::string& shape, Argument argument,
                      const PolicyConfig& policy, const RunConfig& config, const Complain& complain) {
@@ -55,7 +78,9 @@ void check_potential(const std::string& section, const std::string& shape, Argum
   }
   const std::string pointer = section + "/stiffness_policy/derivative";
   const auto barrier = barrier_of(shape, argument);
-  if (barrier && !has_potential(*barrier)) {
+  if (barrier && policy.name == "formula") {
+    check_gap_potential(pointer, *barrier, policy, config, complain);
+  } else if (barrier && !has_potential(*barrier)) {
     complain(pointer, fmt::format("\"included\" with {} on {}", shape, to_string(argument)),
              "dropped, or argument gap and one of the shapes with a potential: " + shapes_with_potential());
   }
