@@ -82,12 +82,16 @@ double GapPotential::first_panel(const KappaParts& frozen, double d, double d_ha
   return out;
 }
 
+// The ends of the panels are d_hat 2^(-j/2), the even ones exactly.
 double GapPotential::energy(const KappaParts& frozen, double d, double d_hat, int parts) {
-  double high = d_hat / 2;
-  double out = first_panel(frozen, std::max(d, high), d_hat, parts);
-  for (; d < high; high /= 2) {
-    const double low = std::max(d, high / 2), part = (high - low) / parts;
-    for (int i = parts; i-- > 0;) out += panel(frozen, low + i * part, low + (i + 1) * part, d_hat);
+  constexpr double root = std::numbers::sqrt2 / 2;
+  double high = d_hat, low = root * d_hat;
+  double out = first_panel(frozen, std::max(d, low), d_hat, parts);
+  while (d < low) {
+    const double next = high / 2;
+    high = low, low = next;
+    const double end = std::max(d, low), part = (high - end) / parts;
+    for (int i = parts; i-- > 0;) out += panel(frozen, end + i * part, end + (i + 1) * part, d_hat);
   }
   return out;
 }

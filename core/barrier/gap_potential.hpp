@@ -1,8 +1,9 @@
 // The energy whose force is kappa(d) b'(d), kappa any smooth function of the gap:
 //   E(d) = -int_d^{d_hat} kappa(s) b'(s) ds,   E' = kappa b',   E'' = kappa b'' + kappa' b'
-// The integral is Gauss-Legendre's with 20 nodes on panels that halve the gap, [d_hat/2, d_hat], [d_hat/4, d_hat/2] and so on
-// down to d. What is smooth but for a pole or a branch at d = 0 is integrated there to rounding: the error falls as
-// 5.8^-40. In the first panel the variable is sqrt(d_hat - s), so that half powers of d_hat - s are smooth too.
+// The integral is Gauss-Legendre's with 20 nodes on panels that halve the square of the gap, [d_hat/sqrt 2, d_hat] and so on
+// down to d, so that shapes which are joined at half of their argument are smooth in each. What is smooth but for a pole or a
+// branch at d = 0 is integrated there to rounding: the error falls as 11.6^-40. In the first panel the variable is
+// sqrt(d_hat - s), so that half powers of d_hat - s are smooth too.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +23,7 @@ class GapPotential {
       : barrier_(barrier), stiffness_(stiffness) {}
 
   /// n rows: E (J), E' (N) and E'' (N/m) in the gap; exactly 0 for d >= d_hat. Requires d > 0, d_hat > 0. Grows its buffers,
-  /// allocates nothing else. Not thread-safe. Cost: 20 terms of barrier and stiffness for every halving of the gap.
+  /// allocates nothing else. Not thread-safe. Cost: 40 terms of barrier and stiffness for every halving of the gap.
   void eval(std::size_t n, const double* d, const double* d_hat, const KappaParts* frozen, double* e,
             double* de, double* d2e);
 

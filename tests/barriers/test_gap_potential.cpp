@@ -116,6 +116,7 @@ TEST(GapPotential, DerivativesMatchTheLadderOfDifferences) {
         const double d = u * d_hat;
         const ShapeTerms<double> here = at(barrier, stiffness, d);
         ASSERT_LT(here.db, 0);
+        if (1e-6 * d * std::abs(here.db) < 1e-12 * here.b) continue;  // flat there: differences are rounding
         double first = INFINITY, second = INFINITY;
         for (int k = 2; k <= 6; ++k) {
           const double h = std::pow(10.0, -k) * std::min(d, d_hat - d), up = d + h, down = d - h;

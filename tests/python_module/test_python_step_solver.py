@@ -27,6 +27,9 @@ def test_its_steps_end_where_those_of_line_search_end(bb, drape, own):
     assert record["audit"]["crossings"] == record["audit"]["unproven"] == 0
     assert max(step["end_error_m"] for step in record["steps"]) < 2 * tolerance
     assert record["summary"]["convergence"] == "not_asked"
+    solves = record["summary"]["newton_iterations"] if own is Solving else 0
+    assert record["summary"]["linear_solves"] >= solves and (solves > 0 or record["summary"]["linear_solves"] == 0)
+    assert record["summary"]["hessian_fallbacks"] == record["summary"]["linear_solves"] - solves
     assert record["labels"]["step_solver"] == own.name
     (plugin,) = record["provenance"]["plugins"]
     assert plugin["name"] == own.name and plugin["file"].endswith("python_newton.py")

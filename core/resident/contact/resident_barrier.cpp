@@ -7,6 +7,31 @@
 namespace bb::resident {
 namespace {
 
+/// EvaluateShape of a shape that is known as a batch call alone: of a plugin, of a formula. It runs in the memory of the host, so
+/// kernels.inc has no line of it.
+struct EvaluateGivenShape {
+  RowView rows;
+  Argument argument;
+  ShapeBatch<double> call;
+  void* self;
+  bool infinite_at_zero;
+  void operator()(Index r) const {
+    const double d = rows.d[r], d_hat = rows.d_hat[r];
+    ShapeTerms<double> terms{};
+    if (argument == Argument::gap) {
+      call(self, 1, &d, &d_hat, &terms.b, &terms.db, &terms.d2b);
+    } else {
+      const double d_sq = d * d, d_hat_sq = d_hat * d_hat;
+      call(self, 1, &d_sq, &d_hat_sq, &terms.b, &terms.db, &terms.d2b);
+      chain_squared_gap(infinite_at_zero, d, d_sq, d_hat_sq, terms.b, terms.db, terms.d2b);
+    }
+    const double kappa = rows.kappa ? rows.kappa[r] : rows.uniform_kappa;
+    rows.energy[r] = kappa * terms.b;
+    rows.push[r] = kappa * terms.db;
+    rows.stretch[r] = kappa * terms.d2b;
+  }
+};
+
 template <class S>
 void launch_shape(exec::Executor& executor, const RowView& rows, Argument argument) {
   executor.each(rows.n, EvaluateShape<S>{rows, argument});

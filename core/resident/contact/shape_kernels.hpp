@@ -32,30 +32,6 @@ struct EvaluateShape {
   }
 };
 
-/// The same of a shape that is known as a batch call alone: of a plugin, of a formula. In the memory of the host.
-struct EvaluateGivenShape {
-  RowView rows;
-  Argument argument;
-  ShapeBatch<double> call;
-  void* self;
-  bool infinite_at_zero;
-  void operator()(Index r) const {
-    const double d = rows.d[r], d_hat = rows.d_hat[r];
-    ShapeTerms<double> terms{};
-    if (argument == Argument::gap) {
-      call(self, 1, &d, &d_hat, &terms.b, &terms.db, &terms.d2b);
-    } else {
-      const double d_sq = d * d, d_hat_sq = d_hat * d_hat;
-      call(self, 1, &d_sq, &d_hat_sq, &terms.b, &terms.db, &terms.d2b);
-      chain_squared_gap(infinite_at_zero, d, d_sq, d_hat_sq, terms.b, terms.db, terms.d2b);
-    }
-    const double kappa = rows.kappa ? rows.kappa[r] : rows.uniform_kappa;
-    rows.energy[r] = kappa * terms.b;
-    rows.push[r] = kappa * terms.db;
-    rows.stretch[r] = kappa * terms.d2b;
-  }
-};
-
 /// The same of rows whose kappa is fixed + per_gap_sq/d^2, true derivatives: core/barrier/folded_barrier.hpp.
 template <class S>
 struct EvaluateFoldedShape {
