@@ -66,7 +66,7 @@ def _potential_line(about: dict) -> str:
     if not about["reads_gap"]:
         return "potential   kappa b, since kappa does not depend on d"
     return (
-        "potential   -int kappa(s) b'(s) ds, with \"derivative\": \"included\" in a config; d kappa/dd to"
+        "potential   -int kappa(s) b'(s) ds, with \"potential\": \"derived\" in a config; d kappa/dd to"
         f" {about['slope_error_rel']:.1e} of kappa/d"
     )
 

@@ -2,13 +2,15 @@
 // each limited triangle. Everything that the policy is stands here: parameters, refusals, formula.
 #pragma once
 
-#include "barriers/stiffness/kappa_derivative.hpp"
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/math/host_device.hpp"
 
 namespace bb {
 
 enum class MassTerm { paper, inertia, scaled, none };  // docs/design.md, Stiffness policies
+/// What becomes of kappa'(d): left out of the curvature, kappa being a number, or included, the force kappa(d)
+/// b'(d) being derived from its potential (core/barrier/folded_barrier.hpp).
+enum class KappaDerivative { dropped, included };
 
 /// kappa = w^T (M' + H) w/(w^T w) in N/m of a contact, w its weighted normals; kappa_e = w^T (M' + H) w in J of a
 /// limited triangle, w its points from their centroid. H is the PSD elastic Hessian of the free vertices, off-diagonal

@@ -5,19 +5,20 @@
 #include <string>
 
 #include "barriers/formulas.hpp"
-#include "barriers/stiffness/kappa_derivative.hpp"
 #include "core/barrier/gap_stiffness.hpp"
 #include "core/barrier/stiffness_policy.hpp"
 
 namespace bb {
 
-/// Compiled as a plugin (barriers/formulas.hpp). With the derivative dropped kappa is a number of the iterate or of the step;
-/// included, the force kappa(d) b'(d) is derived from its potential (core/barrier/gap_potential.hpp), m and k of a pair
-/// being those of the state where it was first met in the step.
+/// Whether the force kappa(d) b'(d) comes from a potential, or kappa is a number that is not differentiated.
+enum class FormulaPotential { none, derived };
+
+/// Compiled as a plugin (barriers/formulas.hpp). Without a potential kappa is a number of the iterate or of the step; derived
+/// (core/barrier/gap_potential.hpp), m and k of a pair are those of the state where it was first met in the step.
 struct Formula {
   std::string formula;
   Refresh refresh = Refresh::per_iteration;
-  KappaDerivative derivative = KappaDerivative::dropped;
+  FormulaPotential potential = FormulaPotential::none;
 
   static constexpr double largest_slope_error =
       1e-6;  // as analysis/formula/accuracy.py asks of a barrier's terms
@@ -29,16 +30,16 @@ struct Formula {
               "(of the inertia M/(c h^2)), d and d_hat (m): m/(c*h^2) + k");
     list.refresh(&Formula::refresh);
     list.optional_choice(
-        "derivative", &Formula::derivative, {"dropped", "included"},
-        "kappa'(d) left out of the curvature, as without the key, or the force derived from its "
-        "potential -int kappa(s) b'(s) ds, by quadrature");
+        "potential", &Formula::potential, {"none", "derived"},
+        "none, as without the key: kappa'(d) is left out of the curvature; derived: the force comes "
+        "from -int kappa(s) b'(s) ds, by quadrature");
   }
   template <class Refuse>
   void check(Refuse& refuse) const {
     if (formula.empty()) return refuse("formula", "nothing", "a formula such as m/(c*h^2) + k");
     try {
       const FormulaPolicy policy = require_policy_formula(formula, "");
-      if (derivative == KappaDerivative::included) check_potential(policy, refuse);
+      if (potential == FormulaPotential::derived) check_potential(policy, refuse);
     } catch (const ConfigError& error) {
       for (const Violation& wrong : error.violations()) refuse("formula", wrong.found, wrong.allowed);
     }
@@ -49,17 +50,16 @@ struct Formula {
   template <class Refuse>
   void check_potential(const FormulaPolicy& policy, Refuse& refuse) const {
     if (!policy.reads_gap) {
-      refuse("derivative", "\"included\" with " + policy.formula,
-             "dropped, or a formula that reads d: this kappa does not depend on the gap");
+      refuse("potential", "\"derived\" with " + policy.formula,
+             "none, or a formula that reads d: this kappa does not depend on the gap");
     } else if (!(policy.slope_error <= largest_slope_error)) {
-      refuse("derivative",
-             "\"included\" with a kappa'(d) that double precision has to " +
+      refuse("potential",
+             "\"derived\" with a kappa'(d) that double precision has to " +
                  std::to_string(policy.slope_error) + " of kappa/d",
-             "dropped, or a formula without differences of near numbers");
+             "none, or a formula without differences of near numbers");
     }
     if (refresh != Refresh::per_step) {
-      refuse("refresh", "\"per_iteration\"",
-             "per_step, or derivative dropped: a potential is frozen for a step");
+      refuse("refresh", "\"per_iteration\"", "per_step, or potential none: a potential is frozen for a step");
     }
   }
 };
@@ -70,14 +70,14 @@ class Formula::Policy final : public StiffnessPolicy, public GapStiffness {
       : made_(require_policy_formula(values.formula, "stiffness_policy/formula")),
         of_plugin_(made_.policy.make(values.refresh, multiplier)),
         multiplier_(multiplier),
-        included_(values.derivative == KappaDerivative::included) {}
+        derived_(values.potential == FormulaPotential::derived) {}
   std::string_view name() const override { return "formula"; }
   Refresh refresh() const override { return of_plugin_->refresh(); }
   bool needs_hessian() const override { return of_plugin_->needs_hessian(); }
   void fill(const StiffnessBatch& rows, double* kappa) const override { of_plugin_->fill(rows, kappa); }
 
-  bool has_potential() const override { return included_; }
-  const GapStiffness* gap_stiffness() const override { return included_ ? this : nullptr; }
+  bool has_potential() const override { return derived_; }
+  const GapStiffness* gap_stiffness() const override { return derived_ ? this : nullptr; }
   void set_time(const StiffnessTime& time) override { time_ = time; }
   /// What is frozen of a pair: k in the place of `fixed`, m in that of `per_gap_sq`.
   void fill_parts(const StiffnessBatch& rows, KappaParts* parts) const override {
@@ -98,7 +98,7 @@ class Formula::Policy final : public StiffnessPolicy, public GapStiffness {
   FormulaPolicy made_;
   std::unique_ptr<StiffnessPolicy> of_plugin_;
   double multiplier_;
-  bool included_;
+  bool derived_;
   StiffnessTime time_;
 };
 

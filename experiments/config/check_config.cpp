@@ -49,8 +49,17 @@ void check_policy(const std::string& section, const PolicyConfig& policy, Policy
 
 /// kappa as any function of the gap, for pairs of some masses and stiffnesses: what of it cannot be told before a run is not
 /// asked here.
-void check_gap_potential(const std::string& pointer, const BarrierFunction& barrier,
+void check_gap_potential(const std::string& section, const std::string& shape, Argument argument,
                          const PolicyConfig& policy, const RunConfig& config, const Complain& complain) {
+  const auto barrier = barrier_of(shape, argument);
+  const auto potential = policy.parameters.find("potential");
+  if (!barrier || potential == policy.parameters.end() ||
+      potential->second != ParameterValue(std::string("derived"))) {
+    return;
+  }
+  const std::string pointer = section + "/stiffness_policy/potential";
+  if (!needs_of(config).step_bound)
+    complain(pointer, "\"derived\"", "none: the step solver is " + config.step_solver.name);
   std::unique_ptr<StiffnessPolicy> made;
   try {
     made = make_policy(policy_request(policy, PolicyUse::contact, 1), PolicyUse::contact);
@@ -61,10 +70,10 @@ void check_gap_potential(const std::string& pointer, const BarrierFunction& barr
   if (!of) return;
   made->set_time({config.time.dt, 1});
   constexpr KappaParts pairs[] = {{0, 1e-6}, {1, 1e-4}, {1e4, 1e-2}};  // k in N/m and m in kg
-  const std::string fault = GapPotential(barrier, *of).fault(pairs, config.formulation.d_hat);
+  const std::string fault = GapPotential(*barrier, *of).fault(pairs, config.formulation.d_hat);
   if (!fault.empty()) {
-    complain(pointer, "\"included\" with " + fault,
-             "dropped, or kappa(d) and a shape whose force grows smoothly as the gap closes");
+    complain(pointer, "\"derived\" with " + fault,
+             "none, or kappa(d) and a shape whose force grows smoothly as the gap closes");
   }
 }
 
@@ -78,9 +87,7 @@ void check_potential(const std::string& section, const std::string& shape, Argum
   }
   const std::string pointer = section + "/stiffness_policy/derivative";
   const auto barrier = barrier_of(shape, argument);
-  if (barrier && policy.name == "formula") {
-    check_gap_potential(pointer, *barrier, policy, config, complain);
-  } else if (barrier && !has_potential(*barrier)) {
+  if (barrier && !has_potential(*barrier)) {
     complain(pointer, fmt::format("\"included\" with {} on {}", shape, to_string(argument)),
              "dropped, or argument gap and one of the shapes with a potential: " + shapes_with_potential());
   }
@@ -112,6 +119,8 @@ void check_policies(const RunConfig& config, const Complain& complain) {
   const FormulationConfig& contact = config.formulation;
   check_policy("/formulation", contact.stiffness_policy, PolicyUse::contact,
                given_kappa(contact.stiffness_policy), complain);
+  check_gap_potential("/formulation", contact.shape, contact.argument, contact.stiffness_policy, config,
+                      complain);
   check_potential("/formulation", contact.shape, contact.argument, contact.stiffness_policy, config,
                   complain);
   const StrainLimitConfig& limit = config.strain_limit;

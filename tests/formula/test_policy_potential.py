@@ -1,4 +1,4 @@
-"""Stiffness formulas with `derivative: included`: the force kappa(d) b'(d) from its potential, beside the policy that has it in
+"""Stiffness formulas with `potential: derived`: the force kappa(d) b'(d) from its potential, beside the policy that has it in
 closed form, and what is refused."""
 
 import ctypes
@@ -27,8 +27,8 @@ def policy(**keys):
     return f"/formulation/stiffness_policy={json.dumps(keys)}"
 
 
-def included(text, **keys):
-    return policy(name="formula", formula=text, **{"refresh": "per_step", "derivative": "included", **keys})
+def derived_policy(text, **keys):
+    return policy(name="formula", formula=text, **{"refresh": "per_step", "potential": "derived", **keys})
 
 
 def run(program, folder, scene, *settings):
@@ -44,14 +44,14 @@ def run(program, folder, scene, *settings):
 def test_a_run_is_that_of_the_closed_form(program, tmp_path, shape):
     common = (f'/formulation/shape="{shape}"', "/time/steps=12")
     built = run(program, tmp_path / "built", STRIP, policy(name="elasticity_inclusive", mass_term="scaled", refresh="per_step", derivative="included"), *common)
-    mine = run(program, tmp_path / "formula", STRIP, included(SCALED), *common)
+    mine = run(program, tmp_path / "formula", STRIP, derived_policy(SCALED), *common)
     assert mine["summary"]["newton_iterations"] == built["summary"]["newton_iterations"]
     assert mine["summary"]["gap_min_m"] == pytest.approx(built["summary"]["gap_min_m"], rel=1e-8)
     assert mine["summary"]["contact_load_max_N"] == pytest.approx(built["summary"]["contact_load_max_N"], rel=1e-8)
     dropped = run(program, tmp_path / "dropped", STRIP, policy(name="formula", formula=SCALED, refresh="per_step"), *common)
     assert dropped["summary"]["gap_min_m"] != pytest.approx(mine["summary"]["gap_min_m"], rel=1e-3)
     said = [record["config"]["formulation"]["stiffness_policy"] for record in (mine, dropped)]
-    assert said[0]["derivative"] == "included" and "derivative" not in said[1]  # an id from before the key stays
+    assert said[0]["potential"] == "derived" and "potential" not in said[1]  # an id from before the key stays
 
 
 @pytest.mark.parametrize("shape, argument", [("log", "gap"), ("log", "squared_gap"), ("two_stage", "gap"), ("formula:(d_hat - d)^3/d_hat", "gap")])
@@ -59,30 +59,30 @@ def test_a_body_rests_where_the_number_lets_it_rest(program, tmp_path, shape, ar
     """Shapes without a potential of 1/d^2: the force is that of kappa as a number of every iterate."""
     text, common = "20*m/(c*h^2)*exp(-d/d_hat)", (f'/formulation/shape="{shape}"', f'/formulation/argument="{argument}"')
     number = run(program, tmp_path / "number", BLOCK, policy(name="formula", formula=text), *common)
-    derived = run(program, tmp_path / "derived", BLOCK, included(text), *common)
+    derived = run(program, tmp_path / "derived", BLOCK, derived_policy(text), *common)
     assert derived["summary"]["gap_min_m"] == pytest.approx(number["summary"]["gap_min_m"], rel=1e-4)
     (one,), (other,) = (record["steps"][-1]["contacts"]["total"] and [record["steps"][-1]["gap_min_m"]] for record in (number, derived))
     assert 0 < one and other == pytest.approx(one, rel=1e-6)
 
 
 @pytest.mark.parametrize("keys, pointer, found", [
-    ({"formula": "m/(c*h^2) + k"}, "derivative", "does not depend on the gap"),
+    ({"formula": "m/(c*h^2) + k"}, "potential", "does not depend on the gap"),
     ({"formula": SCALED, "refresh": "per_iteration"}, "refresh", "a potential is frozen for a step"),
-    ({"formula": "m/h^2*(d/d_hat)^2"}, "derivative", "a force that falls as the gap closes, at d = "),
-    ({"formula": "m/h^2*(d_hat/d)^2*(1 + 1e-7*sin(3000*d/d_hat))"}, "derivative", "integral is off by "),
-    ({"formula": SCALED, "derivative": "maybe"}, "derivative", "maybe"),
+    ({"formula": "m/h^2*(d/d_hat)^2"}, "potential", "a force that falls as the gap closes, at d = "),
+    ({"formula": "m/h^2*(d_hat/d)^2*(1 + 1e-7*sin(3000*d/d_hat))"}, "potential", "integral is off by "),
+    ({"formula": SCALED, "potential": "maybe"}, "potential", "maybe"),
 ])
 def test_what_has_no_potential_is_named(program, keys, pointer, found):
-    given = policy(**{"name": "formula", "refresh": "per_step", "derivative": "included", **keys})
+    given = policy(**{"name": "formula", "refresh": "per_step", "potential": "derived", **keys})
     done = bench(program, "check", STRIP, "--set", given, "--set", '/formulation/shape="cubic"')
     assert done.returncode == 2 and f"#/formulation/stiffness_policy/{pointer}" in done.stderr, done.stderr
     assert found in done.stderr and "allowed: " in done.stderr and "internal" not in done.stderr
 
 
 def test_a_step_solver_beyond_contact_and_a_device_have_none(program):
-    words = ("--set", included(SCALED), "--set", '/formulation/shape="cubic"')
+    words = ("--set", derived_policy(SCALED), "--set", '/formulation/shape="cubic"')
     done = bench(program, "check", STRIP, *words, "--set", '/step_solver/name="penalty"')
-    assert done.returncode == 2 and "dropped: the step solver is penalty" in done.stderr
+    assert done.returncode == 2 and "none: the step solver is penalty" in done.stderr
     done = bench(program, "check", STRIP, *words, "--set", '/device="host"')
     assert done.returncode == 2 and "a policy with a device form" in done.stderr
 
