@@ -27,6 +27,8 @@ struct Answer {
   std::string formula;  // its one spelling
   FormulaLibrary library;
   std::string found, allowed, at_zero;  // at_zero: of a shape
+  bool reads_gap = false;               // of a policy
+  double slope_error = 0;               // of a policy
 };
 
 std::string python() {
@@ -35,7 +37,10 @@ std::string python() {
 }
 
 Answer refused(std::string found, std::string allowed) {
-  return {{}, {}, {}, std::move(found), std::move(allowed), {}};
+  Answer out;
+  out.found = std::move(found);
+  out.allowed = std::move(allowed);
+  return out;
 }
 
 /// Runs analysis/formula. kind: "shape" or "policy". Errors: none, they are answers.
@@ -66,7 +71,9 @@ Answer ask(const std::string& kind, const std::string& text) {
            answer.at("library_sha256")},
           {},
           {},
-          answer.value("at_zero", "")};
+          answer.value("at_zero", ""),
+          answer.value("reads_gap", false),
+          answer.value("slope_error_rel", 0.0)};
 }
 
 /// Asked once for every text of this process. Errors: ConfigError at `where`.
@@ -120,7 +127,10 @@ FormulaShape require_formula(std::string_view text, const std::optional<std::str
 
 FormulaPolicy require_policy_formula(std::string_view text, std::string_view where) {
   const Answer& answer = known("policy", text, where);
-  return {answer.formula, answer.plugin->policies.at(0), answer.library};
+  const auto in_gap =
+      reinterpret_cast<FormulaInGap>(find_symbol(answer.library.file, "barrierbench_formula_in_gap"));
+  return {answer.formula,    answer.plugin->policies.at(0), answer.library, in_gap, answer.reads_gap,
+          answer.slope_error};
 }
 
 Rule shape_rule() {

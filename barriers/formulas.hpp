@@ -31,10 +31,17 @@ struct FormulaShape {
   FormulaLibrary library;
 };
 
+/// kappa (N/m) and d kappa/dd (N/m^2) at n gaps d (m) of a pair, d_hat in m, the others as analysis/formula/grammar.py has them.
+using FormulaInGap = void (*)(double m, double k, double h, double c, double d_hat, std::size_t n,
+                              const double* d, double* kappa, double* slope);
+
 struct FormulaPolicy {
   std::string formula;  // its one spelling
   PluginPolicy policy;
   FormulaLibrary library;
+  FormulaInGap in_gap = nullptr;
+  bool reads_gap = false;  // kappa depends on d
+  double slope_error = 0;  // of d kappa/dd against 40 digits, as a part of kappa/d
 };
 
 bool is_formula(std::string_view shape_name);

@@ -107,7 +107,7 @@ def find(key: str) -> Compiled | None:
 
 
 def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[Path], dict]) -> Compiled:
-    """Compiles and keeps, with what `judge` says of the library. Errors: FormulaError with what the
+    """Compiles and keeps, with all that `judge` says of the library. Errors: FormulaError with what the
     compiler said, where nothing can be written, and of `judge`.
     """
     place = folder()
@@ -119,7 +119,7 @@ def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[
             _compile(words, there)
             about = {
                 **about,
-                "error_rel": judge(there / "formula.so"),
+                **judge(there / "formula.so"),
                 "library_sha256": digests.of_file(there / "formula.so"),
             }
             (there / "formula.json").write_text(json.dumps(about, indent=1) + "\n")

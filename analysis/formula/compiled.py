@@ -42,7 +42,14 @@ def _made_policy(formula: Formula, key: str, words: list[str]) -> cache.Compiled
         kappa = policy.kappa_of(formula)
         points = policy.check(kappa)
     label = cache.label_of(formula)
-    about = {"formula": formula.text, "label": label, "points": points, "symbols": policy.symbols_of(kappa)}
+    symbols = policy.symbols_of(kappa)
+    about = {
+        "formula": formula.text,
+        "label": label,
+        "points": points,
+        "symbols": symbols,
+        "reads_gap": "d" in symbols,
+    }
     text = policy.cpp(label.replace("-", "_"), formula.text, kappa)
     return cache.make(key, words, text, about, lambda library: policy.judge(library, kappa))
 
@@ -74,7 +81,7 @@ def _made(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
         "smoothness_at_d_hat": ends.smoothness,
         "terms": {name: str(x) for name, x in zip(checks.NAMES, terms.precise, strict=True)},
     }
-    return cache.make(key, words, text, about, lambda library: accuracy.check(library, terms))
+    return cache.make(key, words, text, about, lambda library: {"error_rel": accuracy.check(library, terms)})
 
 
 @contextlib.contextmanager

@@ -50,6 +50,12 @@ double kappa_of({arguments}) {{
 {common}  return {kappa};
 }}
 
+double slope_of({slope_arguments}) {{
+  using std::atan, std::cos, std::cosh, std::exp, std::pow, std::sin, std::sinh, std::sqrt, std::tan;
+  using std::tanh;
+{slope_common}  return {slope};
+}}
+
 void fill(void*, const bb_plugin_rows* rows, double* kappa) {{
   for (size_t r = 0; r < rows->n; ++r) {{
     const double* hessian = rows->hessian ? rows->hessian + 144 * r : nullptr;
@@ -78,11 +84,26 @@ constexpr bb_plugin plugin = {{.abi_version = BB_PLUGIN_ABI_VERSION,
 }}  // namespace
 
 extern "C" const bb_plugin* barrierbench_plugin(void) {{ return &plugin; }}
+
+// kappa and d kappa/dd at n gaps of one pair (barriers/formulas.hpp).
+extern "C" __attribute__((visibility("default"))) void barrierbench_formula_in_gap(
+    double m, double k, double h, double c, double d_hat, size_t n, const double* d, double* kappa,
+    double* slope) {{
+  for (size_t i = 0; i < n; ++i) {{
+    kappa[i] = kappa_of(m, k, h, c, d[i], d_hat);
+    slope[i] = slope_of(m, k, h, c, d[i], d_hat);
+  }}
+}}
 """
 
 
 def kappa_of(formula: Formula) -> sp.Expr:
     return expression(formula.tree, {**SYMBOLS, "pi": sp.pi})
+
+
+def slope_of(kappa: sp.Expr) -> sp.Expr:
+    """d kappa/dd, N/m^2."""
+    return sp.diff(kappa, SYMBOLS["d"])
 
 
 def symbols_of(kappa: sp.Expr) -> list[str]:
@@ -138,21 +159,39 @@ def _value(value, point: dict[str, mpmath.mpf]) -> tuple[mpmath.mpf, str]:
 
 def cpp(name: str, formula: str, kappa: sp.Expr) -> str:
     """The source of the plugin whose policy is called `name`."""
-    common, (last,) = sp.cse(with_constants([kappa]), symbols=sp.numbered_symbols("x"), optimizations="basic")
-    printer, read = Printer(), symbols_of(kappa)
+    common, value = _statements(kappa)
+    slope = slope_of(kappa)
+    slope_common, slope_value = _statements(slope)
     return TEMPLATE.format(
         formula=formula,
         name=name,
-        arguments=", ".join(f"{'' if one in read else '[[maybe_unused]] '}double {one}" for one in ORDER),
-        common="".join(f"  const double {symbol} = {printer.doprint(x)};\n" for symbol, x in common),
-        kappa=printer.doprint(last),
-        hessian=int("k" in read),
+        arguments=_arguments(kappa),
+        common=common,
+        kappa=value,
+        slope_arguments=_arguments(slope),
+        slope_common=slope_common,
+        slope=slope_value,
+        hessian=int("k" in symbols_of(kappa)),
     )
 
 
-def judge(library: Path, kappa: sp.Expr) -> float:
-    """Largest relative error of the library at points of the grid. Errors: FormulaError where it is above
-    MOST_ERROR.
+def _arguments(x: sp.Expr) -> str:
+    read = symbols_of(x)
+    return ", ".join(f"{'' if one in read else '[[maybe_unused]] '}double {one}" for one in ORDER)
+
+
+def _statements(x: sp.Expr) -> tuple[str, str]:
+    """Common subexpressions as constants, a line each, and the value in terms of them."""
+    common, (last,) = sp.cse(with_constants([x]), symbols=sp.numbered_symbols("x"), optimizations="basic")
+    printer = Printer()
+    lines = (f"  const double {symbol} = {printer.doprint(y)};\n" for symbol, y in common)
+    return "".join(lines), printer.doprint(last)
+
+
+def judge(library: Path, kappa: sp.Expr) -> dict[str, float]:
+    """Largest errors of the library at points of the grid: error_rel of kappa, and slope_error_rel of d
+    kappa/dd as a part of kappa/d, which is asked by who derives a potential. Errors: FormulaError where the
+    first is above MOST_ERROR.
     """
     call, value = _call(library), sp.lambdify(list(SYMBOLS.values()), kappa, "mpmath")
     worst = 0.0
@@ -168,6 +207,29 @@ def judge(library: Path, kappa: sp.Expr) -> float:
                     f"kappa off by a factor of {error:.1g} in double precision at {numbers}",
                     f"a formula that keeps {MOST_ERROR:g}: without differences of near numbers",
                 )
+    return {"error_rel": worst, "slope_error_rel": _slope_error(library, kappa)}
+
+
+def _slope_error(library: Path, kappa: sp.Expr) -> float:
+    """Below d_hat, where a slope may be infinite."""
+    in_gap = ctypes.CDLL(str(library)).barrierbench_formula_in_gap
+    in_gap.restype = None
+    numbers = [ctypes.c_double] * 5 + [ctypes.c_size_t] + [ctypes.POINTER(ctypes.c_double)] * 3
+    in_gap.argtypes = numbers
+    symbols = list(SYMBOLS.values())
+    value, slope = (sp.lambdify(symbols, x, "mpmath") for x in (kappa, slope_of(kappa)))
+    worst = 0.0
+    with mpmath.workdps(DIGITS):
+        for point in itertools.islice(points(kappa), 0, None, EVERY):
+            m, k, h, c, d, d_hat = (float(x) for x in point.values())
+            if d >= d_hat:
+                continue
+            exact = [f(*map(mpmath.mpf, (m, k, h, c, d, d_hat))) for f in (value, slope)]
+            found = [ctypes.c_double(), ctypes.c_double()]
+            in_gap(m, k, h, c, d_hat, 1, ctypes.c_double(d), *found)
+            scale = max(abs(exact[0]) / d, abs(exact[1]))
+            error = float(abs(found[1].value - exact[1]) / scale) if scale != 0 else abs(found[1].value)
+            worst = max(worst, error)
     return worst
 
 

@@ -57,7 +57,17 @@ def policy_card(about: dict) -> str:
             f"label       {about['label']}",
             f"kappa       {reads}; finite and not negative at all {about['points']} points it was asked at",
             f"            relative error {about['error_rel']:.1e}",
+            _potential_line(about),
         ]
+    )
+
+
+def _potential_line(about: dict) -> str:
+    if not about["reads_gap"]:
+        return "potential   kappa b, since kappa does not depend on d"
+    return (
+        "potential   -int kappa(s) b'(s) ds, with \"potential\": \"derived\" in a config; d kappa/dd to"
+        f" {about['slope_error_rel']:.1e} of kappa/d"
     )
 
 

@@ -82,6 +82,18 @@ class PolicyParameters {
       }
     });
   }
+  /// One of the words, which stand in the order of the enumerators, or nothing, which leaves what P() holds.
+  template <class Enum>
+  void optional_choice(const char* name, Enum P::*member, std::initializer_list<const char*> words,
+                       const char* doc) {
+    const std::vector<std::string> allowed(words.begin(), words.end());
+    add({name, word(allowed), no_default, doc}, [=](const ParameterMap& map, P& out) {
+      if (!map.contains(name)) return;
+      for (std::size_t i = 0; i < allowed.size(); ++i) {
+        if (bb::text(map, name) == allowed[i]) out.*member = static_cast<Enum>(i);
+      }
+    });
+  }
   void refresh(Refresh P::*member) {
     add(refresh_parameter(),
         [=](const ParameterMap& map, P& out) { out.*member = require_refresh(bb::text(map, "refresh")); });

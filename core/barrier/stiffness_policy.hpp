@@ -65,6 +65,8 @@ struct StiffnessGlobals {
 /// Whether a pair came closer from one step end to the next: no other can make a policy adapt. Host-device.
 BB_HD constexpr bool closes(double gap, double gap_before) { return gap < gap_before; }
 
+class GapStiffness;
+
 /// A stiffness policy of one run, of its contacts or of its strain limit. Not thread-safe: one object a run, called by the step driver only.
 class StiffnessPolicy {
  public:
@@ -90,6 +92,9 @@ class StiffnessPolicy {
   virtual bool has_potential() const { return false; }
   /// kappa of every row as a function of its gap; d is not read. Called when has_potential().
   virtual void fill_parts(const StiffnessBatch&, KappaParts*) const {}
+  /// Where kappa is another function of the gap than KappaParts::at (gap_stiffness.hpp): fill_parts gives what it freezes of
+  /// a pair. Lives as long as the policy.
+  virtual const GapStiffness* gap_stiffness() const { return nullptr; }
   /// kappa_e (J) of limited elements: the number at their gap, or where has_potential() as a function of it. A policy
   /// that does not serve strain limits has none.
   virtual void fill_elements(const ElementStiffnessBatch&, double*) const {}

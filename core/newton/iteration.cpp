@@ -1,5 +1,6 @@
 #include "core/newton/iteration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -22,7 +23,7 @@ void fill_work(IterationReport& report) {
     report.ritz_max = known ? Number(linear.ritz_max) : Number::missing("not_measured");
   }
   report.hessian_t = report.solve.t;
-  report.hessian_fallbacks = report.solve.fallbacks();
+  report.hessian_fallbacks = std::max(0, report.solve.fallbacks());  // a given direction has no attempt
   report.linear_solves = report.solve.attempts + report.solve.detours;
   report.linear_iterations = linear.iterations;
   report.factorizations = report.solve.factorizations;
@@ -98,6 +99,10 @@ void report_iterate(const StepSystem& system, IterationReport& report) {
 
 void find_direction(StepSystem& system, IterationReport& report, StepObserver& observer) {
   report.solve = system.find_direction();
+  report_direction(system, report, observer);
+}
+
+void report_direction(StepSystem& system, IterationReport& report, StepObserver& observer) {
   const DirectionSize size = system.direction_size();
   report.dx_inf_m = size.inf_m;
   report.dx_beyond_m = size.beyond_m;

@@ -63,6 +63,13 @@ bool NewtonSystem::set_right_hand_side() {
   return moving;
 }
 
+double NewtonSystem::set_up_system() {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  set_right_hand_side();
+  factored_ = served_at_once_ = false;
+  return state_.level.t();
+}
+
 // One attempt. False when the matrix is not positive definite, or dx does not descend: that is asked for only
 // where no prescribed motion does work.
 bool NewtonSystem::find_one_direction(SolveReport& report) {

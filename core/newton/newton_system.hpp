@@ -59,6 +59,9 @@ class NewtonSystem : public StepSystem {
   // --- states from elsewhere
   /// dx [3 x n] m, in the place of a Newton direction.
   void set_direction(const Positions& dx);
+  /// Sets up the system A s = b of the assembled iterate without solving it: diagnosis().solved() and rhs() are its. dx becomes
+  /// the motion of prescribed vertices, 0 elsewhere. Returns how far A is from exact (SolveReport::t).
+  double set_up_system();
   /// Moves the iterate to x [3 x n] m along a straight motion. Errors: std::logic_error where x is not feasible.
   void go_to(const Positions& x);
   /// The iterate of another system on the host, made from the same scene and method, in a step that began as `frame` says,

@@ -9,9 +9,9 @@ namespace bb {
 #include "core/newton/registry.inc"
 #undef ENTRY
 
-const Registry<StepSolverEntry>& step_solvers() {
+Registry<StepSolverEntry>& step_solvers() {
 #define ENTRY(name, doc) named(step_solver_##name(), #name, doc),
-  static const Registry<StepSolverEntry> all({
+  static Registry<StepSolverEntry> all({
 #include "core/newton/registry.inc"
   });
 #undef ENTRY

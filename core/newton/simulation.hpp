@@ -60,7 +60,7 @@ class Simulation {
   double load_factor_ = 1;                    // of the last attempt
   StepParts parts_;
   std::unique_ptr<NewtonSystem> system_;
-  const StepSolverEntry& entry_;
+  const StepSolverEntry entry_;  // a copy: the registry may get others while it runs
   std::unique_ptr<StepSolver> solver_;
   std::unique_ptr<EndResidual> end_residual_;  // of a step solver that is not asked to converge
   History history_;

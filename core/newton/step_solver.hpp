@@ -62,9 +62,10 @@ struct StepSolverEntry {
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
   void (*set_terms)(const StepSolverOptions& complete,
                     TermOptions&) = nullptr;  // what it asks of terms by numbers
-  std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
+  std::function<std::unique_ptr<StepSolver>(const StepSolverOptions& complete)> make;
 };
-const Registry<StepSolverEntry>& step_solvers();
+/// Those of registry.inc, then what Python added before the first run that names it (python/src/python_step_solver.cpp).
+Registry<StepSolverEntry>& step_solvers();
 /// Those of all of them, in the order of registry.inc. Errors: std::logic_error for a name that two declare.
 std::vector<SolverCounter> step_solver_counters();
 /// Makes the terms those that the method's step solver needs: how barriers are read beyond contact, multipliers.

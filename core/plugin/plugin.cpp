@@ -156,4 +156,9 @@ Plugin load_plugin(const std::string& file) {
   return load_here(file);
 }
 
+void* find_symbol(const std::string& file, const char* name) {
+  void* library = dlopen(std::filesystem::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+  return library ? dlsym(library, name) : nullptr;
+}
+
 }  // namespace bb

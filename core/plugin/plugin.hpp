@@ -33,4 +33,7 @@ struct Plugin {
 /// smoothness out of range.
 Plugin load_plugin(const std::string& file);
 
+/// Another function that a library exports which load_plugin() has opened; null without one.
+void* find_symbol(const std::string& file, const char* name);
+
 }  // namespace bb

@@ -36,7 +36,11 @@ ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const Contact
             " belongs to no triangle and has no area");
   }
   families_.resize(2);
-  if (options.stiffness->has_potential()) folded_.emplace(options.contact);
+  if (const GapStiffness* of = options.stiffness->gap_stiffness()) {
+    gap_potential_.emplace(options.contact, *of);
+  } else if (options.stiffness->has_potential()) {
+    folded_.emplace(options.contact);
+  }
   if (options.multipliers) multipliers_.emplace(*options.multipliers);
   if (options.barrier_multipliers) beside_.emplace(*options.barrier_multipliers);
   use_state();
@@ -45,8 +49,8 @@ ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const Contact
 namespace {
 
 // kappa b is the energy then, kappa b' and kappa b'' its derivatives.
-template <class Table>
-void fill_folded(FoldedBarrier& barrier, Table& rows) {
+template <class Potential, class Table>
+void fill_folded(Potential& barrier, Table& rows) {
   barrier.eval(rows.size(), rows.d.data(), rows.d_hat.data(), rows.parts.data(), rows.b.data(),
                rows.db.data(), rows.d2b.data());
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -102,6 +106,8 @@ void ContactTerm::fill_shape(ContactState& state) {
     if (multipliers_) return multipliers_->fill(rows);
     if (folded_) {
       fill_folded(*folded_, rows);
+    } else if (gap_potential_) {
+      fill_folded(*gap_potential_, rows);
     } else {
       options_.contact.eval(rows.size(), rows.d.data(), rows.d_hat.data(), rows.b.data(), rows.db.data(),
                             rows.d2b.data());

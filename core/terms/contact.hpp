@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/barrier/folded_barrier.hpp"
+#include "core/barrier/gap_potential.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/terms/contact_constraints.hpp"
@@ -116,7 +117,8 @@ class ContactTerm final : public Term {
   const TermList& terms_;
   ContactSystem contacts_;
   StiffnessUpdate stiffness_;
-  std::optional<FoldedBarrier> folded_;  // where the policy has a potential
+  std::optional<FoldedBarrier> folded_;  // where the policy has a potential: of kappa that falls as 1/d^2,
+  std::optional<GapPotential> gap_potential_;  // of any kappa(d)
   std::optional<ContactMultipliers> multipliers_;
   std::optional<BarrierMultipliers> beside_;  // the barrier
   ContactState state_, trial_;

@@ -139,7 +139,7 @@ void ContactTerm::report_overload(const PositionsView&, const PositionsView& oth
                                   StepNumbers& out) {
   out.contact_overload = 0;
   const BarrierFunction& barrier = options_.contact;
-  if (barrier.shape.infinite_at_zero || folded_) return;
+  if (barrier.shape.infinite_at_zero || folded_ || gap_potential_) return;
   const ContactTable& rows = state_.rows;
   LargestSlope slope(barrier);
   const std::map<Feature, double> stiffness = stiffness_of_features(rows);

@@ -1,5 +1,7 @@
 #include "core/terms/stiffness_update.hpp"
 
+#include "core/barrier/gap_stiffness.hpp"
+
 namespace bb {
 namespace {
 
@@ -23,6 +25,15 @@ template <class Table>
 void note_before(Table& rows, std::span<const int> missing) {
   rows.kappa_before = rows.kappa;
   for (const int row : missing) rows.kappa_before[static_cast<std::size_t>(row)] = 0;
+}
+
+/// kappa of rows whose parts are what a policy with another function of the gap has frozen.
+template <class Table>
+void fill_kappa(const GapStiffness& of, Table& rows) {
+  double slope = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    of.eval(rows.parts[r], rows.d_hat[r], 1, &rows.d[r], &rows.kappa[r], &slope);
+  }
 }
 
 }  // namespace
@@ -121,6 +132,10 @@ void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified
   const Hessian hessian = hessian_of(blocks, elastic);
   fill(rows, missing_, hessian, at_d_hat);
   fill(mollified, missing_mollified_, hessian, at_d_hat);
+  if (const GapStiffness* of = policy_.gap_stiffness()) {
+    fill_kappa(*of, rows);
+    fill_kappa(*of, mollified);
+  }
 }
 
 double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "barriers/shapes/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
+#include "core/barrier/gap_potential.hpp"
 #include "core/integrators/registry.hpp"
 #include "experiments/config/complain.hpp"
 #include "experiments/config/enum_words.hpp"
@@ -42,6 +44,36 @@ void check_policy(const std::string& section, const PolicyConfig& policy, Policy
     make_policy(policy_request(policy, use, given.value_or(1)), use);
   } catch (const ConfigError& error) {
     for (const Violation& v : error.violations()) complain(section + "/" + v.where, v.found, v.allowed);
+  }
+}
+
+/// kappa as any function of the gap, for pairs of some masses and stiffnesses: what of it cannot be told before a run is not
+/// asked here.
+void check_gap_potential(const std::string& section, const std::string& shape, Argument argument,
+                         const PolicyConfig& policy, const RunConfig& config, const Complain& complain) {
+  const auto barrier = barrier_of(shape, argument);
+  const auto potential = policy.parameters.find("potential");
+  if (!barrier || potential == policy.parameters.end() ||
+      potential->second != ParameterValue(std::string("derived"))) {
+    return;
+  }
+  const std::string pointer = section + "/stiffness_policy/potential";
+  if (!needs_of(config).step_bound)
+    complain(pointer, "\"derived\"", "none: the step solver is " + config.step_solver.name);
+  std::unique_ptr<StiffnessPolicy> made;
+  try {
+    made = make_policy(policy_request(policy, PolicyUse::contact, 1), PolicyUse::contact);
+  } catch (const ConfigError&) {
+    return;  // check_policy has said so
+  }
+  const GapStiffness* of = made->gap_stiffness();
+  if (!of) return;
+  made->set_time({config.time.dt, 1});
+  constexpr KappaParts pairs[] = {{0, 1e-6}, {1, 1e-4}, {1e4, 1e-2}};  // k in N/m and m in kg
+  const std::string fault = GapPotential(*barrier, *of).fault(pairs, config.formulation.d_hat);
+  if (!fault.empty()) {
+    complain(pointer, "\"derived\" with " + fault,
+             "none, or kappa(d) and a shape whose force grows smoothly as the gap closes");
   }
 }
 
@@ -87,6 +119,8 @@ void check_policies(const RunConfig& config, const Complain& complain) {
   const FormulationConfig& contact = config.formulation;
   check_policy("/formulation", contact.stiffness_policy, PolicyUse::contact,
                given_kappa(contact.stiffness_policy), complain);
+  check_gap_potential("/formulation", contact.shape, contact.argument, contact.stiffness_policy, config,
+                      complain);
   check_potential("/formulation", contact.shape, contact.argument, contact.stiffness_policy, config,
                   complain);
   const StrainLimitConfig& limit = config.strain_limit;

@@ -110,8 +110,10 @@ void check_device_forms(const RunConfig& config, const Scene& scene) {
   any.kappa = any.k_s = any.solid_k_s = 1;
   Method method = make_method(config, any);
   resident::require_kernel(*method.stiffness, config.source + "#/formulation/stiffness_policy/name");
-  at_config(config, "/formulation",
-            [&] { resident::ResidentBarrier(method.contact, method.stiffness->has_potential()); });
+  at_config(config, "/formulation", [&] {
+    resident::ResidentBarrier(method.contact, method.stiffness->has_potential(),
+                              config.device == Device::host);
+  });
   if (method.strain_limit && !(scene.limit.triangles.empty() && scene.solid_limit.tetrahedra.empty())) {
     at_config(config, "/strain_limit", [&] { resident::require_limit_kernels(method); });
   }

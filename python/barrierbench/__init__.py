@@ -5,7 +5,8 @@ geometry      distances of pairs with gradient and Hessian, continuous collision
 condition     condition numbers of sparse symmetric matrices
 scene         what can be named in a config; configs with every default; scenes as numpy arrays
 simulation    runs a step at a time, with callbacks and records
-python_shapes, python_policies  a Python class as a shape, as a stiffness policy
+python_shapes, python_policies, python_step_solvers  a Python class as a shape, a stiffness policy, a step solver
+step          the time step that a step solver of Python moves
 queries       the queries of `bench eval`, in this process; eval is the verb itself: python -m barrierbench.eval
 records       records as tables, judge and claims: the package barrierbench-analysis
 """
@@ -39,10 +40,12 @@ from .condition import Condition, condition_number  # noqa: E402
 from .geometry import accd, distance, edge_edge, point_edge, point_point, point_triangle  # noqa: E402
 from .python_policies import ContactRows, register_policy  # noqa: E402
 from .python_shapes import register_shape  # noqa: E402
+from .python_step_solvers import register_step_solver  # noqa: E402
 from .queries import evaluate  # noqa: E402
 from .scene import Scene, build_scene, parts, resolve, scenes  # noqa: E402
 from .shape import Shape, shapes  # noqa: E402
 from .simulation import Simulation, run  # noqa: E402
+from .step import Step, Trial  # noqa: E402
 
 __version__: str = _core.version
 
@@ -54,6 +57,8 @@ __all__ = [
     "Scene",
     "Shape",
     "Simulation",
+    "Step",
+    "Trial",
     "accd",
     "build_scene",
     "condition_number",
@@ -66,6 +71,7 @@ __all__ = [
     "point_triangle",
     "register_policy",
     "register_shape",
+    "register_step_solver",
     "resolve",
     "run",
     "scenes",

@@ -101,11 +101,11 @@ def _check(name: str, policy: Any, needs_hessian: bool) -> None:
 def register_policy(policy: Any) -> str:
     """Makes a Python object a stiffness policy that configs name, until the process ends; returns the name.
 
-    policy: has `name` (snake_case) and `kappa(rows)`, which gets ContactRows and returns kappa in N/m, [n] or one number;
-    and `needs_hessian` = True where it reads `rows.k` or `rows.hessian`. When it is asked (every iteration, or once a
-    step) is the config's `refresh`. What it raises ends the step that asked, and the run is where it was before that
-    step. The same name again replaces the object. Errors: ConfigError that names what does not hold; what `kappa` raises
-    for a first contact of one vertex that it is tried with.
+    policy: has `name` (snake_case) and `kappa(rows)`, which gets ContactRows and returns kappa in N/m, [n] or one
+    number; and `needs_hessian` = True where it reads `rows.k` or `rows.hessian`. When it is asked (every iteration, or
+    once a step) is the config's `refresh`. What it raises ends the step that asked, and the run is where it was before
+    that step. The same name again replaces the object. Errors: ConfigError that names what does not hold; what `kappa`
+    raises for a first contact of one vertex that it is tried with.
 
     >>> class Inertia:
     ...     name = "inertia_of_python"

@@ -18,8 +18,9 @@ from .scene import Config, Scene, _given
 
 
 def _brought(given: tuple[str, str, str, list[str]]) -> list[tuple[str, str, str]]:
-    formulation = json.loads(_core.resolved_json(*given))["formulation"]
-    return brought(formulation["shape"], formulation["stiffness_policy"]["name"])
+    config = json.loads(_core.resolved_json(*given))
+    formulation = config["formulation"]
+    return brought(formulation["shape"], formulation["stiffness_policy"]["name"], config["step_solver"]["name"])
 
 
 class Simulation:

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/math/types.hpp"
+
 namespace bb {
 struct Scene;
 }
@@ -37,6 +39,12 @@ nb::ndarray<nb::numpy, T> view_of(T* values, N... sizes) {
   return nb::ndarray<nb::numpy, T>(values, sizeof...(N), shape, nb::capsule(values, [](void*) noexcept {}));
 }
 
+/// [n, 3], a read-only view of a state that `owner` holds.
+inline nb::ndarray<nb::numpy, const double> state_view(const nb::object& owner, const Positions& state) {
+  const std::size_t shape[] = {static_cast<std::size_t>(state.cols()), 3};
+  return nb::ndarray<nb::numpy, const double>(state.data(), 2, shape, owner);
+}
+
 void bind_shapes(nb::module_& module);
 void bind_geometry(nb::module_& module);
 void bind_condition(nb::module_& module);
@@ -46,6 +54,7 @@ void bind_scene(nb::module_& module);
 nb::dict arrays_of(const Scene& scene);
 void bind_python_shape(nb::module_& module);
 void bind_python_policy(nb::module_& module);
+void bind_python_step_solver(nb::module_& module);
 void bind_runs(nb::module_& module);
 void bind_evaluate(nb::module_& module);
 

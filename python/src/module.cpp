@@ -30,5 +30,6 @@ NB_MODULE(_core, m) {
   bind_evaluate(m);
   bind_python_shape(m);
   bind_python_policy(m);
+  bind_python_step_solver(m);
   bind_runs(m);
 }

@@ -101,11 +101,6 @@ class PythonRun {
   bool busy_ = false;
 };
 
-nb::ndarray<nb::numpy, const double> state_view(const nb::object& owner, const Positions& state) {
-  const std::size_t shape[] = {static_cast<std::size_t>(state.cols()), 3};
-  return nb::ndarray<nb::numpy, const double>(state.data(), 2, shape, owner);
-}
-
 /// What Python says during a whole run. The first exception stops the run between two steps, as a signal does.
 class Listener {
  public:

@@ -71,19 +71,23 @@ def test_a_formulation_of_a_plugin_is_matched(program, build_folder, tmp_path, m
     assert match.main([*words, "--out", str(tmp_path / "without")]) == 2  # nobody else knows the shape
 
 
-def test_a_shape_of_a_plugin_has_no_kernels_and_is_refused_on_a_device(program, build_folder, tmp_path):
+def test_a_shape_of_a_plugin_has_no_kernels_and_is_refused_on_a_card(program, build_folder, tmp_path):
     plugin = build_folder / "examples/plugins/plugin_inverse_shape.so"
     if not plugin.exists():
         pytest.skip(f"{plugin} is not built")
     config = tmp_path / "a.json"
     config.write_text(json.dumps({
-        "schema": "barrierbench.config/1", "scene": {"name": "drape", "n": 4}, "time": {"steps": 2}, "device": "host",
+        "schema": "barrierbench.config/1", "scene": {"name": "drape", "n": 4}, "time": {"steps": 2}, "device": "cuda",
         "formulation": {"shape": "inverse", "argument": "gap", "d_hat_m": 0.01, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 100}}}))
     run = [program, "--plugin", str(plugin), "run", str(config), "--out", str(tmp_path / "out")]
     done = subprocess.run(run, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and done.stdout == "", done.stderr
     assert f'{config}#/formulation/shape: found "inverse", which has no kernel of its own; allowed: one of log' in done.stderr, done.stderr
-    assert "shapes of plugins" in done.stderr and "run on the CPU path" in done.stderr and done.stderr.count("#/") == 1, done.stderr
+    assert "shapes of plugins" in done.stderr and "run with device cpu or host" in done.stderr and done.stderr.count("#/") == 1, done.stderr
     assert not (tmp_path / "out").exists()
-    done = subprocess.run([*run, "--set", '/device="cpu"'], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    on_host = [*run, "--set", '/device="host"']
+    done = subprocess.run(on_host, capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "#/strain_limit/shape: found inverse" in done.stderr, done.stderr
+    for words in ([*on_host, "--set", "/strain_limit/enabled=false"], [*run, "--set", '/device="cpu"']):
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr

@@ -14,6 +14,7 @@ from analysis.formula.grammar import FormulaError
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = str(ROOT / "configs/scenes/resting_block_1d.json")
+STRIP = str(ROOT / "configs/scenes/strip_on_disk.json")
 BUILT_IN = {
     "log": ("-(d - d_hat)^2*log(d/d_hat)", "infinite"),
     "cubic": ("2/(3*d_hat)*(d_hat - d)^3", "finite"),
@@ -142,8 +143,23 @@ def test_eval_says_what_is_wrong(program):
 
 
 def test_a_card_has_no_formula(program):
-    done = bench(program, "check", BLOCK, "--set", setting({"formula": "(d - d_hat)^2"}), "--set", '/device="host"')
-    assert done.returncode == 2 and "formula:(d - d_hat)^2" in done.stderr and "CPU path" in done.stderr
+    done = bench(program, "check", BLOCK, "--set", setting({"formula": "(d - d_hat)^2"}), "--set", '/device="cuda"')
+    assert done.returncode == 2 and "formula:(d - d_hat)^2" in done.stderr and "device cpu or host" in done.stderr
+
+
+@pytest.mark.parametrize("name, argument", [("log", "gap"), ("cubic", "squared_gap")])
+def test_the_host_executor_calls_it_for_every_row(program, tmp_path, name, argument):
+    """A strip that lands on a disk, by kernels on threads, beside the kernel of the built-in shape."""
+    text, at_zero = BUILT_IN[name]
+    for folder, shape in (("built", name), ("formula", {"formula": text, "at_zero": at_zero})):
+        words = [f'/formulation/argument="{argument}"', '/device="host"', "/time/steps=12", setting(shape)]
+        done = bench(program, "run", STRIP, *(word for one in words for word in ("--set", one)), "--out", tmp_path / folder)
+        assert done.returncode == 0, done.stderr
+    built, mine = (json.loads((tmp_path / folder / "run.json").read_text())["summary"] for folder in ("built", "formula"))
+    assert built["contacts"]["sum"] > 0 and mine["newton_iterations"] == built["newton_iterations"]
+    assert mine["gap_min_m"] == pytest.approx(built["gap_min_m"], rel=1e-7)
+    done = bench(program, "explain", STRIP, "--set", setting({"formula": text}), "--set", '/device="host"')
+    assert done.returncode == 0, done.stderr
 
 
 def test_no_compiler_is_said(monkeypatch):

@@ -32,3 +32,13 @@ def drape() -> dict:
         "passes": {"time": False, "audit": True},
         "threads": 1,
     }
+
+
+@pytest.fixture
+def scripted(bb):
+    """A registered step solver that runs the `script` that a test hands it."""
+    from python_newton import Scripted
+
+    solver = Scripted()
+    bb.register_step_solver(solver)
+    return solver

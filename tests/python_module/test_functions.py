@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-MODULES = ("shape", "geometry", "condition", "queries", "scene", "python_policies", "python_shapes", "simulation")
+MODULES = ("shape", "geometry", "condition", "queries", "scene", "python_policies", "python_shapes", "python_step_solvers", "simulation", "step")
 
 
 @pytest.mark.parametrize("name", MODULES)

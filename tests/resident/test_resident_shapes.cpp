@@ -3,6 +3,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
 #include "tests/resident/contact_on_executor.hpp"
@@ -89,6 +90,33 @@ TEST(ResidentBarrier, FoldsTheStiffnessIntoShapesWithAPotential) {
     ++n_shapes;
   }
   EXPECT_EQ(n_shapes, 2);
+}
+
+/// Of a plugin, of a formula, with an exponent: by the call that the CPU path makes, in the memory of the host.
+TEST(ResidentBarrier, CallsAShapeWithoutAKernelForEveryRow) {
+  int n_active = 0;
+  for (const char* name : {"exponential:4", "cubic"}) {
+    for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
+      exec::HostExecutor executor(exec::Order::shuffled);
+      ResidentRows rows(executor, KappaColumns::kept);
+      fill(rows);
+      BarrierFunction barrier{require_shape(name), argument};
+      barrier.shape.name = "from_a_plugin";
+      ResidentBarrier(barrier, false, true).evaluate(executor, rows);
+      const RowView v = rows.view();
+      for (Index r = 0; r < n_gaps; ++r) {
+        const ShapeTerms<double> one = barrier.eval(v.d[r], v.d_hat[r]);
+        ASSERT_EQ(v.energy[r], v.kappa[r] * one.b) << name;
+        ASSERT_EQ(v.push[r], v.kappa[r] * one.db) << name;
+        ASSERT_EQ(v.stretch[r], v.kappa[r] * one.d2b) << name;
+        n_active += one.db < 0;
+      }
+    }
+  }
+  EXPECT_GT(n_active, 1200);
+  BarrierFunction unknown{require_shape("cubic")};
+  unknown.shape.name = "from_a_plugin";
+  EXPECT_THROW(ResidentBarrier(unknown, true, true), ConfigError);  // no potential of its own
 }
 
 TEST(ResidentBarrier, RefusesWhatHasNoKernelByName) {

@@ -9,16 +9,18 @@ namespace bb::resident {
 
 class ResidentBarrier {
  public:
-  /// potential: whether kappa depends on the gap and is folded in. Errors: ConfigError for a shape without kernels
-  /// (plugins have none), for the article's literal evaluation, for float, and for a potential that the shape has not.
-  ResidentBarrier(const BarrierFunction& barrier, bool potential);
+  /// potential: whether kappa depends on the gap and is folded in. host_calls: columns are in the host's memory, so that a
+  /// shape without a kernel (of a plugin, of a formula, with an exponent) is called for every row. Errors: ConfigError for
+  /// such a shape elsewhere, for the article's literal evaluation, for float, and for a potential that the shape has not.
+  ResidentBarrier(const BarrierFunction& barrier, bool potential, bool host_calls = false);
   /// Fills energy, push and stretch of the rows from d, d_hat and kappa.
   void evaluate(exec::Executor& executor, ResidentRows& rows) const;
 
  private:
   using Launch = void (*)(exec::Executor&, const RowView&, Argument);
-  Launch launch_ = nullptr;
+  Launch launch_ = nullptr;  // null: by the calls of shape_
   Argument argument_;
+  Shape shape_;
 };
 
 }  // namespace bb::resident
