@@ -98,6 +98,10 @@ void report_iterate(const StepSystem& system, IterationReport& report) {
 
 void find_direction(StepSystem& system, IterationReport& report, StepObserver& observer) {
   report.solve = system.find_direction();
+  report_direction(system, report, observer);
+}
+
+void report_direction(StepSystem& system, IterationReport& report, StepObserver& observer) {
   const DirectionSize size = system.direction_size();
   report.dx_inf_m = size.inf_m;
   report.dx_beyond_m = size.beyond_m;

@@ -25,6 +25,8 @@ IterationReport begin_iteration(StepSystem& system, int step, int iteration);
 /// Solves for the direction, fills |dx|_inf, the decrement -g . dx / 2 over free degrees of freedom, and E, gradient, pattern
 /// and the terms' numbers of the iterate (one wait for all of them), and lets the observer look at the matrices.
 void find_direction(StepSystem& system, IterationReport& report, StepObserver& observer);
+/// What find_direction() does after the solve, of a direction that was found otherwise.
+void report_direction(StepSystem& system, IterationReport& report, StepObserver& observer);
 /// The status that ends the step when the direction is of no use. must_descend: E has to decrease along it.
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend);
 /// Asks the system whether its iterate is a minimum as far as second derivatives go, unless the rule is ignore, and
