@@ -180,7 +180,9 @@ def _engine_rows(study: Study, name: str, scene: dict, fitted: dict, reference, 
     return rows
 
 
-def of_scene(study: Study, name: str, fitted: dict, left_out: set[tuple[str, str, int]] = frozenset()) -> dict:
+def of_scene(
+    study: Study, name: str, fitted: dict, left_out: set[tuple[str, str, int]] = frozenset()
+) -> dict:
     """The rows of one scene, but for engine, variant and level that are left out; a run that fails is a row.
     Errors: UserError where the scene cannot be built.
     """

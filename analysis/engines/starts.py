@@ -1,8 +1,9 @@
 """./bench engine compare --starts N: the scenes of a record once more, from N starts that are jittered.
 
-Start k moves every coordinate of vertices that are not held by a uniform number in [-jitter, jitter] of seed k,
-by the rule of /seeds of a config, so every engine and our reference begin at the same place. Materials, own
-starts and seconds are those of the record: jittered runs may share the machine, so their seconds are not kept.
+Start k moves every coordinate of vertices that are not held by a uniform number in [-jitter, jitter] of
+seed k, by the rule of /seeds of a config, so every engine and our reference begin at the same place.
+Materials, own starts and seconds are those of the record: jittered runs may share the machine, so their
+seconds are not kept.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ def _short(row: dict) -> dict:
 
 
 def earlier(path: Path, study: Study) -> dict:
-    """The record whose scenes are run again. Errors: UserError where there is none, or one of other scenes."""
+    """The record whose scenes are run again. Errors: UserError where there is none, or of another spec."""
     again = "run ./bench engine compare without --starts first"
     if not path.is_file():
         raise UserError(f"{path} is not there: {again}")
@@ -62,7 +63,7 @@ def dear(study: Study, one: dict) -> set[tuple[str, str, int]]:
 
 
 def _references_apart(study: Study, name: str, n: int) -> list[float]:
-    """How far the reference of start 2, 3, ... is from that of start 1, as errors are: what the start does."""
+    """How far the reference of start 2, 3, ... is from that of start 1, as errors are: the start's share."""
     states = []
     for k in range(1, n + 1):
         file = jittered(study, k).folder / name / "reference"
@@ -88,7 +89,9 @@ def with_starts(study: Study, record: dict, n: int) -> dict:
                 made = of_scene(jittered(study, k), one["scene"], fitted, left_out)
                 if last:
                     rows = [_short(row) for row in made["rows"]]
-                    out[one["scene"]].append({"start": k, "reference": _short(made["reference"]), "rows": rows})
+                    out[one["scene"]].append(
+                        {"start": k, "reference": _short(made["reference"]), "rows": rows}
+                    )
     scenes = [
         {**one, "starts": out[one["scene"]], "references_apart": _references_apart(study, one["scene"], n)}
         for one in scenes
