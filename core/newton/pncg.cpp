@@ -6,7 +6,8 @@
 //   2 p = -P g + beta p, P the inverse of a preconditioner of H: jacobi, its diagonal, as published; beta by dai_kou.hpp, 0 in
 //     the first iteration and where it is no number. E falls along p to first order
 //   3 dx = -(g.p / p.Hp) p, which ends in the minimum of the quadratic model along p
-//   4 pncg_bound accd: dx is bounded as in line_search, by ACCD and the strain limit, and halved until E falls (Armijo);
+//   4 pncg_bound accd: dx is bounded as in line_search, by ACCD and the strain limit, and halved until E falls (Armijo); after
+//     one that was bounded beta is 0;
 //     half_d_hat, as published: no vertex goes farther than half of the smallest d_hat, and neither CCD nor E is asked
 //   5 the step is over where the model falls by less than pncg_epsilon of its fall in the first iteration, as published, or by
 //     less than the rounding of E
@@ -137,6 +138,8 @@ class Pncg final : public StepSolver {
       if (farthest > allowed) bound = allowed / farthest;
     }
     bounds_ += bound < 1;
+    if (guarded_ && bound < 1)
+      p_.resize(0);  // with what led into a contact the next ones would press it together
     for (double part = guarded_ && bound < 1 ? cap_fraction_ * bound : bound; part > shortest_part;
          part /= 2) {
       ++report.line_search_trials;
