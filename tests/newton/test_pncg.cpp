@@ -252,6 +252,36 @@ TEST(Pncg, AccdStopsWhatIsFast) {
   EXPECT_EQ(ran.rises, 0);
 }
 
+/// What led into a contact is not kept: after a motion that ACCD bounded the direction is that of -P g, and of others not.
+TEST(Pncg, BeginsAnewAfterAMotionThatContactBounded) {
+  struct Angles final : StepObserver {
+    double bounded_before = 1, others = 1;  // least cosine of dx and -P g
+    bool bounded = false;
+    void on_matrix(StepSystem& system, int, int iteration) override {
+      Diagnosis& at = system.on_host().diagnosis();
+      const VecXd diagonal = Eigen::MatrixXd(at.solved().lower).diagonal();
+      VecXd g, dx;
+      at.blocks().restrict_vector(at.gradient(), g);
+      at.blocks().restrict_vector(at.direction(), dx);
+      const VecXd down = -g.cwiseQuotient(diagonal);
+      const double cosine = dx.dot(down) / (dx.norm() * down.norm());
+      if (iteration > 0)
+        (bounded ? bounded_before : others) = std::min(cosine, bounded ? bounded_before : others);
+    }
+    void on_iteration(const IterationReport& report) override { bounded = report.alpha_ccd < 1; }
+  };
+  Scene scene = cloth_over_floor(0.8 * d_hat);
+  scene.v0.row(2).array() = -3;
+  scene.v0(2, 0) = -5;
+  Method method = method_of(1e-10);
+  Simulation simulation(scene, method, 0.01, 1);
+  Angles angles;
+  const StepReport step = simulation.step(angles);
+  EXPECT_GT(step.solver.values.at("pncg_bounds"), 1);
+  EXPECT_NEAR(angles.bounded_before, 1, 1e-12);
+  EXPECT_LT(angles.others, 0.99);
+}
+
 TEST(Pncg, AStepThatDoesNotEndSaysSo) {
   const Scene scene = cloth_over_floor(0.8 * d_hat);
   Method method = method_of(1e-12);
