@@ -138,8 +138,8 @@ class Pncg final : public StepSolver {
       if (farthest > allowed) bound = allowed / farthest;
     }
     bounds_ += bound < 1;
-    if (guarded_ && bound < 1)
-      p_.resize(0);  // with what led into a contact the next ones would press it together
+    // with what led into a contact the next motions would press it together
+    if (guarded_ && bound < 1) p_.resize(0);
     for (double part = guarded_ && bound < 1 ? cap_fraction_ * bound : bound; part > shortest_part;
          part /= 2) {
       ++report.line_search_trials;
