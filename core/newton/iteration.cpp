@@ -1,5 +1,6 @@
 #include "core/newton/iteration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -22,7 +23,7 @@ void fill_work(IterationReport& report) {
     report.ritz_max = known ? Number(linear.ritz_max) : Number::missing("not_measured");
   }
   report.hessian_t = report.solve.t;
-  report.hessian_fallbacks = report.solve.fallbacks();
+  report.hessian_fallbacks = std::max(0, report.solve.fallbacks());  // without a solve there are none
   report.linear_solves = report.solve.attempts + report.solve.detours;
   report.linear_iterations = linear.iterations;
   report.factorizations = report.solve.factorizations;

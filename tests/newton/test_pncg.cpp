@@ -208,6 +208,8 @@ TEST(Pncg, EpsilonIsWhatAStepStopsAt) {
   for (const double epsilon : {1e-12, 1e-6, 1e-2}) {
     const Ran ran = run(scene, method_of(epsilon), 1);
     EXPECT_LE(ran.last.solver.values.at("pncg_fall"), epsilon);
+    EXPECT_EQ(ran.last.linear_solves, 0);
+    EXPECT_EQ(ran.last.hessian_fallbacks, 0);
     EXPECT_GT(ran.last.solver.values.at("pncg_fall"), 0);
     EXPECT_LT(ran.iterations, iterations);
     const double off = (ran.x - newton.x).cwiseAbs().maxCoeff();
