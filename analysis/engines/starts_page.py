@@ -26,7 +26,8 @@ def rules(record: dict) -> list[str]:
         why = [f"take more than {rule['few_above_s']:g} s"] if "few_above_s" in rule else []
         if "few_above_error" in rule:
             why.append(f"end more than {rule['few_above_error']:g} widths from the reference")
-        text += f" Runs that from the own start {' or '.join(why)} were made from {rule['few']} starts alone."
+        made = f"made from {rule['few']} starts alone" if rule["few"] else "not made again"
+        text += f" Runs that from the own start {' or '.join(why)} were {made}."
     return [text, ""]
 
 

@@ -312,7 +312,11 @@ def test_dear_runs_are_made_from_few_starts(program, here, tmp_path):
     record = compare.compared(study)
     for row in record["scenes"][0]["rows"][1:2]:
         row["seconds"] = 0  # this one is cheap
-    one = starts.with_starts(study, record, 2)["scenes"][0]
+    found = starts.with_starts(study, record, 2) | {"command_of_starts": "this"}
+    assert "take more than 1e-09 s were made from 1 starts alone" in text_of(found)
+    found["spec"]["starts"]["few"] = 0
+    assert "take more than 1e-09 s were not made again" in text_of(found)
+    one = found["scenes"][0]
     assert {who[::2]: s["starts"] for who, s in scatter.scatter(one).items()} == {("barrierbench", 0): 2, ("template", 0): 2, ("template", 1): 1}
 
 
