@@ -155,13 +155,15 @@ def _row(answer: dict, scene: dict, reference: np.ndarray | None) -> dict:
     return row
 
 
-def _engine_rows(study: Study, name: str, scene: dict, fitted: dict, reference) -> list[dict]:
+def _engine_rows(study: Study, name: str, scene: dict, fitted: dict, reference, left_out) -> list[dict]:
     rows = []
     for one in study.spec["engines"]:
         card, variant = study.cards[one["engine"]], one["variant"]
         label = f"{card.name} {variant}"
         factors = fitted[label].get("factors", {})
         for k, level in enumerate(one["levels"]):
+            if (card.name, variant, k) in left_out:
+                continue
             out = study.folder / name / f"{card.name}-{variant}-{k}"
             sets = {**factors, **level}
 
@@ -178,8 +180,12 @@ def _engine_rows(study: Study, name: str, scene: dict, fitted: dict, reference) 
     return rows
 
 
-def of_scene(study: Study, name: str, fitted: dict) -> dict:
-    """The rows of one scene; a run that fails is a row. Errors: UserError where the scene cannot be built."""
+def of_scene(
+    study: Study, name: str, fitted: dict, left_out: set[tuple[str, str, int]] = frozenset()
+) -> dict:
+    """The rows of one scene, but for engine, variant and level that are left out; a run that fails is a row.
+    Errors: UserError where the scene cannot be built.
+    """
     config, asked = study.scenes[name], study.spec["reference"]
     scene = exported(config.file, config.sets())
     more = {"/integrator/name": asked["integrator"]}
@@ -198,7 +204,7 @@ def of_scene(study: Study, name: str, fitted: dict) -> dict:
         "frame_s": scene["dt_s"],
         "reference": _row(fine, scene, None),
         "reference_apart": _row(coarser, scene, reference),
-        "rows": [*rows, *_engine_rows(study, name, scene, fitted, reference)],
+        "rows": [*rows, *_engine_rows(study, name, scene, fitted, reference, left_out)],
     }
 
 

@@ -1,4 +1,6 @@
-"""docs/engines.png: error against seconds of every engine, a panel a scene; crosses where surfaces cross."""
+"""docs/engines.png: error against seconds of every engine, a panel a scene; crosses where surfaces cross,
+bars from the least to the most of jittered starts.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +8,7 @@ from pathlib import Path
 
 from ..style import WIDE_IN, plt
 from .level import lines
+from .scatter import crosses, of_rows, scatter
 
 COLUMNS = 3
 COLOURS = ("#000000", "#0072b2", "#56b4e9", "#005a5a", "#d55e00", "#e69f00", "#a03060", "#009e73")
@@ -13,8 +16,27 @@ MARKS = "osD^vP<>"
 MOST = 100  # % of width: who is farther off has flown away, and would take the axis with it
 
 
-def _crossed(row: dict) -> bool:
-    return row.get("frames_crossing", 0) + row.get("frames_in_obstacles", 0) > 0
+def _points(one: dict, line: list[dict]) -> list[tuple[float, float, float, float, bool]]:
+    """Of each level of an engine: seconds of its own start; error in %, the median of jittered starts where
+    there are some, with least and most; whether surfaces cross from any start.
+    """
+    spread, rows, out = scatter(one), of_rows(one), []
+    for row in line:
+        who = (row["engine"], row["variant"], row["level"])
+        own = row["error_mean"]
+        least, middle, most = (spread[who]["error"] if who in spread else None) or (own, own, own)
+        percent = [min(100 * error, MOST) for error in (middle, least, most)]
+        out.append((row["seconds"], *percent, any(crosses(each) for each in [row, *rows.get(who, [])])))
+    return out
+
+
+def _draw(axis, points: list[tuple], colour: str, mark: str) -> None:
+    seconds, error, least, most, bad = zip(*points)
+    axis.plot(seconds, error, "-", marker=mark, color=colour, ms=4, lw=1)
+    axis.vlines(seconds, least, most, color=colour, lw=1.6, alpha=0.7)
+    crossed = [(s, e) for s, e, b in zip(seconds, error, bad) if b]
+    if crossed:
+        axis.plot(*zip(*crossed), "x", color="#cc0000", ms=8, mew=1.4)
 
 
 def paint(record: dict, path: Path) -> None:
@@ -28,10 +50,8 @@ def paint(record: dict, path: Path) -> None:
     for axis, one in zip(axes.flat, scenes):
         for name, line in lines(one["rows"]).items():
             colour, mark = looks[name]
-            seconds, error = [r["seconds"] for r in line], [min(100 * r["error_mean"], MOST) for r in line]
-            axis.plot(seconds, error, "-", marker=mark, color=colour, ms=4, lw=1)
-            bad = [k for k, row in enumerate(line) if _crossed(row)]
-            axis.plot([seconds[k] for k in bad], [error[k] for k in bad], "x", color="#cc0000", ms=8, mew=1.4)
+            if line:
+                _draw(axis, _points(one, line), colour, mark)
         known = one["reference_apart"].get("error_mean")
         if known:
             axis.axhline(100 * known, color="#999999", lw=0.8, ls=":")
@@ -47,7 +67,17 @@ def paint(record: dict, path: Path) -> None:
     key = axes.flat[len(scenes)]
     for name, (colour, mark) in looks.items():
         key.plot([], [], "-", marker=mark, color=colour, ms=4, lw=1, label=" ".join(name))
-    key.plot([], [], "x", color="#cc0000", ms=8, mew=1.4, label="surfaces cross, or are in an obstacle")
+    key.plot(
+        [],
+        [],
+        "x",
+        color="#cc0000",
+        ms=8,
+        mew=1.4,
+        label="surfaces cross, or are in an obstacle",
+    )
+    if any(one.get("starts") for one in scenes):
+        key.plot([], [], "-", color="#666666", lw=1.6, label="jittered starts: least to most")
     key.plot([], [], " ", label=f"{MOST} %: that or more")
     key.plot([], [], ":", color="#999999", lw=0.8, label="reference, against twice its time step")
     key.legend(loc="center", frameon=False)

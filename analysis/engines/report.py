@@ -5,6 +5,8 @@ from __future__ import annotations
 from ..text_table import markdown
 from .compare import OURS
 from .level import equal
+from .scatter import depth_of, number
+from .starts_page import of_scene, of_variant, rules
 
 HEAD = [
     "engine", "dt, ms", "outcome", "s", "it/step", "verdict", "frames crossing", "frames in obstacles",
@@ -12,12 +14,7 @@ HEAD = [
 ]  # fmt: skip
 
 
-def number(value, scale: float = 1.0, digits: int = 3) -> str:
-    return "" if value is None else f"{value * scale:.{digits}g}"
-
-
 def _row(row: dict) -> list[str]:
-    deep = max(row.get("depth_obstacles_m") or 0.0, row.get("depth_bodies_m") or 0.0)
     judged = "verdict" in row and row["verdict"] != "not_judged"
     return [
         f"{row['engine']} {row['variant']}",
@@ -28,7 +25,7 @@ def _row(row: dict) -> list[str]:
         row.get("verdict", ""),
         str(row.get("frames_crossing", "")),
         str(row.get("frames_in_obstacles", "")),
-        number(deep, 1e3) if judged else "",
+        number(depth_of(row), 1e3) if judged else "",
         str(row.get("passages", "")),
         number(row.get("error_mean"), 100),
         number(row.get("stretch_most")),
@@ -93,6 +90,7 @@ def _scene(one: dict, fitted: dict) -> list[str]:
         ]  # fmt: skip
         head = ["engine", "error, %, in the seconds of our first level", "s, at the error of our first level"]
         lines += [*markdown(head, shown), ""]
+    lines += of_scene(one)
     failed = [row for row in one["rows"] if row["outcome"] != "ok"]
     lines += [f"- {row['engine']} {row['variant']}: {row['outcome']}: {row['detail']}" for row in failed]
     return [*lines, ""] if failed else lines
@@ -116,6 +114,7 @@ def _seen(record: dict) -> list[str]:
                 f" {count('frames_in_obstacles')} with surfaces in an obstacle,"
                 f" {count('passages')} with a passage between frames, on straight lines"
             )
+            lines += of_variant(record, name, variant)
     return lines
 
 
@@ -129,6 +128,7 @@ def text_of(record: dict) -> str:
         " kinetic energy and that of gravity above the start; end: what is left of it. Seconds are those of"
         " steps, without start and compilation, on one machine that did other things too.",
         "",
+        *rules(record),
         "![Error against seconds](../docs/engines.png)",
         "",
         "## What was promised, and what was seen",

@@ -25,7 +25,8 @@ compiles its kernels then: minutes); instant when it is there.
 NAME run SCENE --out DIR: one scene, a config or a file of ./bench neutral, and what ./bench judge says of it;
 exit 0: clean, 1: not, 3: it did not run (outcome and log are said), 2: bad input.
 compare [SPEC]: all scenes of configs/engines/compare.json under us and all engines: results/engines.json,
-results/ENGINES.md, docs/engines.png; what was run is kept and not run again."""
+results/ENGINES.md, docs/engines.png; what was run is kept and not run again. compare --starts N adds N
+jittered starts to what is there: the scatter of errors, depths and crossings."""
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
@@ -48,6 +49,14 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--runs", type=Path, default=ROOT / "results/runs/engines", help="compare: folder of its runs"
+    )
+    parser.add_argument(
+        "--starts",
+        type=int,
+        default=0,
+        metavar="N",
+        help="compare: the scenes of results/engines.json again from N jittered starts; materials and seconds"
+        " stay those of the record (default 0: the start of each scene alone)",
     )
     return parser.parse_args(argv)
 
@@ -117,16 +126,24 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
     from .compare import compared, read_study
     from .figure import paint
     from .report import text_of
+    from .starts import earlier, with_starts
 
     say = lambda line: print(f"engine: {line}", file=sys.stderr, flush=True)  # noqa: E731
     study = read_study(spec, options.runs, options.scene, say)
-    record = compared(study) | {"command": shlex.join(["./bench", "engine", *argv])}
+    kept = ROOT / "results/engines.json"
+    if options.starts < 0:
+        raise UserError(f"--starts: found {options.starts}; allowed: from 0")
+    if options.starts:
+        command = shlex.join(["./bench", "engine", *argv])
+        record = with_starts(study, earlier(kept, study), options.starts) | {"command_of_starts": command}
+    else:
+        record = compared(study) | {"command": shlex.join(["./bench", "engine", *argv])}
     record = json.loads(json.dumps(record, allow_nan=False).replace(f"{ROOT}/", ""))  # no path of a machine
     text, page = json.dumps(record, indent=1) + "\n", text_of(record)
     if options.scene:
         print(page)
         return OK
-    write_whole(ROOT / "results/engines.json", text)
+    write_whole(kept, text)
     write_whole(ROOT / "results/ENGINES.md", page)
     paint(record, ROOT / "docs/engines.png")
     print("results/engines.json\nresults/ENGINES.md\ndocs/engines.png")

@@ -23,7 +23,7 @@ void fill_work(IterationReport& report) {
     report.ritz_max = known ? Number(linear.ritz_max) : Number::missing("not_measured");
   }
   report.hessian_t = report.solve.t;
-  report.hessian_fallbacks = std::max(0, report.solve.fallbacks());  // a given direction has no attempt
+  report.hessian_fallbacks = std::max(0, report.solve.fallbacks());  // without a solve there are none
   report.linear_solves = report.solve.attempts + report.solve.detours;
   report.linear_iterations = linear.iterations;
   report.factorizations = report.solve.factorizations;

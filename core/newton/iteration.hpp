@@ -25,7 +25,7 @@ IterationReport begin_iteration(StepSystem& system, int step, int iteration);
 /// Solves for the direction, fills |dx|_inf, the decrement -g . dx / 2 over free degrees of freedom, and E, gradient, pattern
 /// and the terms' numbers of the iterate (one wait for all of them), and lets the observer look at the matrices.
 void find_direction(StepSystem& system, IterationReport& report, StepObserver& observer);
-/// The part of it behind the solve, of a direction that came from elsewhere (NewtonSystem::set_direction).
+/// What find_direction() does after the solve, of a direction that was found otherwise.
 void report_direction(StepSystem& system, IterationReport& report, StepObserver& observer);
 /// The status that ends the step when the direction is of no use. must_descend: E has to decrease along it.
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend);

@@ -1,0 +1,99 @@
+"""./bench engine compare --starts N: the scenes of a record once more, from N starts that are jittered.
+
+Start k moves every coordinate of vertices that are not held by a uniform number in [-jitter, jitter] of
+seed k, by the rule of /seeds of a config, so every engine and our reference begin at the same place.
+Materials, own starts and seconds are those of the record: jittered runs may share the machine, so their
+seconds are not kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import UserError
+from ..json_file import read_object
+from .compare import RECORD, Study, of_scene
+from .judged import error_of, positions
+from .ours import Config
+from .scene import exported
+
+OF_ROW = (
+    "engine", "variant", "level", "outcome", "detail", "verdict", "frames_crossing", "frames_in_obstacles",
+    "crossings_most", "passages", "depth_obstacles_m", "depth_bodies_m", "error_mean", "error_last",
+)  # fmt: skip
+
+
+def _short(row: dict) -> dict:
+    return {key: row[key] for key in OF_ROW if row.get(key) not in (None, "")}
+
+
+def earlier(path: Path, study: Study) -> dict:
+    """The record whose scenes are run again. Errors: UserError where there is none, or of another spec."""
+    again = "run ./bench engine compare without --starts first"
+    if not path.is_file():
+        raise UserError(f"{path} is not there: {again}")
+    record = read_object(path)
+    same = lambda spec: {key: value for key, value in spec.items() if key != "starts"}  # noqa: E731
+    if record.get("schema") != RECORD or same(record["spec"]) != same(study.spec):
+        raise UserError(f"{path} is of another spec: {again}")
+    return record
+
+
+def jittered(study: Study, start: int) -> Study:
+    """The study at start 1, 2, ...: the same scenes, moved, with runs in a folder of their own."""
+    seeds = {"/seeds/main": start, "/seeds/jitter_m": study.spec["starts"]["jitter_m"]}
+    scenes = {name: Config(one.file, {**one.set, **seeds}) for name, one in study.scenes.items()}
+    return replace(study, folder=study.folder / f"start-{start}", scenes=scenes)
+
+
+def dear(study: Study, one: dict) -> set[tuple[str, str, int]]:
+    """Engine, variant and level of runs that the spec does not want from every start: those that took long,
+    and those that flew away, whose millions of passages the judge counts for minutes.
+    """
+    long = study.spec["starts"].get("few_above_s", np.inf)
+    far = study.spec["starts"].get("few_above_error", np.inf)
+    return {
+        (r["engine"], r["variant"], r["level"])
+        for r in one["rows"]
+        if r.get("seconds", 0) > long or r.get("error_mean", 0) > far
+    }
+
+
+def _references_apart(study: Study, name: str, n: int) -> list[float]:
+    """How far the reference of start 2, 3, ... is from that of start 1, as errors are: the start's share."""
+    states = []
+    for k in range(1, n + 1):
+        file = jittered(study, k).folder / name / "reference"
+        if (file / "frames.npz").is_file():
+            states.append(positions(file))
+    scene = exported(study.scenes[name].file, study.scenes[name].sets())
+    return [error_of(x, states[0], scene)["error_mean"] for x in states[1:]]
+
+
+def with_starts(study: Study, record: dict, n: int) -> dict:
+    """The record with `starts` in each of its scenes. Cheap runs of all starts come first, start by start, so
+    that a study that is cut off can be written with fewer. Errors: UserError.
+    """
+    if "starts" not in study.spec:
+        raise UserError("--starts: the spec has no `starts` with a jitter_m")
+    fitted, few = record["material_left"], study.spec["starts"].get("few", n)
+    scenes = [one for one in record["scenes"] if one["scene"] in study.scenes]
+    out: dict[str, list[dict]] = {one["scene"]: [] for one in scenes}
+    for last in (False, True):
+        for k in range(1, n + 1):
+            for one in scenes:
+                left_out = set() if last and k <= few else dear(study, one)
+                made = of_scene(jittered(study, k), one["scene"], fitted, left_out)
+                if last:
+                    rows = [_short(row) for row in made["rows"]]
+                    out[one["scene"]].append(
+                        {"start": k, "reference": _short(made["reference"]), "rows": rows}
+                    )
+    scenes = [
+        {**one, "starts": out[one["scene"]], "references_apart": _references_apart(study, one["scene"], n)}
+        for one in scenes
+    ]
+    return {**record, "spec": study.spec, "scenes": scenes}
