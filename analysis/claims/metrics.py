@@ -59,6 +59,13 @@ def _load_end(record) -> float | None:
     return _at(steps[-1], "contact_load_sum_N")
 
 
+def _slide_loss(record) -> float | None:
+    """Share of the kinetic energy at the end of the first step that is gone, or has come, at the end of the last."""
+    steps = record.get("steps") or [{}]
+    first, last = _at(steps[0], "kinetic_J"), _at(steps[-1], "kinetic_J")
+    return abs(1 - last / first) if first and last is not None else None
+
+
 def _unsettled(record) -> float:
     """1 when the run ended because a stiffness did not settle."""
     status = record["status"]
@@ -120,6 +127,7 @@ METRICS = {
     "gap_median": ("median over the steps of the smallest gap at a step end", "d_hat", False, _summary("gap_min_rel", "median")),
     "gap_end": ("smallest gap at the end of the last step", "d_hat", False, _gap_end),
     "load_end": ("sum of the contact forces at the end of the last step", "N", False, _load_end),
+    "slide_loss": ("share of the kinetic energy at the end of the first step that the last one does not have", "1", False, _slide_loss),
     "stretch": ("largest stretch", "1", False, _summary("max_stretch")),
     "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
     "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),

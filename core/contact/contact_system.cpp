@@ -25,14 +25,12 @@ struct ContactSystem::Data {
   Data(const Scene& s, const ContactOptions& o, const ContactPlan& plan)
       : scene(s),
         options(o),
-        surface(s),
+        surface(s, o.rest_rule),
         obstacles(analytic_surfaces(s)),
         broad_phase(surface, obstacles, plan, o.precision),
-        builder(surface, obstacles, plan, o.precision),
+        builder(surface, obstacles, plan, o.precision, {o.weighting, o.model}),
         bound(surface, obstacles, {o.ccd_park, o.ccd_max_probes}, o.precision),
-        each(surface, obstacles, o.step_bound, o.bound_gamma, o.precision) {
-    if (o.weighting == ContactWeighting::area) areas.emplace(surface, obstacles);
-  }
+        each(surface, obstacles, o.step_bound, o.bound_gamma, o.precision) {}
 
   const Scene& scene;
   const ContactOptions options;
@@ -47,7 +45,6 @@ struct ContactSystem::Data {
   RowBuilder builder;
   StepBoundFinder bound;
   VertexBounds each;
-  std::optional<PairAreas> areas;
 
   const Candidates& bounding(const Candidates& all) {
     if (!surface.collisions.chosen()) return all;
@@ -112,7 +109,9 @@ StepBound ContactSystem::vertex_bounds(const PositionsView& x0, const PositionsV
 
 std::span<const double> ContactSystem::vertex_parts() const { return data_->each.parts(); }
 
-const PairAreas* ContactSystem::areas() const { return data_->areas ? &*data_->areas : nullptr; }
+const PairAreas* ContactSystem::areas() const { return data_->builder.areas(); }
+
+bool ContactSystem::corrected() const { return data_->builder.corrected(); }
 
 ContactSystem::Counts ContactSystem::candidate_counts() const {
   const Candidates& c = data_->candidates;

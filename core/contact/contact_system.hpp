@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/contact/contact_table.hpp"
+#include "core/contact/offset_blocks.hpp"
 #include "core/contact/overlap.hpp"
 #include "core/contact/pair_areas.hpp"
 #include "core/contact/step_bound.hpp"
@@ -25,6 +26,8 @@ struct ContactOptions {
   StepBoundRule step_bound = StepBoundRule::accd;
   double bound_gamma = default_bound_gamma;  // in (0, 1), where each vertex has a bound
   ContactWeighting weighting = ContactWeighting::none;
+  ContactModel model = ContactModel::all_pairs;
+  RestRule rest_rule = RestRule::on;
 };
 
 /// Owns the broad phase. All results are independent of the number of threads. The scene must outlive it. Not
@@ -63,6 +66,8 @@ class ContactSystem {
   void update_candidates_to_bound(const PositionsView& x0, const PositionsView& x1);
 
   /// One row a pair that is not `off` (scene/collisions.hpp) with d < d_hat at x (row_rule.hpp), in the order of the pairs; kappa, b, db, d2b are left at 0.
+  /// Of the weighting area_corrected one a feature of point and edge, or two points, and rows of corrections; of the model
+  /// offset_geometric those that its blocks leave. With weights `share` is filled.
   /// Requires x to be such a state of the last update_candidates. Returns the smallest gap over all
   /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no
   /// rows and -infinity. -infinity too where surfaces intersect at x whose states are tested.
@@ -81,8 +86,10 @@ class ContactSystem {
   /// is not finite: alpha 0.
   StepBound step_bound(const PositionsView& x0, const PositionsView& x1) const;
 
-  /// With the weighting `area`; else null.
+  /// Where pairs are weighted by area; else null.
   const PairAreas* areas() const;
+  /// Whether they are corrected too.
+  bool corrected() const;
 
   struct Counts {  // obstacle: with points, edges and triangles
     std::size_t point_triangle = 0, edge_edge = 0, point_point = 0, point_edge = 0, obstacle = 0;

@@ -36,7 +36,8 @@ ContactKey key_of(const Table& rows, std::size_t r) {
   return row_key(rows.pair[r], own);
 }
 
-/// One row a candidate pair that is closer than its activation distance (row_rule.hpp), in the order of the pairs.
+/// One row a candidate pair that is closer than its activation distance (row_rule.hpp), in the order of the pairs; what
+/// contact weights and models add and leave out is said there (pair_corrections.hpp, offset_blocks.hpp).
 struct ContactTable {
   std::vector<ContactKind> kind;
   std::vector<PairId> pair;  // [n] ascending
@@ -52,7 +53,10 @@ struct ContactTable {
   /// the offset.
   std::vector<double> d, d_hat, offset;
   std::vector<KappaParts> parts;  // [n] kappa as a function of d
-  std::vector<double> kappa;      // [n] N/m, parts at d
+  /// [n] by which kappa of the policy is multiplied: where pairs are weighted by area m^2, below 0 in corrections; empty
+  /// where all pairs count as one.
+  std::vector<double> share;
+  std::vector<double> kappa;  // [n] N/m, parts at d
   /// [n] N/m: what kappa the row came with when its iterate was accepted; 0: it was not there before. Empty
   /// of meaning in rows that no stiffness was given to.
   std::vector<double> kappa_before;
@@ -79,7 +83,7 @@ struct MollifiedTable {
   std::vector<double> axis, axis_point;  // [3 n] unit, and a point of it, m; 0 in rows of two edges
   std::vector<PairId> pair;              // [n] ascending
   std::vector<KappaParts> parts;
-  std::vector<double> d, d_hat, offset, kappa, kappa_before, b, db, d2b;  // as above
+  std::vector<double> d, d_hat, offset, share, kappa, kappa_before, b, db, d2b;  // as above
   // what a policy reads of a row: compact free columns, as in ContactTable
   std::vector<int> free_vertex;  // [4 n]
   std::vector<double> weight;    // [4 n]

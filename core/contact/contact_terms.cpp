@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/contact/contact_terms.hpp"
+#include "core/contact/edge_end_row.hpp"
 #include "core/contact/mollified_terms.hpp"
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_geometry.hpp"
@@ -58,6 +59,19 @@ T mollifier_value(const MollifiedTable& rows, std::size_t r, const PositionsView
                          : edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), eps);
 }
 
+/// Of e(x) b(d(x)), e that of two edges and d that of one of their ends and the edge that it does not belong to.
+template <class T>
+MollifiedDerivatives<T> end_derivatives(const Mat<T, 3, 4>& points, int end, T eps, T b, T db, T d2b) {
+  const auto e = edge_edge_mollifier<T>(points, eps);
+  const auto d = distance_derivatives<T, 4>(points, closest_at_end<T>(points, end));
+  const Hessian12<T> cross = db * e.gradient * d.gradient.transpose();
+  MollifiedDerivatives<T> out;
+  out.gradient = b * e.gradient + (db * e.value) * d.gradient;
+  out.hessian = cross + cross.transpose() + b * e.hessian + (db * e.value) * d.hessian;
+  out.hessian += (d2b * e.value) * d.gradient * d.gradient.transpose();
+  return out;
+}
+
 /// Of kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
 template <class T>
 MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r,
@@ -69,7 +83,10 @@ MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::s
     return bb::mollified_derivatives<T>(points_across_axis<T>(rows, r, x), axis_of<T>(rows, r), eps, b, db,
                                         d2b);
   }
-  return bb::mollified_derivatives<T>(mollified_points<T>(rows, r, x), eps, b, db, d2b);
+  const Mat<T, 3, 4> points = mollified_points<T>(rows, r, x);
+  const int end = pair_end(rows.pair[r]);
+  return end < 0 ? bb::mollified_derivatives<T>(points, eps, b, db, d2b)
+                 : end_derivatives<T>(points, end, eps, b, db, d2b);
 }
 
 /// grad and hess on the compact free slots.

@@ -3,6 +3,8 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
+#include <span>
 
 #include "core/contact/chunks.hpp"
 #include "core/contact/float_rounding.hpp"
@@ -62,7 +64,7 @@ void fill(const FoundRow& row, PairId pair, const Vec3d& axis_point, std::size_t
 
 template <PairKind K, class T>
 void RowBuilder::add_pairs(const PositionsView& x, const std::vector<IndexPair>& pairs, std::size_t begin,
-                           std::size_t end, Part& part) const {
+                           std::size_t end, RowPart& part) const {
   constexpr std::size_t width = FarTest::width, ahead = 3 * width;
   for (; begin < end; begin += width) {
     const std::size_t n = std::min(width, end - begin);
@@ -79,16 +81,16 @@ void RowBuilder::add_pairs(const PositionsView& x, const std::vector<IndexPair>&
 
 template <PairKind K, class T>
 void RowBuilder::add_pair(const PositionsView& x, IndexPair index, const ContactPair<K>& pair,
-                          Part& part) const {
+                          RowPart& part) const {
   FoundRow row;
-  if (surface_row<K, T>(surface_, pair.vertex.data(), pair.law, gather_in<T>(x, pair.vertex), mollified_,
-                        row))
+  const bool mollified = mollified_ && !blocks_;  // blocks ask for the closest feature first
+  if (surface_row<K, T>(surface_, pair.vertex.data(), pair.law, gather_in<T>(x, pair.vertex), mollified, row))
     part.add(row, pair_id(static_cast<int>(K), index));
 }
 
 template <int N, class T>
 void RowBuilder::add_obstacle_pair(const PositionsView& x, const Primitives<N>& primitives, IndexPair pair,
-                                   Part& part) const {
+                                   RowPart& part) const {
   const std::size_t i = static_cast<std::size_t>(pair.first);
   const auto& vertex = primitives.vertices[i];
   const Side law = primitives.side[i];
@@ -104,9 +106,43 @@ void RowBuilder::add_obstacle_pair(const PositionsView& x, const Primitives<N>& 
     part.add(row, pair_id(obstacle_pairs_of<N>, pair));
 }
 
-void RowBuilder::Part::add(const FoundRow& row, PairId pair) {
-  min_gap = std::min(min_gap, row.d);
-  (row.eps > 0 ? mollified : rows).push_back({row, pair});
+RowBuilder::RowBuilder(const Surface& surface, const std::vector<AnalyticSurface<double>>& obstacles,
+                       const ContactPlan& plan, Precision precision, const RowRules& rules)
+    : surface_(surface),
+      obstacles_(obstacles),
+      mollified_(plan.mollifier.needed),
+      precision_(precision),
+      far_(surface, precision) {
+  if (rules.weighting != ContactWeighting::none) areas_.emplace(surface, obstacles);
+  if (rules.weighting == ContactWeighting::area_corrected)
+    corrections_.emplace(surface, *areas_, mollified_, precision);
+  if (rules.model == ContactModel::offset_geometric) blocks_.emplace(surface);
+}
+
+/// Shares of the rows, and the rows that corrections add.
+void RowBuilder::apply_rules(const PositionsView& x) {
+  const std::span<RowPart> parts(parts_.data(), n_parts_);
+  if (blocks_) blocks_->apply(x, mollified_, parts);
+  if (!areas_) return;
+  for (RowPart& part : parts) {
+    for (auto* rows : {&part.rows, &part.mollified}) {
+      for (PartRow& each : *rows) each.share = areas_->of(each.pair);
+    }
+  }
+  if (corrections_) corrections_->apply(x, parts, features_, ends_);
+}
+
+/// Of what is left of the rows, unless something overlaps.
+double RowBuilder::min_gap() const {
+  double all = std::numeric_limits<double>::infinity(), left = all;
+  for (std::size_t k = 0; k < n_parts_; ++k) all = std::min(all, parts_[k].min_gap);
+  if (!blocks_ || all <= 0) return all;
+  for (std::size_t k = 0; k < n_parts_; ++k) {
+    for (const auto* rows : {&parts_[k].rows, &parts_[k].mollified}) {
+      for (const PartRow& each : *rows) left = each.share != 0 ? std::min(left, each.row.d) : left;
+    }
+  }
+  return left;
 }
 
 double RowBuilder::build(const PositionsView& x, const Candidates& candidates, ContactTable& rows,
@@ -124,23 +160,21 @@ double RowBuilder::build(const PositionsView& x, const Candidates& candidates, C
     const std::size_t n = n_chunks(pairs.size());
     if (parts_.size() < n_parts + n) parts_.resize(n_parts + n);
     for_each_chunk(pairs.size(), [&, base = n_parts](std::size_t k, std::size_t begin, std::size_t end) {
-      Part& part = parts_[base + k];
-      part.rows.clear();
-      part.mollified.clear();
-      part.min_gap = std::numeric_limits<double>::infinity();
+      RowPart& part = parts_[base + k];
+      part.clear();
       add_range(begin, end, part);
     });
     n_parts += n;
   };
   with_value_scalar(precision_, [&]<class T>() {
     for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
-      in_parts(pairs, [&](std::size_t begin, std::size_t end, Part& part) {
+      in_parts(pairs, [&](std::size_t begin, std::size_t end, RowPart& part) {
         add_pairs<K, T>(x, pairs, begin, end, part);
       });
     });
     for_each_obstacle_list(surface_, candidates,
                            [&]<int N>(const Primitives<N>& primitives, const std::vector<IndexPair>& pairs) {
-                             in_parts(pairs, [&](std::size_t begin, std::size_t end, Part& part) {
+                             in_parts(pairs, [&](std::size_t begin, std::size_t end, RowPart& part) {
                                for (std::size_t i = begin; i < end; ++i)
                                  add_obstacle_pair<N, T>(x, primitives, pairs[i], part);
                              });
@@ -148,10 +182,9 @@ double RowBuilder::build(const PositionsView& x, const Candidates& candidates, C
   });
 
   n_parts_ = n_parts;
+  apply_rules(x);
   fill_tables(rows, mollified);
-  double min_gap = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < n_parts; ++k) min_gap = std::min(min_gap, parts_[k].min_gap);
-  return min_gap;
+  return min_gap();
 }
 
 void RowBuilder::near_pairs(Candidates& out) const {
@@ -170,18 +203,36 @@ void RowBuilder::near_pairs(Candidates& out) const {
 
 // The parts are in the order of the pairs, and so are the tables.
 void RowBuilder::fill_tables(ContactTable& rows, MollifiedTable& mollified) {
+  std::vector<const RowPart*> parts;
+  if (corrections_) parts.push_back(&features_);
+  for (std::size_t k = 0; k < n_parts_; ++k) parts.push_back(&parts_[k]);
+  if (corrections_) parts.push_back(&ends_);
+  const bool all = !areas_ && !blocks_;
+  const auto count = [all](const std::vector<PartRow>& of) {
+    if (all) return of.size();
+    return static_cast<std::size_t>(
+        std::count_if(of.begin(), of.end(), [](const PartRow& each) { return each.share != 0; }));
+  };
   first_.assign(1, {0, 0});
-  for (std::size_t k = 0; k < n_parts_; ++k) {
+  for (const RowPart* part : parts) {
     const First next = first_.back();
-    first_.push_back({next.row + parts_[k].rows.size(), next.mollified + parts_[k].mollified.size()});
+    first_.push_back({next.row + count(part->rows), next.mollified + count(part->mollified)});
   }
   rows.resize(first_.back().row);
   mollified.resize(first_.back().mollified);
-  tbb::parallel_for(std::size_t{0}, n_parts_, [&](std::size_t k) {
+  rows.share.resize(areas_ ? rows.size() : 0);
+  mollified.share.resize(areas_ ? mollified.size() : 0);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
     std::size_t at = first_[k].row;
-    for (const PartRow& each : parts_[k].rows) fill(each.row, each.pair, at++, rows);
+    for (const PartRow& each : parts[k]->rows) {
+      if (!all && each.share == 0) continue;
+      if (areas_) rows.share[at] = each.share;
+      fill(each.row, each.pair, at++, rows);
+    }
     at = first_[k].mollified;
-    for (const PartRow& each : parts_[k].mollified) {
+    for (const PartRow& each : parts[k]->mollified) {
+      if (!all && each.share == 0) continue;
+      if (areas_) mollified.share[at] = each.share;
       const int o = pair_obstacle(each.pair);
       const Vec3d axis_point = o < 0 ? Vec3d(Vec3d::Zero()) : posed_[static_cast<std::size_t>(o)].point;
       fill(each.row, each.pair, axis_point, at++, mollified);

@@ -70,14 +70,15 @@ void check_primitive_count(const char* kind, std::size_t n, std::size_t most) {
                           std::to_string(most));
 }
 
-Surface::Surface(const Scene& scene)
+Surface::Surface(const Scene& scene, RestRule rule)
     : vertex_free(static_cast<std::size_t>(scene.n_vertices()), 1),
       body(scene.body),
       n_bodies(static_cast<int>(scene.bodies.size())),
       collisions(scene.collisions),
       rest(scene.rest),
       planar(scene.planar),
-      planar_pairs(scene.planar_pairs) {
+      planar_pairs(scene.planar_pairs),
+      rest_rule(rule) {
   for (const Pin& pin : scene.pins) {
     if (pin.span.always()) vertex_free[static_cast<std::size_t>(pin.vertex)] = 0;
   }

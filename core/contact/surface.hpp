@@ -43,9 +43,12 @@ constexpr std::size_t most_primitives = (std::size_t{1} << 30) - 1;
 /// Errors: std::length_error, which names the kind, where a surface has more of a kind than pairs can name.
 void check_primitive_count(const char* kind, std::size_t n, std::size_t most = most_primitives);
 
+/// Whether pairs of one body that are close at rest have a smaller d_hat.
+enum class RestRule { on, off };
+
 /// Errors: std::length_error as above.
 struct Surface {
-  explicit Surface(const Scene& scene);
+  explicit Surface(const Scene& scene, RestRule rest_rule = RestRule::on);
 
   std::vector<std::uint8_t> vertex_free;  // [n_vertices]
   std::vector<int> body;                  // [n_vertices]
@@ -60,11 +63,14 @@ struct Surface {
   std::vector<int> lone_edges;  // of `edges`, in space: those that are no side of a triangle, ascending
   bool planar;
   PlanarPairs planar_pairs;
+  RestRule rest_rule;
   double element_size = 0;  // m: 16 median edges at rest and contact reaches
 
   bool is_free(int v) const { return vertex_free[static_cast<std::size_t>(v)] != 0; }
+  /// Whether the rest shape says something of two vertices: they are of one body, and the rest rule is on.
   bool same_body(int v, int w) const {
-    return body[static_cast<std::size_t>(v)] == body[static_cast<std::size_t>(w)];
+    return rest_rule == RestRule::on &&
+           body[static_cast<std::size_t>(v)] == body[static_cast<std::size_t>(w)];
   }
   /// What the bodies of two vertices do, and of a vertex and an obstacle by its number.
   CollisionKind kind_of(int v, int w) const {

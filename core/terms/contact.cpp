@@ -27,14 +27,16 @@ ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const Contact
       fixed_(fixed),
       terms_(terms),
       contacts_(scene, contact_options(options), plan),
-      stiffness_(*options.stiffness, scene.mass, contacts_.areas()) {
+      stiffness_(*options.stiffness, scene.mass) {
   const PairAreas* areas = contacts_.areas();
   if (areas && areas->without_area() >= 0) {
     throw ConfigError(
-        "/contact/weighting", "\"area\"",
+        "/contact/weighting", contacts_.corrected() ? "\"area_corrected\"" : "\"area\"",
         "none: " + pair_name(scene, {areas->without_area(), -1, -1, -1}, ContactKind::point_point) +
             " belongs to no triangle and has no area");
   }
+  if (scene.planar && options.contact_options.model == ContactModel::offset_geometric)
+    throw ConfigError("/contact/model", "\"offset_geometric\"", "all_pairs: the scene is planar");
   families_.resize(2);
   if (const GapStiffness* of = options.stiffness->gap_stiffness()) {
     gap_potential_.emplace(options.contact, *of);

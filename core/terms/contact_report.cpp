@@ -145,6 +145,7 @@ void ContactTerm::report_overload(const PositionsView&, const PositionsView& oth
   const std::map<Feature, double> stiffness = stiffness_of_features(rows);
   double largest = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (rows.kappa[r] < 0) continue;  // a correction carries nothing
     const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
     double push = 0, weight_sq = 0, opening = 0;
     for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {

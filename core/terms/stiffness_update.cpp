@@ -52,9 +52,8 @@ StiffnessBatch PolicyColumns::batch(const StiffnessTime& time, bool with_hessian
   return rows;
 }
 
-StiffnessUpdate::StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass,
-                                 const PairAreas* areas)
-    : policy_(policy), mass_(mass), areas_(areas) {}
+StiffnessUpdate::StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass)
+    : policy_(policy), mass_(mass) {}
 
 void StiffnessUpdate::begin_step() {
   memory_.clear();
@@ -121,7 +120,7 @@ void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const Hessia
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto r = static_cast<std::size_t>(rows[i]);
-    if (areas_) parts_[i].fixed *= areas_->of(table.pair[r]);
+    if (!table.share.empty()) parts_[i].fixed *= table.share[r];
     table.parts[r] = parts_[i];
     table.kappa[r] = parts_[i].at(table.d[r]);
   }

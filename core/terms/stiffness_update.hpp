@@ -9,7 +9,6 @@
 #include "core/barrier/relative_change.hpp"
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/contact/kappa_memory.hpp"
-#include "core/contact/pair_areas.hpp"
 #include "core/linear/block_system.hpp"
 
 namespace bb {
@@ -23,9 +22,9 @@ struct PolicyColumns {
 
 class StiffnessUpdate {
  public:
-  /// policy and areas must outlive this object. mass: [n_vertices] kg. areas: by which kappa of a pair is multiplied, that of
-  /// the policy being one of a square metre (N/m^3); null: it is that of the pair.
-  StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass, const PairAreas* areas = nullptr);
+  /// policy must outlive this object. mass: [n_vertices] kg. kappa of a row is that of the policy times its share, where
+  /// rows have one.
+  StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass);
 
   /// Forgets the kappa and the H of the step before.
   void begin_step();
@@ -82,7 +81,6 @@ class StiffnessUpdate {
 
   StiffnessPolicy& policy_;
   std::span<const double> mass_;
-  const PairAreas* areas_;
   StiffnessTime time_;
   KappaMemory memory_;
   PolicyColumns columns_;

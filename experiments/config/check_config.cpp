@@ -95,6 +95,31 @@ void check_potential(const std::string& section, const std::string& shape, Argum
     complain(pointer, "\"included\"", "dropped: the step solver is " + config.step_solver.name);
 }
 
+/// Rows below 0, which corrections are, are no load of friction and have no Hessian that is positive by itself.
+void check_corrections(const RunConfig& config, const Complain& complain) {
+  const std::string corrected = "/contact/weighting", found = "\"area_corrected\"";
+  if (config.step_solver.name != "line_search")
+    complain(corrected, found, "area or none: " + config.step_solver.name + " knows no pair that takes back");
+  if (config.contact.hessian_mode == HessianMode::gauss_newton) {
+    complain("/contact/hessian_mode", "\"gauss_newton\"",
+             "projected_full: with weighting area_corrected rows have to be projected");
+  }
+  const std::string allowed = "with weighting area_corrected: its corrections are no loads";
+  refuse_friction(config, "0 " + allowed, complain);
+  refuse_restitution(config, "1 " + allowed, complain);
+}
+
+void check_model(const RunConfig& config, const Complain& complain) {
+  const std::string where = "/contact/model", found = "\"offset_geometric\"";
+  const std::string& solver = config.step_solver.name;
+  if (solver != "line_search" && solver != "accumulated_toi")
+    complain(where, found, "all_pairs, or line_search or accumulated_toi: the step solver is " + solver);
+  if (config.precision != Precision::full)
+    complain(where, found, "all_pairs, or precision double: blocks are asked in double");
+  if (config.contact.weighting.value_or(ContactWeighting::none) != ContactWeighting::none)
+    complain(where, found, "all_pairs, or weighting none: features of a block count as one");
+}
+
 /// What only some policies can do.
 void check_contact(const RunConfig& config, const Complain& complain) {
   const ContactConfig& contact = config.contact;
@@ -103,8 +128,11 @@ void check_contact(const RunConfig& config, const Complain& complain) {
     complain("/contact/bound_gamma", fmt::format("{}", *contact.bound_gamma),
              "nothing: accd does not read it, planar_truncation and per_vertex do");
   }
-  if (contact.weighting != ContactWeighting::area) return;
-  const std::string where = "/contact/weighting", found = "\"area\"";
+  if (contact.model == ContactModel::offset_geometric) check_model(config, complain);
+  const ContactWeighting weighting = contact.weighting.value_or(ContactWeighting::none);
+  if (weighting == ContactWeighting::none) return;
+  if (weighting == ContactWeighting::area_corrected) check_corrections(config, complain);
+  const std::string where = "/contact/weighting", found = '"' + word_of(weighting) + '"';
   if (config.formulation.stiffness_policy.name != "fixed") {
     complain(where, found,
              "none, or policy fixed: kappa of " + config.formulation.stiffness_policy.name +

@@ -61,9 +61,17 @@ void check_device(const RunConfig& config, const Complain& complain) {
     complain("/contact/step_bound", '"' + word_of(rule) + '"',
              "accd " + on + ": no kernel bounds each vertex by itself");
   }
-  if (config.contact.weighting == ContactWeighting::area) {
-    complain("/contact/weighting", "\"area\"", "none " + on + ": its kernels count every pair as one");
+  if (const auto weighting = config.contact.weighting.value_or(ContactWeighting::none);
+      weighting != ContactWeighting::none) {
+    complain("/contact/weighting", '"' + word_of(weighting) + '"',
+             "none " + on + ": its kernels count every pair as one");
   }
+  if (config.contact.model == ContactModel::offset_geometric) {
+    complain("/contact/model", "\"offset_geometric\"",
+             "all_pairs " + on + ": no kernel knows the blocks of features");
+  }
+  if (config.contact.rest_rule == RestRule::off)
+    complain("/contact/rest_rule", "\"off\"", "on " + on + ": its kernels have the rule built in");
   if (is_numeric(config.contact.hessian_mode)) {
     complain("/contact/hessian_mode", '"' + word_of(config.contact.hessian_mode) + '"',
              "gauss_newton or projected_full " + on);

@@ -33,8 +33,14 @@ inline EnumWords<StepBoundRule> words_of(StepBoundRule) {
           {StepBoundRule::per_vertex, "per_vertex"}};
 }
 inline EnumWords<ContactWeighting> words_of(ContactWeighting) {
-  return {{ContactWeighting::none, "none"}, {ContactWeighting::area, "area"}};
+  return {{ContactWeighting::none, "none"},
+          {ContactWeighting::area, "area"},
+          {ContactWeighting::area_corrected, "area_corrected"}};
 }
+inline EnumWords<ContactModel> words_of(ContactModel) {
+  return {{ContactModel::all_pairs, "all_pairs"}, {ContactModel::offset_geometric, "offset_geometric"}};
+}
+inline EnumWords<RestRule> words_of(RestRule) { return {{RestRule::on, "on"}, {RestRule::off, "off"}}; }
 inline EnumWords<CombineRule> words_of(CombineRule) {
   return {{CombineRule::min, "min"}, {CombineRule::max, "max"}, {CombineRule::mean, "mean"}};
 }

@@ -79,6 +79,8 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.contact_options.mollifier = config.contact.mollifier;
   method.contact_options.ccd_park = config.contact.ccd_park;
   method.contact_options.weighting = config.contact.weighting.value_or(ContactWeighting::none);
+  method.contact_options.model = config.contact.model.value_or(ContactModel::all_pairs);
+  method.contact_options.rest_rule = config.contact.rest_rule.value_or(RestRule::on);
   method.contact_options.step_bound = config.contact.step_bound.value_or(StepBoundRule::accd);
   method.contact_options.bound_gamma = config.contact.bound_gamma.value_or(default_bound_gamma);
   method.friction = {config.friction.law, config.friction.mu, config.friction.combine,

@@ -11,14 +11,14 @@ def record() -> dict:
     cond = {matrix: {"log10_cond": {"median": 1.0 + k, "p95": 5.0 + 0.125 * k, "max": 9.0 + 0.25 * k}} for k, matrix in enumerate(MATRICES)}
     return {"status": {"outcome": "ok", "valid": True},
             "config": {"strain_limit": {"onset": 0.06, "width": 0.02}, "time": {"dt_s": 0.5, "steps": 6}},
-            "steps": [{"gap_min_rel": 0.31, "contact_load_sum_N": 61.0}, {"gap_min_rel": 0.17, "contact_load_sum_N": 59.0}],
+            "steps": [{"gap_min_rel": 0.31, "contact_load_sum_N": 61.0, "kinetic_J": 64.0}, {"gap_min_rel": 0.17, "contact_load_sum_N": 59.0, "kinetic_J": 46.0}],
             "summary": {"cond": cond, "probe_pcg": {"median": 37.0, "p95": 41.0}, "linear_per_solve": {"median": 43.0}, "newton_iterations": 20, "factorizations": 23,
                         "wall_s": 29.0, "time": {"contact_terms_s": 7.0}, "gap_min_rel": {"min": 0.11, "median": 0.13, "max": 0.19}, "max_stretch": 0.04}}
 
 
 WANTED = {"cond_max": 1e9, "cond_p95": 1e5, "cond_median": 10.0, "cond_bj_p95": 10**5.125, "cond_bj_max": 10**9.25, "cond_bj_median": 100.0, "cond_no_contact_p95": 10**5.25,
           "cond_no_contact_no_limit_p95": 10**5.375, "pcg_probe": 37.0, "pcg_solve": 43.0, "newton": 20.0, "factorizations": 23.0, "seconds": 29.0, "contact_seconds": 0.35,
-          "gap_min": 0.11, "gap_median": 0.13, "gap_end": 0.17, "load_end": 59.0, "stretch": 0.04, "stretch_of_limit": 0.5, "climb_of_limit": None, "kappa_cycles": None, "bound_share": None, "stopped": 0.0,
+          "gap_min": 0.11, "gap_median": 0.13, "gap_end": 0.17, "load_end": 59.0, "slide_loss": 0.28125, "stretch": 0.04, "stretch_of_limit": 0.5, "climb_of_limit": None, "kappa_cycles": None, "bound_share": None, "stopped": 0.0,
           "unsettled": 0.0, "time_asked": 3.0, "residual_max": None, "short_of_time": 1.0, "without_residual": 1.0, "close_gap": 0.0, "failed_audit": 1.0, "not_valid": 0.0}
 
 

@@ -59,16 +59,20 @@ void write_parts(std::ofstream& out, const ContactProblem& p, StepBoundRule rule
   write(out, contacts.vertex_parts().data(), contacts.vertex_parts().size());
 }
 
-/// Potential and gradient with kappa = 1 N/m^3 and the area of each pair.
-double write_weighted(std::ofstream& out, const ContactProblem& p, ContactTable& rows,
-                      MollifiedTable& mollified) {
+/// Potential and gradient with kappa = 1 N/m^3 and the shares of a weighting.
+double write_weighted(std::ofstream& out, const ContactProblem& p, const BarrierFunction& barrier,
+                      ContactWeighting weighting) {
   ContactOptions options = p.options;
-  options.weighting = ContactWeighting::area;
-  const ContactSystem contacts(p.scene, options);
-  const auto weigh = [&contacts](auto& table) {
-    for (std::size_t r = 0; r < table.size(); ++r) table.kappa[r] = contacts.areas()->of(table.pair[r]);
-  };
-  weigh(rows), weigh(mollified);
+  options.weighting = weighting;
+  ContactSystem contacts(p.scene, options);
+  ContactTable rows;
+  MollifiedTable mollified;
+  contacts.update_candidates(p.scene.x0, p.scene.x0);
+  contacts.find_rows(p.scene.x0, rows, mollified);
+  evaluate(rows, barrier);
+  evaluate(mollified, barrier);
+  rows.kappa = rows.share;
+  mollified.kappa = mollified.share;
   double potential = 0;
   std::vector<double> energy, grad, hess;
   std::vector<Entry> unread;
@@ -129,12 +133,14 @@ int main(int argc, char** argv) {
   }
   for (const StepBoundRule rule : {StepBoundRule::planar_truncation, StepBoundRule::per_vertex})
     write_parts(out, p, rule);
-  const double weighted = write_weighted(out, p, rows, mollified);
+  const double weighted = write_weighted(out, p, barrier, ContactWeighting::area);
+  const double corrected = write_weighted(out, p, barrier, ContactWeighting::area_corrected);
   std::printf(
       "{\"rows\": %zu, \"mollified\": %zu, \"entries\": %zu, \"potential\": %.17g, "
-      "\"weighted\": %.17g, \"alpha\": %.17g, \"queries\": %lld, \"probes\": %lld, \"capped\": %lld, "
+      "\"weighted\": %.17g, \"corrected\": %.17g, \"alpha\": %.17g, \"queries\": %lld, \"probes\": %lld, "
+      "\"capped\": %lld, "
       "\"zero\": %lld}\n",
-      rows.size(), mollified.size(), entries.size(), potential, weighted, bound.alpha, bound.queries,
-      bound.probes, bound.capped, bound.zero);
+      rows.size(), mollified.size(), entries.size(), potential, weighted, corrected, bound.alpha,
+      bound.queries, bound.probes, bound.capped, bound.zero);
   return out ? 0 : 1;
 }

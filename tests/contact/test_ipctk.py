@@ -48,7 +48,8 @@ def probe(tmp_path, rest, x0, x1, faces, d_hat, mollify=True):
         answer["hessian"] = np.fromfile(file, entry, answer["entries"])
         for rule in ("planar_truncation", "per_vertex"):
             answer[rule] = np.fromfile(file, "<f8", len(rest))
-        answer["weighted_gradient"] = np.fromfile(file, "<f8", 3 * len(rest))
+        for weights in ("weighted", "corrected"):
+            answer[f"{weights}_gradient"] = np.fromfile(file, "<f8", 3 * len(rest))
     return answer
 
 

@@ -1,4 +1,4 @@
-"""Bounds of each vertex, weights by area and the policy `dart` in whole runs of the program."""
+"""Bounds of each vertex, weights by area, offset geometric contact and the policy `dart` in whole runs of the program."""
 
 import json
 import subprocess
@@ -127,6 +127,65 @@ def test_weights_are_refused_where_kappa_is_that_of_a_pair(program):
     refused(program, "stack", "its kernels count every pair as one", **area, **{"/device": "host"})
     done = start(program, SCENES / "chain.json", "run", "--progress", "none", *settings(area))
     assert done.returncode == 2 and "belongs to no triangle" in done.stderr
+
+
+def sheets(plate_squares: int) -> dict:
+    """A sheet that comes to rest on another one, which is given, with other lines."""
+    return {
+        "schema": "barrierbench.config/1",
+        "scene": {"name": "bodies", "gravity_m_per_s2": [0, 0, -9.81],
+                  "bodies": [{"name": "sheet", "mesh": {"generator": "grid", "n_x": 5, "n_y": 4, "size_x_m": 0.4, "size_y_m": 0.3},
+                              "transform": {"translate_m": [0.013, 0.021, 0.007]},
+                              "material": {"youngs_N_per_m": 500, "density_kg_per_m2": AREA_DENSITY}},
+                             {"name": "plate", "kind": "rigid", "mesh": {"generator": "grid", "n_x": plate_squares + 1, "n_y": plate_squares + 1}}]},
+        "formulation": {"name": "log", "d_hat_m": D_HAT, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": STIFFNESS}},
+        "time": {"dt_s": 0.05, "steps": 20}}  # fmt: skip
+
+
+def test_corrected_weights_carry_a_sheet_on_a_mesh(program, tmp_path):
+    """Some rows pull, the sheet rests within d_hat all the same, and lower than where shared features count often."""
+    gaps = {}
+    for weighting in ("area", "area_corrected"):
+        record = run(program, tmp_path / weighting, sheets(9), **{"/contact/weighting": weighting})
+        assert record["config"]["contact"]["weighting"] == weighting
+        last = record["steps"][-1]
+        gaps[weighting] = last["gap_min_rel"]
+        assert (last["kappa_min_N_per_m"] < 0) == (weighting == "area_corrected")
+        assert last["kinetic_J"] < 1e-9
+    assert 0.1 < gaps["area_corrected"] < gaps["area"] < 1
+
+
+def test_corrected_weights_are_refused_where_no_row_may_pull(program):
+    corrected = {"/contact/weighting": "area_corrected"}
+    refused(program, "stack", "none, or policy fixed", **corrected, **{"/formulation/stiffness_policy": {"name": "ipc_adaptive"}})
+    refused(program, "stack", "its corrections are no loads", **corrected, **{"/friction/mu": 0.2})
+    refused(program, "stack", "rows have to be projected", **corrected, **{"/contact/hessian_mode": "gauss_newton"})
+    refused(program, "stack", "accumulated_toi knows no pair that takes back", **corrected, **{"/step_solver/name": "accumulated_toi"})
+    refused(program, "stack", "area_corrected", "its kernels count every pair as one", **corrected, **{"/device": "host"})
+
+
+# --- offset geometric contact
+
+
+def test_offset_geometric_contact_carries_a_sheet_with_a_large_radius(program, tmp_path):
+    """d_hat of one and a half edges: few rows, by the step solver that compares no energies."""
+    wide = {"/step_solver/name": "accumulated_toi", "/formulation/d_hat_m": 0.15, "/formulation/stiffness_policy/kappa_N_per_m": 0.2, "/contact/rest_rule": "off"}
+    records = {model: run(program, tmp_path / model, sheets(9), **wide, **{"/contact/model": model}) for model in ("all_pairs", "offset_geometric")}
+    few, many = (records[model]["steps"][-1]["contacts"]["total"] for model in ("offset_geometric", "all_pairs"))
+    assert 20 <= few < many / 5
+    assert all(0 < record["steps"][-1]["gap_min_rel"] < 1 for record in records.values())
+    assert records["offset_geometric"]["config"]["contact"]["model"] == "offset_geometric"
+
+
+def test_offset_geometric_contact_is_refused_where_it_has_no_blocks(program):
+    model = {"/contact/model": "offset_geometric"}
+    refused(program, "stack", "no kernel knows the blocks", **model, **{"/device": "host"})
+    refused(program, "stack", "features of a block count as one", **model, **{"/contact/weighting": "area"})
+    refused(program, "stack", "blocks are asked in double", **model, **{"/precision": "float"})
+    refused(program, "stack", "the step solver is penalty", **model, **{"/step_solver/name": "penalty"})
+    refused(program, "stack", "its kernels have the rule built in", **{"/contact/rest_rule": "off", "/device": "host"})
+    done = start(program, SCENES / "strip_on_disk.json", "run", "--progress", "none", *settings(model))
+    assert done.returncode == 2 and "the scene is planar" in done.stderr
 
 
 # --- dart

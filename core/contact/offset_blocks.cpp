@@ -1,0 +1,126 @@
+#include "core/contact/offset_blocks.hpp"
+
+#include <algorithm>
+
+#include "core/contact/edge_end_row.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double border = 1e-9;      // sine of the angle by which a block reaches beyond its planes
+constexpr double same_point = 1e-8;  // of the distance, between closest points that are one
+
+/// Whether a . b is not below 0 by more than the border.
+bool not_against(const Vec3d& a, const Vec3d& b) { return a.dot(b) >= -border * a.norm() * b.norm(); }
+
+/// From the closest point of the second side to that of the first, where the first has `vertex`, m.
+Vec3d separation(const FoundRow& row, int vertex) {
+  const Vec3d r = (row.d + row.offset) * row.normal;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (row.stencil[k] == vertex) return row.weight[k] < 0 ? Vec3d(-r) : r;
+  }
+  return r;
+}
+
+int edge_of(const Surface& s, int e0, int e1) {
+  const auto& edges = s.edges.vertices;
+  const std::array<int, 2> edge{std::min(e0, e1), std::max(e0, e1)};
+  return static_cast<int>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
+}
+
+}  // namespace
+
+OffsetBlocks::OffsetBlocks(const Surface& surface)
+    : surface_(surface), topology_(surface), points_(surface.body.size(), -1) {
+  for (std::size_t i = 0; i < surface.points.size(); ++i)
+    points_[static_cast<std::size_t>(surface.points.vertices[i][0])] = static_cast<int>(i);
+}
+
+/// Beyond the plane across each edge of the vertex.
+bool OffsetBlocks::in_vertex_block(const PositionsView& x, const Vec3d& at, int vertex) const {
+  const Vec3d a = x.col(vertex), from = at - a;
+  const auto edges = topology_.edges_at_point.of(point_of(vertex));
+  return std::all_of(edges.begin(), edges.end(), [&](int e) {
+    const std::array<int, 2>& ends = surface_.edges.vertices[static_cast<std::size_t>(e)];
+    const int other = ends[0] == vertex ? ends[1] : ends[0];
+    return not_against(from, a - x.col(other));
+  });
+}
+
+/// Beyond the plane through the edge across each of its triangles; where its closest point is inside, it is between the ends.
+bool OffsetBlocks::in_edge_block(const PositionsView& x, const Vec3d& at, int e0, int e1) const {
+  const Vec3d a = x.col(e0), along = x.col(e1) - a;
+  const auto triangles = topology_.triangles_at_edge.of(edge_of(surface_, e0, e1));
+  return std::all_of(triangles.begin(), triangles.end(), [&](int t) {
+    const std::array<int, 3>& corners = surface_.triangles.vertices[static_cast<std::size_t>(t)];
+    const int opposite =
+        *std::find_if(corners.begin(), corners.end(), [&](int v) { return v != e0 && v != e1; });
+    const Vec3d o = x.col(opposite), foot = a + along * (along.dot(o - a) / along.squaredNorm());
+    Vec3d from = at - foot;
+    from -= along * (along.dot(from) / along.squaredNorm());
+    return not_against(from, foot - o);
+  });
+}
+
+/// The point is the first primitive of its pair; its rows follow one another.
+bool OffsetBlocks::point_touches(const PositionsView& x, const PartRow& each) {
+  const FoundRow& row = each.row;
+  const PairId of = bb::pair_id(pair_list(each.pair), static_cast<PairId>(pair_first(each.pair)), 0);
+  if (of != of_) touched_.clear();
+  of_ = of;
+  const int p = surface_.points.vertices[static_cast<std::size_t>(pair_first(each.pair))][0];
+  const Vec3d at = x.col(p), touched = at - separation(row, p);
+  if (row.kind == ContactKind::point_point) {
+    if (!in_vertex_block(x, at, row.stencil[0] == p ? row.stencil[1] : row.stencil[0])) return false;
+  } else if (row.kind == ContactKind::point_edge) {
+    if (!in_edge_block(x, at, row.stencil[1], row.stencil[2])) return false;
+  }
+  const double near = same_point * (row.d + row.offset);
+  const auto is_same = [&](const Vec3d& other) { return (other - touched).norm() <= near; };
+  if (std::any_of(touched_.begin(), touched_.end(), is_same)) return false;
+  touched_.push_back(touched);
+  return true;
+}
+
+/// Insides of two edges: the closest point of one is in the block of the other. Two ends are the business of points. The inside of an edge and an end count once, whatever edges end there.
+bool OffsetBlocks::edge_touches(const PositionsView& x, const PartRow& each) {
+  const FoundRow& row = each.row;
+  if (row.kind == ContactKind::edge_edge) {
+    const auto at = [&](std::size_t k) { return Vec3d(row.weight[k] * x.col(row.stencil[k])); };
+    const Vec3d of_first = at(0) + at(1), of_second = -(at(2) + at(3));
+    return in_edge_block(x, of_first, row.stencil[2], row.stencil[3]) ||
+           in_edge_block(x, of_second, row.stencil[0], row.stencil[1]);
+  }
+  if (row.kind == ContactKind::point_point) return false;
+  const int vertex = row.stencil[0];
+  const int first = pair_first(each.pair), second = pair_second(each.pair);
+  const std::array<int, 2>& ends = surface_.edges.vertices[static_cast<std::size_t>(first)];
+  const int edge = vertex == ends[0] || vertex == ends[1] ? second : first;
+  return in_vertex_block(x, Vec3d(x.col(vertex) - separation(row, vertex)), vertex) &&
+         at_edge_.insert({edge, vertex}).second;
+}
+
+void OffsetBlocks::apply(const PositionsView& x, bool mollifier, std::span<RowPart> parts) {
+  of_ = ~PairId{0};
+  touched_.clear();
+  at_edge_.clear();
+  for (RowPart& part : parts) {
+    for (PartRow& each : part.rows) {
+      const int list = pair_list(each.pair);
+      if (list >= obstacle_pairs) continue;
+      const bool edges = list == static_cast<int>(PairKind::edge_edge);
+      each.share = (edges ? edge_touches(x, each) : point_touches(x, each)) ? 1 : 0;
+      if (!edges || !mollifier || each.share == 0 || each.row.kind != ContactKind::edge_edge) continue;
+      const std::array<int, 4> vertex =
+          edge_pair_vertices(surface_, pair_first(each.pair), pair_second(each.pair));
+      const double eps = edge_edge_mollifier_threshold<double>(surface_.rest_points<4>(vertex.data()));
+      if (!(edge_edge_cross_squared<double>(gather(x, vertex)) < eps)) continue;
+      PartRow mollified = each;
+      mollified.row.eps = eps;
+      part.mollified.push_back(mollified);
+      each.share = 0;
+    }
+  }
+}
+
+}  // namespace bb
