@@ -35,7 +35,7 @@ class GapPotential {
   double energy(const KappaParts& frozen, double d, double d_hat, int parts);
   double first_panel(const KappaParts& frozen, double d, double d_hat, int parts);
   double panel(const KappaParts& frozen, double low, double high, double d_hat);
-  /// Fills work_: kappa(s) b'(s) at s_.
+  /// Terms of the barrier, kappa and its slope at the nodes s_.
   void integrand(const KappaParts& frozen, double d_hat);
 
   BarrierFunction barrier_;
