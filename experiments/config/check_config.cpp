@@ -114,6 +114,7 @@ void check_model(const RunConfig& config, const Complain& complain) {
   const std::string& solver = config.step_solver.name;
   if (solver != "line_search" && solver != "accumulated_toi")
     complain(where, found, "all_pairs, or line_search or accumulated_toi: the step solver is " + solver);
+  if (config.scene.planar) complain(where, found, "all_pairs: the scene is planar");
   if (config.precision != Precision::full)
     complain(where, found, "all_pairs, or precision double: blocks are asked in double");
   if (config.contact.weighting.value_or(ContactWeighting::none) != ContactWeighting::none)
