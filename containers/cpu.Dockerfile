@@ -12,6 +12,6 @@ COPY bench ./
 COPY analysis ./analysis
 RUN apt-get update -qq && apt-get install -y -qq --no-install-recommends parallel && ./bench setup
 COPY . .
-# The program alone: a verb that needs it builds it.
+# Builds the program, and nothing else, since the verb needs it.
 RUN cmake --preset release -DBB_CUDA=OFF -DBB_ARCH=${ARCH} && ./bench validity
 CMD ["./bench", "validity"]

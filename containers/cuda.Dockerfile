@@ -15,6 +15,6 @@ COPY analysis ./analysis
 RUN ./bench setup
 COPY . .
 # AUTO would build without CUDA where nvcc is broken; here that is an error.
-# The program alone: a verb that needs it builds it.
+# Builds the program, and nothing else, since the verb needs it.
 RUN cmake --preset release -DBB_CUDA=ON && ./bench validity
 CMD ["./bench", "device", "--measure"]

@@ -5,6 +5,7 @@ as C++ (a plugin with one policy) and compared with 40 digits.
 from __future__ import annotations
 
 import ctypes
+import math
 import itertools
 from collections.abc import Iterator
 from pathlib import Path
@@ -228,6 +229,10 @@ def _slope_error(library: Path, kappa: sp.Expr) -> float:
             found = [ctypes.c_double(), ctypes.c_double()]
             in_gap(m, k, h, c, d_hat, 1, ctypes.c_double(d), *found)
             scale = max(abs(exact[0]) / d, abs(exact[1]))
+            if not math.isfinite(found[1].value):
+                raise FormulaError(
+                    f"d kappa/dd = {found[1].value} at d = {d / d_hat:.6g} d_hat", "a finite number"
+                )
             error = float(abs(found[1].value - exact[1]) / scale) if scale != 0 else abs(found[1].value)
             worst = max(worst, error)
     return worst

@@ -120,6 +120,7 @@ std::string GapPotential::fault(std::span<const KappaParts> frozen, double d_hat
       const double u = std::pow(double(i) / n_gaps, 3), d = u * d_hat;
       double e = 0, de = 0, d2e = 0;
       eval(1, &d, &d_hat, &pair, &e, &de, &d2e);
+      if (!std::isfinite(d2e)) return fmt::format("no finite second derivative at d = {:.3g} d_hat", u);
       if (d2e < 0) return fmt::format("a force that falls as the gap closes, at d = {:.3g} d_hat", u);
       if (de == 0) continue;
       const double halved = energy(pair, d, d_hat, 2), error = std::abs(halved - e) / halved;

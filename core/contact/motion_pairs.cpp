@@ -69,7 +69,7 @@ PairId id_of(int list, IndexPair pair) {
 
 MotionPairs::MotionPairs(const Scene& scene, const ContactOptions& options, const ContactPlan& plan)
     : options_(options),
-      surface_(scene),
+      surface_(scene, options.rest_rule),
       obstacles_(posed_surfaces(scene)),
       broad_phase_(surface_, obstacles_, plan) {}
 

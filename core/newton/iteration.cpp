@@ -57,8 +57,11 @@ StepReport start_step(StepSystem& system, const StepTask& task, Prediction& used
   return step;
 }
 
+double rounding_of(const EnergyChange& change, Precision precision) {
+  return 64 * value_epsilon(precision) * change.magnitude;
+}
 bool within_rounding(const EnergyChange& change, Precision precision) {
-  return std::abs(change.change) <= 64 * value_epsilon(precision) * change.magnitude;
+  return std::abs(change.change) <= rounding_of(change, precision);
 }
 
 void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report) {

@@ -15,7 +15,8 @@ namespace bb {
 StepReport start_step(StepSystem& system, const StepTask& task, Prediction& used);
 /// The end-of-step poses of a step of length dt become the target of the system.
 void aim_at_poses(StepSystem& system, const StepTask& task, double dt);
-/// Whether a change of E is noise: below 64 eps sum |terms|, eps of the precision that energies have.
+/// Below which a change of E is noise, J: 64 eps sum |terms|, eps of the precision that energies have.
+double rounding_of(const EnergyChange& change, Precision precision = Precision::full);
 bool within_rounding(const EnergyChange& change, Precision precision = Precision::full);
 /// Ends a step whose direction was of no use.
 void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report);

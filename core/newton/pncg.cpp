@@ -8,7 +8,8 @@
 //   3 dx = -(g.p / p.Hp) p, which ends in the minimum of the quadratic model along p
 //   4 pncg_bound accd: dx is bounded as in line_search, by ACCD and the strain limit, and halved until E falls (Armijo); after
 //     one that was bounded beta is 0;
-//     half_d_hat, as published: no vertex goes farther than half of the smallest d_hat, and neither CCD nor E is asked
+//     half_d_hat, as published: no vertex goes farther than half of the smallest d_hat, without CCD, and E decides nothing; a
+//     state that is not feasible is halved, which is ours
 //   5 the step is over where the model falls by less than pncg_epsilon of its fall in the first iteration, as published, or by
 //     less than the rounding of E
 #include <algorithm>
@@ -64,6 +65,7 @@ class Pncg final : public StepSolver {
         fail_step(system, step, *failed, report);
         break;
       }
+      step.end_proof = check_end(system, options_.saddle, step, report).proof;
       const bool moved = move(system, report);
       const bool over =
           fall_ <= epsilon_ * first_fall_ || within_rounding({-fall_, magnitude_}, system.view().precision());

@@ -2,6 +2,8 @@
 // one text for a name that is not there.
 #pragma once
 
+#include <deque>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,11 +48,12 @@ Entry named(Entry entry, const char* name, const char* doc) {
   return entry;
 }
 
-/// An Entry has name and doc. Not thread-safe: plugins add theirs before the first run.
+/// An Entry has name and doc, and stays where it is. Not thread-safe: none is added while another thread runs.
 template <class Entry>
 class Registry {
  public:
-  explicit Registry(std::vector<Entry> entries) : entries_(std::move(entries)) {}
+  explicit Registry(std::vector<Entry> entries)
+      : entries_(std::make_move_iterator(entries.begin()), std::make_move_iterator(entries.end())) {}
 
   auto begin() const { return entries_.begin(); }
   auto end() const { return entries_.end(); }
@@ -58,7 +61,7 @@ class Registry {
   const Entry& front() const { return entries_.front(); }
   std::vector<std::string> names() const { return names_of(entries_); }
 
-  /// Null when there is none. The pointer is valid until the next add().
+  /// Null when there is none.
   const Entry* find(std::string_view name) const { return find_named(entries_, name); }
   /// Errors: unknown_name at `where`.
   const Entry& require(std::string_view name, std::string_view where) const {
@@ -75,7 +78,7 @@ class Registry {
   }
 
  private:
-  std::vector<Entry> entries_;
+  std::deque<Entry> entries_;
 };
 
 }  // namespace bb

@@ -89,7 +89,8 @@ def register_step_solver(solver: Any) -> str:
 
     It runs on the CPU, with every Hessian clamped and saddles ignored unless the config says otherwise. That a step has
     converged is the object's own word: how far its end is from the solution is measured (`end_error_m` of the record).
-    What it raises ends the step, and the run is where it was before that step. The same name again replaces the object.
+    What it raises ends the step, and the run is where it was before that step. The same name again, with the same counters and
+    guarantee, replaces the object; its docstring stays the first one's. None is registered while another thread runs.
     Errors: ConfigError that names what does not hold.
 
     >>> class Newton:
@@ -101,11 +102,13 @@ def register_step_solver(solver: Any) -> str:
     ...                 return failure
     ...             bound = step.bound()
     ...             alpha = 1.0 if bound == 1 else 0.8 * bound
-    ...             while not ((trial := step.trial(alpha)) and trial.falls_by(-1e-4 * alpha * step.slope)):
+    ...             while alpha > 1e-14:
+    ...                 if (trial := step.trial(alpha)) and trial.falls_by(-1e-4 * alpha * step.slope):
+    ...                     break
     ...                 step.counts["backtracks"] += 1
     ...                 alpha /= 2
-    ...                 if alpha < 1e-14:
-    ...                     return "line_search_failed"
+    ...             else:
+    ...                 return "line_search_failed"
     ...             step.accept()
     ...             if step.converged():
     ...                 return "converged"

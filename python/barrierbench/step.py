@@ -194,7 +194,6 @@ class Step:
         """Whether the step may end here: `error` was below `tolerance`, with prescribed vertices at their poses, at a
         known rate of convergence, and the whole direction was taken, or one that is shorter than `tolerance`.
 
-        The rule is that of line_search, stricter in one point: a rate has to be known. Terms that lag something
-        (friction) may renew it then, and the answer is False.
+        The rule is that of line_search, stricter in one point: a rate has to be known.
         """
         return self._core.converged()

@@ -1,5 +1,6 @@
 #include "python/src/python_step.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,11 +13,6 @@ Positions poses_of(const StepTask& task) {
   Positions target = task.history->x;
   task.pose(task.dt, target);
   return target;
-}
-
-/// The change of E below which it is noise (within_rounding), J.
-double rounding_of(const EnergyChange& change, Precision precision) {
-  return 64 * value_epsilon(precision) * change.magnitude;
 }
 
 }  // namespace
@@ -137,6 +133,11 @@ std::optional<std::string> PythonStep::solve() {
 void PythonStep::set_direction(const double* free, std::size_t n) {
   require_iteration();
   if (directed_) throw std::runtime_error("the iteration has a direction already: begin the next one");
+  const auto n_free = static_cast<std::size_t>(std::count(fixed_.begin(), fixed_.end(), 0));
+  if (n != n_free) {
+    throw std::invalid_argument("direction: found " + std::to_string(n) +
+                                " numbers; allowed: " + std::to_string(n_free) + ", one a free coordinate");
+  }
   const Eigen::Map<const VecXd> dx_free(free, static_cast<Eigen::Index>(n));
   call([&] {
     set_up();
@@ -190,6 +191,8 @@ double PythonStep::bound() {
       system_->prepare_motion(MotionEnd::on_target, true);
       bound_ = system_->bound_motion(*iteration_);
       prepared_ = true;
+      change_.reset();  // a trial of before does not know of it
+      tried_ = 0;
     }
     return *bound_;
   });
@@ -252,11 +255,7 @@ bool PythonStep::converged() {
     const IterationReport& report = *iteration_;
     if (!small_ || (!report.contraction.finite() && report.dx_beyond_m > 0)) return false;
     if (moved_ && tried_ < 1 && report.dx_inf_m >= tolerance_) return false;
-    if (!moved_ && report.dx_beyond_m > 0) return false;
-    if (!system_->renew_lag()) return true;
-    error_.reset();
-    small_ = false;
-    return false;
+    return moved_ || report.dx_beyond_m == 0;
   });
 }
 

@@ -60,8 +60,9 @@ class PythonStepSolver final : public StepSolver {
     auto* step = new PythonStep(system.on_host(), task, options_, used, report, observer);
     const nb::object owner = nb::cast(step, nb::rv_policy::take_ownership);
     const Closing closing{*step};
+    const nb::object drive = call_.drive;  // it may be replaced while it runs
     const auto [word, detail, numbers] =
-        nb::cast<std::tuple<std::string, std::string, std::vector<double>>>(call_.drive(owner));
+        nb::cast<std::tuple<std::string, std::string, std::vector<double>>>(drive(owner));
     step->require_sound(options_.name);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       report.solver.values[std::get<0>(call_.counters[i])] = numbers[i];

@@ -22,11 +22,11 @@ class Newton:
                 return failure
             self.slope = min(self.slope, step.slope)
             alpha = bound if (bound := step.bound()) == 1 else 0.8 * bound
-            while not self.goes(step, alpha):
+            while alpha > 1e-14 and not self.goes(step, alpha):
                 self.backtracks += 1
                 alpha /= 2
-                if alpha < 1e-14:
-                    return "line_search_failed"
+            if alpha <= 1e-14:
+                return "line_search_failed"
             step.accept()
             self.note(step)
             if step.converged():
