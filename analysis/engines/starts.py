@@ -26,8 +26,21 @@ OF_ROW = (
 )  # fmt: skip
 
 
+KEPT = ("starts", "references_apart")  # of a scene, beside its own runs
+
+
 def _short(row: dict) -> dict:
     return {key: row[key] for key in OF_ROW if row.get(key) not in (None, "")}
+
+
+def with_kept_starts(record: dict, path: Path) -> dict:
+    """The record of new runs with the jittered starts of the one at `path`, where both are of one spec."""
+    kept = read_object(path) if path.is_file() else {}
+    if kept.get("schema") != RECORD or kept.get("spec") != record["spec"] or "command_of_starts" not in kept:
+        return record
+    known = {one["scene"]: {key: one[key] for key in KEPT if key in one} for one in kept["scenes"]}
+    scenes = [one | known.get(one["scene"], {}) for one in record["scenes"]]
+    return record | {"scenes": scenes, "command_of_starts": kept["command_of_starts"]}
 
 
 def earlier(path: Path, study: Study) -> dict:
@@ -64,11 +77,10 @@ def dear(study: Study, one: dict) -> set[tuple[str, str, int]]:
 
 def _references_apart(study: Study, name: str, n: int) -> list[float]:
     """How far the reference of start 2, 3, ... is from that of start 1, as errors are: the start's share."""
-    states = []
-    for k in range(1, n + 1):
-        file = jittered(study, k).folder / name / "reference"
-        if (file / "frames.npz").is_file():
-            states.append(positions(file))
+    folders = [jittered(study, k).folder / name / "reference" for k in range(1, n + 1)]
+    if not (folders[0] / "frames.npz").is_file():
+        return []
+    states = [positions(folder) for folder in folders if (folder / "frames.npz").is_file()]
     scene = exported(study.scenes[name].file, study.scenes[name].sets())
     return [error_of(x, states[0], scene)["error_mean"] for x in states[1:]]
 

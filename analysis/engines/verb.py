@@ -126,7 +126,7 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
     from .compare import compared, read_study
     from .figure import paint
     from .report import text_of
-    from .starts import earlier, with_starts
+    from .starts import earlier, with_kept_starts, with_starts
 
     say = lambda line: print(f"engine: {line}", file=sys.stderr, flush=True)  # noqa: E731
     study = read_study(spec, options.runs, options.scene, say)
@@ -138,6 +138,7 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
         record = with_starts(study, earlier(kept, study), options.starts) | {"command_of_starts": command}
     else:
         record = compared(study) | {"command": shlex.join(["./bench", "engine", *argv])}
+        record = with_kept_starts(record, kept)
     record = json.loads(json.dumps(record, allow_nan=False).replace(f"{ROOT}/", ""))  # no path of a machine
     text, page = json.dumps(record, indent=1) + "\n", text_of(record)
     if options.scene:

@@ -5,8 +5,8 @@ as C++ (a plugin with one policy) and compared with 40 digits.
 from __future__ import annotations
 
 import ctypes
-import math
 import itertools
+import math
 from collections.abc import Iterator
 from pathlib import Path
 

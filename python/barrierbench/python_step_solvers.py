@@ -89,9 +89,9 @@ def register_step_solver(solver: Any) -> str:
 
     It runs on the CPU, with every Hessian clamped and saddles ignored unless the config says otherwise. That a step has
     converged is the object's own word: how far its end is from the solution is measured (`end_error_m` of the record).
-    What it raises ends the step, and the run is where it was before that step. The same name again, with the same counters and
-    guarantee, replaces the object; its docstring stays the first one's. None is registered while another thread runs.
-    Errors: ConfigError that names what does not hold.
+    What it raises ends the step, and the run is where it was before that step. The same name again, with the same
+    counters and guarantee, replaces the object; its docstring stays the first one's. None is registered while another
+    thread runs. Errors: ConfigError that names what does not hold.
 
     >>> class Newton:
     ...     name, guarantee = "newton_of_python", "no surface passes through another in the motion of any iteration"

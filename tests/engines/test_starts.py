@@ -57,6 +57,16 @@ def test_starts_are_jittered_alike_for_all_and_their_scatter_is_said(program, he
     assert "jittered" not in text_of(record)
 
 
+def test_a_record_of_the_same_spec_keeps_its_starts(tmp_path):
+    kept = {"schema": compare.RECORD, "spec": {"a": 1}, "command_of_starts": "this", "scenes": [{"scene": "hang", "rows": [1], "starts": [2]}, {"scene": "gone", "starts": [3]}]}
+    path, new = tmp_path / "engines.json", {"schema": compare.RECORD, "spec": {"a": 1}, "scenes": [{"scene": "hang", "rows": [4]}, {"scene": "new", "rows": [5]}]}
+    assert starts.with_kept_starts(new, path) == new
+    path.write_text(json.dumps(kept))
+    found = starts.with_kept_starts(new, path)
+    assert found["command_of_starts"] == "this" and found["scenes"] == [{"scene": "hang", "rows": [4], "starts": [2]}, {"scene": "new", "rows": [5]}]
+    assert starts.with_kept_starts({**new, "spec": {"a": 2}}, path) == {**new, "spec": {"a": 2}}
+
+
 def test_dear_runs_are_made_from_few_starts(program, here, tmp_path):
     study, _ = small_study(tmp_path, {"jitter_m": 1e-4, "few": 1, "few_above_s": 1e-9})
     record = compare.compared(study)
