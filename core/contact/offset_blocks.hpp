@@ -16,8 +16,9 @@ enum class ContactModel { all_pairs, offset_geometric };
 
 /// The space within d_hat of a surface is cut into blocks, one a feature: over the inside of a triangle, round the inside of
 /// an edge between the planes of its ends and beyond those of its triangles, round a vertex beyond the planes of its edges.
-/// A point touches a feature where it is in its block, and an edge another edge where both closest points are inside, or a
-/// vertex whose block has the closest point of the edge. Each of these counts once, and what is shadowed by a neighbour of
+/// A point touches a feature in whose block it is, an edge a vertex in whose block its closest point is, and two edges each
+/// other, where the closest points are inside of both and each is in the block of the other edge, which reaches 30 degrees
+/// farther then. Each of these counts once, and what is shadowed by a neighbour of
 /// the feature not at all. Source: Chen et al. 2025, Offset Geometric Contact, sections on the blocks of vertices, edges
 /// and triangles, and their algorithms for contacts of a vertex and of an edge.
 ///
