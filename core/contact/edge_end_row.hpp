@@ -2,6 +2,9 @@
 // what mollified pairs count twice at a vertex of theirs (pair_corrections.hpp).
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "core/contact/row_rule.hpp"
 
 namespace bb {

@@ -1,6 +1,7 @@
 // Rows that take back what pairs count twice because they share a closest feature (docs/design.md, Weights by area).
 #pragma once
 
+#include <compare>
 #include <span>
 #include <vector>
 

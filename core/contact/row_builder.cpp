@@ -197,6 +197,7 @@ void RowBuilder::near_pairs(Candidates& out) const {
   };
   for (std::size_t k = 0; k < n_parts_; ++k) {
     for (const PartRow& row : parts_[k].rows) add(row.pair);
+    if (blocks_) continue;  // their mollified rows stand among the rows too
     for (const PartRow& row : parts_[k].mollified) add(row.pair);
   }
 }

@@ -31,7 +31,7 @@ class RowBuilder {
   double build(const PositionsView& x, const Candidates& candidates, ContactTable& rows,
                MollifiedTable& mollified);
 
-  /// The candidates that had a row in the last build, sorted; no obstacles.
+  /// The candidates that were below their d_hat in the last build, sorted; no obstacles.
   void near_pairs(Candidates& out) const;
 
   /// Where pairs are weighted by area; else null.
