@@ -13,6 +13,7 @@ import pandas as pd
 
 from . import fields
 from .record_file import RecordError, other_meanings, read_record, read_trace
+from .sweeps.cases import records_below
 
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
 
@@ -65,14 +66,15 @@ def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
 
 
 def load(root: str | Path, files: Iterable[Path] | None = None) -> Records:
-    """Every record below `root`, or these of them, in the order of their paths.
+    """Every record below `root`, or these of them, in the order of their paths; of a sweep's folder those of
+    its cases.
 
     A record that record_file.py refuses, or whose trace is not the one that it names, is left out:
     `unreadable` and a line on stderr say why. Raises RecordError when no record can be read.
     """
     root = Path(root)
     runs, steps, trace, cond, unreadable = [], [], [], [], []
-    for path in sorted(root.rglob("run.json") if files is None else files):
+    for path in sorted(records_below(root) if files is None else files):
         try:
             record = read_record(path)
             lines = read_trace(record, path.parent)

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import socket
+import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,6 +47,22 @@ class Sighting:
 
 def has_list(folder: Path) -> bool:
     return (folder / "cases.json").is_file()
+
+
+def records_below(root: Path) -> list[Path]:
+    """The records below a folder in the order of their paths; of a sweep's folder those of its cases. A sweep
+    file that was changed leaves records of other cases there: a line on stderr names each. Errors: UserError
+    for a list of cases that is none.
+    """
+    lists = {path.parent: read_cases(path.parent) for path in sorted(root.rglob("cases.json"))}
+    named = {case.record for cases in lists.values() for case in cases}
+    found = []
+    for path in sorted(root.rglob("run.json")):
+        if path in named or path.parent.parent not in lists:
+            found.append(path)
+        else:
+            print(f"{path.parent}: no case of its sweep as it is now; left out", file=sys.stderr)
+    return found
 
 
 def read_cases(folder: Path) -> list[Case]:

@@ -24,7 +24,7 @@ from ..record_file import RecordError, read_record
 from ..records import run_row
 from ..whole_file import write_whole, write_whole_bytes
 from . import dictionary
-from .cases import has_list, read_cases
+from .cases import has_list, read_cases, records_below
 
 FIRST = ("run", "outcome", "valid", "repetition")  # behind them the swept pointers
 OWN = ("folder", "series", "group")  # of run_row, for figures
@@ -39,7 +39,7 @@ def files_of(folder: Path) -> list[Path]:
         return [case.record for case in read_cases(folder) if case.record.is_file()]
     if not folder.is_dir():
         raise UserError(f"{folder}: no such folder; one with records is needed")
-    return sorted(folder.rglob("run.json"))
+    return records_below(folder)
 
 
 def _flat(row: dict) -> dict:

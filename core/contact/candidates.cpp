@@ -143,7 +143,7 @@ void BroadPhase::find(const Bvh& a, const Bvh& b, const PositionsView& x0, const
         const ContactPair<K> pair = contact_pair<K>(surface_, p);
         if (chosen_ && surface_.kind_of(pair.vertex[0], pair.vertex[pair_split(K)]) == CollisionKind::off)
           return false;
-        return !surface_.same_body(pair.vertex[0], pair.vertex[pair_split(K)]) ||
+        return !surface_.ruled_at_rest(pair.vertex[0], pair.vertex[pair_split(K)]) ||
                !apart_by_rest_rule<K>(pair.law, bb::gather(surface_.rest, pair.vertex),
                                       bb::gather(x0, pair.vertex), bb::gather(x1, pair.vertex), eps,
                                       pace_ == Pace::common);

@@ -28,20 +28,14 @@ Vec3d separation(const FoundRow& row, int vertex) {
   return r;
 }
 
-int edge_of(const Surface& s, int e0, int e1) {
-  const auto& edges = s.edges.vertices;
-  const std::array<int, 2> edge{std::min(e0, e1), std::max(e0, e1)};
-  return static_cast<int>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
-}
-
-/// Beyond the plane through the edge across each of its triangles, or less than an angle with the sine `slack` in front of
-/// it; where its closest point is inside, it is between the ends.
-bool beyond_triangles(const Surface& s, const SurfaceTopology& topology, const PositionsView& x,
-                      const Vec3d& at, const std::array<int, 2>& edge, double slack) {
+/// Whether `at` is beyond the plane through the edge across each of its triangles, or less than an angle with the sine
+/// `slack` in front of it. That it lies between the ends of the edge is not asked: its closest point is inside.
+bool beyond_triangles(const SurfaceTopology& topology, const PositionsView& x, const Vec3d& at,
+                      const std::array<int, 2>& edge, double slack) {
   const Vec3d a = x.col(edge[0]), along = x.col(edge[1]) - a;
-  const auto triangles = topology.triangles_at_edge.of(edge_of(s, edge[0], edge[1]));
+  const auto triangles = topology.triangles_at_edge.of(topology.edge_of(edge[0], edge[1]));
   return std::all_of(triangles.begin(), triangles.end(), [&](int t) {
-    const std::array<int, 3>& corners = s.triangles.vertices[static_cast<std::size_t>(t)];
+    const std::array<int, 3>& corners = topology.surface.triangles.vertices[static_cast<std::size_t>(t)];
     const int opposite =
         *std::find_if(corners.begin(), corners.end(), [&](int v) { return v != edge[0] && v != edge[1]; });
     const Vec3d o = x.col(opposite), foot = a + along * (along.dot(o - a) / along.squaredNorm());
@@ -53,11 +47,7 @@ bool beyond_triangles(const Surface& s, const SurfaceTopology& topology, const P
 
 }  // namespace
 
-OffsetBlocks::OffsetBlocks(const Surface& surface)
-    : surface_(surface), topology_(surface), points_(surface.body.size(), -1) {
-  for (std::size_t i = 0; i < surface.points.size(); ++i)
-    points_[static_cast<std::size_t>(surface.points.vertices[i][0])] = static_cast<int>(i);
-}
+OffsetBlocks::OffsetBlocks(const Surface& surface) : surface_(surface), topology_(surface) {}
 
 /// Beyond the plane across each edge of the vertex.
 bool OffsetBlocks::in_vertex_block(const PositionsView& x, const Vec3d& at, int vertex) const {
@@ -71,7 +61,7 @@ bool OffsetBlocks::in_vertex_block(const PositionsView& x, const Vec3d& at, int 
 }
 
 bool OffsetBlocks::in_edge_block(const PositionsView& x, const Vec3d& at, int e0, int e1) const {
-  return beyond_triangles(surface_, topology_, x, at, {e0, e1}, border);
+  return beyond_triangles(topology_, x, at, {e0, e1}, border);
 }
 
 /// The point is the first primitive of its pair; its rows follow one another.
@@ -101,8 +91,7 @@ bool OffsetBlocks::edge_touches(const PositionsView& x, const PartRow& each) {
     const auto at = [&](std::size_t k) { return Vec3d(row.weight[k] * x.col(row.stencil[k])); };
     const Vec3d of_first = at(0) + at(1), of_second = -(at(2) + at(3));
     const auto in_block = [&](const Vec3d& point, std::size_t k) {
-      return beyond_triangles(surface_, topology_, x, point, {row.stencil[k], row.stencil[k + 1]},
-                              edges_border);
+      return beyond_triangles(topology_, x, point, {row.stencil[k], row.stencil[k + 1]}, edges_border);
     };
     return in_block(of_first, 2) && in_block(of_second, 0);
   }
@@ -128,8 +117,8 @@ void OffsetBlocks::apply(const PositionsView& x, bool mollifier, std::span<RowPa
       if (!edges || !mollifier || each.share == 0 || each.row.kind != ContactKind::edge_edge) continue;
       const std::array<int, 4> vertex =
           edge_pair_vertices(surface_, pair_first(each.pair), pair_second(each.pair));
-      const double eps = edge_edge_mollifier_threshold<double>(surface_.rest_points<4>(vertex.data()));
-      if (!(edge_edge_cross_squared<double>(gather(x, vertex)) < eps)) continue;
+      const double eps = mollifier_threshold_at<double>(surface_, vertex.data(), gather(x, vertex));
+      if (eps == 0) continue;
       PartRow mollified = each;
       mollified.row.eps = eps;
       part.mollified.push_back(mollified);

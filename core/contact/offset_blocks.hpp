@@ -37,11 +37,10 @@ class OffsetBlocks {
   bool in_edge_block(const PositionsView& x, const Vec3d& at, int e0, int e1) const;
   bool point_touches(const PositionsView& x, const PartRow& each);
   bool edge_touches(const PositionsView& x, const PartRow& each);
-  int point_of(int vertex) const { return points_[static_cast<std::size_t>(vertex)]; }
+  int point_of(int vertex) const { return topology_.points[static_cast<std::size_t>(vertex)]; }
 
   const Surface& surface_;
   const SurfaceTopology topology_;
-  std::vector<int> points_;                // of the vertices, -1 where there is none
   PairId of_ = 0;                          // list and point whose rows are being read
   std::vector<Vec3d> touched_;             // closest points of the rows of it that stay
   std::set<std::pair<int, int>> at_edge_;  // (edge, vertex) that have a row

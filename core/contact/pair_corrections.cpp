@@ -102,8 +102,7 @@ template <class T>
 bool PairCorrections::is_mollified(const PositionsView& x, int edge, int other) const {
   if (!mollifier_) return false;
   const std::array<int, 4> vertex = edge_pair_vertices(surface_, edge, other);
-  const double eps = edge_edge_mollifier_threshold<double>(surface_.rest_points<4>(vertex.data()));
-  return edge_edge_cross_squared<T>(gather_in<T>(x, vertex)) < static_cast<T>(eps);
+  return mollifier_threshold_at<T>(surface_, vertex.data(), gather_in<T>(x, vertex)) > 0;
 }
 
 /// Of an edge and a point that is an end of `other`, mollified as the pair of the two edges is.

@@ -3,7 +3,7 @@
 //
 // S is Surface or the view of it that kernels read. Both say
 //   is_free(v)                        whether vertex v moves,
-//   same_body(v, w)                   whether two vertices are of one body,
+//   ruled_at_rest(v, w)               whether two vertices are of one body, and its rest shape is asked,
 //   rest_points<N>(vertex)            their positions at rest, m,
 //   planar                            whether the scene is.
 #pragma once
@@ -36,8 +36,15 @@ BB_HD inline bool acts(T gap, double d_hat) {
 /// gap. Constant over a run, so B stays continuous.
 template <PairKind K, class S>
 BB_HD inline double activation_distance(const S& s, const int* vertex, const Side& law) {
-  if (!s.same_body(vertex[0], vertex[pair_split(K)])) return law.d_hat;
+  if (!s.ruled_at_rest(vertex[0], vertex[pair_split(K)])) return law.d_hat;
   return d_hat_at_rest<K>(law, s.template rest_points<pair_points(K)>(vertex));
+}
+
+/// The threshold of the mollifier of two edges that are close to parallel at these points (m); 0 of edges that are not.
+template <class T, class S>
+BB_HD inline double mollifier_threshold_at(const S& s, const int* vertex, const Mat<T, 3, 4>& points) {
+  const double eps = edge_edge_mollifier_threshold<double>(s.template rest_points<4>(vertex));
+  return edge_edge_cross_squared<T>(points) < static_cast<T>(eps) ? eps : 0;
 }
 
 namespace detail {
@@ -78,10 +85,8 @@ BB_HD inline bool surface_row(const S& s, const int* vertex, const Side& law,
   Region region = closest.region;
   row.eps = 0;
   if constexpr (K == PairKind::edge_edge) {
-    if (mollifier) {
-      const double eps = edge_edge_mollifier_threshold<double>(s.template rest_points<4>(vertex));
-      if (edge_edge_cross_squared<T>(points) < static_cast<T>(eps)) row.eps = eps, region = Region::ea_eb;
-    }
+    if (mollifier) row.eps = mollifier_threshold_at<T>(s, vertex, points);
+    if (row.eps > 0) region = Region::ea_eb;
   }
   static_cast<PairRow&>(row) =
       pair_row<T>(vertex, closest.weights.data(), closest.r, closest.d, region, law.offset);

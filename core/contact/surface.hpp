@@ -68,7 +68,7 @@ struct Surface {
 
   bool is_free(int v) const { return vertex_free[static_cast<std::size_t>(v)] != 0; }
   /// Whether the rest shape says something of two vertices: they are of one body, and the rest rule is on.
-  bool same_body(int v, int w) const {
+  bool ruled_at_rest(int v, int w) const {
     return rest_rule == RestRule::on &&
            body[static_cast<std::size_t>(v)] == body[static_cast<std::size_t>(w)];
   }

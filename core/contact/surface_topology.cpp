@@ -7,12 +7,16 @@ namespace {
 
 using Members = std::vector<std::array<int, 2>>;
 
-/// Of each primitive the points of its vertices. Every vertex of an edge or a triangle is a point of the surface.
-template <int N>
-std::vector<std::array<int, N>> points_of(const Surface& surface, const Primitives<N>& primitives) {
+std::vector<int> points_of_vertices(const Surface& surface) {
   std::vector<int> point(surface.body.size(), -1);
   for (std::size_t i = 0; i < surface.points.size(); ++i)
     point[static_cast<std::size_t>(surface.points.vertices[i][0])] = static_cast<int>(i);
+  return point;
+}
+
+/// Of each primitive the points of its vertices. Every vertex of an edge or a triangle is a point of the surface.
+template <int N>
+std::vector<std::array<int, N>> points_of(const std::vector<int>& point, const Primitives<N>& primitives) {
   std::vector<std::array<int, N>> out;
   for (const std::array<int, N>& vertices : primitives.vertices) {
     std::array<int, N> points;
@@ -23,19 +27,10 @@ std::vector<std::array<int, N>> points_of(const Surface& surface, const Primitiv
   return out;
 }
 
-/// The edges of a surface are sorted, each with its lower vertex first.
-std::vector<std::array<int, 3>> edges_of_triangles(const Surface& surface) {
-  const auto& edges = surface.edges.vertices;
+std::vector<std::array<int, 3>> edges_of_triangles(const SurfaceTopology& of) {
   std::vector<std::array<int, 3>> out;
-  for (const std::array<int, 3>& t : surface.triangles.vertices) {
-    std::array<int, 3> sides;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = t[k], b = t[(k + 1) % 3];
-      const std::array<int, 2> side{std::min(a, b), std::max(a, b)};
-      sides[k] = static_cast<int>(std::lower_bound(edges.begin(), edges.end(), side) - edges.begin());
-    }
-    out.push_back(sides);
-  }
+  for (const std::array<int, 3>& t : of.surface.triangles.vertices)
+    out.push_back({of.edge_of(t[0], t[1]), of.edge_of(t[1], t[2]), of.edge_of(t[2], t[0])});
   return out;
 }
 
@@ -58,10 +53,19 @@ IndexLists::IndexLists(std::size_t n, const Members& members) : begin_(n + 1, 0)
   for (const auto& [thing, number] : members) items_[next[static_cast<std::size_t>(thing)]++] = number;
 }
 
-SurfaceTopology::SurfaceTopology(const Surface& surface)
-    : triangle_edges(edges_of_triangles(surface)),
-      triangle_points(points_of<3>(surface, surface.triangles)),
-      edge_points(points_of<2>(surface, surface.edges)),
+// The edges of a surface are sorted, each with its lower vertex first.
+int SurfaceTopology::edge_of(int v, int w) const {
+  const auto& edges = surface.edges.vertices;
+  const std::array<int, 2> edge{std::min(v, w), std::max(v, w)};
+  return static_cast<int>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
+}
+
+SurfaceTopology::SurfaceTopology(const Surface& of)
+    : surface(of),
+      points(points_of_vertices(surface)),
+      triangle_edges(edges_of_triangles(*this)),
+      triangle_points(points_of<3>(points, surface.triangles)),
+      edge_points(points_of<2>(points, surface.edges)),
       triangles_at_edge(surface.edges.size(), members_of(triangle_edges)),
       triangles_at_point(surface.points.size(), members_of(triangle_points)),
       edges_at_point(surface.points.size(), members_of(edge_points)) {}

@@ -24,9 +24,15 @@ class IndexLists {
   std::vector<int> items_;
 };
 
+/// The surface has to outlive it.
 struct SurfaceTopology {
   explicit SurfaceTopology(const Surface& surface);
 
+  /// The edge with these ends, which is there.
+  int edge_of(int v, int w) const;
+
+  const Surface& surface;
+  std::vector<int> points;                          // of the vertices, -1 where there is none
   std::vector<std::array<int, 3>> triangle_edges;   // of t0 t1, t1 t2, t2 t0
   std::vector<std::array<int, 3>> triangle_points;  // its corners in the list of points
   std::vector<std::array<int, 2>> edge_points;

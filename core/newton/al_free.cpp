@@ -36,13 +36,7 @@ class AlFree final : public StepSolver {
   std::string_view name() const override { return "al_free"; }
 
   void require(StepSystem& system) const override {
-    const std::string solver = "the step solver is al_free";
-    if (!system.is_on_host()) throw ConfigError("/device", "one beside the processor", "cpu: " + solver);
-    const Scene& scene = system.view().scene();
-    for (const RigidMotion& motion : scene.motions) {
-      if (!motion.is_static())
-        throw ConfigError("/scene", "prescribed vertices or obstacles that move", "none: " + solver);
-    }
+    require_unmoved_on_host(system, name());
     for (const auto& term : system.on_host().diagnosis().terms()) {
       const std::string_view of = term->name();
       if (of == "strain_limit" || of == "friction" || of == "restitution")

@@ -19,7 +19,7 @@ bool Diagnosis::active(TermGroup group) const {
                      [group](const auto& term) { return term->group() == group && term->size() > 0; });
 }
 
-const ReducedSystem& Diagnosis::solved() { return potential_.blocks_->reduce(potential_.full_); }
+const ReducedSystem& Diagnosis::solved() { return potential_.reduced(); }
 
 const ReducedSystem& Diagnosis::clamped(TermSet set) {
   return potential_.blocks_->reduce(clamped_values(set));

@@ -144,11 +144,16 @@ void HostPotential::add_given_motion(const Column& x, const Column& motion, Colu
   for (const auto& term : terms_) term->add_given_motion(points(x), points(motion), points(force));
 }
 
+const ReducedSystem& HostPotential::reduced() {
+  const ReducedSystem& reduced = blocks_->reduce(full_);
+  nnz_ = static_cast<std::size_t>(reduced.lower.nonZeros());
+  return reduced;
+}
+
 // The solver measures its own parts; what is neither analysis nor factorisation is solution.
 void HostPotential::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {
   blocks_->restrict_vector(points(b), rhs_);
-  const ReducedSystem& reduced = blocks_->reduce(full_);
-  nnz_ = static_cast<std::size_t>(reduced.lower.nonZeros());
+  const ReducedSystem& reduced = this->reduced();
   const ScopedPhase timer(clock(), Phase::linear_solve);
   const LinearReport linear = solver_->solve(reduced, rhs_, solution_, of);
   clock().move(Phase::linear_solve, Phase::linear_analyze, linear.analyze_s);

@@ -101,6 +101,7 @@ class HostPotential final : public IncrementalPotential {
   void sum_clamped(TermSet set);
   static std::span<const double> clamped_hessians(const Slot& slot, const TermFamily& family);
   void sum_exact();
+  const ReducedSystem& reduced();
 
   exec::HostExecutor executor_;
   const Scene& scene_;

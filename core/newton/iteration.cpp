@@ -64,6 +64,15 @@ bool within_rounding(const EnergyChange& change, Precision precision) {
   return std::abs(change.change) <= rounding_of(change, precision);
 }
 
+void require_unmoved_on_host(const StepSystem& system, std::string_view solver) {
+  const std::string why = "the step solver is " + std::string(solver);
+  if (!system.is_on_host()) throw ConfigError("/device", "one beside the processor", "cpu: " + why);
+  for (const RigidMotion& motion : system.view().scene().motions) {
+    if (!motion.is_static())
+      throw ConfigError("/scene", "prescribed vertices or obstacles that move", "none: " + why);
+  }
+}
+
 void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report) {
   step.status = status;
   if (status == StepStatus::non_finite) step.detail = system.view().describe_non_finite();

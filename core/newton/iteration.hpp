@@ -10,6 +10,8 @@
 
 namespace bb {
 
+/// For step solvers that know neither devices nor prescribed motion. Errors: ConfigError, which names the solver.
+void require_unmoved_on_host(const StepSystem& system, std::string_view solver);
 /// Predicts and hands the step to the system, with the poses at its end as the target. The report says iteration_cap
 /// until something better is known.
 StepReport start_step(StepSystem& system, const StepTask& task, Prediction& used);

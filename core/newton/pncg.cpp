@@ -40,14 +40,7 @@ class Pncg final : public StepSolver {
         kind_(text(options.parameters, "pncg_preconditioner")) {}
   std::string_view name() const override { return "pncg"; }
 
-  void require(StepSystem& system) const override {
-    const std::string solver = "the step solver is pncg";
-    if (!system.is_on_host()) throw ConfigError("/device", "one beside the processor", "cpu: " + solver);
-    for (const RigidMotion& motion : system.view().scene().motions) {
-      if (!motion.is_static())
-        throw ConfigError("/scene", "prescribed vertices or obstacles that move", "none: " + solver);
-    }
-  }
+  void require(StepSystem& system) const override { require_unmoved_on_host(system, name()); }
 
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
@@ -59,7 +52,6 @@ class Pncg final : public StepSolver {
       IterationReport report = begin_iteration(system, task.step, iteration);
       find_step(system.on_host(), report);
       report_direction(system, report, observer);
-      report.nnz = nnz_;
       if (const auto failed = direction_failure(report, false)) {
         finish_iteration(system, step, report, observer);
         fail_step(system, step, *failed, report);
@@ -93,7 +85,6 @@ class Pncg final : public StepSolver {
     const ScopedPhase timer(system.clock(), Phase::linear_solve);
     Diagnosis& at = system.diagnosis();
     const ReducedSystem& h = at.solved();
-    nnz_ = static_cast<std::size_t>(h.lower.nonZeros());
     before_.swap(g_);
     at.blocks().restrict_vector(at.gradient(), g_);
     product_.update(h);
@@ -166,8 +157,7 @@ class Pncg final : public StepSolver {
   std::string kind_;
   std::unique_ptr<Preconditioner> preconditioner_;
   SymmetricProduct product_;
-  VecXd g_, before_, pg_, py_, p_, hp_;  // free degrees of freedom; p_ empty: none before
-  std::size_t nnz_ = 0;
+  VecXd g_, before_, pg_, py_, p_, hp_;               // free degrees of freedom; p_ empty: none before
   double first_fall_ = 0, fall_ = 0, magnitude_ = 0;  // J, of the model at its minimum along p; of E
   double bounds_ = 0, rises_ = 0;
 };

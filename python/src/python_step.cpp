@@ -151,9 +151,7 @@ void PythonStep::set_direction(const double* free, std::size_t n) {
     system_->set_direction(dx);
     iteration_->solve.linear.residual_true = whole > 0 ? left / whole : 0;
     iteration_->solve.t = level_;
-    const auto nnz = static_cast<std::size_t>(lower.nonZeros());
     report_direction(*system_, *iteration_, *observer_);
-    iteration_->nnz = nnz;
     take_direction();
   });
 }

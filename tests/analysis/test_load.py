@@ -42,6 +42,16 @@ def test_a_torn_record_is_left_out_and_named(tmp_path, capsys, torn):
     assert said.count(str(path)) == 1 and "1 of 4 records left out" in said
 
 
+def test_runs_of_an_earlier_sweep_file_are_left_out_and_named(tmp_path, capsys):
+    write_set(tmp_path / "strip")
+    names = sorted(path.parent.name for path in (tmp_path / "strip").glob("*/run.json"))
+    cases = [{"folder": name, "label": name, "config_id": "0" * 64, "swept": {}} for name in names if name != "log"]
+    assert len(load(tmp_path).runs) == len(names) > 2 and "no case" not in capsys.readouterr().err
+    (tmp_path / "strip/cases.json").write_text(json.dumps({"schema": "barrierbench.cases/1", "sweep": "strip", "cases": cases}))
+    assert sorted(load(tmp_path).runs["run"]) == sorted(f"strip/{case['folder']}" for case in cases)
+    assert capsys.readouterr().err.count(f"{tmp_path / 'strip/log'}: no case of its sweep as it is now; left out") == 1
+
+
 @pytest.mark.usefixtures("unpainted")
 def test_figures_end_well_beside_a_torn_record_and_not_without_any(tmp_path, capsys):
     write_set(tmp_path / "runs")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/newton/converged_steps.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::penalty_test {
@@ -26,16 +27,12 @@ struct Ran {
 };
 
 Ran run(const Scene& scene, Method method, double dt, int steps) {
-  Simulation simulation(scene, method, dt, steps);
-  StepObserver none;
   Ran out;
-  for (int i = 0; i < steps; ++i) {
-    out.last = simulation.step(none);
-    EXPECT_EQ(out.last.status, StepStatus::converged) << i << " " << out.last.detail;
-    if (out.last.solver.values.contains("penalty_overlap_m"))
-      out.deepest = std::max(out.deepest, out.last.solver.values.at("penalty_overlap_m"));
-  }
-  out.x = simulation.history().x;
+  out.x = test::converged_steps(scene, method, dt, steps, [&out](const StepReport& report) {
+    out.last = report;
+    if (report.solver.values.contains("penalty_overlap_m"))
+      out.deepest = std::max(out.deepest, report.solver.values.at("penalty_overlap_m"));
+  });
   return out;
 }
 

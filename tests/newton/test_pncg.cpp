@@ -9,6 +9,7 @@
 
 #include "core/math/error.hpp"
 #include "core/newton/dai_kou.hpp"
+#include "tests/newton/converged_steps.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::pncg_test {
@@ -166,19 +167,15 @@ struct Ran {
 };
 
 Ran run(const Scene& scene, Method method, int steps, double dt = 0.01) {
-  Simulation simulation(scene, method, dt, steps);
-  StepObserver none;
   Ran out;
-  for (int i = 0; i < steps; ++i) {
-    out.last = simulation.step(none);
-    EXPECT_EQ(out.last.status, StepStatus::converged) << i << " " << out.last.detail;
-    out.iterations += out.last.newton_iterations;
-    if (method.step_solver.name != "pncg") continue;
-    out.bounds += out.last.solver.values.at("pncg_bounds");
-    out.rises += out.last.solver.values.at("pncg_rises");
-    EXPECT_LE(out.last.solver.values.at("pncg_fall"), 1);
-  }
-  out.x = simulation.history().x;
+  out.x = test::converged_steps(scene, method, dt, steps, [&](const StepReport& report) {
+    out.last = report;
+    out.iterations += report.newton_iterations;
+    if (method.step_solver.name != "pncg") return;
+    out.bounds += report.solver.values.at("pncg_bounds");
+    out.rises += report.solver.values.at("pncg_rises");
+    EXPECT_LE(report.solver.values.at("pncg_fall"), 1);
+  });
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/math/error.hpp"
+#include "tests/newton/converged_steps.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::projection_test {
@@ -51,14 +52,9 @@ Ran run(const Scene& scene, double stiffness, int sweeps, int steps) {
   method.step_solver.saddle = SaddleRule::ignore;
   method.step_solver.parameters["projection_stiffness"] = stiffness;
   method.contact.literal = true;
-  Simulation simulation(scene, method, dt, steps);
-  StepObserver none;
   Ran out;
-  for (int i = 0; i < steps; ++i) {
-    out.last = simulation.step(none);
-    EXPECT_EQ(out.last.status, StepStatus::converged) << i << " " << out.last.detail;
-  }
-  out.x = simulation.history().x;
+  out.x = test::converged_steps(scene, method, dt, steps,
+                                [&out](const StepReport& report) { out.last = report; });
   return out;
 }
 

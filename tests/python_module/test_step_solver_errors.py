@@ -91,6 +91,7 @@ def test_a_step_that_fails_is_tried_again_shorter(bb, drape, scripted):
         (lambda step: [(step.solve(), step.accept()) for _ in step.iterations()], "RuntimeError", "not feasible"),
         (lambda step: [(step.solve(), step.solve()) for _ in step.iterations()], "RuntimeError", "a direction already"),
         (lambda step: [(step.solve(), step.trial(1.5)) for _ in step.iterations()], "ValueError", "alpha = 1.5"),
+        (lambda step: [step._core.set_direction(np.zeros(1)) for _ in step.iterations()], "ValueError", "found 1 numbers; allowed: "),
         (lambda step: [setattr(step, "direction", [1.0]) for _ in step.iterations()], "ConfigError", r"shape \(1,\)"),
         (
             lambda step: [setattr(step, "direction", step.x * np.nan) for _ in step.iterations()],
@@ -198,3 +199,25 @@ def test_a_device_refuses_it(bb, drape, device):
     bb.register_step_solver(Newton())
     with pytest.raises(bb.ConfigError, match="device"):
         bb.Simulation({**solved_by(drape, "plain_newton"), "device": device})
+
+
+def test_a_trial_does_not_outlive_the_bound_that_comes_after_it(bb, drape, scripted):
+    """What was tried without a bound may have passed through a surface."""
+    seen = []
+
+    def script(step):
+        next(step.iterations())
+        assert not step.solve()
+        assert step.trial(1e-3) is not None
+        assert step.bound() > 0
+        with pytest.raises(RuntimeError, match="the last trial was not feasible, or there was none"):
+            step.accept()
+        assert step.feasible(1e-3 * step.bound())
+        step.accept()
+        seen.append(step.index)
+        return "iteration_cap"
+
+    sim = touching(bb, solved_by(drape, "scripted"))
+    scripted.script = script
+    sim.step()
+    assert sim.outcome == "newton_stall" and len(seen) == 1

@@ -71,7 +71,7 @@ struct SurfaceView {
 
   // what row_rule.hpp asks
   BB_HD bool is_free(int v) const { return vertex_free[v] != 0; }
-  BB_HD bool same_body(int v, int w) const { return body[v] == body[w]; }
+  BB_HD bool ruled_at_rest(int v, int w) const { return body[v] == body[w]; }
   template <int N>
   BB_HD Mat<double, 3, N> rest_points(const int* of) const {
     return points_of<N>(rest, of);
