@@ -1,6 +1,7 @@
 # A room is one folder of the tree: one static library with explicit sources, or headers only.
 
-# Two precompiled headers: standard library and Eigen, which every room reuses; and the same with what tests include beside.
+# Three precompiled headers: standard library and Eigen, which most rooms reuse; the same with what rooms that read and write include
+# beside; and with what tests do.
 file(WRITE "${PROJECT_BINARY_DIR}/pch/empty.cpp.in" "namespace bb {}\n")
 configure_file("${PROJECT_BINARY_DIR}/pch/empty.cpp.in" "${PROJECT_BINARY_DIR}/pch/empty.cpp" COPYONLY)
 function(bb_precompile name)
@@ -12,6 +13,19 @@ function(bb_precompile name)
     <optional> <span> <string> <string_view> <utility> <vector> ${ARGN})
 endfunction()
 bb_precompile(bb_pch)
+
+# COLD rooms: text in, text out, once a run, a third of the program's code. Release compiles them for size, which takes g++ two thirds of
+# the time and gives the same bits (core/record/CMakeLists.txt names it among the flags).
+bb_precompile(bb_cold_pch <fmt/format.h> <fmt/ranges.h> <nlohmann/json.hpp> <filesystem> <fstream> <limits> <map> <numeric> <set>
+  <sstream> <variant>)
+target_link_libraries(bb_cold_pch PUBLIC fmt::fmt nlohmann_json::nlohmann_json)
+set(BB_COLD_FLAG $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-Os>)
+target_compile_options(bb_cold_pch PRIVATE ${BB_COLD_FLAG})
+function(bb_cold target)
+  target_link_libraries(${target} PRIVATE fmt::fmt nlohmann_json::nlohmann_json)
+  target_precompile_headers(${target} REUSE_FROM bb_cold_pch)
+  target_compile_options(${target} PRIVATE ${BB_COLD_FLAG} -fpch-preprocess)
+endfunction()
 if(BB_TESTS)
   # Not nlohmann/json.hpp: its operators of literals would have every test translate a parser, a second of g++ each.
   bb_precompile(bb_test_pch <gtest/gtest.h> <tbb/global_control.h> <tbb/parallel_for.h> <tbb/parallel_reduce.h>
@@ -86,10 +100,10 @@ function(bb_check_rooms)
   endforeach()
 endfunction()
 
-# bb_room(NAME [FOLDER path] [SOURCES ...] [DEPS ...]): library bb_NAME of the files in FOLDER (this one by default);
+# bb_room(NAME [COLD] [FOLDER path] [SOURCES ...] [DEPS ...]): library bb_NAME of the files in FOLDER (this one by default);
 # without sources an interface library. DEPS names every room that these files include.
 function(bb_room name)
-  cmake_parse_arguments(ARG "" "FOLDER" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "COLD" "FOLDER" "SOURCES;DEPS" ${ARGN})
   if(NOT ARG_FOLDER)
     file(RELATIVE_PATH ARG_FOLDER "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
   endif()
@@ -97,7 +111,11 @@ function(bb_room name)
   if(ARG_SOURCES)
     add_library(bb_${name} STATIC ${ARG_SOURCES})
     target_link_libraries(bb_${name} PUBLIC bb_pch ${ARG_DEPS})
-    target_precompile_headers(bb_${name} REUSE_FROM bb_pch)
+    if(ARG_COLD)
+      bb_cold(bb_${name})
+    else()
+      target_precompile_headers(bb_${name} REUSE_FROM bb_pch)
+    endif()
     set_property(GLOBAL APPEND PROPERTY BB_ROOM_TARGETS bb_${name})
   else()
     add_library(bb_${name} INTERFACE)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import sys
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from ..records import Records, load
@@ -10,6 +13,8 @@ from ..table import as_text, summary_table
 from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
+OF_A_GROUP = (condition, matrix_forms, iterations, gaps, kappa_cycle)  # each draws the runs of one sweep
+_shared: list = []  # records and folder, in a process that draws
 LAYERED = ("demo_drape", "demo_long")  # five layers, each of which has to touch the next
 
 
@@ -38,6 +43,16 @@ def broken_promises(records: Records) -> list[str]:
     return lines
 
 
+def _share(records: Records, out: Path) -> None:
+    """What the pictures of this process are made of; a process has it of the one that it was forked from."""
+    _shared[:] = records, out
+
+
+def _picture(group: str, module: str) -> list[Path]:
+    records, out = _shared
+    return sys.modules[module].figure(records, group, out)
+
+
 def make_all(runs: Path, out: Path) -> str:
     """Writes everything to `out`; returns the text for the terminal."""
     return make_all_of(load(runs), out)
@@ -45,13 +60,14 @@ def make_all(runs: Path, out: Path) -> str:
 
 def make_all_of(records: Records, out: Path) -> str:
     """The same of records that are loaded."""
-    paths = [
-        path
-        for group in sorted(records.runs["group"].unique())
-        for module in (condition, matrix_forms, iterations, gaps, kappa_cycle)
-        for path in module.figure(records, group, out)
-    ]
-    paths += barrier_shapes.figure(out, records.runs)
+    groups = sorted(records.runs["group"].unique())
+    pictures = [(group, module.__name__) for group in groups for module in OF_A_GROUP]
+    with ProcessPoolExecutor(
+        len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _share, (records, out)
+    ) as pool:
+        shapes = pool.submit(barrier_shapes.figure, out, records.runs)
+        paths = [path for made in pool.map(_picture, *zip(*pictures, strict=True)) for path in made]
+        paths += shapes.result()
     table = summary_table(records)
     table.to_csv(out / "table.csv", index=False)
     failed = records.runs[records.runs["outcome"] != "ok"]

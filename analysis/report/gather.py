@@ -84,6 +84,9 @@ class Folder:
     entries: list[Entry]
     unreadable: list[str] = field(default_factory=list)  # file: place, what was found, what is allowed
     absent: list[Absent] = field(default_factory=list)
+    earlier: list[Path] = field(
+        default_factory=list
+    )  # records of no case of their sweep as it is now; not shown
 
     @cached_property
     def by_run(self) -> dict[str, Entry]:
@@ -124,20 +127,29 @@ def _entry(path: Path, root: Path) -> Entry | str:
 
 
 def _lists(root: Path, found: Folder) -> list[Path]:
-    """Records of the sweeps below the folder, in the order of their cases; what they lack goes to `found`."""
-    paths = []
+    """Records below the folder: those of its sweeps in the order of their cases, then those of no sweep. What
+    sweeps lack, and what an earlier form of a sweep file has left there, goes to `found`.
+    """
+    paths, sweeps = [], set()
     for file in sorted(root.rglob("cases.json")):
         try:
             cases = read_cases(file.parent)
         except (UserError, KeyError, TypeError, ValueError) as error:
             found.unreadable.append(str(error) if isinstance(error, UserError) else f"{file}: {error!r}")
             continue
+        sweeps.add(file.parent)
         for case in cases:
             if case.record.is_file():
                 paths.append(case.record)
             else:
                 sighting = sighted(case)
                 found.absent.append(Absent(file.parent.name, case.label, sighting.state, sighting.detail))
+    listed = set(paths)
+    for path in sorted(root.rglob("run.json")):
+        if path.parent.parent not in sweeps:
+            paths.append(path)
+        elif path not in listed:
+            found.earlier.append(path)
     return paths
 
 
@@ -158,8 +170,7 @@ def gathered(root: Path) -> Folder:
         what = "a file" if root.exists() else "nothing there"
         raise UserError(f"{root}: found {what}; allowed: a folder with records (run.json) below it")
     found = Folder(root, [])
-    listed = _lists(root, found)
-    paths = list(dict.fromkeys([*listed, *sorted(root.rglob("run.json"))]))
+    paths = _lists(root, found)
     workers = len(os.sched_getaffinity(0))
     if len(paths) < PARALLEL_FROM or workers == 1:
         read = [_entry(path, root) for path in paths]

@@ -1,13 +1,14 @@
 // Construction: sort by the Morton code of the box centres, then unite bottom up.
 #include "core/audit/box_tree.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <utility>
+
+#include "core/math/parallel.hpp"
 
 namespace bb::audit {
 namespace {
@@ -42,7 +43,7 @@ BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(boxes.size()), order_(boxes.si
     if (extent > 0.0) scale[k] = std::min(2097152.0 / extent, 1e300);
   }
   std::vector<std::pair<std::uint64_t, int>> keys(n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+  parallel_items(n, 1, [&](std::size_t i) {
     const Vec3d centre = 0.5 * boxes[i].lo + 0.5 * boxes[i].hi;
     keys[i] = {morton(centre, world, scale), static_cast<int>(i)};
   });

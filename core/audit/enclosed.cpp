@@ -1,7 +1,5 @@
 #include "core/audit/enclosed.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -12,6 +10,7 @@
 #include "core/audit/box_tree.hpp"
 #include "core/audit/closest_point.hpp"
 #include "core/audit/segment_triangle.hpp"
+#include "core/math/parallel.hpp"
 
 namespace bb::audit {
 namespace {
@@ -160,7 +159,7 @@ Enclosed ClosedBodies::enclosed(const Positions& x) const {
     const BodyInState there(mesh_, body.triangles, x);
     enum class Side : char { outside, inside, unknown };
     std::vector<Side> side(vertices_.size(), Side::outside);
-    tbb::parallel_for(std::size_t{0}, side.size(), [&](std::size_t i) {
+    parallel_items(side.size(), 1, [&](std::size_t i) {
       const int v = vertices_[i];
       if (owns(body.number, v) || !there.may_hold(x.col(v))) return;
       const std::optional<bool> in = there.holds(x.col(v));

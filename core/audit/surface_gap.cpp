@@ -1,7 +1,5 @@
 #include "core/audit/surface_gap.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -10,6 +8,7 @@
 #include "core/audit/closest_point.hpp"
 #include "core/audit/quadric.hpp"
 #include "core/audit/tally.hpp"
+#include "core/math/parallel.hpp"
 
 namespace bb::audit {
 namespace {
@@ -106,7 +105,7 @@ class GapMeasure {
   std::vector<double> vertex_to_all(const Ids& primitives, F&& distance) const {
     const BoxTree tree(boxes(primitives));
     std::vector<double> out(vertices_.size());
-    tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) {
+    parallel_items(out.size(), 1, [&](std::size_t i) {
       const int v = vertices_[i];
       Least least;
       const Eigen::Matrix<int, 1, 1> alone(v);

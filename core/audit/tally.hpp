@@ -1,12 +1,10 @@
 // Sums over independent items on all threads, equal for any number of threads: integers and a minimum only.
 #pragma once
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_reduce.h>
-
 #include <optional>
 
 #include "core/audit/surface.hpp"
+#include "core/math/parallel.hpp"
 
 namespace bb::audit {
 
@@ -18,10 +16,10 @@ inline void keep_first(std::optional<PairName>& kept, const std::optional<PairNa
 /// item(i, tally) for i in [0, n); Tally has `merge(const Tally&)`, commutative and associative.
 template <class Tally, class F>
 Tally tally_over(std::size_t n, F&& item) {
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, n, 64), Tally{},
-      [&](const tbb::blocked_range<std::size_t>& range, Tally sum) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) item(i, sum);
+  return reduce_items(
+      n, 64, Tally{},
+      [&](std::size_t begin, std::size_t end, Tally sum) {
+        for (std::size_t i = begin; i != end; ++i) item(i, sum);
         return sum;
       },
       [](Tally a, const Tally& b) {

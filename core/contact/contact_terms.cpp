@@ -1,4 +1,3 @@
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 
@@ -9,6 +8,7 @@
 #include "core/contact/pair_geometry.hpp"
 #include "core/contact/row_columns.hpp"
 #include "core/math/lower_blocks.hpp"
+#include "core/math/parallel.hpp"
 
 namespace bb {
 
@@ -115,7 +115,7 @@ void mollified_terms(const MollifiedTable& rows, const PositionsView& x, Project
   grad.resize(12 * rows.size());
   hess.resize(row_hessian_numbers * rows.size());
   for_each_pass(precision, [&]<class T>(PassParts parts) {
-    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
+    parallel_items(rows.size(), 1, [&](std::size_t r) {
       mollified_row_terms<T>(rows, r, x, projection, parts, &grad[12 * r], &hess[row_hessian_numbers * r]);
     });
   });

@@ -1,7 +1,5 @@
 #include "core/contact/row_builder.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <span>
@@ -223,7 +221,7 @@ void RowBuilder::fill_tables(ContactTable& rows, MollifiedTable& mollified) {
   mollified.resize(first_.back().mollified);
   rows.share.resize(areas_ ? rows.size() : 0);
   mollified.share.resize(areas_ ? mollified.size() : 0);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
+  parallel_items(parts.size(), 1, [&](std::size_t k) {
     std::size_t at = first_[k].row;
     for (const PartRow& each : parts[k]->rows) {
       if (!all && each.share == 0) continue;

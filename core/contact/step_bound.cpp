@@ -156,9 +156,8 @@ void StepBoundFinder::ask_batches(const std::vector<IndexPair>& pairs, const Mot
     if (begin > 0) length = std::min(2 * length, largest_batch);
     const std::size_t n = std::min(length, n_chunks(pairs.size()) - begin);
     parts_.assign(n, Part{all_.first});
-    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
-      ask_chunk<K>(pairs, motion, above, up_to, begin + k, parts_[k]);
-    });
+    parallel_items(n, 1,
+                   [&](std::size_t k) { ask_chunk<K>(pairs, motion, above, up_to, begin + k, parts_[k]); });
     for (const Part& part : parts_) take(part);
   }
 }

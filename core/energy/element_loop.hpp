@@ -1,9 +1,6 @@
 // Parallel loops over elements: gather points, call the element function, write the element's own slots.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -14,6 +11,7 @@
 #include "core/energy/terms.hpp"
 #include "core/math/error.hpp"
 #include "core/math/lower_blocks.hpp"
+#include "core/math/parallel.hpp"
 #include "core/math/precision.hpp"
 
 namespace bb {
@@ -21,10 +19,7 @@ namespace bb {
 /// Calls f(e) for every e in [0, n), in any order, on any thread.
 template <class F>
 void for_each_element(std::size_t n, const F& f) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 64),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t e = range.begin(); e < range.end(); ++e) f(e);
-                    });
+  parallel_items(n, 64, f);
 }
 
 /// The W points of element e, in the scalar T.

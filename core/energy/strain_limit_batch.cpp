@@ -1,8 +1,6 @@
 // Loops over strain-limited triangles and tetrahedra.
 #include "core/energy/strain_limit_batch.hpp"
 
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 
 #include "core/energy/element_loop.hpp"
@@ -132,10 +130,10 @@ template <class T>
 T StrainLimitBatchOf<Rest>::step_bound_in(const PositionsView& x, const PositionsView& dx, T alpha_max,
                                           T park) const {
   const auto smallest = [&](T alpha) {
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, size(), 64), alpha,
-        [&](const tbb::blocked_range<std::size_t>& range, T bound) {
-          for (std::size_t e = range.begin(); e < range.end(); ++e) {
+    return reduce_items(
+        size(), 64, alpha,
+        [&](std::size_t begin, std::size_t end, T bound) {
+          for (std::size_t e = begin; e < end; ++e) {
             const Points<n_points, T> p(x, vertices_, e), step(dx, vertices_, e);
             const auto rest = rest_in<T>(rests_[e]);
             const StrainBand<T> band = band_in<T>(bands_[e]);

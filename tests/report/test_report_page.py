@@ -187,9 +187,13 @@ def test_a_swept_setting_is_a_column_where_it_differs(runs):
     assert tables.pointers(entries) == ["/time/dt_s"]
 
 
-def test_a_run_without_a_record_and_a_file_that_cannot_be_read_are_failures(runs):
-    cases = [{"folder": name, "label": name, "config_id": "0" * 64, "swept": {}} for name in ("log", "never")]
+def list_cases(runs: Path, *names: str) -> None:
+    cases = [{"folder": name, "label": name, "config_id": "0" * 64, "swept": {}} for name in names]
     (runs / "cases.json").write_text(json.dumps({"schema": "barrierbench.cases/1", "sweep": "strip", "cases": cases}))
+
+
+def test_a_run_without_a_record_and_a_file_that_cannot_be_read_are_failures(runs):
+    list_cases(runs, "log", "never", "cubic", "cubic_dynamic", "quadratic")
     (runs / "cubic/run.json").write_text('{"schema": ')
     folder = gathered(runs)
     assert [one.label for one in folder.absent] == ["never"] and folder.entries[0].run == "log"
@@ -198,6 +202,17 @@ def test_a_run_without_a_record_and_a_file_that_cannot_be_read_are_failures(runs
     rows = [[cell.text for cell in row] for row in tables.failures(folder, runs / "report.html").rows]
     assert [row[2] for row in rows] == ["newton_stall", "no record", "unreadable"]
     assert f"{runs / 'cubic/run.json'}: not JSON" in rows[2][4]
+
+
+def test_a_record_of_an_earlier_form_of_the_sweep_is_in_no_number_and_named(runs):
+    list_cases(runs, "log", "cubic", "cubic_dynamic")
+    folder = gathered(runs)
+    assert [entry.run for entry in folder.entries] == ["log", "cubic", "cubic_dynamic"]
+    assert folder.earlier == [runs / "quadratic/run.json"]
+    assert verdict.headline(folder) == verdict.Sentence(
+        "3 of 3 runs ended ok and are valid; 1 record of an earlier sweep file left out.", verdict.BAD)
+    (row,) = [[cell.text for cell in row] for row in tables.failures(folder, runs / "report.html").rows]
+    assert row[0] == "quadratic" and row[2] == "left out"
 
 
 # --- refusals
