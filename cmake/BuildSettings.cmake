@@ -46,7 +46,9 @@ endif()
 # forbids vector square roots; neither changes a value.
 # Eigen writes its sums and products out one by one, as nvcc's code has them: with its own vectors they have another order, and
 # the bits of the program would not be those of a card.
-set(BB_CODE_FLAGS -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fPIC ${BB_MARCH_FLAG} -fno-math-errno -fno-trapping-math)
+# g++ 12 fuses where it vectorises all the same (a b - c beside a b + c becomes vfmaddsub, whatever -ffp-contract says), so it shall
+# not: what is worth lanes has them by name (core/math/lanes.hpp). tests/front/test_contraction.py reads the machine code.
+set(BB_CODE_FLAGS -ffp-contract=off -fno-tree-vectorize -DEIGEN_DONT_VECTORIZE -fPIC ${BB_MARCH_FLAG} -fno-math-errno -fno-trapping-math)
 add_library(bb_settings INTERFACE)
 target_include_directories(bb_settings INTERFACE "${PROJECT_SOURCE_DIR}")
 target_compile_options(bb_settings INTERFACE

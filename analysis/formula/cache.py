@@ -62,7 +62,8 @@ def command() -> list[str]:
     """The compiler of the system and its flags: those of the program, which decide bits and speed."""
     compiler = shlex.split(os.environ.get("CXX") or "c++")
     flags = (
-        "-std=c++20 -O2 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-math -DEIGEN_DONT_VECTORIZE"
+        "-std=c++20 -O2 -DNDEBUG -ffp-contract=off -fno-tree-vectorize -fno-math-errno -fno-trapping-math"
+        " -DEIGEN_DONT_VECTORIZE"
     )
     march = ["-march=x86-64-v3"] if _runs_v3() else []
     return [*compiler, *flags.split(), *march, "-shared", "-fPIC", "-s", f"-I{ROOT}", "-isystem", EIGEN]

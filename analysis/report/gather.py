@@ -84,9 +84,7 @@ class Folder:
     entries: list[Entry]
     unreadable: list[str] = field(default_factory=list)  # file: place, what was found, what is allowed
     absent: list[Absent] = field(default_factory=list)
-    earlier: list[Path] = field(
-        default_factory=list
-    )  # records of no case of their sweep as it is now; not shown
+    earlier: list[Path] = field(default_factory=list)  # records of no case of their sweep as it is now
 
     @cached_property
     def by_run(self) -> dict[str, Entry]:

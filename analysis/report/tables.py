@@ -152,9 +152,7 @@ def failures(folder: Folder, page: Path) -> Table:
         ]
         table.rows.append([*lead, Cell(fault), none, none, none])
     for path in folder.earlier:
-        why = Cell(
-            "no case of its sweep as it is now, left by an earlier form of the sweep file; in no number here"
-        )
+        why = Cell("no case of its sweep as it is now; it is in no other number of this page")
         lead = [Cell(path.parent.name), Cell(path.parent.parent.name), Cell("left out", tone="bad"), why]
         table.rows.append([*lead, none, none, none, none])
     return table
