@@ -105,7 +105,8 @@ TEST(Provenance, SaysWhatThisBinaryIs) {
   EXPECT_EQ(p.argv.size(), 2u);
   EXPECT_EQ(p.threads, 2);
   EXPECT_NE(p.compiler, "");
-  for (const char* flag : {"-ffp-contract=off", "-fno-tree-vectorize", "-fno-math-errno", "-fno-trapping-math"}) {
+  for (const char* flag :
+       {"-ffp-contract=off", "-fno-tree-vectorize", "-fno-math-errno", "-fno-trapping-math"}) {
     EXPECT_NE(p.flags.find(flag), std::string::npos) << flag << " in " << p.flags;
   }
   EXPECT_EQ(p.build_type == "Release", p.flags.find("hinge_batch.cpp: -O3") != std::string::npos) << p.flags;
