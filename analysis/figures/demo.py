@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import multiprocessing
 import os
 import sys
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
@@ -13,9 +15,11 @@ from ..table import as_text, summary_table
 from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
-OF_A_GROUP = (condition, matrix_forms, iterations, gaps, kappa_cycle)  # each draws the runs of one sweep
-_shared: list = []  # records and folder, in a process that draws
 LAYERED = ("demo_drape", "demo_long")  # five layers, each of which has to touch the next
+OF_A_GROUP = [  # each draws the runs of one sweep
+    module.figure for module in (condition, matrix_forms, iterations, gaps, kappa_cycle)
+]
+_shared: list = []  # records and folder, in a process that draws
 
 
 def broken_promises(records: Records) -> list[str]:
@@ -48,9 +52,9 @@ def _share(records: Records, out: Path) -> None:
     _shared[:] = records, out
 
 
-def _picture(group: str, module: str) -> list[Path]:
+def _picture(draw: Callable, group: str) -> list[Path]:
     records, out = _shared
-    return sys.modules[module].figure(records, group, out)
+    return draw(records, group, out)
 
 
 def make_all(runs: Path, out: Path) -> str:
@@ -61,12 +65,12 @@ def make_all(runs: Path, out: Path) -> str:
 def make_all_of(records: Records, out: Path) -> str:
     """The same of records that are loaded."""
     groups = sorted(records.runs["group"].unique())
-    pictures = [(group, module.__name__) for group in groups for module in OF_A_GROUP]
+    of, draw = zip(*itertools.product(groups, OF_A_GROUP), strict=True)
     with ProcessPoolExecutor(
         len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _share, (records, out)
     ) as pool:
         shapes = pool.submit(barrier_shapes.figure, out, records.runs)
-        paths = [path for made in pool.map(_picture, *zip(*pictures, strict=True)) for path in made]
+        paths = [path for made in pool.map(_picture, draw, of) for path in made]
         paths += shapes.result()
     table = summary_table(records)
     table.to_csv(out / "table.csv", index=False)

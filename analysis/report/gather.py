@@ -13,7 +13,7 @@ from pathlib import Path
 from ..errors import UserError
 from ..record_file import RecordError, leaves, named_files, read_record
 from ..records import run_row
-from ..sweeps.cases import read_cases, sighted
+from ..sweeps.cases import read_cases, sighted, split_records
 
 PARALLEL_FROM = 200  # records, from which on reading them is shared by the cores
 SHOWN_FAULTS = 20  # of an error that names what cannot be read
@@ -128,27 +128,21 @@ def _lists(root: Path, found: Folder) -> list[Path]:
     """Records below the folder: those of its sweeps in the order of their cases, then those of no sweep. What
     sweeps lack, and what an earlier form of a sweep file has left there, goes to `found`.
     """
-    paths, sweeps = [], set()
+    paths, lists = [], {}
     for file in sorted(root.rglob("cases.json")):
         try:
-            cases = read_cases(file.parent)
+            lists[file.parent] = read_cases(file.parent)
         except (UserError, KeyError, TypeError, ValueError) as error:
             found.unreadable.append(str(error) if isinstance(error, UserError) else f"{file}: {error!r}")
             continue
-        sweeps.add(file.parent)
-        for case in cases:
+        for case in lists[file.parent]:
             if case.record.is_file():
                 paths.append(case.record)
             else:
                 sighting = sighted(case)
                 found.absent.append(Absent(file.parent.name, case.label, sighting.state, sighting.detail))
-    listed = set(paths)
-    for path in sorted(root.rglob("run.json")):
-        if path.parent.parent not in sweeps:
-            paths.append(path)
-        elif path not in listed:
-            found.earlier.append(path)
-    return paths
+    kept, found.earlier = split_records(root, lists)
+    return list(dict.fromkeys([*paths, *kept]))
 
 
 def _half_written(root: Path) -> list[str]:

@@ -49,20 +49,26 @@ def has_list(folder: Path) -> bool:
     return (folder / "cases.json").is_file()
 
 
+def split_records(root: Path, lists: dict[Path, list[Case]]) -> tuple[list[Path], list[Path]]:
+    """The records below a folder, in the order of their paths: those of a case or of no sweep, and those that
+    an earlier form of a sweep file has left in the sweep's folder. lists: folder of a sweep -> its cases.
+    """
+    named = {case.record for cases in lists.values() for case in cases}
+    kept, earlier = [], []
+    for path in sorted(root.rglob("run.json")):
+        (kept if path in named or path.parent.parent not in lists else earlier).append(path)
+    return kept, earlier
+
+
 def records_below(root: Path) -> list[Path]:
-    """The records below a folder in the order of their paths; of a sweep's folder those of its cases. A sweep
-    file that was changed leaves records of other cases there: a line on stderr names each. Errors: UserError
-    for a list of cases that is none.
+    """The first of split_records; a line on stderr names each of the others. Errors: UserError for a list of
+    cases that is none.
     """
     lists = {path.parent: read_cases(path.parent) for path in sorted(root.rglob("cases.json"))}
-    named = {case.record for cases in lists.values() for case in cases}
-    found = []
-    for path in sorted(root.rglob("run.json")):
-        if path in named or path.parent.parent not in lists:
-            found.append(path)
-        else:
-            print(f"{path.parent}: no case of its sweep as it is now; left out", file=sys.stderr)
-    return found
+    kept, earlier = split_records(root, lists)
+    for path in earlier:
+        print(f"{path.parent}: no case of its sweep as it is now; left out", file=sys.stderr)
+    return kept
 
 
 def read_cases(folder: Path) -> list[Case]:

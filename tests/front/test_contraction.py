@@ -15,6 +15,8 @@ def test_the_compiler_fuses_no_multiply_add_by_itself(program):
     code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", program], check=True, capture_output=True, text=True).stdout
     products = len(re.findall(r"\tv?mul[sp]d\b", code))
     assert products > 5_000, "this is not the code of the pipeline"
+    if not re.search(r"\tvfn?m(?:add|sub)\d", code):
+        pytest.skip("built for processors without fused multiply-add: std::fma is a call there, and nothing can be fused")
     # Alternating signs are the one form that no source asks for (std::fma has one sign), and the one that g++ 12 makes in spite
     # of -ffp-contract=off.
     assert re.findall(r"\tvfm(?:addsub|subadd)\w+", code) == []
