@@ -31,6 +31,8 @@ struct Answer {
   double slope_error = 0;               // of a policy
 };
 
+constexpr InputKind ptx_file{"the PTX of a formula", std::uint64_t{64} << 20};
+
 std::string python() {
   const char* given = std::getenv("BARRIERBENCH_PYTHON");
   return given && *given ? given : BB_SOURCE_DIR "/.venv/bin/python";
@@ -43,13 +45,17 @@ Answer refused(std::string found, std::string allowed) {
   return out;
 }
 
-/// Runs analysis/formula. kind: "shape" or "policy". Errors: none, they are answers.
-Answer ask(const std::string& kind, const std::string& text) {
+json no_answer(std::string found) {
+  return {{"found", std::move(found)},
+          {"allowed",
+           "the environment that ./bench setup makes, or another with sympy named by BARRIERBENCH_PYTHON"}};
+}
+
+/// What analysis/formula answers; `found` and `allowed` where something is wrong. kind: "shape", "policy" or "device".
+json asked(const std::string& kind, const std::string& text) {
   const std::string program = python();
-  const std::string environment =
-      "the environment that ./bench setup makes, or another with sympy named by BARRIERBENCH_PYTHON";
   if (!std::filesystem::exists(program)) {
-    return refused(fmt::format("a formula and no Python at \"{}\"", program), environment);
+    return no_answer(fmt::format("a formula and no Python at \"{}\"", program));
   }
   const Finished done =
       run_process({program, "-m", "analysis.formula"}, json{{"kind", kind}, {"formula", text}}.dump(),
@@ -57,12 +63,15 @@ Answer ask(const std::string& kind, const std::string& text) {
   const std::size_t end = done.out.find_last_not_of('\n');
   const std::string last =
       end == std::string::npos ? "" : done.out.substr(done.out.rfind('\n', end) + 1, end + 1);
-  const json answer = json::parse(last, nullptr, false);
-  if (done.code != 0 || !answer.is_object()) {
-    return refused(fmt::format("a formula that \"{}\" gave no answer to: exit code {}, {}", program,
-                               done.code, shortened(last)),
-                   environment);
-  }
+  json answer = json::parse(last, nullptr, false);
+  if (done.code == 0 && answer.is_object()) return answer;
+  return no_answer(fmt::format("a formula that \"{}\" gave no answer to: exit code {}, {}", program,
+                               done.code, shortened(last)));
+}
+
+/// Of a shape or a policy. Errors: none, they are answers.
+Answer ask(const std::string& kind, const std::string& text) {
+  const json answer = asked(kind, text);
   if (answer.contains("found")) return refused(answer.at("found"), answer.at("allowed"));
   const std::string formula = answer.at("formula");
   return {load_plugin(answer.at("library")),
@@ -97,6 +106,19 @@ const Answer& known(const std::string& kind, std::string_view text, std::string_
   return answer;
 }
 
+/// Of the shape of a formula, asked once for each. Errors: ConfigError without nvcc.
+const DeviceCode& device_code_of(const Shape& shape) {
+  static std::mutex mutex;
+  static std::map<std::string, DeviceCode> made;
+  const std::lock_guard lock(mutex);
+  if (const auto found = made.find(shape.name); found != made.end()) return found->second;
+  const json answer = asked("device", shape.name.substr(formula_prefix.size()));
+  if (answer.contains("found")) {
+    throw ConfigError("/formulation/shape", answer.at("found"), answer.at("allowed"));
+  }
+  return made.emplace(shape.name, DeviceCode{read_input_file(answer.at("ptx"), ptx_file), answer.at("entry")}).first->second;
+}
+
 ParameterList formula_list() {
   ParameterList list;
   list.doc = "A shape as a formula, b in m^2 of the gap d and of d_hat (m).";
@@ -122,6 +144,7 @@ FormulaShape require_formula(std::string_view text, const std::optional<std::str
   FormulaShape out{answer.plugin->shapes.at(0), answer.library};
   out.shape.name = answer.library.name;
   out.shape.doc = "a formula";
+  out.shape.device_code = device_code_of;
   return out;
 }
 

@@ -1,6 +1,7 @@
-"""What the program starts when it meets a formula: a JSON object {"kind": "shape" or "policy", "formula"}
-from the standard input, one to the standard output: formula, label, library, library_sha256, of a shape
-at_zero too, of a policy reads_gap and slope_error_rel; or found and allowed of what is wrong.
+"""What the program starts when it meets a formula: a JSON object {"kind", "formula"} from the standard input,
+one to the standard output. Of kind shape and policy: formula, label, library, library_sha256, of a shape
+at_zero too, of a policy reads_gap and slope_error_rel. Of kind device, the kernel of a shape: entry, ptx (a
+file). Or found and allowed of what is wrong.
 """
 
 from __future__ import annotations
@@ -8,21 +9,33 @@ from __future__ import annotations
 import json
 import sys
 
+from .cache import Compiled
 from .compiled import compiled, compiled_policy
+from .device import device_code
 from .grammar import FormulaError
+
+TOLD = ("formula", "label", "at_zero", "reads_gap", "slope_error_rel", "library_sha256")
+
+
+def _library(made: Compiled) -> dict:
+    known = {key: made.about[key] for key in TOLD if key in made.about}
+    return {**known, "library": str(made.library)}
+
+
+ANSWERS = {
+    "shape": lambda formula: _library(compiled(formula)),
+    "policy": lambda formula: _library(compiled_policy(formula)),
+    "device": device_code,
+}
 
 
 def main() -> int:
     asked = json.load(sys.stdin)
     try:
-        make = {"shape": compiled, "policy": compiled_policy}[asked["kind"]]
-        made = make(asked["formula"])
+        answer = ANSWERS[asked["kind"]](asked["formula"])
     except FormulaError as error:
-        print(json.dumps({"found": error.found, "allowed": error.allowed}))
-        return 0
-    told = ("formula", "label", "at_zero", "reads_gap", "slope_error_rel", "library_sha256")
-    known = {key: made.about[key] for key in told if key in made.about}
-    print(json.dumps({**known, "library": str(made.library)}))
+        answer = {"found": error.found, "allowed": error.allowed}
+    print(json.dumps(answer))
     return 0
 
 

@@ -25,6 +25,7 @@ HEADERS = (
     "barriers/shapes/shape_family.hpp",
     "core/barrier/shape.hpp",
     "core/barrier/stiffness_sums.hpp",
+    "core/math/device_code.hpp",
     "core/math/host_device.hpp",
     "core/math/lanes.hpp",
     "core/math/lanes_log.hpp",
@@ -83,10 +84,10 @@ def key_of(formula: Formula, words: list[str]) -> str:
     """
     code = sorted(Path(__file__).parent.glob("*.py"))
     files = [digests.of_file(path) for path in [*code, *(ROOT / header for header in HEADERS)]]
-    return digests.of_text("\n".join([formula.text, _version(words[0]), *words, *files]))
+    return digests.of_text("\n".join([formula.text, version_of(words[0]), *words, *files]))
 
 
-def _version(compiler: str) -> str:
+def version_of(compiler: str) -> str:
     try:
         return subprocess.run(
             [compiler, "--version"], check=True, capture_output=True, text=True, timeout=30
@@ -117,7 +118,8 @@ def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[
         with tempfile.TemporaryDirectory(dir=place, prefix="making-") as name:
             there = Path(name)
             (there / "formula.cpp").write_text(source)
-            _compile(words, there)
+            refusal = f"a compiler of C++20 ({shlex.join(words)})"
+            compile_there([*words, "-o", "formula.so", "formula.cpp"], there, refusal)
             about = {
                 **about,
                 **judge(there / "formula.so"),
@@ -127,16 +129,21 @@ def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[
             for suffix in ("cpp", "so", "json"):  # the JSON last: it says that the others are there
                 (there / f"formula.{suffix}").replace(place / f"{key}.{suffix}")
     except OSError as error:
-        raise FormulaError(
-            f"the folder {place} ({error})", "a folder to write to, or another in BARRIERBENCH_CACHE"
-        ) from None
+        raise not_written(place, error) from None
     return Compiled(place / f"{key}.so", about)
 
 
-def _compile(words: list[str], there: Path) -> None:
+def not_written(place: Path, error: OSError) -> FormulaError:
+    return FormulaError(
+        f"the folder {place} ({error})", "a folder to write to, or another in BARRIERBENCH_CACHE"
+    )
+
+
+def compile_there(words: list[str], there: Path, allowed: str) -> None:
+    """Runs a compiler in a folder. allowed: what would do. Errors: FormulaError with the compiler's words."""
     try:
         done = subprocess.run(
-            [*words, "-o", "formula.so", "formula.cpp"],
+            words,
             check=False,
             cwd=there,
             capture_output=True,
@@ -149,6 +156,4 @@ def _compile(words: list[str], there: Path) -> None:
         ) from None
     if done.returncode != 0:
         first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[:200])
-        raise FormulaError(
-            f"a compiler that refuses the formula: {first}", f"a compiler of C++20 ({shlex.join(words)})"
-        )
+        raise FormulaError(f"a compiler that refuses the formula: {first}", allowed)

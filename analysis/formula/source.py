@@ -1,5 +1,5 @@
-"""C++ of a formula: a plugin (core/plugin/barrierbench_plugin.h) whose shape is made like a built-in one,
-from u, e, l (barriers/shapes/normalized_gap.hpp), with common subexpressions computed once.
+"""C++ of a formula: a struct that is made like a built-in shape, from u, e, l (barriers/shapes/normalized_gap.hpp), with
+common subexpressions computed once; in a plugin (core/plugin/barrierbench_plugin.h), and in a kernel for a card.
 """
 
 from __future__ import annotations
@@ -15,9 +15,31 @@ from .symbolic import L, Terms, U
 INVERSE = sp.Symbol("r", positive=True)  # 1/u
 MOST_FACTORS = 8  # of a power that is written as a product
 
-TEMPLATE = """\
+HEAD = """\
 // {formula}
 // Made by analysis/formula; not edited. e = 1 - u, u = d/d_hat, l = -ln u, r = 1/u.
+"""
+STRUCT = """\
+struct Formula {{
+  static constexpr bool infinite_at_zero = {infinite};
+
+  template <class T>
+  BB_HD static bb::ShapeTerms<T> eval(T d, T d_hat) {{
+    if (d >= d_hat) return {{T(0), T(0), T(0)}};
+    if (d == T(0)) return {{d_hat * d_hat * T({zero[0]}), d_hat * T({zero[1]}), T({zero[2]})}};
+    const bb::shapes::NormalizedGap<T> gap(d, d_hat);
+    return {terms}(gap, d_hat, {minus_log});
+  }}
+  /// As built-in shapes have it where it takes nothing but + - * / and the logarithm: then four rows at a time.
+  template <class T>
+  BB_HD static bb::ShapeTerms<T> {terms}(const bb::shapes::NormalizedGap<T>& gap, T d_hat, [[maybe_unused]] T l) {{
+    using std::atan, std::cos, std::cosh, std::exp, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+    [[maybe_unused]] const T u = gap.u, e = gap.e;
+{inverse}{common}    return {{d_hat * d_hat * ({b}), d_hat * ({db}), T({d2b})}};
+  }}
+}};
+"""
+PLUGIN = """\
 #include <cmath>
 #include <limits>
 
@@ -27,23 +49,7 @@ TEMPLATE = """\
 
 namespace {{
 
-struct Formula {{
-  template <class T>
-  static bb::ShapeTerms<T> eval(T d, T d_hat) {{
-    if (d >= d_hat) return {{T(0), T(0), T(0)}};
-    if (d == T(0)) return {{d_hat * d_hat * T({zero[0]}), d_hat * T({zero[1]}), T({zero[2]})}};
-    const bb::shapes::NormalizedGap<T> gap(d, d_hat);
-    return {terms}(gap, d_hat, {minus_log});
-  }}
-  /// As built-in shapes have it where it takes nothing but + - * / and the logarithm: then four rows at a time.
-  template <class T>
-  static bb::ShapeTerms<T> {terms}(const bb::shapes::NormalizedGap<T>& gap, T d_hat, [[maybe_unused]] T l) {{
-    using std::atan, std::cos, std::cosh, std::exp, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
-    [[maybe_unused]] const T u = gap.u, e = gap.e;
-{inverse}{common}    return {{d_hat * d_hat * ({b}), d_hat * ({db}), T({d2b})}};
-  }}
-}};
-
+{struct}
 void eval_double(void* self, size_t n, const double* d, const double* d_hat, double* b, double* db, double* d2b) {{
   bb::{batch}<Formula{of_double}>(self, n, d, d_hat, b, db, d2b);
 }}
@@ -70,6 +76,22 @@ constexpr bb_plugin plugin = {{.abi_version = BB_PLUGIN_ABI_VERSION,
 }}  // namespace
 
 extern "C" const bb_plugin* barrierbench_plugin(void) {{ return &plugin; }}
+"""
+ENTRY = "barrierbench_shape"  # the kernel of the device form
+DEVICE = """\
+#include <cmath>
+#include <limits>
+
+#include "core/cuda/device_block.cuh"
+#include "core/resident/contact/given_shape.hpp"
+#include "core/resident/contact/shape_kernels.hpp"
+
+{struct}
+extern "C" __global__ void __launch_bounds__(bb::exec::block_threads)
+    {entry}(bb::exec::Index n, const __grid_constant__ bb::resident::EvaluateGivenShape f) {{
+  const auto i = static_cast<bb::exec::Index>(blockIdx.x) * bb::exec::block_threads + threadIdx.x;
+  if (i < n) bb::resident::EvaluateShape<Formula>{{f.rows, f.argument}}(i);
+}}
 """
 
 
@@ -122,6 +144,28 @@ class Printer(CXX17CodePrinter):
 
 def cpp(name: str, formula: str, terms: Terms, ends: Ends) -> str:
     """The source of the plugin whose shape is called `name`."""
+    parts = _parts(terms, ends)
+    batch = "lane_batch" if parts["lanes"] else "shape_batch"
+    return HEAD.format(formula=formula) + PLUGIN.format(
+        formula=formula,
+        name=name,
+        struct=STRUCT.format(**parts),
+        batch=batch,
+        of_double="" if parts["lanes"] else ", double",
+        smoothness=ends.smoothness,
+        infinite=parts["infinite"],
+    )
+
+
+def cu(formula: str, terms: Terms, ends: Ends) -> str:
+    """The source of its kernel, ENTRY."""
+    return HEAD.format(formula=formula) + DEVICE.format(
+        struct=STRUCT.format(**_parts(terms, ends)), entry=ENTRY
+    )
+
+
+def _parts(terms: Terms, ends: Ends) -> dict:
+    """What STRUCT is filled with, and whether four rows may be taken at a time."""
     inverted = [sp.sympify(x).replace(_is_inverse, lambda x: INVERSE ** (-x.exp)) for x in terms.precise]
     inverted = with_constants(inverted)
     common, last = sp.cse(inverted, symbols=sp.numbered_symbols("c"), optimizations="basic")
@@ -129,22 +173,18 @@ def cpp(name: str, formula: str, terms: Terms, ends: Ends) -> str:
     simple = all(_is_rational(x) for x in [*last, *(y for _, y in common)])
     printer = Printer()
     lanes = simple and L in used  # without a logarithm the compiler does as well by itself
-    return TEMPLATE.format(
-        formula=formula,
-        name=name,
-        zero=[_literal(x) for x in ends.at_zero],
-        terms="terms" if lanes else "scalar_terms",
-        minus_log="gap.minus_log()" if L in used else "T(0)",
-        inverse="    const T r = T(1.0) / u;\n" if INVERSE in used else "",
-        common="".join(f"    const T {symbol} = {printer.doprint(x)};\n" for symbol, x in common),
-        b=printer.doprint(last[0]),
-        db=printer.doprint(last[1]),
-        d2b=printer.doprint(last[2]),
-        batch="lane_batch" if lanes else "shape_batch",
-        of_double="" if lanes else ", double",
-        smoothness=ends.smoothness,
-        infinite=int(math.isinf(ends.at_zero[0])),
-    )
+    return {
+        "zero": [_literal(x) for x in ends.at_zero],
+        "terms": "terms" if lanes else "scalar_terms",
+        "minus_log": "gap.minus_log()" if L in used else "T(0)",
+        "inverse": "    const T r = T(1.0) / u;\n" if INVERSE in used else "",
+        "common": "".join(f"    const T {symbol} = {printer.doprint(x)};\n" for symbol, x in common),
+        "b": printer.doprint(last[0]),
+        "db": printer.doprint(last[1]),
+        "d2b": printer.doprint(last[2]),
+        "infinite": int(math.isinf(ends.at_zero[0])),
+        "lanes": lanes,
+    }
 
 
 def with_constants(terms: list[sp.Expr]) -> list[sp.Expr]:

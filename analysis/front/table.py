@@ -66,7 +66,7 @@ TABLE = (
     Verb("mesh", "make", ENVIRONMENT, "mesh_file", "IN OUT.ply", "a mesh of Gmsh (MSH 2.2, 4.1) or VTK (VTU), tetrahedra too, as PLY for /scene/bodies/N/mesh/file; tetrahedra within a closed surface", "./bench mesh gear.msh gear.ply"),
     Verb("setup", "develop", ENVIRONMENT, "", "", "packages, compiler cache, Python environment; instant when all is there", "./bench setup"),
     Verb("build", "develop", ENVIRONMENT, "front.build", "[PRESET]", "configures and builds (release by default; dev, sanitize, cuda-compile)", "./bench build sanitize", own_help=False),
-    Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [--browser] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate; --browser installs chromium first, so that the player is tested in it", "./bench test -R eval", own_help=False),
+    Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [--browser] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate; --browser installs chromium first, so that the player is tested in it", "./bench test -L eval", own_help=False),
     Verb("format", "develop", ENVIRONMENT, "front.format", "", "clang-format every C++ file and ruff every Python file of analysis/ and python/, in place", "./bench format", own_help=False),
     Verb("tidy", "develop", ENVIRONMENT, "front.tidy", "[FILES]", "clang-tidy the sources (all, or the files named)", "./bench tidy core/record/hash.cpp", own_help=False),
     Verb("rooms", "develop", ENVIRONMENT, "front.rooms", "", "the rooms of the code, what each one includes, lowest first; fails on a circle or an undeclared one", "./bench rooms", own_help=False),

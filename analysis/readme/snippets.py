@@ -82,9 +82,29 @@ def _helped(verb: str) -> subprocess.CompletedProcess:
     return subprocess.run(command, check=False, capture_output=True, text=True, timeout=SECONDS)
 
 
+@functools.cache
+def _tested_rooms() -> set[str]:
+    """The labels of ctest: what `bench test -L` takes."""
+    files = (ROOT / "tests").rglob("CMakeLists.txt")
+    return {
+        name for file in files for name in re.findall(r"^\s*bb_test\((\w+)", file.read_text(), re.MULTILINE)
+    }
+
+
+def _test_fault(rest: list[str]) -> str:
+    """Of `./bench test ...`: a room is named by -L, and there."""
+    if "-R" in rest:
+        return "-R takes names of test cases, which change; -L takes a room"
+    rooms = [rest[k + 1] for k, word in enumerate(rest[:-1]) if word == "-L"]
+    unknown = [room for room in rooms if room not in _tested_rooms()]
+    return f"no tests of a room {unknown[0]}" if unknown else ""
+
+
 def _command_fault(words: list[str]) -> str:
     """Of `./bench VERB ...`; empty when it is well."""
     verb, rest = words[1], words[2:]
+    if verb == "test" and (fault := _test_fault(rest)):
+        return fault
     if missing := _missing_files(rest):
         return f"{missing[0]}: not there"
     row = verbs.find(verb)
@@ -134,6 +154,8 @@ def _shell_faults(snippet: Snippet) -> list[str]:
                 fault = "" if done.returncode == 0 else _told(done)
             elif words[0].endswith("bench") and len(words) > 1:
                 fault = _command_fault(words) or _config_fault(words)
+            elif words[0] == "python3" and words[1:] and (ROOT / words[1]).is_file():
+                fault = "the system's Python may lack the packages: .venv/bin/python"
             else:
                 fault = "" if (ROOT / words[0]).exists() or words[0] in TOOLS else f"{words[0]}: not there"
             if fault:
@@ -156,10 +178,9 @@ def _json_faults(snippet: Snippet) -> list[str]:
     except ValueError as error:
         return [f"{snippet.place}: not JSON: {error}"]
     kind = str(data.get("schema", "")).partition("/")[0].removeprefix("barrierbench.")
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "scenes").symlink_to(ROOT / "configs/scenes")
-        file = Path(folder) / "sweeps" / "snippet.json"
-        file.parent.mkdir()
+    with tempfile.TemporaryDirectory() as folder:  # as if the file lay at the root of the tree
+        (Path(folder) / "configs").symlink_to(ROOT / "configs")
+        file = Path(folder) / "snippet.json"
         file.write_text(snippet.text)
         if kind not in ("", "config", "sweep"):
             return _spec_faults(snippet, file, kind)

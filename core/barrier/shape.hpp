@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/math/device_code.hpp"
 #include "core/math/host_device.hpp"
 
 namespace bb {
@@ -36,6 +37,9 @@ struct Shape {
   ShapeBatch<double> potential_double = nullptr;
   ShapeBatch<float> potential_float = nullptr;
   void* self = nullptr;
+  /// Of a shape that is no kernel of the program: its kernel, made when it is asked for and there as long as the
+  /// process (core/resident/contact/given_shape.hpp). Null: there is none. Errors: ConfigError.
+  const DeviceCode& (*device_code)(const Shape&) = nullptr;
 };
 
 /// What the shape is evaluated on; part of a formulation's identity (docs/design.md).

@@ -61,11 +61,7 @@ struct DeviceBlock {
   }
 };
 
-/// Blocks of a grid that runs n items. The card's limit of 2^31 - 1 is 5e11 items, more than any memory holds.
-__host__ __device__ constexpr Index blocks_for(Index n) { return (n + block_threads - 1) / block_threads; }
-constexpr Index most_blocks = 0x7fffffff;
-
-/// f(i) for i in [0, n): blocks_for(n) blocks.
+/// f(i) for i in [0, n): a thread an item.
 template <class F>
 __global__ void __launch_bounds__(block_threads) run_each(Index n, const __grid_constant__ F f) {
   const Index i = static_cast<Index>(blockIdx.x) * block_threads + static_cast<Index>(threadIdx.x);

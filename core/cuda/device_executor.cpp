@@ -6,6 +6,7 @@
 
 #include "core/cuda/device.hpp"
 #include "core/cuda/kernel_table.hpp"
+#include "core/cuda/loaded_code.hpp"
 
 namespace bb::cuda {
 
@@ -99,7 +100,12 @@ void DeviceExecutor::remember(const exec::KernelInfo& kernel) {
 
 // --- launches
 
-void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void* f) {
+const DeviceKernel& DeviceExecutor::device_kernel(const exec::KernelInfo& kernel) {
+  if (kernel.code) {
+    std::shared_ptr<const DeviceKernel>& loaded = loaded_[kernel.code];
+    if (!loaded) loaded = load_code(kernel);
+    return *loaded;
+  }
   const DeviceKernel* found = kernel_table().find(kernel.type);
   if (!found) {
     throw ExecutionError(kernel.name() + ": no device version; is it in kernels.inc of its room?");
@@ -108,9 +114,14 @@ void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void*
     throw ExecutionError(kernel.name() + ": " + std::to_string(kernel.bytes) + " bytes on the host, " +
                          std::to_string(found->bytes) + " on the device");
   }
-  count_local_memory(*found);
+  return *found;
+}
+
+void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void* f) {
+  const DeviceKernel& found = device_kernel(kernel);
+  count_local_memory(found);
   const auto call = [&] {
-    const auto code = found->launch(f, n, stream_);
+    const int code = cuda::launch(found, f, n, stream_);
     if (code == cudaSuccess) return;
     if (code == cudaErrorMemoryAllocation) refuse_local_memory(kernel);
     check(code, kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));

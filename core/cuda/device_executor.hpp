@@ -61,6 +61,7 @@ class DeviceExecutor : public exec::Executor {
   void wait(const std::string& what);
   void timed(const exec::KernelInfo& kernel, const std::function<void()>& call);
   void remember(const exec::KernelInfo& kernel);
+  const DeviceKernel& device_kernel(const exec::KernelInfo& kernel);
   void count_local_memory(const DeviceKernel& kernel);
   [[noreturn]] void refuse_local_memory(const exec::KernelInfo& kernel) const;
 
@@ -70,6 +71,7 @@ class DeviceExecutor : public exec::Executor {
   std::vector<const exec::KernelInfo*> captured_;
   std::deque<const exec::KernelInfo*> unfinished_;  // the last ones since the last synchronisation
   std::map<std::string, KernelTime> times_;
+  std::map<const DeviceCode*, std::shared_ptr<const DeviceKernel>> loaded_;
   std::unordered_set<const DeviceKernel*> counted_;  // kernels whose local memory is
   std::size_t local_bytes_ = 0;                      // of the one that needs the most
   exec::Index scan_part_;

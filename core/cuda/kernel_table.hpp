@@ -11,14 +11,14 @@ struct CUstream_st;  // what a cudaStream_t points at
 
 namespace bb::cuda {
 
-/// Puts n items, or n blocks, of the kernel at f on a stream. @return a cudaError_t; 0 is success
-using LaunchKernel = int (*)(const void* f, exec::Index n, CUstream_st* stream);
-
 struct DeviceKernel {
-  LaunchKernel launch;
-  std::size_t bytes;     // of the functor as the device compiler lays it out
   const void* function;  // as the run time knows it
+  std::size_t bytes;     // of the functor as the device compiler lays it out
+  bool blocks;           // run_blocks, else run_each
 };
+
+/// Puts n items, or n blocks, of the functor at f on a stream. @return a cudaError_t; 0 is success
+int launch(const DeviceKernel& kernel, const void* f, exec::Index n, CUstream_st* stream);
 
 class KernelTable {
  public:

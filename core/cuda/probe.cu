@@ -1,7 +1,7 @@
 #include <cuda_runtime_api.h>
 
 #include "core/cuda/device.hpp"
-#include "core/cuda/launch.cuh"
+#include "core/cuda/table_entries.cuh"
 #include "core/cuda/self_test.hpp"
 
 namespace bb::cuda {
@@ -42,7 +42,7 @@ std::string run_self_test() {
   if (done("cudaMalloc", cudaMalloc(&test.out, sizeof got)) &&
       done("cudaMalloc", cudaMalloc(&test.least, sizeof least)) &&
       done("cudaMemcpy", cudaMemcpy(test.least, &least, sizeof least, cudaMemcpyHostToDevice)) &&
-      done("the kernel of the self-test", launch_each<SelfTest>(&test, n, nullptr)) &&
+      done("the kernel of the self-test", launch(each_kernel<SelfTest>(), &test, n, nullptr)) &&
       done("the kernel of the self-test", cudaDeviceSynchronize()) &&
       done("cudaMemcpy", cudaMemcpy(got, test.out, sizeof got, cudaMemcpyDeviceToHost))) {
     done("cudaMemcpy", cudaMemcpy(&least, test.least, sizeof least, cudaMemcpyDeviceToHost));

@@ -39,6 +39,12 @@ class Executor {
   void each(Index n, const F& f) {
     if (n > 0) launch(each_info<F>(), n, &f);
   }
+  /// The same of a kernel whose device code came after the program was built. info: of F; it outlives the launches of
+  /// graphs.
+  template <class F>
+  void each(Index n, const F& f, const KernelInfo& info) {
+    if (n > 0) launch(info, n, &f);
+  }
   /// Runs n blocks of f.
   template <class F>
   void blocks(Index n, const F& f) {

@@ -6,6 +6,7 @@
 #include <typeinfo>
 
 #include "core/exec/kernel.hpp"
+#include "core/math/device_code.hpp"
 
 namespace bb::exec {
 
@@ -18,6 +19,7 @@ struct KernelInfo {
   std::size_t bytes;  // of the struct
   bool blocks;        // else each
   RunRange run;
+  const DeviceCode* code = nullptr;  // of a kernel that no list of the program has; null: the program's own
   /// As C++ writes it: "bb::resident::SpmvDot".
   std::string name() const;
 };

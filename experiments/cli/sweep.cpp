@@ -19,7 +19,7 @@ constexpr const char* sweep_help =
 {
   "schema": "barrierbench.sweep/1",
   "name": "my_sweep",
-  "base": "../scenes/drape.json",
+  "base": "configs/scenes/drape.json",
   "set": {"/time/steps": 12},
   "axes": [
     {"pointer": "/time/dt_s", "values": [0.01, 0.005]},

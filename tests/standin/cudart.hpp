@@ -31,6 +31,7 @@ struct Counts {
   int graphs = 0;    // instantiated
   int replays = 0;
   int waits = 0;
+  int libraries = 0;       // of device code, loaded and not unloaded
   std::size_t in_use = 0;  // device memory
   std::string fault;       // what a kernel did wrong, in the words of the PTX machine
 };

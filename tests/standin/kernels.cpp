@@ -21,6 +21,12 @@ ptx::Machine& machine() {
   return one;
 }
 
+/// What cudaLibraryLoadData was given. Its kernel is that of a translated module with the same entry; the address of `entry`
+/// is its handle.
+struct Library {
+  std::string text, entry;
+};
+
 struct Launch {
   const ptx::Kernel* kernel;
   unsigned blocks, threads;
@@ -122,6 +128,33 @@ cudaError_t __cudaLaunchKernel(cudaKernel_t kernel, dim3 grid, dim3 block, void*
 cudaError_t cudaLaunchKernel(const void* stub, dim3 grid, dim3 block, void** arguments, size_t shared,
                              cudaStream_t stream) {
   return launch(stub, grid, block, arguments, shared, stream);
+}
+
+// PTX that comes at run time. A card would compile it; here only its entries are looked for.
+cudaError_t cudaLibraryLoadData(cudaLibrary_t* library, const void* code, cudaJitOption*, void**, unsigned,
+                                cudaLibraryOption*, void**, unsigned) {
+  const std::string text = static_cast<const char*>(code);
+  if (text.find(".version") == std::string::npos) return standin::result(cudaErrorInvalidPtx);
+  *library = reinterpret_cast<cudaLibrary_t>(new Library{text, ""});
+  ++standin::counts().libraries;
+  return cudaSuccess;
+}
+cudaError_t cudaLibraryGetKernel(cudaKernel_t* kernel, cudaLibrary_t library, const char* name) {
+  Library& loaded = *reinterpret_cast<Library*>(library);
+  if (loaded.text.find(std::string(".entry ") + name + "(") == std::string::npos) {
+    return standin::result(cudaErrorSymbolNotFound);
+  }
+  loaded.entry = name;
+  names()[&loaded.entry] = name;
+  *kernel = reinterpret_cast<cudaKernel_t>(&loaded.entry);
+  return cudaSuccess;
+}
+cudaError_t cudaLibraryUnload(cudaLibrary_t library) {
+  Library* loaded = reinterpret_cast<Library*>(library);
+  names().erase(&loaded->entry);
+  delete loaded;
+  --standin::counts().libraries;
+  return cudaSuccess;
 }
 
 }  // extern "C"

@@ -2,35 +2,11 @@
 
 #include "barriers/shapes/shape_list.hpp"
 #include "core/math/error.hpp"
+#include "core/resident/contact/given_shape.hpp"
 #include "core/resident/contact/shape_kernels.hpp"
 
 namespace bb::resident {
 namespace {
-
-/// EvaluateShape of a shape that is known as a batch call alone: of a plugin, of a formula. It runs in the memory of the host, so
-/// kernels.inc has no line of it.
-struct EvaluateGivenShape {
-  RowView rows;
-  Argument argument;
-  ShapeBatch<double> call;
-  void* self;
-  bool infinite_at_zero;
-  void operator()(Index r) const {
-    const double d = rows.d[r], d_hat = rows.d_hat[r];
-    ShapeTerms<double> terms{};
-    if (argument == Argument::gap) {
-      call(self, 1, &d, &d_hat, &terms.b, &terms.db, &terms.d2b);
-    } else {
-      const double d_sq = d * d, d_hat_sq = d_hat * d_hat;
-      call(self, 1, &d_sq, &d_hat_sq, &terms.b, &terms.db, &terms.d2b);
-      chain_squared_gap(infinite_at_zero, d, d_sq, d_hat_sq, terms.b, terms.db, terms.d2b);
-    }
-    const double kappa = rows.kappa ? rows.kappa[r] : rows.uniform_kappa;
-    rows.energy[r] = kappa * terms.b;
-    rows.push[r] = kappa * terms.db;
-    rows.stretch[r] = kappa * terms.d2b;
-  }
-};
 
 template <class S>
 void launch_shape(exec::Executor& executor, const RowView& rows, Argument argument) {
@@ -58,18 +34,19 @@ constexpr Entry folded[] = {BB_FOR_EACH_FOLDED_SHAPE(BB_ENTRY)};
 BB_FOR_EACH_FOLDED_SHAPE(BB_ENTRY)
 #undef BB_ENTRY
 
+/// Null where there is none and the shape may be called or has device code of its own.
 template <std::size_t n>
-Launch find(const Entry (&entries)[n], const std::string& name, const char* what, bool host_calls) {
+Launch find(const Entry (&entries)[n], const std::string& name, const char* what, bool otherwise) {
   std::string names;
   for (const Entry& entry : entries) {
     if (entry.name == name) return entry.launch;
     names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
-  if (host_calls) return nullptr;
+  if (otherwise) return nullptr;
   throw ConfigError(
       "shape", "\"" + name + "\", which has no kernel " + what,
       "one of " + names +
-          " on a card; shapes of plugins, formulas and other exponents run with device cpu or host");
+          ", or a formula, on a card; shapes of plugins and other exponents run with device cpu or host");
 }
 
 }  // namespace
@@ -83,15 +60,21 @@ ResidentBarrier::ResidentBarrier(const BarrierFunction& barrier, bool potential,
   if (potential && argument_ != Argument::gap) {
     throw ConfigError("argument", "squared_gap with a potential", "gap");
   }
+  const bool own_code = barrier.shape.device_code && !host_calls;
   launch_ = potential ? find(folded, barrier.shape.name, "of a potential", false)
-                      : find(plain, barrier.shape.name, "of its own", host_calls);
+                      : find(plain, barrier.shape.name, "of its own", host_calls || own_code);
+  if (launch_ || !own_code) return;
+  exec::KernelInfo given = exec::each_info<EvaluateGivenShape>();
+  given.code = &barrier.shape.device_code(barrier.shape);
+  loaded_ = std::make_shared<const exec::KernelInfo>(given);
 }
 
 void ResidentBarrier::evaluate(exec::Executor& executor, ResidentRows& rows) const {
   const RowView view = rows.view();
   if (launch_) return launch_(executor, view, argument_);
-  executor.each(
-      view.n, EvaluateGivenShape{view, argument_, shape_.batch_double, shape_.self, shape_.infinite_at_zero});
+  const EvaluateGivenShape given{view, argument_, shape_.batch_double, shape_.self, shape_.infinite_at_zero};
+  if (loaded_) return executor.each(view.n, given, *loaded_);
+  executor.each(view.n, given);
 }
 
 }  // namespace bb::resident

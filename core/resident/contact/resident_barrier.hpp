@@ -1,6 +1,8 @@
 // A barrier of the registry on an executor.
 #pragma once
 
+#include <memory>
+
 #include "core/barrier/shape.hpp"
 #include "core/exec/executor.hpp"
 #include "core/resident/contact/resident_rows.hpp"
@@ -10,15 +12,17 @@ namespace bb::resident {
 class ResidentBarrier {
  public:
   /// potential: whether kappa depends on the gap and is folded in. host_calls: columns are in the host's memory, so that a
-  /// shape without a kernel (of a plugin, of a formula, with an exponent) is called for every row. Errors: ConfigError for
-  /// such a shape elsewhere, for the article's literal evaluation, for float, and for a potential that the shape has not.
+  /// shape without a kernel (of a plugin, of a formula, with an exponent) is called for every row. Elsewhere it needs device
+  /// code of its own. Errors: ConfigError where it has none, for the article's literal evaluation, for float, and for a
+  /// potential that the shape has not.
   ResidentBarrier(const BarrierFunction& barrier, bool potential, bool host_calls = false);
   /// Fills energy, push and stretch of the rows from d, d_hat and kappa.
   void evaluate(exec::Executor& executor, ResidentRows& rows) const;
 
  private:
   using Launch = void (*)(exec::Executor&, const RowView&, Argument);
-  Launch launch_ = nullptr;  // null: by the calls of shape_
+  Launch launch_ = nullptr;                         // null: by the calls of shape_, or
+  std::shared_ptr<const exec::KernelInfo> loaded_;  // by its device code
   Argument argument_;
   Shape shape_;
 };
