@@ -18,6 +18,7 @@ MOST_FACTORS = 8  # of a power that is written as a product
 HEAD = """\
 // {formula}
 // Made by analysis/formula; not edited. e = 1 - u, u = d/d_hat, l = -ln u, r = 1/u.
+// clang-format off
 """
 STRUCT = """\
 struct Formula {{

@@ -61,13 +61,16 @@ Names missing(const Names& from, const Names& of) {
   return out;
 }
 
+/// Launched, and in no list: its device code comes with each shape (core/resident/contact/given_shape.hpp).
+const Names given = {entry("each", "bb::resident::EvaluateGivenShape")};
+
 TEST(KernelLists, NameEveryKernelThatIsLaunched) {
   const Names of_rooms = launched(BB_ROOM_FILES);
   EXPECT_GT(of_rooms.size(), 100u);
-  EXPECT_EQ(missing(listed(), of_rooms), Names());
+  EXPECT_EQ(missing(listed(), of_rooms), given);
   const Names of_tests = launched(BB_TEST_FILES);
   EXPECT_GT(of_tests.size(), 100u);
-  EXPECT_EQ(missing(listed(), of_tests), Names());
+  EXPECT_EQ(missing(listed(), of_tests), given);
 }
 
 // What nothing launches costs the device compiler its time.
