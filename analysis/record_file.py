@@ -101,7 +101,8 @@ class _Rule:
         self.number, self.integer = "number" in self.kinds, "integer" in self.kinds
         self.required = rule.get("required", ())
         # Most values are of a type that needs no second look, or numbers only held against a minimum.
-        self.counted = {int, float} if self.number else {int} if self.integer else set()
+        numbers = {int, float} if self.number else {int} if self.integer else set()
+        self.counted = numbers if self.words is None else set()
         self.least = -math.inf if self.minimum is None else self.minimum
         self.plain = set(self.types) - {dict, list} if self.words is None else set()
 
@@ -203,7 +204,8 @@ def _needed_fault(record: dict) -> str:
 
 def _parsed(path: Path) -> tuple[object, bool]:
     """What a JSON file holds, and whether its numbers are known to be finite: orjson takes only JSON in
-    which all are, in a third of the time; what it refuses, Python's own reader takes or says why not.
+    which all are, in a third of the time; what it refuses, Python's own reader takes or says why not. An
+    integer beyond 64 bits, which no record of ours has, is read as the nearest double.
     """
     try:
         text = path.read_bytes()
@@ -222,7 +224,13 @@ def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = Fals
     another type or with an unknown word, a field that is missing.   Cost: of the size.
     """
     path = Path(path)
-    record, finite = _parsed(path)
+    try:
+        return _judged(path, *_parsed(path), foreign, allow_not_finite)
+    except RecursionError:
+        raise RecordError(f"{path}: nested too deeply; allowed: a record as it was written") from None
+
+
+def _judged(path: Path, record: object, finite: bool, foreign: bool, allow_not_finite: bool) -> dict:
     if not isinstance(record, dict):
         raise RecordError(f"{path}: not JSON of a record: found {_shown(record)}; allowed: an object")
     _check_schema(record, path)

@@ -13,7 +13,7 @@ import pandas as pd
 
 from . import fields
 from .record_file import RecordError, other_meanings, read_record, read_trace
-from .sweeps.cases import records_below
+from .sweeps.cases import has_list, records_below
 
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
 
@@ -66,15 +66,15 @@ def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
 
 
 def load(root: str | Path, files: Iterable[Path] | None = None) -> Records:
-    """Every record below `root`, or these of them, in the order of their paths; of a sweep's folder those of
-    its cases.
+    """Every record below `root`, or these of them; of a sweep's folder those of its cases, in their order,
+    whenever they ran. Others of a group are in the order in which they began.
 
     A record that record_file.py refuses, or whose trace is not the one that it names, is left out:
     `unreadable` and a line on stderr say why. Raises RecordError when no record can be read.
     """
     root = Path(root)
     runs, steps, trace, cond, unreadable = [], [], [], [], []
-    for path in sorted(records_below(root) if files is None else files):
+    for path in records_below(root) if files is None else sorted(files):
         try:
             record = read_record(path)
             lines = read_trace(record, path.parent)
@@ -86,6 +86,7 @@ def load(root: str | Path, files: Iterable[Path] | None = None) -> Records:
             run_row(record, run)
             | {
                 "plugin_files": _plugins(record, path.parent),
+                "begun": "" if has_list(path.parent.parent) else record["status"].get("started_utc", ""),
                 "config_dt_s": ((record.get("config") or {}).get("time") or {}).get("dt_s"),
             }
         )
@@ -102,7 +103,8 @@ def load(root: str | Path, files: Iterable[Path] | None = None) -> Records:
     if unreadable:
         print(f"{root}: {len(unreadable)} of {len(unreadable) + len(runs)} records left out", file=sys.stderr)
     _say_other_meanings(root, runs)
-    table = pd.DataFrame(runs).sort_values(["group", "started_utc"], kind="stable", ignore_index=True)
+    table = pd.DataFrame(runs).sort_values(["group", "begun"], kind="stable", ignore_index=True)
+    table = table.drop(columns="begun")
     table["series"] = _unique_series(table)
     return Records(table, pd.DataFrame(steps), pd.DataFrame(trace), pd.DataFrame(cond), unreadable)
 

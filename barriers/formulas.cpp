@@ -51,15 +51,14 @@ json no_answer(std::string found) {
            "the environment that ./bench setup makes, or another with sympy named by BARRIERBENCH_PYTHON"}};
 }
 
-/// What analysis/formula answers; `found` and `allowed` where something is wrong. kind: "shape", "policy" or "device".
-json asked(const std::string& kind, const std::string& text) {
+/// What analysis/formula answers; `found` and `allowed` where something is wrong.
+json asked(const json& question) {
   const std::string program = python();
   if (!std::filesystem::exists(program)) {
     return no_answer(fmt::format("a formula and no Python at \"{}\"", program));
   }
   const Finished done =
-      run_process({program, "-m", "analysis.formula"}, json{{"kind", kind}, {"formula", text}}.dump(),
-                  {{"PYTHONPATH", BB_SOURCE_DIR}});
+      run_process({program, "-m", "analysis.formula"}, question.dump(), {{"PYTHONPATH", BB_SOURCE_DIR}});
   const std::size_t end = done.out.find_last_not_of('\n');
   const std::string last =
       end == std::string::npos ? "" : done.out.substr(done.out.rfind('\n', end) + 1, end + 1);
@@ -71,7 +70,7 @@ json asked(const std::string& kind, const std::string& text) {
 
 /// Of a shape or a policy. Errors: none, they are answers.
 Answer ask(const std::string& kind, const std::string& text) {
-  const json answer = asked(kind, text);
+  const json answer = asked({{"kind", kind}, {"formula", text}});
   if (answer.contains("found")) return refused(answer.at("found"), answer.at("allowed"));
   const std::string formula = answer.at("formula");
   return {load_plugin(answer.at("library")),
@@ -106,17 +105,32 @@ const Answer& known(const std::string& kind, std::string_view text, std::string_
   return answer;
 }
 
-/// Of the shape of a formula, asked once for each. Errors: ConfigError without nvcc.
-const DeviceCode& device_code_of(const Shape& shape) {
+struct KernelAnswer {
+  std::optional<DeviceCode> code;
+  std::string found, allowed;
+};
+
+KernelAnswer ask_for_kernel(const std::string& formula, std::uint64_t layout) {
+  const json answer = asked({{"kind", "device"}, {"formula", formula}, {"layout", layout}});
+  if (answer.contains("found")) return {{}, answer.at("found"), answer.at("allowed")};
+  const std::string file = answer.at("ptx");
+  return {DeviceCode{read_input_file(file, ptx_file), answer.at("entry"), file, answer.at("ptx_sha256")}, "",
+          ""};
+}
+
+/// The kernel of a formula's shape, asked for once. Errors: ConfigError without nvcc.
+const DeviceCode& device_code_of(const Shape& shape, std::uint64_t layout) {
   static std::mutex mutex;
-  static std::map<std::string, DeviceCode> made;
+  static std::map<std::string, KernelAnswer> answers;
   const std::lock_guard lock(mutex);
-  if (const auto found = made.find(shape.name); found != made.end()) return found->second;
-  const json answer = asked("device", shape.name.substr(formula_prefix.size()));
-  if (answer.contains("found")) {
-    throw ConfigError("/formulation/shape", answer.at("found"), answer.at("allowed"));
+  auto found = answers.find(shape.name);
+  if (found == answers.end()) {
+    found =
+        answers.emplace(shape.name, ask_for_kernel(shape.name.substr(formula_prefix.size()), layout)).first;
   }
-  return made.emplace(shape.name, DeviceCode{read_input_file(answer.at("ptx"), ptx_file), answer.at("entry")}).first->second;
+  const KernelAnswer& answer = found->second;
+  if (!answer.code) throw ConfigError("/formulation/shape", answer.found, answer.allowed);
+  return *answer.code;
 }
 
 ParameterList formula_list() {

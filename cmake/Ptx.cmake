@@ -73,5 +73,5 @@ function(bb_ptx_test name)
   set_target_properties(test_${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
   add_test(NAME ptx.${name} COMMAND test_${name})
   # The longest of all: they begin first, so that none is left alone at the end.
-  set_tests_properties(ptx.${name} PROPERTIES TIMEOUT 600 COST 1000)
+  set_tests_properties(ptx.${name} PROPERTIES TIMEOUT 600 COST 1000 LABELS ${name})
 endfunction()

@@ -3,7 +3,7 @@
 #   docker run --rm --gpus all barrierbench                           # is the card usable: ./bench device --measure
 #   docker run --rm --gpus all barrierbench ./bench demo
 #   docker run --rm --gpus all -v "$PWD/results/gpu:/barrierbench/results/gpu" barrierbench experiments/gpu_evidence.sh
-# CUDA: 12.8 is the first that knows sm_100; any of 12 and 13 will do (--build-arg CUDA=13.0.0).
+# CUDA: 12.8 is the first that knows sm_100; any of 12 and 13 will do, for formulas on a card one from 12.8 on (--build-arg CUDA=13.0.0).
 ARG CUDA=12.8.1
 FROM nvidia/cuda:${CUDA}-devel-ubuntu24.04
 

@@ -79,7 +79,7 @@ if [ -n "$bundle" ]; then
   "$bench" build release >&2 || exit 70
   build="$root/build/release"
   mkdir -p "$bundle/bin" "$bundle/lib" "$bundle/configs"
-  for program in experiments/barrierbench tests/standin/test_device $(printf 'tests/card/test_card_%s ' $rooms); do
+  for program in experiments/barrierbench tests/standin/test_device $(cd "$build" && ls tests/standin/test_formula_* 2>/dev/null | grep -v "\[") $(printf 'tests/card/test_card_%s ' $rooms); do
     strip -o "$bundle/bin/$(basename "$program")" "$build/$program"
   done
   ldd "$bundle"/bin/* | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
@@ -143,6 +143,10 @@ fi
 
 if wanted tests; then
   part device_tests 60 "$(find "$tests" -name test_device -type f | head -n 1)" &
+  for sample in log functions; do
+    found="$(find "$tests" -name "test_formula_$sample" -type f | head -n 1)"  # none with a CUDA before 12.8
+    if [ -n "$found" ]; then part "formula_$sample" 60 "$found" & fi
+  done
   for room in $rooms; do part "card_$room" 240 "$(test_of "$room")" & done
   wait
 fi

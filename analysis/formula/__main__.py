@@ -1,7 +1,7 @@
 """What the program starts when it meets a formula: a JSON object {"kind", "formula"} from the standard input,
 one to the standard output. Of kind shape and policy: formula, label, library, library_sha256, of a shape
-at_zero too, of a policy reads_gap and slope_error_rel. Of kind device, the kernel of a shape: entry, ptx (a
-file). Or found and allowed of what is wrong.
+at_zero too, of a policy reads_gap and slope_error_rel. Of kind device, which is asked with a layout, the
+kernel of a shape: entry, ptx (a file), ptx_sha256. Or found and allowed of what is wrong.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ def _library(made: Compiled) -> dict:
 
 
 ANSWERS = {
-    "shape": lambda formula: _library(compiled(formula)),
-    "policy": lambda formula: _library(compiled_policy(formula)),
-    "device": device_code,
+    "shape": lambda asked: _library(compiled(asked["formula"])),
+    "policy": lambda asked: _library(compiled_policy(asked["formula"])),
+    "device": lambda asked: device_code(asked["formula"], asked["layout"]),
 }
 
 
 def main() -> int:
     asked = json.load(sys.stdin)
     try:
-        answer = ANSWERS[asked["kind"]](asked["formula"])
+        answer = ANSWERS[asked["kind"]](asked)
     except FormulaError as error:
         answer = {"found": error.found, "allowed": error.allowed}
     print(json.dumps(answer))

@@ -36,6 +36,7 @@ HEADERS = (
 )
 EIGEN = "/usr/include/eigen3"
 SECONDS_TO_COMPILE = 120
+HOST_COMPILER = "a C++ compiler as c++, or named by the variable CXX (Debian: apt-get install g++)"
 
 
 class Compiled(NamedTuple):
@@ -87,13 +88,12 @@ def key_of(formula: Formula, words: list[str]) -> str:
     return digests.of_text("\n".join([formula.text, version_of(words[0]), *words, *files]))
 
 
-def version_of(compiler: str) -> str:
+def version_of(compiler: str, allowed: str = HOST_COMPILER) -> str:
     try:
         return subprocess.run(
             [compiler, "--version"], check=True, capture_output=True, text=True, timeout=30
         ).stdout
     except (OSError, subprocess.SubprocessError) as error:
-        allowed = "a C++ compiler as c++, or named by the variable CXX (Debian: apt-get install g++)"
         raise FormulaError(f'no compiler "{compiler}" ({error})', allowed) from None
 
 

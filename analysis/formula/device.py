@@ -8,6 +8,7 @@ import json
 import os
 import shutil
 import tempfile
+import time
 from pathlib import Path
 
 from .. import digests
@@ -22,7 +23,12 @@ FLAGS = (
     " --expt-relaxed-constexpr --diag-suppress=20012 -Werror=cross-execution-space-call"
 )
 USUAL = ("/usr/local/cuda/bin", "/opt/cuda/bin")
-REMEDY = "CUDA's nvcc of 12.8 or newer on PATH, in CUDA_HOME, or named by CUDACXX; or device cpu or host"
+REMEDY = "CUDA's nvcc, no newer than the card's driver, on PATH, in CUDA_HOME or named by CUDACXX"
+CHANGES_NVCC = (
+    "NVCC_APPEND_FLAGS",
+    "NVCC_PREPEND_FLAGS",
+    "NVCC_CCBIN",
+)  # variables, which would pass flags on
 
 
 def find_nvcc() -> str | None:
@@ -35,23 +41,25 @@ def find_nvcc() -> str | None:
     )
 
 
-def device_code(text: str) -> dict:
-    """entry and ptx (a file) of the kernel of a formula that was compiled before. Cost: 0.1 s from the cache,
-    else some seconds. Errors: FormulaError.
+def device_code(text: str, layout: int) -> dict:
+    """entry, ptx (a file) and ptx_sha256 of the kernel of a formula that was compiled before. layout: that of
+    the program's rows (core/resident/contact/given_shape.hpp). Cost: 0.1 s from the cache, else some seconds.
+    Errors: FormulaError.
     """
     formula = read(text)
     nvcc = find_nvcc()
     if not nvcc:
-        raise FormulaError("a formula on a card, and no nvcc", REMEDY)
+        raise FormulaError(f'"{formula.text}" on a card, and no nvcc', REMEDY)
     words = [nvcc, *FLAGS.split(), f"-I{ROOT}", f"-I{cache.EIGEN}"]
-    place = cache.folder() / f"{_key_of(formula, words)}.ptx"
-    return _find(place) or _make(formula, words, place)
+    place = cache.folder() / f"{_key_of(formula, layout, words)}.ptx"
+    return _find(place) or _make(formula, layout, words, place)
 
 
-def _key_of(formula: Formula, words: list[str]) -> str:
+def _key_of(formula: Formula, layout: int, words: list[str]) -> str:
     """Headers are not in it: the JSON beside the PTX has them."""
     code = [digests.of_file(path) for path in sorted(Path(__file__).parent.glob("*.py"))]
-    return digests.of_text("\n".join([formula.text, cache.version_of(words[0]), *words, *code]))
+    version = cache.version_of(words[0], REMEDY)
+    return digests.of_text("\n".join([formula.text, str(layout), version, *words, *code]))
 
 
 def _find(place: Path) -> dict | None:
@@ -68,21 +76,25 @@ def _find(place: Path) -> dict | None:
 
 
 def _answer(known: dict, place: Path) -> dict:
-    return {"entry": known["entry"], "ptx": str(place)}
+    return {"entry": known["entry"], "ptx": str(place), "ptx_sha256": known["ptx_sha256"]}
 
 
-def _make(formula: Formula, words: list[str], place: Path) -> dict:
+def _make(formula: Formula, layout: int, words: list[str], place: Path) -> dict:
     from . import checks, source, symbolic  # they import sympy, which what is kept does not need
 
     terms = symbolic.terms_of(formula)
-    text = source.cu(formula.text, terms, checks.check(terms, None))
+    text = source.cu(formula.text, terms, checks.check(terms, None), layout)
+    begun = time.time()
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=place.parent, prefix="making-") as name:
             there = Path(name)
             (there / "formula.cu").write_text(text)
+            plain = ["env", *(word for name in CHANGES_NVCC for word in ("-u", name)), *words]
             cache.compile_there(
-                [*words, "-MD", "-MF", "headers.d", "-o", "formula.ptx", "formula.cu"], there, REMEDY
+                [*plain, "-MD", "-MF", "headers.d", "-o", "formula.ptx", "formula.cu"],
+                there,
+                f"{REMEDY} ({words[0]} was asked)",
             )
             known = {
                 "entry": source.ENTRY,
@@ -90,6 +102,10 @@ def _make(formula: Formula, words: list[str], place: Path) -> dict:
                 "ptx_sha256": digests.of_file(there / "formula.ptx"),
                 "headers": _headers((there / "headers.d").read_text()),
             }
+            if any((ROOT / header).stat().st_mtime > begun for header in known["headers"]):
+                raise FormulaError(
+                    "headers that changed while nvcc read them", "sources that nobody edits meanwhile"
+                )
             (there / "formula.ptx.json").write_text(json.dumps(known, indent=1) + "\n")
             for suffix in ("cu", "ptx", "ptx.json"):  # the JSON last: it says that the others are there
                 (there / f"formula.{suffix}").replace(place.with_suffix(f".{suffix}"))

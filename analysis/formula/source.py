@@ -87,6 +87,8 @@ DEVICE = """\
 #include "core/resident/contact/given_shape.hpp"
 #include "core/resident/contact/shape_kernels.hpp"
 
+static_assert(bb::resident::given_shape_layout == {layout}, "the program was built from other sources: ./bench build");
+
 {struct}
 extern "C" __global__ void __launch_bounds__(bb::exec::block_threads)
     {entry}(bb::exec::Index n, const __grid_constant__ bb::resident::EvaluateGivenShape f) {{
@@ -158,10 +160,10 @@ def cpp(name: str, formula: str, terms: Terms, ends: Ends) -> str:
     )
 
 
-def cu(formula: str, terms: Terms, ends: Ends) -> str:
-    """The source of its kernel, ENTRY."""
+def cu(formula: str, terms: Terms, ends: Ends, layout: int) -> str:
+    """The source of its kernel, ENTRY. layout: given_shape_layout of the program that will launch it."""
     return HEAD.format(formula=formula) + DEVICE.format(
-        struct=STRUCT.format(**_parts(terms, ends)), entry=ENTRY
+        struct=STRUCT.format(**_parts(terms, ends)), entry=ENTRY, layout=f"{layout:#x}"
     )
 
 

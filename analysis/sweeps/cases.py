@@ -50,14 +50,15 @@ def has_list(folder: Path) -> bool:
 
 
 def split_records(root: Path, lists: dict[Path, list[Case]]) -> tuple[list[Path], list[Path]]:
-    """The records below a folder, in the order of their paths: those of a case or of no sweep, and those that
-    an earlier form of a sweep file has left in the sweep's folder. lists: folder of a sweep -> its cases.
+    """The records below a folder: those of a case or of no sweep, and those that an earlier form of a sweep
+    file has left in the sweep's folder. They are in the order of their paths, the cases of a sweep in that of
+    its file. lists: folder of a sweep -> its cases.
     """
-    named = {case.record for cases in lists.values() for case in cases}
+    place = {case.record: (folder, case.index) for folder, cases in lists.items() for case in cases}
     kept, earlier = [], []
     for path in sorted(root.rglob("run.json")):
-        (kept if path in named or path.parent.parent not in lists else earlier).append(path)
-    return kept, earlier
+        (kept if path in place or path.parent.parent not in lists else earlier).append(path)
+    return sorted(kept, key=lambda path: place.get(path, (path, 0))), earlier
 
 
 def records_below(root: Path) -> list[Path]:

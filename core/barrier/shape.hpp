@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,9 +38,10 @@ struct Shape {
   ShapeBatch<double> potential_double = nullptr;
   ShapeBatch<float> potential_float = nullptr;
   void* self = nullptr;
-  /// Of a shape that is no kernel of the program: its kernel, made when it is asked for and there as long as the
-  /// process (core/resident/contact/given_shape.hpp). Null: there is none. Errors: ConfigError.
-  const DeviceCode& (*device_code)(const Shape&) = nullptr;
+  /// Of a shape that is no kernel of the program: its kernel (core/resident/contact/given_shape.hpp), made when it is
+  /// asked for and there as long as the process. layout: given_shape_layout of the program. Null: there is none.
+  /// Errors: ConfigError.
+  const DeviceCode& (*device_code)(const Shape&, std::uint64_t layout) = nullptr;
 };
 
 /// What the shape is evaluated on; part of a formulation's identity (docs/design.md).

@@ -152,7 +152,6 @@ void DeviceExecutor::count_local_memory(const DeviceKernel& kernel) {
 }
 
 void DeviceExecutor::refuse_local_memory(const exec::KernelInfo& kernel) const {
-  cudaGetLastError();  // it is told here; the next launch shall not report it
   throw exec::OutOfMemory(memory().refusal(local_memory, local_bytes_) + "; " + kernel.name() +
                           " cannot be launched; " + memory_state());
 }

@@ -32,6 +32,7 @@ class DeviceExecutor : public exec::Executor {
   std::string_view name() const override { return "cuda"; }
   void sort(exec::Key* keys, std::uint32_t* values, exec::Index n, int bits) override;
   void exclusive_scan(exec::Index* values, exec::Index n) override;
+  void prepare(const exec::KernelInfo& kernel) override { device_kernel(kernel); }
   void begin_capture() override;
   std::unique_ptr<exec::LaunchGraph> end_capture() override;
   void replay(const exec::LaunchGraph& graph) override;

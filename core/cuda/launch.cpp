@@ -16,8 +16,11 @@ int launch(const DeviceKernel& kernel, const void* f, Index n, CUstream_st* stre
   void* functor = const_cast<void*>(f);  // it is copied
   void* of_each[] = {&n, functor};
   void* of_blocks[] = {functor};
-  return cudaLaunchKernel(kernel.function, dim3(static_cast<unsigned>(blocks)), dim3(exec::block_threads),
-                          kernel.blocks ? of_blocks : of_each, 0, stream);
+  const cudaError_t code =
+      cudaLaunchKernel(kernel.function, dim3(static_cast<unsigned>(blocks)), dim3(exec::block_threads),
+                       kernel.blocks ? of_blocks : of_each, 0, stream);
+  if (code != cudaSuccess) cudaGetLastError();  // it is told here; no later call shall report it
+  return code;
 }
 
 }  // namespace bb::cuda

@@ -39,12 +39,13 @@ class Executor {
   void each(Index n, const F& f) {
     if (n > 0) launch(each_info<F>(), n, &f);
   }
-  /// The same of a kernel whose device code came after the program was built. info: of F; it outlives the launches of
-  /// graphs.
+  /// The same of a kernel whose device code came after the program was built. info: of F, there as long as the executor.
   template <class F>
   void each(Index n, const F& f, const KernelInfo& info) {
     if (n > 0) launch(info, n, &f);
   }
+  /// Loads the device code of a kernel that brings some. Errors: ExecutionError.
+  virtual void prepare(const KernelInfo&) {}
   /// Runs n blocks of f.
   template <class F>
   void blocks(Index n, const F& f) {

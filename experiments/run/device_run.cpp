@@ -7,9 +7,11 @@
 #include <functional>
 
 #include "core/bodies/part.hpp"
+#include "barriers/shapes/registry.hpp"
 #include "core/cuda/device.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
+#include "core/resident/contact/given_shape.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
 #include "core/resident/contact/resident_stiffness.hpp"
 #include "core/resident/elements/limit_forms.hpp"
@@ -77,6 +79,17 @@ void at_config(const RunConfig& config, const std::string& section, const std::f
   }
 }
 
+/// Numbers of its stiffness do not matter.
+Method any_method(const RunConfig& config) {
+  Calibration any;
+  any.kappa = any.k_s = any.solid_k_s = 1;
+  return make_method(config, any);
+}
+
+resident::ResidentBarrier resident_barrier_of(const RunConfig& config, const Method& method) {
+  return {method.contact, method.stiffness->has_potential(), config.device == Device::host};
+}
+
 bool solves_on_card(const RunConfig& config) {
   const LinearSolverEntry* solver = find_named(linear_solvers(), config.linear_solver.name);
   return solver && solver->matrix == MatrixPlace::card;
@@ -103,17 +116,18 @@ std::optional<std::string> card_of(const RunConfig& config) {
                      probe.capability % 10, cuda::version_text(probe.driver));
 }
 
+const DeviceCode* device_code_in(const RunConfig& config) {
+  if (config.device != Device::cuda) return nullptr;
+  const Shape shape = require_shape(config.formulation.shape);
+  return shape.device_code ? &shape.device_code(shape, resident::given_shape_layout) : nullptr;
+}
+
 void check_device_forms(const RunConfig& config, const Scene& scene) {
   if (config.device == Device::cpu) return;
   at_config(config, "/scene", [&] { require_kernels(part_entries(), scene, "/scene"); });
-  Calibration any;  // numbers of the stiffness do not matter
-  any.kappa = any.k_s = any.solid_k_s = 1;
-  Method method = make_method(config, any);
+  const Method method = any_method(config);
   resident::require_kernel(*method.stiffness, config.source + "#/formulation/stiffness_policy/name");
-  at_config(config, "/formulation", [&] {
-    resident::ResidentBarrier(method.contact, method.stiffness->has_potential(),
-                              config.device == Device::host);
-  });
+  at_config(config, "/formulation", [&] { resident_barrier_of(config, method); });
   if (method.strain_limit && !(scene.limit.triangles.empty() && scene.solid_limit.tetrahedra.empty())) {
     at_config(config, "/strain_limit", [&] { resident::require_limit_kernels(method); });
   }
@@ -122,7 +136,16 @@ void check_device_forms(const RunConfig& config, const Scene& scene) {
 void require_device(const RunConfig& config, const Scene& scene) {
   if (config.device == Device::cpu) return;
   check_device_forms(config, scene);
-  make_executor(config.device);
+  const std::unique_ptr<exec::Executor> executor = make_executor(config.device);
+  at_config(config, "/formulation", [&] {
+    try {
+      resident_barrier_of(config, any_method(config)).prepare(*executor);
+    } catch (const exec::ExecutionError& error) {
+      throw ConfigError("shape", fmt::format("\"{}\" on a card: {}", config.formulation.shape, error.what()),
+                        "a program built with CUDA 12.8 or newer, and a driver no older than the nvcc that "
+                        "CUDACXX names; or /device host");
+    }
+  });
 }
 
 }  // namespace bb

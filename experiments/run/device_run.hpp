@@ -23,6 +23,9 @@ bool can_lose_device(const RunConfig& config);
 /// "NVIDIA H100, compute capability 9.0, driver of CUDA 13.0" where a card takes part in the run; none elsewhere.
 std::optional<std::string> card_of(const RunConfig& config);
 
+/// The kernel that the contact's shape brings, where the run is on a card. Errors: ConfigError without nvcc.
+const DeviceCode* device_code_in(const RunConfig& config);
+
 /// Whether everything that the config asks for has a device form. Errors: ConfigError naming what has none.
 void check_device_forms(const RunConfig& config, const Scene& scene);
 /// The same, and whether the device is there. Errors: ConfigError with the reason.

@@ -38,6 +38,9 @@ std::vector<PluginFile> with_formulas(const RunConfig& config, std::vector<Plugi
        formula_libraries({config.formulation.shape, config.strain_limit.shape}, policies)) {
     plugins.push_back({library.name, library.file, library.sha256});
   }
+  if (const DeviceCode* code = device_code_in(config)) {
+    plugins.push_back({config.formulation.shape + " (PTX)", code->file, code->sha256});
+  }
   return plugins;
 }
 

@@ -206,7 +206,7 @@ def test_a_bundle_says_its_commit_and_its_seconds(raw):
 def test_parts_that_no_group_asks_for_are_left_out(raw, tmp_path):
     done = script(raw, tmp_path, only="tests")
     assert done.returncode == 0, done.stderr
-    assert set(json.loads(Path(done.stdout.strip()).read_text())["parts"]) == {"device_tests"} | {f"card_{room}" for room in ("contact", "elements", "linear", "runs", "sums", "system")}
+    assert set(json.loads(Path(done.stdout.strip()).read_text())["parts"]) == {"device_tests", "formula_log", "formula_functions"} | {f"card_{room}" for room in ("contact", "elements", "linear", "runs", "sums", "system")}
 
 
 def test_a_plain_run_without_the_bits_of_the_host_has_failed(raw, tmp_path, capsys):

@@ -52,6 +52,20 @@ def test_runs_of_an_earlier_sweep_file_are_left_out_and_named(tmp_path, capsys):
     assert capsys.readouterr().err.count(f"{tmp_path / 'strip/log'}: no case of its sweep as it is now; left out") == 1
 
 
+def test_runs_of_a_sweep_stand_in_the_order_of_its_cases_whenever_they_ran(tmp_path):
+    write_set(tmp_path / "strip")
+    names = sorted((path.parent.name for path in (tmp_path / "strip").glob("*/run.json")), reverse=True)
+    for second, name in enumerate(reversed(names)):
+        path = tmp_path / "strip" / name / "run.json"
+        record = json.loads(path.read_text())
+        record["status"]["started_utc"] = f"2024-01-31T12:00:0{second}Z"
+        path.write_text(json.dumps(record))
+    assert list(load(tmp_path).runs["folder"]) == names[::-1]  # of no sweep: as they began
+    cases = [{"folder": name, "label": name, "config_id": "0" * 64, "swept": {}} for name in names]
+    (tmp_path / "strip/cases.json").write_text(json.dumps({"schema": "barrierbench.cases/1", "sweep": "strip", "cases": cases}))
+    assert list(load(tmp_path).runs["folder"]) == names
+
+
 @pytest.mark.usefixtures("unpainted")
 def test_figures_end_well_beside_a_torn_record_and_not_without_any(tmp_path, capsys):
     write_set(tmp_path / "runs")

@@ -28,6 +28,7 @@ struct Library {
 };
 
 struct Launch {
+  const void* stub;
   const ptx::Kernel* kernel;
   unsigned blocks, threads;
   std::vector<unsigned char> parameters;
@@ -45,6 +46,10 @@ Configuration& pushed() {
 }
 
 cudaError_t run(const Launch& launch) {
+  if (!names().contains(launch.stub)) {
+    standin::counts().fault = "a kernel whose library was unloaded";
+    return cudaErrorIllegalAddress;
+  }
   if (standin::settings().wrong_numbers) return cudaSuccess;
   if (launch.number == standin::settings().break_launch) {
     standin::counts().fault = "a launch that the test broke";
@@ -75,7 +80,11 @@ cudaError_t launch(const void* stub, dim3 grid, dim3 block, void** arguments, st
       shared != 0) {
     return standin::result(cudaErrorInvalidConfiguration);
   }
-  Launch out{kernel, grid.x, block.x, std::vector<unsigned char>(kernel->param_bytes),
+  Launch out{stub,
+             kernel,
+             grid.x,
+             block.x,
+             std::vector<unsigned char>(kernel->param_bytes),
              standin::counts().launches++};
   if (out.number == standin::settings().refuse_launch)
     return standin::result(standin::settings().refuse_code);
@@ -130,9 +139,11 @@ cudaError_t cudaLaunchKernel(const void* stub, dim3 grid, dim3 block, void** arg
   return launch(stub, grid, block, arguments, shared, stream);
 }
 
+#if CUDART_VERSION >= 12080
 // PTX that comes at run time. A card would compile it; here only its entries are looked for.
 cudaError_t cudaLibraryLoadData(cudaLibrary_t* library, const void* code, cudaJitOption*, void**, unsigned,
                                 cudaLibraryOption*, void**, unsigned) {
+  if (standin::capturing()) return standin::spoil_capture();
   const std::string text = static_cast<const char*>(code);
   if (text.find(".version") == std::string::npos) return standin::result(cudaErrorInvalidPtx);
   *library = reinterpret_cast<cudaLibrary_t>(new Library{text, ""});
@@ -156,5 +167,6 @@ cudaError_t cudaLibraryUnload(cudaLibrary_t library) {
   --standin::counts().libraries;
   return cudaSuccess;
 }
+#endif
 
 }  // extern "C"

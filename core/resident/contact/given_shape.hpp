@@ -1,6 +1,9 @@
 // A barrier shape on rows that came after the program was built: of a plugin, of a formula, of a Python class, an exponent.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+
 #include "core/barrier/shape.hpp"
 #include "core/barrier/squared_gap.hpp"
 #include "core/resident/contact/resident_rows.hpp"
@@ -31,5 +34,22 @@ struct EvaluateGivenShape {
     rows.stretch[r] = kappa * terms.d2b;
   }
 };
+
+/// Where the members lie that a kernel of such a shape reads and writes, a byte each: PTX that is made at run time holds this
+/// against that of the program, which may have been built from other sources.
+constexpr std::uint64_t given_shape_layout = [] {
+  const std::size_t places[] = {offsetof(EvaluateGivenShape, argument),
+                                offsetof(RowView, d),
+                                offsetof(RowView, d_hat),
+                                offsetof(RowView, kappa),
+                                offsetof(RowView, uniform_kappa),
+                                offsetof(RowView, energy),
+                                offsetof(RowView, push),
+                                offsetof(RowView, stretch)};
+  std::uint64_t packed = 0;
+  for (const std::size_t place : places) packed = packed << 8 | place;
+  return packed;
+}();
+static_assert(sizeof(EvaluateGivenShape) < 256);
 
 }  // namespace bb::resident

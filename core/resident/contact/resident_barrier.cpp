@@ -1,5 +1,8 @@
 #include "core/resident/contact/resident_barrier.hpp"
 
+#include <map>
+#include <mutex>
+
 #include "barriers/shapes/shape_list.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/contact/given_shape.hpp"
@@ -34,19 +37,27 @@ constexpr Entry folded[] = {BB_FOR_EACH_FOLDED_SHAPE(BB_ENTRY)};
 BB_FOR_EACH_FOLDED_SHAPE(BB_ENTRY)
 #undef BB_ENTRY
 
-/// Null where there is none and the shape may be called or has device code of its own.
+/// Null where there is none and the shape may be called or has device code of its own. also: what else would do.
 template <std::size_t n>
-Launch find(const Entry (&entries)[n], const std::string& name, const char* what, bool otherwise) {
+Launch find(const Entry (&entries)[n], const std::string& name, const char* what, bool otherwise,
+            const char* also) {
   std::string names;
   for (const Entry& entry : entries) {
     if (entry.name == name) return entry.launch;
     names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
   if (otherwise) return nullptr;
-  throw ConfigError(
-      "shape", "\"" + name + "\", which has no kernel " + what,
-      "one of " + names +
-          ", or a formula, on a card; shapes of plugins and other exponents run with device cpu or host");
+  throw ConfigError("shape", "\"" + name + "\", which has no kernel " + what, "one of " + names + also);
+}
+
+/// There as long as the code, since executors remember what they launched.
+const exec::KernelInfo& info_of(const DeviceCode& code) {
+  static std::mutex mutex;
+  static std::map<const DeviceCode*, exec::KernelInfo> known;
+  const std::lock_guard lock(mutex);
+  exec::KernelInfo info = exec::each_info<EvaluateGivenShape>();
+  info.code = &code;
+  return known.emplace(&code, info).first->second;
 }
 
 }  // namespace
@@ -61,19 +72,23 @@ ResidentBarrier::ResidentBarrier(const BarrierFunction& barrier, bool potential,
     throw ConfigError("argument", "squared_gap with a potential", "gap");
   }
   const bool own_code = barrier.shape.device_code && !host_calls;
-  launch_ = potential ? find(folded, barrier.shape.name, "of a potential", false)
-                      : find(plain, barrier.shape.name, "of its own", host_calls || own_code);
+  launch_ = potential ? find(folded, barrier.shape.name, "of a potential", false, "")
+                      : find(plain, barrier.shape.name, "of its own", host_calls || own_code,
+                             ", or a formula, on a card; shapes of plugins and other exponents run with "
+                             "device cpu or host");
   if (launch_ || !own_code) return;
-  exec::KernelInfo given = exec::each_info<EvaluateGivenShape>();
-  given.code = &barrier.shape.device_code(barrier.shape);
-  loaded_ = std::make_shared<const exec::KernelInfo>(given);
+  given_ = &info_of(barrier.shape.device_code(barrier.shape, given_shape_layout));
+}
+
+void ResidentBarrier::prepare(exec::Executor& executor) const {
+  if (given_) executor.prepare(*given_);
 }
 
 void ResidentBarrier::evaluate(exec::Executor& executor, ResidentRows& rows) const {
   const RowView view = rows.view();
   if (launch_) return launch_(executor, view, argument_);
   const EvaluateGivenShape given{view, argument_, shape_.batch_double, shape_.self, shape_.infinite_at_zero};
-  if (loaded_) return executor.each(view.n, given, *loaded_);
+  if (given_) return executor.each(view.n, given, *given_);
   executor.each(view.n, given);
 }
 

@@ -1,8 +1,6 @@
 // A barrier of the registry on an executor.
 #pragma once
 
-#include <memory>
-
 #include "core/barrier/shape.hpp"
 #include "core/exec/executor.hpp"
 #include "core/resident/contact/resident_rows.hpp"
@@ -18,11 +16,13 @@ class ResidentBarrier {
   ResidentBarrier(const BarrierFunction& barrier, bool potential, bool host_calls = false);
   /// Fills energy, push and stretch of the rows from d, d_hat and kappa.
   void evaluate(exec::Executor& executor, ResidentRows& rows) const;
+  /// Loads device code that the shape brings, so that nothing has begun when it cannot be. Errors: ExecutionError.
+  void prepare(exec::Executor& executor) const;
 
  private:
   using Launch = void (*)(exec::Executor&, const RowView&, Argument);
-  Launch launch_ = nullptr;                         // null: by the calls of shape_, or
-  std::shared_ptr<const exec::KernelInfo> loaded_;  // by its device code
+  Launch launch_ = nullptr;                  // null: by the calls of shape_, or
+  const exec::KernelInfo* given_ = nullptr;  // by its device code
   Argument argument_;
   Shape shape_;
 };

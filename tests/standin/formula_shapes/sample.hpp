@@ -1,0 +1,12 @@
+// The formula of a sample NAME.cu, and its shape in other words.
+#pragma once
+
+#include "core/barrier/shape.hpp"
+
+namespace bb::formula_kernel_test {
+
+extern const char* const sample_formula;
+extern const double sample_tolerance;  // relative: functions of a card differ in the last place
+Shape sample_shape();
+
+}  // namespace bb::formula_kernel_test
