@@ -79,7 +79,7 @@ if [ -n "$bundle" ]; then
   "$bench" build release >&2 || exit 70
   build="$root/build/release"
   mkdir -p "$bundle/bin" "$bundle/lib" "$bundle/configs"
-  for program in experiments/barrierbench tests/standin/test_device $(cd "$build" && ls tests/standin/test_formula_* 2>/dev/null | grep -v "\[") $(printf 'tests/card/test_card_%s ' $rooms); do
+  for program in experiments/barrierbench tests/standin/test_device $(cd "$build" && ls tests/standin/test_formula_log tests/standin/test_formula_functions 2>/dev/null) $(printf 'tests/card/test_card_%s ' $rooms); do
     strip -o "$bundle/bin/$(basename "$program")" "$build/$program"
   done
   ldd "$bundle"/bin/* | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
