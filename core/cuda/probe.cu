@@ -1,8 +1,8 @@
 #include <cuda_runtime_api.h>
 
 #include "core/cuda/device.hpp"
-#include "core/cuda/table_entries.cuh"
 #include "core/cuda/self_test.hpp"
+#include "core/cuda/table_entries.cuh"
 
 namespace bb::cuda {
 namespace {

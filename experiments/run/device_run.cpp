@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <functional>
 
-#include "core/bodies/part.hpp"
 #include "barriers/shapes/registry.hpp"
+#include "core/bodies/part.hpp"
 #include "core/cuda/device.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
