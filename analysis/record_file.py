@@ -12,7 +12,7 @@ import json
 import math
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache, cached_property
+from functools import cache
 from pathlib import Path
 
 import orjson
@@ -20,6 +20,7 @@ import orjson
 from . import fields
 from .digests import of_file
 from .errors import UserError
+from .record_rule import RecordRule, shown
 
 VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
 SCHEMA_NAME, SCHEMA_MAJOR = (
@@ -40,7 +41,6 @@ NEEDED = {
     "summary": (),
     "steps": (),
 }
-TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
 
 
 class RecordError(UserError):
@@ -84,88 +84,9 @@ def _check_schema(record: dict, path: Path) -> None:
         )
 
 
-def _shown(value) -> str:
-    return json.dumps(value)[:60]
-
-
-class _Rule:
-    """A rule of the schema as it is asked of every value of a record, looked up once."""
-
-    def __init__(self, rule: dict) -> None:
-        while "$ref" in rule:
-            rule = fields.schema("run")["$defs"][rule["$ref"].rsplit("/", 1)[1]]
-        self.rule, self.words, self.minimum = rule, rule.get("enum"), rule.get("minimum")
-        kinds = rule.get("type", ())
-        self.kinds = [kinds] if isinstance(kinds, str) else kinds
-        self.types = tuple(TYPES[kind] for kind in self.kinds if kind in TYPES)
-        self.number, self.integer = "number" in self.kinds, "integer" in self.kinds
-        self.required = rule.get("required", ())
-        # Most values are of a type that needs no second look, or numbers only held against a minimum.
-        numbers = {int, float} if self.number else {int} if self.integer else set()
-        self.counted = numbers if self.words is None else set()
-        self.least = -math.inf if self.minimum is None else self.minimum
-        self.plain = set(self.types) - {dict, list} if self.words is None else set()
-
-    @cached_property
-    def known(self) -> dict[str, _Rule]:
-        return {name: _Rule(below) for name, below in self.rule.get("properties", {}).items()}
-
-    @cached_property
-    def other(self) -> _Rule | None:
-        other = self.rule.get("additionalProperties")
-        return _Rule(other) if isinstance(other, dict) else None
-
-    @cached_property
-    def items(self) -> _Rule | None:
-        return _Rule(self.rule["items"]) if self.rule.get("items") else None
-
-    def fault(self, value, complete: bool, words: bool) -> str:
-        """What is wrong with the first value that is not as the schema says, behind its place; empty when
-        all is well. complete: every field has to be there. words: only the words of the schema are allowed; a
-        later version may have more. Unknown fields are passed over.
-        """
-        if self.words is not None:
-            if value in self.words or not words and isinstance(value, str):
-                return ""
-            return f": found {_shown(value)}; allowed: {', '.join(map(str, self.words))}"
-        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        right = isinstance(value, self.types) or (
-            is_number and (self.number or self.integer and value == int(value))
-        )
-        if self.kinds and not right:
-            return f": found {_shown(value)}; allowed: {' or '.join(self.kinds)}"
-        if is_number:
-            few = self.minimum is not None and value < self.minimum
-            return f": found {value}; allowed: {self.minimum} or more" if few else ""
-        if isinstance(value, dict):
-            return self._object_fault(value, complete, words)
-        if isinstance(value, list) and self.items:
-            for k, below in enumerate(value):
-                if fault := self.items.fault(below, complete, words):
-                    return f"/{k}{fault}"
-        return ""
-
-    def _object_fault(self, value: dict, complete: bool, words: bool) -> str:
-        if complete:
-            for name in self.required:
-                if name not in value:
-                    return f": no field {name}; allowed: a record as it was written"
-        known, other = self.known, self.other
-        for name, below in value.items():
-            inner = known.get(name, other)
-            if inner is None:
-                continue
-            kind = type(below)
-            if kind in inner.plain or (kind in inner.counted and below >= inner.least):
-                continue
-            if fault := inner.fault(below, complete, words):
-                return f"/{name}{fault}"
-        return ""
-
-
 @cache
-def _rule_of_a_record() -> _Rule:
-    return _Rule(fields.schema("run"))
+def _rule_of_a_record() -> RecordRule:
+    return RecordRule(fields.schema("run"))
 
 
 def _all_finite(value: dict | list) -> bool:
@@ -232,7 +153,7 @@ def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = Fals
 
 def _judged(path: Path, record: object, finite: bool, foreign: bool, allow_not_finite: bool) -> dict:
     if not isinstance(record, dict):
-        raise RecordError(f"{path}: not JSON of a record: found {_shown(record)}; allowed: an object")
+        raise RecordError(f"{path}: not JSON of a record: found {shown(record)}; allowed: an object")
     _check_schema(record, path)
     if not finite and not allow_not_finite and (bad := _not_finite(record)):
         raise RecordError(

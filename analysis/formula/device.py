@@ -24,15 +24,12 @@ FLAGS = (
 )
 USUAL = ("/usr/local/cuda/bin", "/opt/cuda/bin")
 REMEDY = "CUDA's nvcc, no newer than the card's driver, on PATH, in CUDA_HOME or named by CUDACXX"
-CHANGES_NVCC = (
-    "NVCC_APPEND_FLAGS",
-    "NVCC_PREPEND_FLAGS",
-    "NVCC_CCBIN",
-)  # variables, which would pass flags on
+# Variables of the environment that would change what nvcc makes.
+CHANGES_NVCC = ("NVCC_APPEND_FLAGS", "NVCC_PREPEND_FLAGS", "NVCC_CCBIN")
 
 
 def find_nvcc() -> str | None:
-    """CUDACXX, PATH, then the usual folders, as cmake/Cuda.cmake looks for it."""
+    """CUDACXX, PATH, then the usual folders, as cmake/Cuda.cmake does without CMAKE_CUDA_COMPILER."""
     homes = [f"{os.environ[name]}/bin" for name in ("CUDA_HOME", "CUDA_PATH") if os.environ.get(name)]
     return (
         shutil.which(os.environ.get("CUDACXX") or "nvcc")

@@ -6,17 +6,18 @@ import shutil
 import pytest
 
 from analysis.errors import UserError
-from analysis import causes, load, record_file, render
+from analysis import causes, load, render
 from analysis.figures import newton_steps
 from analysis.figures import verb as figures
 from analysis.gate import compare
 from analysis.matching.runs import read_strictly
 from analysis.record_file import CHANGED, RecordError, bound_file, other_meanings, read_record, read_trace
+from analysis.record_rule import RecordRule
 from synthetic import bind, write_run, write_set
 
 
 def test_a_word_list_of_numbers_is_held_to():
-    rule = record_file._Rule({"type": "object", "properties": {"a": {"type": "integer", "enum": [1, 2]}}})
+    rule = RecordRule({"type": "object", "properties": {"a": {"type": "integer", "enum": [1, 2]}}})
     assert rule.fault({"a": 2}, True, True) == "" and rule.fault({"a": 7}, True, True) == "/a: found 7; allowed: 1, 2"
 
 

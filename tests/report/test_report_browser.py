@@ -91,7 +91,7 @@ class Opened:
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on("request", lambda asked: asked.url.startswith("data:") or self.asked.append(asked.url))
         self.page.goto(file.as_uri())
-        self.page.wait_for_function("document.documentElement.dataset.ready === 'yes'")
+        self.page.locator("html[data-ready='yes']").wait_for(state="attached")  # no script of ours: the page refuses them
         self.file = file
 
     def column(self, table: str, number: int) -> list[str]:
@@ -155,7 +155,7 @@ def test_tables_sort_filter_and_copy_and_nothing_is_asked_of_a_network(browser, 
     page.get_by_label("Find").fill("DYNAMIC")
     assert opened.column("runs", 3) == ["cubic_dynamic"]
     page.get_by_role("button", name="Show all").click()
-    page.wait_for_function("document.querySelector('#runs output').textContent === '4 of 4 shown'")
+    page.locator("#runs output").filter(has_text="4 of 4 shown").wait_for()
 
     page.locator("#runs").get_by_role("button", name="Copy the command of cubic", exact=True).click()
     page.locator("#runs").get_by_role("button", name="Copy the command of cubic", exact=True).filter(has_text="Copied").wait_for()
@@ -233,7 +233,7 @@ def test_a_page_of_many_runs_stays_quick(browser, tmp_path):
 
     clock.send("Performance.enable", {"timeDomain": "threadTicks"})
     opened.page.reload()
-    opened.page.wait_for_function("document.documentElement.dataset.ready === 'yes'")
+    opened.page.locator("html[data-ready='yes']").wait_for(state="attached")  # no script of ours: the page refuses them
     took = [seconds()]
     opened.page.evaluate("""() => { [...document.querySelectorAll('#runs thead button')].find((b) => b.textContent === 'Newton').click();
       document.body.offsetHeight; }""")
