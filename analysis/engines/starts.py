@@ -68,11 +68,7 @@ def dear(study: Study, one: dict) -> set[tuple[str, str, int]]:
     """
     long = study.spec["starts"].get("few_above_s", np.inf)
     far = study.spec["starts"].get("few_above_error", np.inf)
-    return {
-        (r["engine"], r["variant"], r["level"])
-        for r in one["rows"]
-        if r.get("seconds", 0) > long or r.get("error_mean", 0) > far
-    }
+    return {_who(r) for r in one["rows"] if r.get("seconds", 0) > long or r.get("error_mean", 0) > far}
 
 
 def _references_apart(study: Study, name: str, n: int) -> list[float]:
@@ -85,19 +81,51 @@ def _references_apart(study: Study, name: str, n: int) -> list[float]:
     return [error_of(x, states[0], scene)["error_mean"] for x in states[1:]]
 
 
-def with_starts(study: Study, record: dict, n: int) -> dict:
-    """The record with `starts` in each of its scenes. Cheap runs of all starts come first, start by start, so
-    that a study that is cut off can be written with fewer. Errors: UserError.
+def _who(row: dict) -> tuple[str, str, int]:
+    return row["engine"], row["variant"], row["level"]
+
+
+def _others(one: dict, only: list[str]) -> set[tuple[str, str, int]]:
+    """Lines of a scene that are not of the engines and variants asked for; none where none is asked for."""
+    return {_who(row) for row in one["rows"] if only and f"{row['engine']}/{row['variant']}" not in only}
+
+
+def _merged(one: dict, made: list[dict]) -> list[dict]:
+    """The starts of a scene's record with what was made anew in its place, in the order of the scene's
+    rows.
+    """
+    known = {start["start"]: start for start in one.get("starts", [])}
+    order = [_who(row) for row in one["rows"]]
+    out = []
+    for start in made:
+        rows = {_who(row): row for row in [*known.get(start["start"], {}).get("rows", []), *start["rows"]]}
+        out.append(start | {"rows": sorted(rows.values(), key=lambda row: order.index(_who(row)))})
+    return out
+
+
+def check_only(study: Study, only: list[str]) -> None:
+    """Errors: UserError that names what the spec does not run."""
+    there = [f"{one['engine']}/{one['variant']}" for one in study.spec["engines"]]
+    for word in only:
+        if word not in there:
+            raise UserError(f"--only: found {word!r}; allowed: {', '.join(there)}")
+
+
+def with_starts(study: Study, record: dict, n: int, only: list[str] = ()) -> dict:
+    """The record with `starts` in each of its scenes. only: "ENGINE/VARIANT" of what is run, beside ours;
+    what the record knows of all others stays. Cheap runs of all starts come first, start by start, so that
+    a study that is cut off can be written with fewer. Errors: UserError.
     """
     if "starts" not in study.spec:
         raise UserError("--starts: the spec has no `starts` with a jitter_m")
+    check_only(study, only)
     fitted, few = record["material_left"], study.spec["starts"].get("few", n)
     scenes = [one for one in record["scenes"] if one["scene"] in study.scenes]
     out: dict[str, list[dict]] = {one["scene"]: [] for one in scenes}
     for last in (False, True):
         for k in range(1, n + 1):
             for one in scenes:
-                left_out = set() if last and k <= few else dear(study, one)
+                left_out = _others(one, only) | (set() if last and k <= few else dear(study, one))
                 made = of_scene(jittered(study, k), one["scene"], fitted, left_out)
                 if last:
                     rows = [_short(row) for row in made["rows"]]
@@ -105,7 +133,11 @@ def with_starts(study: Study, record: dict, n: int) -> dict:
                         {"start": k, "reference": _short(made["reference"]), "rows": rows}
                     )
     scenes = [
-        {**one, "starts": out[one["scene"]], "references_apart": _references_apart(study, one["scene"], n)}
+        {
+            **one,
+            "starts": _merged(one, out[one["scene"]]) if only else out[one["scene"]],
+            "references_apart": _references_apart(study, one["scene"], n),
+        }
         for one in scenes
     ]
     return {**record, "spec": study.spec, "scenes": scenes}

@@ -58,6 +58,13 @@ def parse(argv: list[str]) -> argparse.Namespace:
         help="compare: the scenes of results/engines.json again from N jittered starts; materials and seconds"
         " stay those of the record (default 0: the start of each scene alone)",
     )
+    parser.add_argument(
+        "--only",
+        action="append",
+        default=[],
+        metavar="ENGINE/VARIANT",
+        help="compare --starts: runs these alone, beside ours; what the record has of others stays",
+    )
     return parser.parse_args(argv)
 
 
@@ -133,9 +140,13 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
     kept = ROOT / "results/engines.json"
     if options.starts < 0:
         raise UserError(f"--starts: found {options.starts}; allowed: from 0")
+    if options.only and not options.starts:
+        raise UserError("--only goes with --starts")
     if options.starts:
-        command = shlex.join(["./bench", "engine", *argv])
-        record = with_starts(study, earlier(kept, study), options.starts) | {"command_of_starts": command}
+        command, before = shlex.join(["./bench", "engine", *argv]), earlier(kept, study)
+        if options.only and "command_of_starts" in before:
+            command = f"{before['command_of_starts']}`, then `{command}"
+        record = with_starts(study, before, options.starts, options.only) | {"command_of_starts": command}
     else:
         record = compared(study) | {"command": shlex.join(["./bench", "engine", *argv])}
         record = with_kept_starts(record, kept)

@@ -5,8 +5,9 @@
 
 namespace bb {
 
-/// accd: additive CCD, the largest part of the motion for all. planar_truncation, per_vertex: vertex_bounds.hpp.
-enum class StepBoundRule { accd, planar_truncation, per_vertex };
+/// accd: additive CCD, the largest part of the motion for all. planar_truncation, planar_balanced,
+/// per_vertex: vertex_bounds.hpp.
+enum class StepBoundRule { accd, planar_truncation, planar_balanced, per_vertex };
 
 /// Whether every vertex has a part of its own.
 constexpr bool bounds_each_vertex(StepBoundRule rule) { return rule != StepBoundRule::accd; }
@@ -22,6 +23,8 @@ constexpr std::string_view to_string(StepBoundRule rule) {
       return "additive CCD";
     case StepBoundRule::planar_truncation:
       return "planar truncation of each vertex";
+    case StepBoundRule::planar_balanced:
+      return "planar truncation of each vertex, planes where the smallest part is largest";
     case StepBoundRule::per_vertex:
       return "a ball round each vertex";
   }

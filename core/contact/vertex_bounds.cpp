@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "core/contact/chunks.hpp"
 #include "core/contact/obstacle_pair.hpp"
@@ -33,23 +34,51 @@ double VertexBounds::floor_of(double largest) const {
                            [&]<class T>() -> double { return ulp_floor(static_cast<T>(largest)); });
 }
 
-/// Vertices of the first side, below `split`, come down from their height (m) above the others by `towards`; those of the
-/// second rise by it. The plane divides the room (m) between the two sides as those vertices approach it that carry the
-/// closest points, in halves where none does.
+/// As the vertices that carry the closest points approach; in halves where none does.
 template <int N>
-void VertexBounds::divide(const std::array<int, N>& vertex, int split, const SideOf (&of)[N], double keep) {
-  double approach[2] = {0, 0}, edge[2] = {of[0].height, of[split].height};
+double VertexBounds::published_share(int split, const SideOf (&of)[N]) {
+  double approach[2] = {0, 0};
   for (int k = 0; k < N; ++k) {
-    const int side = k < split ? 0 : 1;
-    if (of[k].carries) approach[side] = std::max(approach[side], of[k].towards);
-    edge[side] = side == 0 ? std::min(edge[0], of[k].height) : std::max(edge[1], of[k].height);
+    double& fastest = approach[k < split ? 0 : 1];
+    if (of[k].carries) fastest = std::max(fastest, of[k].towards);
   }
-  const double both = approach[0] + approach[1], room = edge[0] - edge[1] - keep;
+  const double both = approach[0] + approach[1];
+  return both > 0 ? approach[0] / both : 0.5;
+}
+
+/// So that the vertex with the smallest part has the largest there can be. Two sides go the part t of their motion as long
+/// as t (u + v) is within room + (what u has behind it) + (what v has), for all ways u of one side and v of the other; a
+/// side that goes nowhere is a way of 0.
+template <int N>
+double VertexBounds::balanced_share(int split, const SideOf (&of)[N], double room) {
+  double part = std::numeric_limits<double>::infinity();
+  for (int i = -1; i < split; ++i) {
+    for (int j = split - 1; j < N; ++j) {
+      const SideOf first = i < 0 ? SideOf() : of[i], second = j < split ? SideOf() : of[j];
+      const double way = std::max(first.towards, 0.0) + std::max(second.towards, 0.0);
+      if (way > 0) part = std::min(part, (room + first.behind + second.behind) / way);
+    }
+  }
+  if (!std::isfinite(part)) return 0.5;
+  double needed = 0;  // m, of the room by the first side
+  for (int i = 0; i < split; ++i) needed = std::max(needed, part * of[i].towards - of[i].behind);
+  return std::min(1.0, needed / room);
+}
+
+/// Vertices of the first side, below `split`, come down from their height (m) above the others by `towards`; those of the
+/// second rise by it. The plane divides the room (m) between the two sides.
+template <int N>
+void VertexBounds::divide(const std::array<int, N>& vertex, int split, SideOf (&of)[N], double keep) {
+  double edge[2] = {of[0].height, of[split].height};
   for (int k = 0; k < N; ++k) {
-    const int side = k < split ? 0 : 1;
-    const double extra = side == 0 ? of[k].height - edge[0] : edge[1] - of[k].height;
-    const double share = both > 0 ? approach[side] / both : 0.5;
-    const double own = room > 0 ? extra + room * share : 0;
+    edge[k < split ? 0 : 1] = k < split ? std::min(edge[0], of[k].height) : std::max(edge[1], of[k].height);
+  }
+  for (int k = 0; k < N; ++k) of[k].behind = k < split ? of[k].height - edge[0] : edge[1] - of[k].height;
+  const double room = edge[0] - edge[1] - keep;
+  const bool balanced = rule_ == StepBoundRule::planar_balanced && room > 0;
+  const double share = balanced ? balanced_share(split, of, room) : published_share(split, of);
+  for (int k = 0; k < N; ++k) {
+    const double own = room > 0 ? of[k].behind + room * (k < split ? share : 1 - share) : 0;
     keep_smaller(vertex[static_cast<std::size_t>(k)], part_of(gamma_ * own, of[k].towards));
   }
 }

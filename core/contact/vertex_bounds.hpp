@@ -17,6 +17,9 @@ namespace bb {
 /// of its way. Source: Divide and Truncate, arXiv 2604.15513, in the planar form that the IPC Toolkit has
 /// (TrustRegion::planar_filter_step); differs by: pairs of the whole motion instead of a radius with a ball beyond it, the
 /// room between the two sides taken from the vertices themselves, planes beyond balls and cylinders, which are convex.
+/// planar_balanced: the same planes at another place, ours: the smallest part of a pair's vertices is the largest that any
+/// place of the plane gives, where the published place leaves a vertex behind closest points that go back only what it is
+/// behind.
 /// per_vertex: no vertex goes farther than gamma/2 of the smallest gap of its pairs, whatever direction. Source: Chen et
 /// al. 2025, Offset Geometric Contact, conservative bound of a vertex, as the IPC Toolkit has it
 /// (TrustRegion::filter_step); differs by: pairs of the whole motion instead of a radius; where the other side is an
@@ -48,13 +51,20 @@ class VertexBounds {
   template <int N>
   void bound_at_obstacle(const std::array<int, N>& vertex, const Side& law,
                          const AnalyticSurface<double>& given, const Motion& motion);
-  /// Of a vertex across a plane, m: its height, how far it goes towards the other side, whether it carries the closest point.
+  /// Of a vertex across a plane, m: its height, how far it goes towards the other side, whether it carries the closest
+  /// point, how far it is behind the nearest vertex of its side.
   struct SideOf {
     double height = 0, towards = 0;
     bool carries = false;
+    double behind = 0;
   };
+  /// Of the room between two sides, what is the first's.
   template <int N>
-  void divide(const std::array<int, N>& vertex, int split, const SideOf (&of)[N], double keep);
+  static double published_share(int split, const SideOf (&of)[N]);
+  template <int N>
+  static double balanced_share(int split, const SideOf (&of)[N], double room);
+  template <int N>
+  void divide(const std::array<int, N>& vertex, int split, SideOf (&of)[N], double keep);
 
   const Surface& surface_;
   const std::vector<AnalyticSurface<double>>& obstacles_;

@@ -103,9 +103,10 @@ bool StepSearch::go_round(StepSystem& system, IterationReport& report) {
   return false;
 }
 
-// Each vertex as far as contact lets it, or where that does not descend all of them as far as the one that may go least.
-// What is taken is said as the part of the fall that dx promises to first order; of a motion that is asked for no
-// energies, as that of prescribed vertices.
+// Each vertex as far as contact lets it, where that wins more of the fall that dx promises to first order than all of them
+// would that go as far as the one that may go least: a motion cut unevenly deforms what dx leaves in shape, and where E or
+// the strain limit stops it at once, ever shorter parts of it follow while the way for all is open. What is taken is said
+// as the part of that fall; of a motion that is asked for no energies, as that of prescribed vertices.
 bool StepSearch::go_truncated(StepSystem& system, IterationReport& report, const TruncatedMotion& motion,
                               bool energy_test) {
   const double slope = system.direction_size().slope_J, whole = -2 * report.decrement_J;
@@ -114,8 +115,11 @@ bool StepSearch::go_truncated(StepSystem& system, IterationReport& report, const
     bound_ = motion.bound;
     share_ = energy_test ? slope / whole : motion.of_pins;
     truncated_ = true;
-    ++*truncations_;
-    if (go_along(system, report, smallest_alpha, energy_test)) return true;
+    const double least = energy_test ? cap_fraction_ * of_all / share_ : 0;
+    if (go_along(system, report, std::max(smallest_alpha, least), energy_test)) {
+      ++*truncations_;
+      return true;
+    }
     bound_ = of_all;
   }
   share_ = 1, truncated_ = false;

@@ -127,7 +127,7 @@ void check_contact(const RunConfig& config, const Complain& complain) {
   const StepBoundRule rule = contact.step_bound.value_or(StepBoundRule::accd);
   if (contact.bound_gamma && !bounds_each_vertex(rule)) {
     complain("/contact/bound_gamma", fmt::format("{}", *contact.bound_gamma),
-             "nothing: accd does not read it, planar_truncation and per_vertex do");
+             "nothing: accd does not read it, bounds of each vertex do");
   }
   if (contact.model == ContactModel::offset_geometric) check_model(config, complain);
   const ContactWeighting weighting = contact.weighting.value_or(ContactWeighting::none);

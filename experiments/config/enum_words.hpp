@@ -30,6 +30,7 @@ inline EnumWords<Mollifier> words_of(Mollifier) {
 inline EnumWords<StepBoundRule> words_of(StepBoundRule) {
   return {{StepBoundRule::accd, "accd"},
           {StepBoundRule::planar_truncation, "planar_truncation"},
+          {StepBoundRule::planar_balanced, "planar_balanced"},
           {StepBoundRule::per_vertex, "per_vertex"}};
 }
 inline EnumWords<ContactWeighting> words_of(ContactWeighting) {

@@ -14,6 +14,8 @@ namespace bb::test::vertex_bounds_test {
 namespace {
 
 constexpr double gamma = 0.9;
+constexpr StepBoundRule each_rule[] = {StepBoundRule::planar_truncation, StepBoundRule::planar_balanced,
+                                       StepBoundRule::per_vertex};
 
 struct Found {
   StepBound bound;
@@ -60,6 +62,61 @@ TEST(VertexBounds, APlaneDividesTheGapAsBothSidesApproach) {
   EXPECT_NEAR(found.bound.alpha, of_triangle / 0.3, 1e-13);
   EXPECT_EQ(found.bound.key[0], 2);
   EXPECT_EQ(found.bound.queries, 0);
+}
+
+/// A corner of a triangle 0.1 beyond a point, its other vertices 0.02 behind it; all of them move along x.
+Scene point_at_corner() {
+  Scene scene;
+  add_body(scene, "triangle", {Vec3d(0, 0, 0), Vec3d(0.02, 0.5, 0), Vec3d(0.02, -0.5, 0)}, {{0, 1, 2}}, d_hat);
+  add_body(scene, "point", {Vec3d(-0.1, 0, 0)}, {}, d_hat);
+  return scene;
+}
+
+TEST(VertexBounds, ABalancedPlaneIsPlacedByWhatComesOnFromBehind) {
+  const Scene scene = point_at_corner();
+  Positions x1 = scene.x0;
+  x1.row(0) += Eigen::RowVector4d(0.2, -0.3, -0.1, 0.1);  // the corner goes back, all others come on
+  const Found published = parts_of(scene, x1, StepBoundRule::planar_truncation);
+  EXPECT_NEAR(published.part[1], gamma * 0.02 / 0.3, 1e-13);  // the plane is at the corner
+  EXPECT_NEAR(published.part[3], gamma * 0.1 / 0.1, 1e-13);
+  const Found balanced = parts_of(scene, x1, StepBoundRule::planar_balanced);
+  const double part = (0.1 + 0.02) / (0.3 + 0.1);  // of their motion until the fastest two meet
+  EXPECT_EQ(balanced.part[0], 1);
+  EXPECT_NEAR(balanced.part[1], gamma * part, 1e-13);
+  EXPECT_NEAR(balanced.part[2], gamma * part * 0.3 / 0.1, 1e-13);
+  EXPECT_NEAR(balanced.part[3], gamma * part, 1e-13);
+  EXPECT_GT(balanced.bound.alpha, 4 * published.bound.alpha);
+}
+
+/// The smallest part of the pair with the plane at `place` of its gap from the triangle on.
+double least_part(const Scene& scene, const Positions& x1, double place) {
+  double least = 1;
+  for (int v = 0; v < 4; ++v) {
+    const double moved = x1(0, v) - scene.x0(0, v), towards = v < 3 ? -moved : moved;
+    const double room = v < 3 ? scene.x0(0, v) + 0.1 * place : 0.1 * (1 - place);
+    if (towards > 0) least = std::min(least, gamma * room / towards);
+  }
+  return least;
+}
+
+TEST(VertexBounds, NoPlaceLeavesTheSlowestVertexMoreThanTheBalancedOne) {
+  std::mt19937_64 rng(3);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const Scene scene = point_at_corner();
+  int bound = 0, better = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    Positions x1 = scene.x0;
+    for (int v = 0; v < 4; ++v) x1(0, v) += 0.5 * unit(rng);
+    const double least = parts_of(scene, x1, StepBoundRule::planar_balanced).bound.alpha;
+    double most = 0;
+    for (int place = 0; place <= 1000; ++place) most = std::max(most, least_part(scene, x1, place / 1000.0));
+    EXPECT_GE(least, most - 1e-12) << trial;
+    EXPECT_LT(least, most + 0.05) << trial;
+    bound += least < 1 ? 1 : 0;
+    better += least > 1.01 * parts_of(scene, x1, StepBoundRule::planar_truncation).bound.alpha ? 1 : 0;
+  }
+  EXPECT_GT(bound, 100);
+  EXPECT_GT(better, 20);
 }
 
 TEST(VertexBounds, ThicknessIsNoGap) {
@@ -119,7 +176,7 @@ TEST(VertexBounds, OverAPlaneAndInsideABall) {
   EXPECT_NEAR(parts_of(scene, x1, StepBoundRule::planar_truncation).part[0], gamma * 0.1 / 0.4, 1e-13);
   scene.obstacles = {shell};
   const double way = std::sqrt(9 + 0.16);
-  for (const StepBoundRule rule : {StepBoundRule::planar_truncation, StepBoundRule::per_vertex})
+  for (const StepBoundRule rule : each_rule)
     EXPECT_NEAR(parts_of(scene, x1, rule).part[0], gamma * 0.5 / way, 1e-13);
 }
 
@@ -168,7 +225,7 @@ TEST(VertexBounds, NothingPassesWhateverPartsAreTaken) {
       return contacts.step_bound(from, to).alpha;
     };
     ASSERT_LT(proven(scene.x0, x1), 0.5);
-    for (const StepBoundRule rule : {StepBoundRule::planar_truncation, StepBoundRule::per_vertex}) {
+    for (const StepBoundRule rule : each_rule) {
       const Found found = parts_of(scene, x1, rule);
       ASSERT_GT(found.bound.alpha, 0);
       const Positions whole = moved_by_parts(scene, x1, found.part);
@@ -202,7 +259,7 @@ TEST(VertexBounds, PartsDoNotDependOnThreads) {
   Positions x1 = scene.x0;
   x1.row(2).array() -= 0.4;
   x1.row(2) += 0.1 * scene.x0.row(0);
-  for (const StepBoundRule rule : {StepBoundRule::planar_truncation, StepBoundRule::per_vertex}) {
+  for (const StepBoundRule rule : each_rule) {
     const Found many = parts_of(scene, x1, rule);
     const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
     const Found alone = parts_of(scene, x1, rule);

@@ -80,6 +80,24 @@ def test_dear_runs_are_made_from_few_starts(program, here, tmp_path):
     assert {who[::2]: s["starts"] for who, s in scatter.scatter(one).items()} == {("barrierbench", 0): 2, ("template", 0): 2, ("template", 1): 1}
 
 
+def test_one_variant_is_run_alone_and_what_is_known_of_others_stays(program, here, tmp_path):
+    study, said = small_study(tmp_path, {"jitter_m": 1e-4})
+    record = compare.compared(study)
+    line = {"engine": "template", "variant": "other", "level": 0}
+    one = record["scenes"][0]
+    one["rows"].insert(2, one["rows"][1] | line)  # an engine that is not installed any more
+    one["starts"] = [{"start": k, "reference": {}, "rows": [line | {"outcome": "ok", "error_mean": 0.5}]} for k in (1, 2)]
+    found = starts.with_starts(study, record, 2, ["template/plain"])["scenes"][0]["starts"]
+    assert [[(row["variant"], row["level"]) for row in start["rows"]] for start in found] == 2 * [[("log", 0), ("plain", 0), ("other", 0), ("plain", 1)]]
+    assert [start["rows"][2]["error_mean"] for start in found] == [0.5, 0.5] and found[0]["reference"]["outcome"] == "ok"
+    n = len(said)
+    starts.with_starts(study, record, 3, ["template/plain"])
+    assert sum("template" in line for line in said[n:]) == 2, "start 3 alone is new"
+    with pytest.raises(UserError, match="found 'template/other'; allowed: template/plain"):
+        starts.with_starts(study, record, 2, ["template/other"])
+    assert verb.main(["compare", "--only", "template/plain"]) == 2
+
+
 def test_how_many_cross_is_counted_and_drawn(tmp_path):
     row = {"engine": "e", "variant": "v", "level": 0, "outcome": "ok", "verdict": "clean", "frames_crossing": 0, "frames_in_obstacles": 0, "passages": 0,
            "depth_obstacles_m": 0.0, "depth_bodies_m": 0.0, "error_mean": 0.01}  # fmt: skip
