@@ -67,7 +67,8 @@ TEST(VertexBounds, APlaneDividesTheGapAsBothSidesApproach) {
 /// A corner of a triangle 0.1 beyond a point, its other vertices 0.02 behind it; all of them move along x.
 Scene point_at_corner() {
   Scene scene;
-  add_body(scene, "triangle", {Vec3d(0, 0, 0), Vec3d(0.02, 0.5, 0), Vec3d(0.02, -0.5, 0)}, {{0, 1, 2}}, d_hat);
+  add_body(scene, "triangle", {Vec3d(0, 0, 0), Vec3d(0.02, 0.5, 0), Vec3d(0.02, -0.5, 0)}, {{0, 1, 2}},
+           d_hat);
   add_body(scene, "point", {Vec3d(-0.1, 0, 0)}, {}, d_hat);
   return scene;
 }
