@@ -117,7 +117,8 @@ Scene net_over_ball() {
 }
 
 /// jaxls itself (its example at commit 50a58be, float, 2026-11-26): the mean of the points, m, and the highest and the lowest one
-/// after some steps of 1/30 s. It prints -0.000 and 0.226 for the heights of its end, 150 steps.
+/// after some steps of 1/30 s. Its page states -0.000 and 0.176 for the heights of its end, 150 steps; run here it prints -0.000 and
+/// 0.226. The net still slides off the ball then, and starts moved by 1 um end between 0.193 and 0.222 (docs/baselines.md).
 TEST(AugmentedLagrangian, a_net_falls_over_a_ball_as_in_the_program_of_jaxls) {
   struct Known {
     int steps;
@@ -131,22 +132,28 @@ TEST(AugmentedLagrangian, a_net_falls_over_a_ball_as_in_the_program_of_jaxls) {
   ASSERT_EQ(scene.stitches.pairs.size(), 1202U);
   Method method = method_of(0, "half_gravity");
   method.step_solver.tol_velocity = 1e-5;
-  Simulation simulation(scene, method, 1.0 / 30, 41);
+  Simulation simulation(scene, method, 1.0 / 30, 150);
   StepObserver none;
   int step = 0;
   double most_violated = 0;
+  const auto advance = [&] {
+    const StepReport report = simulation.step(none);
+    ASSERT_EQ(report.status, StepStatus::converged) << step << " " << report.detail;
+    most_violated = std::max(most_violated, report.solver.values.at("al_violation_m"));
+  };
   for (const Known& then : known) {
-    for (; step < then.steps; ++step) {
-      const StepReport report = simulation.step(none);
-      ASSERT_EQ(report.status, StepStatus::converged) << step << " " << report.detail;
-      most_violated = std::max(most_violated, report.solver.values.at("al_violation_m"));
-    }
+    for (; step < then.steps; ++step) advance();
     const Positions& x = simulation.history().x;
     EXPECT_LT((x.rowwise().mean() - then.mean).norm(), then.within)
         << step << ": " << x.rowwise().mean().transpose();
     EXPECT_NEAR(x.row(2).minCoeff(), then.lowest, then.within) << step;
     EXPECT_NEAR(x.row(2).maxCoeff(), then.highest, then.within) << step;
   }
+  for (; step < 150; ++step) advance();
+  const auto heights = simulation.history().x.row(2);
+  EXPECT_NEAR(heights.minCoeff(), 0, 2 * tolerance);
+  EXPECT_GT(heights.maxCoeff(), 0.176);
+  EXPECT_LT(heights.maxCoeff(), 0.226);
   EXPECT_LT(most_violated, tolerance);
 }
 
