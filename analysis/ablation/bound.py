@@ -16,7 +16,7 @@ Contexts = dict[tuple[int, int], set[tuple[int, ...]]]
 def contexts(factorial: Factorial) -> Contexts:
     """(factor, level) -> what may stand with it: allowed combinations without the factor."""
     found: Contexts = {}
-    for one in factorial.allowed():
+    for one in factorial.allowed:
         for f, level in enumerate(one):
             found.setdefault((f, level), set()).add(one[:f] + one[f + 1 :])
     return found

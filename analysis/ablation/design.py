@@ -18,6 +18,8 @@ from __future__ import annotations
 import random
 from itertools import combinations
 
+import numpy as np
+
 from ..errors import UserError
 from .factors import Combination, Factorial
 
@@ -26,40 +28,46 @@ ROUNDS = 4
 
 
 class _Counts:
-    """How often pairs of levels stand together in an array."""
+    """How often pairs of levels stand together in an array. A combination is its row among the candidates."""
 
-    def __init__(self, sizes: tuple[int, ...], candidates: list[Combination]):
-        self.pairs = list(combinations(range(len(sizes)), 2))
-        self.weight = {}
-        for a, b in self.pairs:
-            whole = len({(one[a], one[b]) for one in candidates}) == sizes[a] * sizes[b]
-            self.weight[a, b] = sizes[a] * sizes[b] * (1 if whole else len(self.pairs))
-        self.count: dict[tuple[int, int, int, int], int] = {}
+    def __init__(self, sizes: tuple[int, ...], candidates: tuple[Combination, ...]):
+        pairs = list(combinations(range(len(sizes)), 2))
+        levels = np.array(candidates)
+        many = [sizes[a] * sizes[b] for a, b in pairs]
+        first = np.cumsum([0, *many])
+        columns = [
+            at + levels[:, a] * sizes[b] + levels[:, b] for at, (a, b) in zip(first[:-1], pairs, strict=True)
+        ]
+        self.cell = np.stack(columns, axis=1)  # [candidates, pairs] the cell of the table `count`
+        self.count = np.zeros(first[-1], dtype=np.int64)
+        self.allowed = np.zeros(first[-1], dtype=bool)
+        self.allowed[self.cell] = True
+        whole = [self.allowed[at : at + n].all() for at, n in zip(first[:-1], many, strict=True)]
+        self.weight = np.array([n * (1 if each else len(pairs)) for n, each in zip(many, whole, strict=True)])
+        self.weight_of_cell = np.repeat(self.weight, many)
 
-    def keys(self, one: Combination):
-        return ((a, b, one[a], one[b]) for a, b in self.pairs)
+    def add(self, row: int, by: int) -> None:
+        self.count[self.cell[row]] += by
 
-    def add(self, one: Combination, by: int) -> None:
-        for key in self.keys(one):
-            self.count[key] = self.count.get(key, 0) + by
-
-    def cost_of(self, one: Combination) -> int:
-        """What the unbalance grows by when `one` is added: (n + 1)^2 - n^2 each."""
-        return sum((2 * self.count.get(key, 0) + 1) * self.weight[key[:2]] for key in self.keys(one))
+    def cheapest(self, rows: list[int]) -> int:
+        """The first of those by which the unbalance grows least when it is added: (n + 1)^2 - n^2 each."""
+        growth = ((2 * self.count[self.cell[rows]] + 1) * self.weight).sum(axis=1)
+        return rows[int(growth.argmin())]
 
     def unbalance(self) -> int:
-        return sum(n * n * self.weight[key[:2]] for key, n in self.count.items())
+        return int((self.count * self.count * self.weight_of_cell).sum())
 
 
 def drawn(factorial: Factorial, scene: str) -> list[Combination]:
     """The combinations of a scene, sorted, each once. Errors: UserError where there are too few."""
-    candidates, n = factorial.allowed(), factorial.spec["combinations"]
+    candidates, n = factorial.allowed, factorial.spec["combinations"]
     if n > len(candidates):
         raise UserError(
             f"{factorial.path}#/combinations: found {n}; at most {len(candidates)}, which are allowed"
         )
     draw = random.Random(f"{factorial.spec['seed']} {scene}")
-    chosen = draw.sample(candidates, n)
+    rows = range(len(candidates))
+    chosen = draw.sample(rows, n)
     counts, inside = _Counts(factorial.sizes, candidates), set(chosen)
     for one in chosen:
         counts.add(one, 1)
@@ -67,22 +75,20 @@ def drawn(factorial: Factorial, scene: str) -> list[Combination]:
         before = counts.unbalance()
         for place, old in enumerate(chosen):
             counts.add(old, -1)
-            others = [
-                one for one in draw.sample(candidates, min(TRIES, len(candidates))) if one not in inside
-            ]
-            new = min([old, *others], key=counts.cost_of)
+            others = [one for one in draw.sample(rows, min(TRIES, len(rows))) if one not in inside]
+            new = counts.cheapest([old, *others])
             counts.add(new, 1)
             inside = inside - {old} | {new}
             chosen[place] = new
         if counts.unbalance() == before:
             break
-    return sorted(chosen)
+    return sorted(candidates[one] for one in chosen)
 
 
 def seldom(factorial: Factorial, array: list[Combination]) -> int:
     """How often the rarest allowed pair of levels stands together."""
-    candidates = factorial.allowed()
-    counts = _Counts(factorial.sizes, candidates)
+    candidates = factorial.allowed
+    counts, row = _Counts(factorial.sizes, candidates), {one: k for k, one in enumerate(candidates)}
     for one in array:
-        counts.add(one, 1)
-    return min(counts.count.get(key, 0) for one in candidates for key in counts.keys(one))
+        counts.add(row[one], 1)
+    return int(counts.count[counts.allowed].min())

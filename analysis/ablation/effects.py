@@ -32,8 +32,9 @@ class Term:
 
     parts: tuple[tuple[int, int], ...]
 
-    def of(self, levels: tuple[int, ...]) -> float:
-        return float(all(levels[f] == level for f, level in self.parts))
+    def column(self, levels: np.ndarray) -> np.ndarray:
+        """levels: [runs, factors]; 1 where a run has the levels of the term, else 0."""
+        return np.logical_and.reduce([levels[:, f] == level for f, level in self.parts]).astype(float)
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,8 @@ def fitted(
     """
     if not y:
         return {}
-    x = np.column_stack([np.ones(len(y)), *([term.of(one) for one in levels] for term in terms)])
+    array = np.asarray(levels)
+    x = np.column_stack([np.ones(len(y)), *(term.column(array) for term in terms)])
     inverse = np.linalg.pinv(x, rcond=1e-10)
     resolution = inverse @ x  # of columns: the identity where all are determined
     if len(y) - round(float(np.trace(resolution))) < freedom:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from pathlib import Path
 
@@ -49,11 +50,12 @@ class Factorial:
     def labels_of(self, one: Combination) -> list[str]:
         return [factor.labels[level] for factor, level in zip(self.factors, one, strict=True)]
 
-    def allowed(self) -> list[Combination]:
+    @cached_property
+    def allowed(self) -> tuple[Combination, ...]:
         """All combinations that no exclusion names, the last factor fastest."""
         barred = [set(entry["labels"]) for entry in self.sweep.get("exclude", [])]
         every = product(*(range(n) for n in self.sizes))
-        return [one for one in every if not any(names <= set(self.labels_of(one)) for names in barred)]
+        return tuple(one for one in every if not any(names <= set(self.labels_of(one)) for names in barred))
 
     def settings_of(self, scene: str, one: Combination) -> dict:
         """Pointers that a combination sets in a scene, later axes over earlier ones."""

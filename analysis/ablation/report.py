@@ -162,7 +162,7 @@ def _interactions(factorial: Factorial, study: Study) -> list[str]:
 
 def _what_was_run(factorial: Factorial, table: Table) -> list[str]:
     spec, n_scenes = factorial.spec, len(factorial.scenes.levels)
-    allowed, every = len(factorial.allowed()) * n_scenes, math.prod(factorial.sizes) * n_scenes
+    allowed, every = len(factorial.allowed) * n_scenes, math.prod(factorial.sizes) * n_scenes
     asked = spec["combinations"] * n_scenes
     missing = asked - len(table.rows)
     axes = ", ".join(f"{f.name} ({', '.join(f.levels)})" for f in factorial.factors)

@@ -38,7 +38,7 @@ def made(small, newton, through=lambda levels: True) -> table.Table:
     """A row of every allowed combination in every scene. newton: scene number, levels -> iterations."""
     rows = []
     for k, scene in enumerate(SCENES):
-        for levels in small.allowed():
+        for levels in small.allowed:
             ok = through(levels)
             rows.append({"scene": scene, "case": " ".join(small.labels_of(levels)), "outcome": "ok" if ok else "newton_stall", "valid": ok, "failed": "" if ok else "not_valid",
                          "newton": newton(k, levels), "bj_p95": 10.0, "pcg": 5.0, "gap": 0.1, "core_s": 1.0, "config_id": "", "run_id": ""})
@@ -50,14 +50,14 @@ def effect(found, small, name) -> effects.Effect:
 
 
 def test_exclusions_leave_what_they_do_not_name(small):
-    assert small.sizes == (3, 2, 5) and len(small.allowed()) == 25
-    assert (2, 1, 0) not in small.allowed() and (2, 0, 0) in small.allowed() and (1, 1, 0) in small.allowed()
+    assert small.sizes == (3, 2, 5) and len(small.allowed) == 25
+    assert (2, 1, 0) not in small.allowed and (2, 0, 0) in small.allowed and (1, 1, 0) in small.allowed
     assert small.settings_of("two", (1, 0, 1)) == {"/scene": "two", "/shape": "b", "/solver": "x", "/precision": "float"}
 
 
 def test_a_draw_is_that_of_its_seed_and_scene(small):
     first = drawn(small, "one")
-    assert first == drawn(small, "one") and len(set(first)) == 8 and set(first) <= set(small.allowed())
+    assert first == drawn(small, "one") and len(set(first)) == 8 and set(first) <= set(small.allowed)
     assert any(drawn(small, scene) != first for scene in SCENES)
 
 
@@ -65,7 +65,7 @@ def test_the_fraction_tells_every_main_effect():
     """Of each scene: no level is a combination of others. Integrator and step solver exclude each other in part."""
     whole = factors.read_factorial(DEFAULT)
     terms = effects.main_terms(whole)
-    assert len(terms) == 19 and len(whole.allowed()) * len(whole.scenes.levels) == 95040
+    assert len(terms) == 19 and len(whole.allowed) * len(whole.scenes.levels) == 95040
     for scene in whole.scenes.labels:
         array = drawn(whole, scene)
         found = effects.fitted(array, [float(k) for k in range(len(array))], terms, terms)
