@@ -9,7 +9,8 @@ import math
 from dataclasses import dataclass
 
 QUANTILES = ("gap_rel_p05", "gap_rel_median", "gap_rel_p95")
-LEAST_LOAD_SHARE, LEAST_TIME_SHARE = 0.01, 0.1  # a pair counts with either, in one of the two runs
+# A pair counts with either, in one of the two runs; shares are sums over steps, and rounded.
+LEAST_LOAD_SHARE, LEAST_TIME_SHARE = 0.01, 0.1 * (1 - 1e-9)
 MAX_RATIO = 2.0
 NO_LOAD = 1.0  # from d_hat on the barrier carries nothing
 
@@ -22,11 +23,16 @@ class Apart:
 
     pair: str
     quantile: str
-    ratio: float  # of the first run over the second
+    ratio: float | None  # of the first run over the second; None: a gap is not above 0, surfaces overlap
 
     @property
     def comparable(self) -> bool:
-        return 1 / MAX_RATIO <= self.ratio <= MAX_RATIO
+        return self.ratio is not None and 1 / MAX_RATIO <= self.ratio <= MAX_RATIO
+
+    @property
+    def factor(self) -> float:
+        """How far apart, as the logarithm of a factor."""
+        return math.inf if self.ratio is None else abs(math.log(self.ratio))
 
 
 def gaps_of(record: dict) -> Gaps | None:
@@ -43,13 +49,18 @@ def gaps_of(record: dict) -> Gaps | None:
     }
 
 
+def _ratio(mine: float, other: float) -> float | None:
+    return mine / other if mine > 0 and other > 0 else None
+
+
 def farthest(run: Gaps, other: Gaps) -> Apart | None:
     """None when no pair carries load in either. Among equals the first, as in the program."""
-    counting = sorted({pair for gaps in (run, other) for pair, (*_, counts) in gaps.items() if counts})
+    every = sorted({*run, *other})
+    counting = [pair for pair in every if any(gaps[pair][-1] for gaps in (run, other) if pair in gaps)]
     none = [NO_LOAD] * len(QUANTILES)
     found = [
-        Apart(pair, name, run.get(pair, none)[k] / other.get(pair, none)[k])
-        for pair in counting
+        Apart(pair, name, _ratio(run.get(pair, none)[k], other.get(pair, none)[k]))
+        for pair in counting or every
         for k, name in enumerate(QUANTILES)
     ]
-    return max(found, key=lambda apart: abs(math.log(apart.ratio)), default=None)
+    return max(found, key=lambda apart: apart.factor, default=None)

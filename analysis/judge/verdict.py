@@ -8,11 +8,11 @@ VERDICTS = {  # word: what it says; the first that holds is the verdict
         "surfaces cross each other or an obstacle in a frame, or a vertex is on the other side of a closed"
         " body than before"
     ),
-    "given_parts_cross": "only parts that the scene itself moves cross each other",
     "passes_between_frames": (
-        "no frame shows a crossing, but on the straight line from one frame to the next something passes"
-        " through something; what the program itself did between its frames is not known"
+        "no frame shows a crossing of parts that are free, but on the straight line from one frame to the next"
+        " something passes through something; what the program itself did between its frames is not known"
     ),
+    "given_parts_cross": "only parts that the scene itself moves cross each other",
     "unproven": (
         "nothing was found, but not everything could be proven free: surfaces that touch, or nothing that"
         " could be judged"
@@ -30,8 +30,8 @@ def verdict_of(total: dict, frames: list[dict], states_only: bool) -> str:
     holds = {
         "not_finite": total["not_finite"] > 0,
         "penetrates": total["crossings"] + beyond + total["changed_sides"] > 0,
-        "given_parts_cross": total["given_faults"] > 0,
         "passes_between_frames": between > 0 and not states_only,
+        "given_parts_cross": total["given_faults"] > 0,
         "unproven": total["judged"] == 0 or not total["self_test_passed"]
         or (total["unproven"] > 0 and not states_only),
         "clean": True,

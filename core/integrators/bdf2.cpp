@@ -1,13 +1,14 @@
 // Second-order backward differentiation for x' = v, M v' = force:
 //   x = (4 x_n - x_{n-1})/3 + (2h/3) v,   v = (4 v_n - v_{n-1})/3 + (2h/3) a
 // so c = 4/9, x_tilde = (4 x_n - x_{n-1})/3 + h (8 v_n - 2 v_{n-1})/9. The first step is implicit Euler, and so is
-// every step that is not as long as the one before, whose coefficients these are not: it starts anew.
+// every step that is not as long as the one before, whose coefficients these are not, or from which on other vertices are
+// prescribed: it starts anew.
 #include "core/integrators/registry.hpp"
 
 namespace bb {
 namespace {
 bool starts(const History& history, double dt) {
-  return history.steps == 0 || (history.dt_prev > 0 && history.dt_prev != dt);
+  return history.steps == 0 || history.anew || (history.dt_prev > 0 && history.dt_prev != dt);
 }
 
 class Bdf2 final : public Integrator {

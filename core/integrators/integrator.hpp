@@ -18,6 +18,8 @@ struct History {
   Positions x, v, a;   // [3 x n] m, m/s, m/s^2
   Positions x_prev, v_prev;
   double t = 0;  // s, of x
+  /// Other vertices are prescribed from now on: of what lies before x and v the next step reads nothing.
+  bool anew = false;
 };
 
 struct Prediction {

@@ -85,7 +85,8 @@ class LineSearch final : public StepSolver {
           begin_anew(iteration);
           continue;
         }
-        end_converged(step, end, report.error_estimate_m, options_.tol_velocity * task.dt);
+        end_converged(step, end, report.error_estimate_m.value + left_of(report),
+                      options_.tol_velocity * task.dt);
         return step;
       }
       if (!moved && search_.bound() >= collapsed_step) {
@@ -112,6 +113,11 @@ class LineSearch final : public StepSolver {
     report.contraction = error_.contraction();
     report.error_estimate_m = error_.error();
     return error_.error();
+  }
+
+  // Of a last direction of which a part was taken, the rest, m: the estimate is that of its end.
+  double left_of(const IterationReport& report) const {
+    return search_.truncated() ? report.dx_beyond_m : std::abs(1 - search_.taken()) * report.dx_beyond_m;
   }
 
   // m. In float no step is asked for less than the rounding of the coordinates that are free to move.

@@ -82,9 +82,9 @@ void Simulation::make_system() {
 }
 
 // Degrees of freedom, masses and surfaces that can move are those of a system: another one takes over what the terms remember,
-// as a run does that goes on elsewhere.
-void Simulation::hold_pins(std::vector<int> holding) {
-  if (holding == held_.holding()) return;
+// as a run does that goes on elsewhere. Whether there is another one.
+bool Simulation::hold_pins(std::vector<int> holding) {
+  if (holding == held_.holding()) return false;
   Archive memory;
   system_->keep(memory);
   end_residual_.reset();
@@ -93,12 +93,24 @@ void Simulation::hold_pins(std::vector<int> holding) {
   make_system();
   Archive again(memory.bytes());
   system_->keep(again);
+  return true;
+}
+
+// Forces jump where vertices are let go or held: an acceleration of before is not theirs.
+void Simulation::begin_anew() {
+  history_.anew = true;
+  if (!method_.integrator->needs_acceleration()) return;
+  Archive memory;
+  system_->keep(memory);
+  start_acceleration();
+  Archive again(memory.bytes());
+  system_->keep(again);
 }
 
 void Simulation::keep(Archive& archive) {
   archive.section("simulation");
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
-          history_.v_prev, history_.t, step_, nominal_, nominal_start_, parts_);
+          history_.v_prev, history_.t, history_.anew, step_, nominal_, nominal_start_, parts_);
   if (held_.changes()) {
     std::vector<int> holding = held_.holding();
     archive(holding);
@@ -118,11 +130,13 @@ void Simulation::keep(Archive& archive) {
 void Simulation::drop_caches() { system_->drop_caches(); }
 
 StepReport Simulation::step(StepObserver& observer) {
-  if (held_.changes() && parts_.at_start()) hold_pins(holding_pins(scene_, nominal_start_ + dt_ / 2));
+  const bool others =
+      held_.changes() && parts_.at_start() && hold_pins(holding_pins(scene_, nominal_start_ + dt_ / 2));
   PhaseClock& clock = system_->clock();
   clock.restart(Phase::step_control);
   ChargedObserver charged(observer, clock);
   if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
+  if (others) begin_anew();
   StepReport report = attempt_until_converged(charged);
 
   remember(system_->view().x(), report.dt_s);
@@ -180,7 +194,8 @@ StepReport Simulation::attempt_until_converged(StepObserver& observer) {
   return report;
 }
 
-// a_0 = M^-1 (f - grad(Psi + B + S)) at the start; 0 at prescribed degrees of freedom.
+// a_0 = M^-1 (f - grad(Psi + B + S)) at the start, of vertices that do not move against the air or a contact; 0 at prescribed
+// degrees of freedom.
 void Simulation::start_acceleration() {
   Prediction at_rest;
   method_.integrator->predict(history_, dt_, at_rest);  // for its c
@@ -212,15 +227,28 @@ void Simulation::remember(const PositionsView& x, double dt_used) {
   if (dt_used > 0) {
     method_.integrator->finish(history_, dt_used, prediction_, x, v_next_, a_next_);
     damp_velocities(held_.now(), x, dt_used, v_next_);
+    follow_pins(history_.t + dt_used, dt_used);
     history_.v_prev.swap(history_.v);
     history_.v = v_next_;
     if (method_.integrator->needs_acceleration()) history_.a = a_next_;
     history_.dt_prev = dt_used;
+    history_.anew = false;
   }
   history_.x_prev.swap(history_.x);
   history_.x = x;
   ++history_.steps;
   advance_time(dt_used);
+}
+
+// A formula of second order takes a kink in the way of a prescribed vertex for a velocity that swings on without end. Nobody sees
+// that while it is held; what it is let go with is the velocity of its motion. First order has that of the step.
+void Simulation::follow_pins(double t_end, double dt) {
+  const Integrator& integrator = *method_.integrator;
+  if (integrator.one_step() && !integrator.needs_acceleration()) return;
+  for (const Pin& pin : held_.now().pins) {
+    v_next_.col(pin.vertex) = pin_velocity(scene_, pin, t_end, dt);
+    if (integrator.needs_acceleration()) a_next_.col(pin.vertex).setZero();
+  }
 }
 
 // At the end of a nominal step the time is what it would be without its parts. accumulated_toi ends a step

@@ -42,12 +42,14 @@ class Simulation {
 
  private:
   void make_system();
-  void hold_pins(std::vector<int> holding);
+  bool hold_pins(std::vector<int> holding);
+  void begin_anew();
   void start_acceleration();
   StepReport attempt(StepObserver& observer);
   StepReport attempt_until_converged(StepObserver& observer);
   void measure_residual(StepReport& report);
   void remember(const PositionsView& x, double dt_used);
+  void follow_pins(double t_end, double dt);
   void advance_time(double dt_used);
 
   const Scene& scene_;

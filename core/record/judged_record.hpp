@@ -92,7 +92,8 @@ struct Comparability {
            "^(gap_rel_(p05|median|p95))?$");
   BB_FIELD(Number, pair_gap_rel, "this quantile; 1 where the pair has no load", "no_contacts no_reference");
   BB_FIELD(Number, pair_reference_gap_rel, "the same of the reference", "no_contacts no_reference");
-  BB_FIELD(Number, pair_ratio, "pair_gap_rel / pair_reference_gap_rel", "no_contacts no_reference");
+  BB_FIELD(Number, pair_ratio, "pair_gap_rel / pair_reference_gap_rel; overlap: one of them is not above 0",
+           "no_contacts no_reference overlap");
   BB_FIELD(double, max_ratio,
            "comparable: pair_ratio within [1/max_ratio, max_ratio], so that of every pair with load is") = 2;
   BB_RECORD_END;

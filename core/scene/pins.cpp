@@ -7,6 +7,12 @@ Vec3d pin_pose(const Scene& scene, const Pin& pin, double t) {
   return scene.motions[static_cast<std::size_t>(pin.motion)](scene.x0.col(pin.vertex), t);
 }
 
+Vec3d pin_velocity(const Scene& scene, const Pin& pin, double t, double dt) {
+  const double h = dt / 16;
+  const Vec3d x = pin_pose(scene, pin, t), before = pin_pose(scene, pin, t - h);
+  return (3 * x - 4 * before + pin_pose(scene, pin, t - 2 * h)) / (2 * h);
+}
+
 std::vector<int> holding_pins(const Scene& scene, double middle) {
   std::vector<int> out;
   for (std::size_t i = 0; i < scene.pins.size(); ++i) {

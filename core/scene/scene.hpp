@@ -169,6 +169,8 @@ struct Scene : parts::AllColumns {
 
 /// Pose of a prescribed vertex at time t (s).
 Vec3d pin_pose(const Scene& scene, const Pin& pin, double t);
+/// Its velocity (m/s) at the end of a step of dt (s) at t, to second order: of its poses in the last eighth of the step.
+Vec3d pin_velocity(const Scene& scene, const Pin& pin, double t, double dt);
 /// Which pins hold in a step whose middle is at that time (s), as indices into Scene::pins, ascending.
 std::vector<int> holding_pins(const Scene& scene, double middle);
 /// The scene while these pins hold and no other, as if it were so for the whole run: what is held has no mass.

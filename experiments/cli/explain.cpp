@@ -54,7 +54,7 @@ std::set<std::string> of_method(const RunConfig& config) {
   return out;
 }
 
-void print_formulation(const RunConfig& config) {
+void print_formulation(const RunConfig& config, bool planar) {
   const FormulationConfig& contact = config.formulation;
   const StrainLimitConfig& limit = config.strain_limit;
   fmt::print("contact   {} on {}, d_hat {:g} m, {}\n", contact.shape, to_string(contact.argument),
@@ -66,6 +66,10 @@ void print_formulation(const RunConfig& config) {
   }
   fmt::print("guarantee {}: {}\n", config.step_solver.name,
              step_solvers().require(config.step_solver.name, "/step_solver/name").guarantee);
+  if (planar)
+    fmt::print(
+        "          in the plane contact is of boundaries: a triangle that turns inside out is kept from "
+        "nothing\n");
   fmt::print("matching  {}{}\n\n", to_string(config.matching.rule),
              config.matching.rule == MatchingRule::as_given
                  ? ""
@@ -160,7 +164,7 @@ int explain(const RunVerb& verb, const ContactDemand& demand) {
   fmt::print("  surface: {} triangles, {} edges\n\n", scene.surface_triangles.size(),
              scene.surface_edges.size());
   print_method(config);
-  print_formulation(config);
+  print_formulation(config, scene.planar);
   for (const bool needed : {true, false}) {
     fmt::print("{}\n", needed ? "runs" : "skipped");
     for (const auto& [name, item] : plan.items()) {

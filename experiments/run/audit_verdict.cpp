@@ -26,6 +26,10 @@ std::string penetration(const Scene& scene, const audit::AuditMesh& mesh, const 
         "; the contact model vertex_vertex has no edge pairs: it allows edges to cross each other and to "
         "enter "
         "obstacles, which is no failure of the solver";
+  } else if (scene.planar && ledger.obstacle_violations > 0) {
+    text +=
+        "; in the plane contact is of boundaries: where a membrane turns inside out its inner vertices come "
+        "through its own boundary, and nothing keeps them out of obstacles";
   }
   return text;
 }
@@ -69,9 +73,10 @@ std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const aud
 Verdict judge_audit(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {
   if (ledger.ok()) return {};
   if (ledger.scene_faults > 0 && ledger.first_fault) {
-    return {Outcome::invalid_scene,
-            fmt::format("{}, and both are prescribed: {}", describe(scene, mesh, *ledger.first_fault),
-                        when(ledger.first_fault_step))};
+    std::string text = fmt::format("{}, and both are prescribed: {}",
+                                   describe(scene, mesh, *ledger.first_fault), when(ledger.first_fault_step));
+    if (ledger.penetrated()) text += "; " + penetration(scene, mesh, ledger);
+    return {Outcome::invalid_scene, text};
   }
   if (ledger.penetrated()) return {Outcome::penetration, penetration(scene, mesh, ledger)};
   return {Outcome::unproven, unproven(ledger)};

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -17,7 +17,9 @@ namespace {
 
 bool has_load(const ComparedRun& run) { return !run.gaps.empty(); }
 
-constexpr double least_load_share = 0.01, least_time_share = 0.1;
+// Shares are sums over steps: a tenth of the steps is a tenth up to rounding.
+constexpr double least_load_share = 0.01, least_time_share = 0.1 * (1 - 1e-9);
+constexpr const char* overlap = "overlap";
 
 bool counts(const GapMap& gaps, const std::string& pair) {
   const auto found = gaps.find(pair);
@@ -39,34 +41,45 @@ double quantile_of(const GapMap& gaps, const std::string& pair, const Quantile& 
   return found == gaps.end() ? 1 : found->second.*quantile.value;
 }
 
-/// The pair and the quantile that disagree most; among equals the first.
-void compare_pairs(const GapMap& run, const GapMap& reference, Comparability& out) {
-  std::set<std::string> pairs;
+/// Those that count, or all where loads are spread over so many pairs that none does.
+std::set<std::string> compared_pairs(const GapMap& run, const GapMap& reference) {
+  std::set<std::string> all, out;
   for (const GapMap* gaps : {&reference, &run}) {
     for (const auto& [pair, of] : *gaps) {
-      if (counts(*gaps, pair)) pairs.insert(pair);
+      all.insert(pair);
+      if (counts(*gaps, pair)) out.insert(pair);
     }
   }
+  return out.empty() ? all : out;
+}
+
+/// Of a gap at or below 0 nothing is within a factor, but in one and the same run.
+Number ratio_of(double mine, double other, bool itself) {
+  if (mine > 0 && other > 0) return mine / other;
+  return itself && mine == other ? Number(1.0) : Number::missing(overlap);
+}
+
+/// The pair and the quantile that disagree most; among equals the first. Requires a pair.
+const Quantile& compare_pairs(const GapMap& run, const GapMap& reference, bool itself, Comparability& out) {
+  const Quantile* farthest = &quantiles[0];
   double most = -1;
-  for (const std::string& pair : pairs) {
+  for (const std::string& pair : compared_pairs(run, reference)) {
     for (const Quantile& quantile : quantiles) {
       const double mine = quantile_of(run, pair, quantile), other = quantile_of(reference, pair, quantile);
-      const double apart = std::abs(std::log(mine / other));
-      if (!(apart > most)) continue;
+      const Number ratio = ratio_of(mine, other, itself);
+      const double apart =
+          ratio.finite() ? std::abs(std::log(ratio.value)) : std::numeric_limits<double>::infinity();
+      if (apart <= most) continue;
       most = apart;
+      farthest = &quantile;
       out.pair = pair;
       out.pair_quantile = quantile.field;
       out.pair_gap_rel = mine;
       out.pair_reference_gap_rel = other;
-      out.pair_ratio = mine / other;
+      out.pair_ratio = ratio;
     }
   }
-}
-
-std::string words_of(const std::string& field) {
-  const auto* found = std::find_if(std::begin(quantiles), std::end(quantiles),
-                                   [&](const Quantile& q) { return field == q.field; });
-  return found->words;
+  return *farthest;
 }
 
 void append(std::string& list, const std::string& name) { list += (list.empty() ? "" : ", ") + name; }
@@ -83,9 +96,15 @@ std::string fault_of(const ComparedRun& run) {
   return "outcome " + run.outcome + (run.failed.empty() ? "" : ", failed checks: " + run.failed);
 }
 
-std::string reason_of(const Comparability& c, bool comparable) {
+std::string reason_of(const Comparability& c, const Quantile& quantile, bool comparable) {
+  if (!c.pair_ratio.finite()) {
+    return fmt::format(
+        "{} of the gap, {}: {:.3g} d_hat where the reference has {:.3g}: surfaces overlap, and no factor is "
+        "between such gaps",
+        quantile.words, c.pair, c.pair_gap_rel.value, c.pair_reference_gap_rel.value);
+  }
   return fmt::format("{} of the gap, {}: {:.3g} d_hat where the reference has {:.3g}, {} a factor {:g}",
-                     words_of(c.pair_quantile), c.pair, c.pair_gap_rel.value, c.pair_reference_gap_rel.value,
+                     quantile.words, c.pair, c.pair_gap_rel.value, c.pair_reference_gap_rel.value,
                      comparable ? "the most, within" : "beyond", c.max_ratio);
 }
 
@@ -147,11 +166,12 @@ Comparability judge_comparability(const ComparedRun& run, const std::optional<Co
     out.reason = "no contact with load at the end of a converged step, where the reference has some";
     out.pair_gap_rel = out.pair_reference_gap_rel = out.pair_ratio = Number::missing("no_contacts");
   } else {
-    compare_pairs(run.gaps, reference->gaps, out);
+    const bool itself = run.folder == reference->folder;
+    const Quantile& quantile = compare_pairs(run.gaps, reference->gaps, itself, out);
     const double ratio = out.pair_ratio.value;
-    const bool comparable = ratio >= 1 / out.max_ratio && ratio <= out.max_ratio;
+    const bool comparable = out.pair_ratio.finite() && ratio >= 1 / out.max_ratio && ratio <= out.max_ratio;
     out.verdict = comparable ? "comparable" : "not_comparable";
-    out.reason = run.folder == reference->folder ? "the reference itself" : reason_of(out, comparable);
+    out.reason = itself ? "the reference itself" : reason_of(out, quantile, comparable);
   }
   return out;
 }

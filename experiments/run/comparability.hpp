@@ -27,7 +27,8 @@ ComparedRun compared_run(const RunRecord& record, const std::filesystem::path& f
 /// valid, or no contact of it carries load at a converged step end. Otherwise comparable exactly if every load-weighted
 /// quantile of the gap (d/d_hat; 5 %, 50 %, 95 %) of every pair of bodies is within a factor 2 of the reference's:
 /// barriers that keep their contacts at other distances do different work. A pair counts that has, in one of the two runs,
-/// at least 1 % of the load or load in 10 % of the time; where it has none its gaps are at least d_hat and count as 1.
+/// at least 1 % of the load or load in 10 % of the time; where it has none its gaps are at least d_hat and count as 1. Where no
+/// pair has that much all count. A quantile at or below 0, of surfaces that overlap, is within no factor of another run's.
 /// @param reference the run itself may be its own reference; without a run_id it is one that left no record
 Comparability judge_comparability(const ComparedRun& run, const std::optional<ComparedRun>& reference);
 

@@ -51,3 +51,12 @@ def test_by_hand():
     assert farthest(one, other) == Apart("a|b", "gap_rel_median", pytest.approx(2 / 3))  # a|c carries hardly anything
     assert farthest({}, {}) is None and farthest({}, one) == Apart("a|b", "gap_rel_p05", 10.0)  # without load gaps are at least d_hat
     assert not farthest({}, one).comparable and farthest(one, other).comparable
+
+
+def test_overlaps_and_thin_loads_are_compared_as_in_the_program():
+    apart, overlapping = {"a|b": [0.4, 0.4, 0.4, True]}, {"a|b": [0.0, 0.0, 0.4, True]}
+    for one, other in ((apart, overlapping), (overlapping, apart), (overlapping, overlapping)):
+        found = farthest(one, other)
+        assert (found.pair, found.quantile, found.ratio) == ("a|b", "gap_rel_p05", None) and not found.comparable
+    thin = {f"chip {k}|floor": [0.3, 0.3, 0.3, False] for k in range(120)}
+    assert farthest(thin, thin).comparable and farthest(thin, thin | {"chip 7|floor": [0.7, 0.3, 0.3, False]}).pair == "chip 7|floor"

@@ -60,6 +60,16 @@ def test_a_scene_in_which_one_start_fails_is_not_got_through():
     assert judged.value == pytest.approx(2 / 3) and judged.counted.startswith("every run in 2 of 3 scenes; 44 of 45 runs, mean share of scenes 0.978")
 
 
+def test_a_case_that_is_asked_for_every_run_fails_where_all_fail():
+    """It is compared with nothing there, and what it does not get through is no other's fault."""
+    alone = {"says": "x gets through", "sweep": "s", "case": "x"}
+    made = runs(failing(lambda s, lv, c: lv == "4"), levels=("1", "2", "4", "8"), scenes=SIX)
+    judged = outcomes(alone, made)
+    assert judged.verdict == ONLY_IF and judged.condition == "level 1, 2, 8; not 4" and judged.value == 0
+    only = runs(failing(lambda s, lv, c: lv == "4"), levels=("1", "2", "4"), scenes=SIX, cases=("x",))
+    assert outcomes(alone, only).verdict == ONLY_IF, "whatever other cases the sweep has"
+
+
 def test_what_no_case_gets_through_is_left_out():
     judged = outcomes(PART, runs(failing(lambda s, lv, c: (s, lv) == ("a", "1") or (c == "y" and lv != "1")), levels=("1", "2", "4", "8"), scenes=SIX))
     assert judged.verdict == HOLDS and "a 1 left out" in judged.counted

@@ -127,6 +127,45 @@ TEST(Comparability, APairWithLoadInOneRunOnlyCountsAsAtDHatInTheOther) {
   }
 }
 
+/// Loads that are spread so thinly that no pair counts are compared all the same.
+TEST(Comparability, WhereNoPairHasEnoughAllCount) {
+  GapMap thin, other;
+  for (int i = 0; i < 120; ++i) {
+    thin["chip " + std::to_string(i) + "|floor"] = gaps(0.3, 1.0 / 120, 0.05);
+    other["chip " + std::to_string(i) + "|floor"] = gaps(i == 7 ? 0.7 : 0.3, 1.0 / 120, 0.05);
+  }
+  EXPECT_EQ(judge_comparability(with(thin), with(thin)).verdict, "comparable");
+  const Comparability found = judge_comparability(with(other), with(thin));
+  EXPECT_EQ(found.verdict, "not_comparable");
+  EXPECT_EQ(found.pair, "chip 7|floor");
+  EXPECT_EQ(found.pair_quantile, "gap_rel_p05");
+}
+
+TEST(Comparability, SurfacesThatOverlapAreWithinNoFactorOfAnotherRun) {
+  const GapMap overlapping = {{"a|b", {1, 1, 1, 0, 0, 0.4}}}, apart = {{"a|b", gaps(0.4)}};
+  ComparedRun penalty = with(overlapping), again = with(overlapping), log = with(apart);
+  penalty.folder = "penalty", again.folder = "again", log.folder = "log";
+  for (const auto& [run, reference] :
+       {std::pair(penalty, log), std::pair(log, penalty), std::pair(again, penalty)}) {
+    const Comparability found = judge_comparability(run, reference);
+    EXPECT_EQ(found.verdict, "not_comparable");
+    EXPECT_STREQ(found.pair_ratio.status, "overlap");
+    EXPECT_EQ(found.pair_quantile, "gap_rel_p05");
+    EXPECT_NE(found.reason.find("surfaces overlap"), std::string::npos) << found.reason;
+  }
+  const Comparability itself = judge_comparability(penalty, penalty);
+  EXPECT_EQ(itself.verdict, "comparable");
+  EXPECT_EQ(itself.reason, "the reference itself");
+}
+
+/// Two of twenty steps, as their sums are rounded, are a tenth of the time.
+TEST(Comparability, ATenthOfTheTimeIsOneWhateverItsRounding) {
+  GapMap one = {{"cloth|floor", gaps(0.3)}}, other = one;
+  one["a|b"] = gaps(0.2, 0, 0.1 - 2e-17);
+  other["a|b"] = gaps(0.6, 0, 0);
+  EXPECT_EQ(judge_comparability(with(one), with(other)).verdict, "not_comparable");
+}
+
 TEST(Comparability, AnInvalidRunIsNeitherComparedNorAReference) {
   const ComparedRun bad = run("bad", 0.1, false), good = run("good", 0.1);
   EXPECT_EQ(judge_comparability(bad, good).verdict, "not_valid");

@@ -75,6 +75,59 @@ TEST(ReleasedPins, KeepTheSpeedThatTheyHave) {
   EXPECT_LT((simulation.history().v.row(2).array() - 0.4).abs().maxCoeff(), 1e-9);
 }
 
+/// The way of held vertices begins within a step, with a kink: whatever the integrator and however many steps later they are let go,
+/// they go on as fast as they went.
+TEST(ReleasedPins, GoOnAsFastAsTheyWereTakenAlong) {
+  for (const std::string integrator : {"implicit_euler", "newmark", "bdf2"}) {
+    for (const double release : {5.5, 6.5}) {
+      Scene scene = held_cloth({-1, release * dt}, 3, 0.4);
+      scene.gravity.setZero();
+      scene.motions.at(0).start = 1.25 * dt;
+      scene.pins.clear();
+      for (int v = 0; v < 16; ++v) scene.pins.push_back({v, 0, {-1, release * dt}});
+      scene.v0.setZero();
+      Method method = exact_method(integrator);
+      Simulation simulation(scene, method, dt, 10);
+      StepObserver observer;
+      for (int step = 1; step <= 10; ++step)
+        ASSERT_EQ(simulation.step(observer).status, StepStatus::converged);
+      EXPECT_LT((simulation.history().v.row(2).array() - 0.4).abs().maxCoeff(), 1e-9)
+          << integrator << " " << release;
+    }
+  }
+}
+
+TEST(ReleasedPins, FallFromTheirFirstStepOn) {
+  for (const std::string integrator : {"implicit_euler", "newmark", "bdf2"}) {
+    Scene scene = held_cloth({-1, 2.5 * dt}, 3, 0);
+    scene.pins.clear();
+    for (int v = 0; v < 16; ++v) scene.pins.push_back({v, 0, {-1, 2.5 * dt}});
+    Method method = exact_method(integrator);
+    Simulation simulation(scene, method, dt, 8);
+    StepObserver observer;
+    for (int step = 1; step <= 8; ++step) ASSERT_EQ(simulation.step(observer).status, StepStatus::converged);
+    EXPECT_LT((simulation.history().v.row(2).array() + 6 * dt * g).abs().maxCoeff(), 1e-6) << integrator;
+  }
+}
+
+/// Thrown, then held where they started for a time: what is let go is at rest.
+TEST(ReleasedPins, LoseTheSpeedThatTheyWereThrownWith) {
+  for (const std::string integrator : {"implicit_euler", "newmark", "bdf2"}) {
+    Scene scene = held_cloth({1.5 * dt, 4.5 * dt}, 3, 0);
+    scene.gravity.setZero();
+    scene.pins.clear();
+    for (int v = 0; v < 16; ++v) scene.pins.push_back({v, 0, {1.5 * dt, 4.5 * dt}});
+    scene.v0.row(2).setConstant(1);
+    Method method = exact_method(integrator);
+    Simulation simulation(scene, method, dt, 7);
+    StepObserver observer;
+    ASSERT_EQ(simulation.step(observer).status, StepStatus::converged);
+    EXPECT_NEAR(simulation.history().v(2, 0), 1, 1e-9) << "thrown";
+    for (int step = 2; step <= 7; ++step) ASSERT_EQ(simulation.step(observer).status, StepStatus::converged);
+    EXPECT_LT(simulation.history().v.cwiseAbs().maxCoeff(), 1e-8) << integrator;
+  }
+}
+
 TEST(ReleasedPins, MayBeHeldLater) {
   const Scene scene = held_cloth({1.5 * dt, std::numeric_limits<double>::infinity()}, 3, 0);
   Method method = exact_method();
