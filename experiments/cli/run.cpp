@@ -35,7 +35,7 @@ RunRecord run_and_show(const RunConfig& config, RunOptions options, const Common
 
 namespace {
 
-/// The folder holds the record of this very run with its own trace, and no time limit and no lack of memory ended it.
+/// The folder holds the record of this very run with all of its files, and no time limit and no lack of memory ended it.
 bool is_over(const RunConfig& config, const RunOptions& options) {
   std::error_code unreachable;
   if (std::filesystem::exists(pending_record(options.folder), unreachable))
@@ -44,7 +44,7 @@ bool is_over(const RunConfig& config, const RunOptions& options) {
   if (!stored) return false;
   RunConfig chosen = config;
   decide_linear_solver(chosen);
-  return why_run_again(stored->record, identified(chosen, options)).empty() && !trace_fault(*stored);
+  return why_run_again(*stored, identified(chosen, options)).empty();
 }
 
 /// A config, or a record: rerun().

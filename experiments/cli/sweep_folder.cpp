@@ -121,10 +121,7 @@ std::string why_to_run(const Sweep& sweep, std::size_t i, const RunConfig& confi
   try {
     const auto stored = read_stored_run(file);
     if (!stored) return "its run.json cannot be read";
-    const std::string why = why_run_again(stored->record, identified(config, case_options(sweep, i)));
-    if (!why.empty()) return why;
-    const auto fault = trace_fault(*stored);
-    return fault ? fault->what() : "";
+    return why_run_again(*stored, identified(config, case_options(sweep, i)));
   } catch (const ConfigError& error) {
     return error.what();
   }

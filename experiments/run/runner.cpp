@@ -123,8 +123,7 @@ std::optional<RunRecord> recorded(const RunRecord& asked_for, const RunOptions& 
   if (options.resume == Resume::no) return std::nullopt;
   try {
     auto stored = read_stored_run(options.folder / "run.json");
-    if (stored && why_run_again(stored->record, asked_for).empty() && !trace_fault(*stored))
-      return std::move(stored->record);
+    if (stored && why_run_again(*stored, asked_for).empty()) return std::move(stored->record);
   } catch (const ConfigError&) {  // of another version: it gives way
   }
   return std::nullopt;

@@ -96,4 +96,16 @@ std::string why_run_again(const RunRecord& then, const RunRecord& now) {
   return out;
 }
 
+std::string why_run_again(const StoredRun& then, const RunRecord& now) {
+  const std::string why = why_run_again(then.record, now);
+  if (!why.empty()) return why;
+  if (const auto fault = trace_fault(then)) return fault->what();
+  for (const Artifact& file : then.record.artifacts) {
+    std::error_code unreachable;
+    if (!std::filesystem::exists(then.file.parent_path() / file.path, unreachable))
+      return file.path + " is gone";
+  }
+  return {};
+}
+
 }  // namespace bb

@@ -40,5 +40,7 @@ bool was_cut(Outcome outcome);
 /// Why the record `then` does not stand for the run `now`: what differs, or that memory or time ended it, which another call
 /// may have more of. Empty: it does.
 std::string why_run_again(const RunRecord& then, const RunRecord& now);
+/// The same of a record on the disk, whose files have to be there too: its own trace, frames, matrices. Cost: reading the trace.
+std::string why_run_again(const StoredRun& then, const RunRecord& now);
 
 }  // namespace bb

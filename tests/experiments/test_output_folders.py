@@ -92,6 +92,21 @@ def test_a_record_that_cannot_be_read_is_not_there(program, tmp_path, content):
     assert json.loads(record.read_text())["status"]["outcome"] == "ok"
 
 
+def test_a_record_whose_files_are_gone_does_not_stand_for_a_run(program, tmp_path):
+    spec, out = sweep_spec(tmp_path, [1]), tmp_path / "out"
+    words = ["sweep", spec, "--out", out, "--set", "/output/frames_every=1"]
+    assert bench(program, *words).returncode == 0
+    (record,) = out.glob("*/run.json")
+    files = [artifact["path"] for artifact in json.loads(record.read_text())["artifacts"]]
+    assert "trace.jsonl" in files and "frames/start.ply" in files
+    for name in ("trace.jsonl", "frames/start.ply"):
+        assert "already there" in bench(program, *words).stdout
+        (record.parent / name).unlink()
+        done = bench(program, *words)
+        assert done.returncode == 0 and f"runs again: {name} is gone" in done.stdout and "already there" not in done.stdout
+        assert all((record.parent / file).is_file() for file in files)
+
+
 def test_another_plugin_of_the_same_name_is_another_run(program, build_folder, tmp_path):
     built = build_folder / "examples/plugins/plugin_inverse_shape.so"
     if not built.exists():
