@@ -31,12 +31,12 @@ struct Number {
   }
 };
 
-/// Keeps the smaller, the larger, of two numbers that are there.
+/// Keeps the smaller, the larger, of two numbers that are there; of two that are not, the reason of the other.
 inline void keep_smaller(Number& kept, const Number& other) {
-  if (other.finite() && (!kept.finite() || other.value < kept.value)) kept = other;
+  if (!kept.finite() || (other.finite() && other.value < kept.value)) kept = other;
 }
 inline void keep_larger(Number& kept, const Number& other) {
-  if (other.finite() && (!kept.finite() || other.value > kept.value)) kept = other;
+  if (!kept.finite() || (other.finite() && other.value > kept.value)) kept = other;
 }
 
 }  // namespace bb

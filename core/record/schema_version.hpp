@@ -7,7 +7,7 @@ namespace bb {
 /// MODEL.REVISION.ADDITION. The first number counts fields that are gone, and readers refuse another one; the second
 /// fields that mean something else (changed_in_run, changed_in_trace) or hold more words; the third those that were added.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.6.2";
+inline constexpr const char* run_schema_version = "3.7.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 /// A field whose values are not compared with those of records before `since`.
@@ -25,6 +25,9 @@ inline constexpr ChangedMeaning changed_in_run[] = {
     {"audit.obstacle_queries", "3.5.0", "vertices alone, and their paths"},
     {"audit.crossings", "3.5.0", "without touches that no small displacement takes apart"},
     {"audit.touches", "3.5.0", "all pairs at distance 0"},
+    {"summary.end_error_tolerances", "3.7.0", "as of the steps"},
+    {"steps[].end_error_m", "3.7.0", "of the end of the last direction, also where a part of it was taken"},
+    {"steps[].end_error_tolerances", "3.7.0", "of that"},
     {"summary.contacts", "3.6.0", "pairs with one closest feature counted once"},
     {"summary.stiffness.kappa_start_N_per_m", "3.6.0",
      "from masses of contacts with pairs with one closest feature counted once"},

@@ -31,7 +31,9 @@ struct StepRecord : WorkCounts {
            "the exact matrix is not larger",
            "none_found");
   BB_FIELD(Number, end_error_m,
-           "how far its end is from the solution: error_estimate_m of the last iteration; of a step that is "
+           "how far its end is from the solution: error_estimate_m of the last iteration and what was not "
+           "taken of its "
+           "direction; of a step that is "
            "not asked to "
            "converge, |dx|_inf of one more Newton direction with its own matrix, which is less than the "
            "error where "

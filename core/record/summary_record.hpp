@@ -83,20 +83,21 @@ struct Summary : WorkCounts {
   BB_FIELD(Stats, probe_pcg, "probe_pcg_iterations of the trace");
   BB_FIELD(Stats, contacts, "pairs in contact at the end of a step");
   BB_FIELD(Stats, gap_min_rel, "smallest d / d_hat of each converged step end");
-  BB_FIELD(Number, gap_min_m, "smallest gap over converged step ends");
+  BB_FIELD(Number, gap_min_m, "smallest gap over converged step ends", "no_contacts not_converged");
   BB_FIELD(Number, gap_min_ulps,
-           "smallest over converged step ends, in units of the last place of the largest coordinate");
-  BB_FIELD(Number, gap_min_iterates_m, "smallest gap over all iterates");
-  BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat over all iterates");
+           "smallest over converged step ends, in units of the last place of the largest coordinate",
+           "no_contacts not_converged");
+  BB_FIELD(Number, gap_min_iterates_m, "smallest gap over all iterates", "no_contacts");
+  BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat over all iterates", "no_contacts");
   BB_FIELD(GapMap, contact_gaps,
            "body|body or body|obstacle -> at what gaps their load was carried; pairs with load alone, rows "
            "without mollifier");
   BB_FIELD(CountMap, first_contact,
            "body|body or body|obstacle -> step at whose end they first had an active contact row");
-  BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element over step ends");
-  BB_FIELD(Number, contact_load_max_N, "largest of the steps");
-  BB_FIELD(Number, limit_load_max_N_per_m, "largest of the steps");
-  BB_FIELD(Number, solid_limit_load_max_Pa, "largest of the steps");
+  BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element over step ends", "no_limit");
+  BB_FIELD(Number, contact_load_max_N, "largest of the steps", "no_contacts");
+  BB_FIELD(Number, limit_load_max_N_per_m, "largest of the steps", "no_limit");
+  BB_FIELD(Number, solid_limit_load_max_Pa, "largest of the steps", "no_limit");
   BB_FIELD(StiffnessRecord, stiffness, "policies with one global kappa");
   BB_FIELD(CondMap, cond,
            "stage/scaling -> condition numbers of clamped matrices, solved/stage/scaling of those that were "
