@@ -98,7 +98,8 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--missing",
         action="store_true",
-        help="only the indices of the runs without a record that can be read, one a line: for ./bench sweep --index",
+        help="only the indices of the runs without a record that can be read, one a line: for ./bench sweep"
+        " --index",
     )
     parser.add_argument(
         "--watch",
