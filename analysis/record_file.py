@@ -145,8 +145,8 @@ def _parsed(path: Path) -> tuple[object, bool]:
 def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = False) -> dict:
     """One run.json. foreign: a record that another program may have written, whose sections may be missing.
     allow_not_finite: the caller judges numbers that are none. Raises RecordError with file and place: not
-    there, torn or otherwise not JSON, no record, a version this one does not read, a number that is not finite, a field of
-    another type or with an unknown word, a field that is missing.   Cost: of the size.
+    there, torn or otherwise not JSON, no record, a version this one does not read, a number that is not
+    finite, a field of another type or with an unknown word, a field that is missing.   Cost: of the size.
     """
     path = Path(path)
     try:
