@@ -83,7 +83,8 @@ def _say_kept(kept: dict[str, dict]) -> None:
     if red:
         print(_table(red))
     count = sum(len(one["rows"]) for one in kept.values())
-    print(f"{count - len(red)} of {count} runs of {len(kept)} scene{"s" * (len(kept) != 1)} end as expected")
+    scenes = f"{len(kept)} scene{'s' * (len(kept) != 1)}"
+    print(f"{count - len(red)} of {count} runs of {scenes} end as expected")
 
 
 def _draw(runs: Path, scenes: dict[str, dict]) -> None:
