@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 BAD_INPUT = 2
 BUILD_FAILED = 70
+TRY_AGAIN = 75  # as the program has it: an interrupt among others
 
 
 class UserError(ValueError):

@@ -62,9 +62,12 @@ def in_shell(line: str, **options) -> subprocess.CompletedProcess:
 
 
 def become(program: Path, words: list[str]) -> NoReturn:
-    """Replaces this process by the program."""
+    """Replaces this process by the program. Errors: UserError where it cannot be started."""
     sys.stdout.flush()
-    os.execv(program, [str(program), *words])
+    try:
+        os.execv(program, [str(program), *words])
+    except OSError as error:
+        raise UserError(f"{program}: cannot be started: {error.strerror}; allowed: a program") from None
 
 
 def run_sweep(

@@ -134,15 +134,19 @@ def _parsed(path: Path) -> tuple[object, bool]:
             return orjson.loads(text), True
         except orjson.JSONDecodeError:
             return json.loads(text.decode()), False
-    except (OSError, ValueError, RecursionError) as error:  # ValueError: not JSON, not UTF-8
+    except FileNotFoundError:
+        raise RecordError(f"{path}: not there; allowed: the run.json of a run that is over") from None
+    except OSError as error:
+        raise RecordError(f"{path}: cannot be read: {error.strerror}; allowed: a record") from None
+    except (ValueError, RecursionError) as error:  # ValueError: not JSON, not UTF-8
         raise RecordError(f"{path}: not JSON: {error}") from None
 
 
 def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = False) -> dict:
     """One run.json. foreign: a record that another program may have written, whose sections may be missing.
-    allow_not_finite: the caller judges numbers that are none. Raises RecordError with file and place: torn or
-    otherwise not JSON, no record, a version this one does not read, a number that is not finite, a field of
-    another type or with an unknown word, a field that is missing.   Cost: of the size.
+    allow_not_finite: the caller judges numbers that are none. Raises RecordError with file and place: not
+    there, torn or otherwise not JSON, no record, a version this one does not read, a number that is not
+    finite, a field of another type or with an unknown word, a field that is missing.   Cost: of the size.
     """
     path = Path(path)
     try:

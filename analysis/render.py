@@ -23,6 +23,7 @@ from .frames_out.sequence import finer_frame
 from .front.arguments import parser_of
 from .obstacle_rays import primitive_gaps
 from .picture import Surfaces, camera_of, picture
+from .picture_file import MEANS, picture_file
 from .record_file import read_record
 from .records import run_row
 from .rod_tubes import tubes
@@ -189,8 +190,9 @@ def render(
 ) -> Path:
     """Writes a PNG of one frame and its caption; returns the PNG.
 
-    run: folder of run.json. step: a step with a frame, -1 for the start; None: the last one. title: what is
-    shown, instead of scene and formulation. Raises UserError, RecordError.
+    run: folder of run.json. step: a step with a frame, -1 for the start; None: the last one. out: as
+    picture_file takes it. title: what is shown, instead of scene and formulation. Raises UserError,
+    RecordError.
     """
     run, look = Path(run).parent if Path(run).name == "run.json" else Path(run), look or Look()
     record = read_record(run / "run.json")
@@ -200,13 +202,13 @@ def render(
         raise UserError(
             f"{run}: no frame of step {step}; there are {', '.join(map(str, paths))} (-1: the start)"
         )
+    name = f"{'start' if step < 0 else f'step_{step:06}'}_{look.color}.png"
+    path = picture_file(out or run, name)
     pixels, scale = _drawn(record, run, step, look)
     frame = frame_of(record, run, step)
     scene = scene_at(read_scene(record, run), frame)
     title = title or f"{record['labels']['scene']}, {record['labels']['formulation']}"
     what = f"{title}, {_when(record, step)}"
-    name = "start" if step < 0 else f"step_{step:06}"
-    path = Path(out) if out else run / f"{name}_{look.color}.png"
     path.parent.mkdir(parents=True, exist_ok=True)
     if look.bare:
         _save(path, pixels)
@@ -225,7 +227,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument(
         "--color", choices=["body", *COLORINGS], default="body", help="what colours mean (default: body)"
     )
-    parser.add_argument("--out", type=Path, help="the PNG (default: RUN/step_NNNNNN_COLOR.png)")
+    parser.add_argument("--out", type=Path, help=f"{MEANS} (default: RUN/step_NNNNNN_COLOR.png)")
     parser.add_argument(
         "--view",
         type=float,

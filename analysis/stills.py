@@ -18,6 +18,7 @@ import matplotlib.pyplot as plt
 from . import style
 from .errors import UserError, tells
 from .front.arguments import parser_of
+from .picture_file import MEANS, picture_file
 from .record_file import read_record
 from .render import Look, render
 
@@ -53,7 +54,10 @@ def _broken(text: str) -> str:
 
 
 def sheet(stills: list[Still], out: Path, columns: int) -> Path:
-    """A PNG of the last frame of each, in rows of so many."""
+    """A PNG of the last frame of each, in rows of so many. out: as picture_file takes it. Errors: UserError,
+    RecordError.
+    """
+    out = picture_file(out, "stills.png")
     rows = math.ceil(len(stills) / columns)
     width = 2 * style.WIDE_IN / COLUMNS  # inches of one picture
     lines = max(still.title.count("\n") for still in stills) + 1
@@ -77,7 +81,7 @@ def main(argv: list[str]) -> int:
     """0: drawn; 2: a run without a record or frames."""
     parser = parser_of("stills", __doc__)
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of run.json")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE.png")
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE.png", help=MEANS)
     parser.add_argument("--columns", type=int, default=3, metavar="N", help="pictures in a row (default: 3)")
     parser.add_argument("--view", type=float, nargs=2, default=VIEW, metavar=("AZIMUTH", "ELEVATION"))
     parser.add_argument("--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn")

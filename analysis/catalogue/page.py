@@ -11,7 +11,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..errors import tells
+from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..places import ROOT
 from ..text_table import aligned
@@ -52,11 +52,14 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def write_page(scenes: dict[str, dict], page: Path = PAGE) -> None:
+def page_of(scenes: dict[str, dict]) -> str:
     """Of everything that is kept."""
-    known = entries([])
     robust_rows = {name: rows for name, rows in robust.read().items() if name in names()}
-    write_whole(page, markdown_page(known, scenes, robust_rows, PICTURE.is_file()))
+    return markdown_page(entries([]), scenes, robust_rows, PICTURE.is_file())
+
+
+def write_page(scenes: dict[str, dict], page: Path) -> None:
+    write_whole(page, page_of(scenes))
 
 
 def _line(name: str, row: dict) -> list[str]:
@@ -64,10 +67,24 @@ def _line(name: str, row: dict) -> list[str]:
     return [name, row["formulation"], row["outcome"], f"{row['seconds']:g} s", f"{row['newton']}", said[:150]]
 
 
+def _table(rows: list[list[str]]) -> str:
+    return "\n".join(aligned([""] * 6, rows)[1:])
+
+
 def _say(entry: Entry, runs: list[Done], kept: dict) -> None:
     labels = {done.formulation for done in runs}
     rows = [_line(entry.name, row) for row in kept["rows"] if row["formulation"] in labels]
-    print("\n".join(aligned([""] * 6, rows)[1:]), flush=True)
+    print(_table(rows), flush=True)
+
+
+def _say_kept(kept: dict[str, dict]) -> None:
+    """The rows that are red, and how many are not."""
+    red = [_line(name, row) for name, one in kept.items() for row in one["rows"] if row["red"]]
+    if red:
+        print(_table(red))
+    count = sum(len(one["rows"]) for one in kept.values())
+    scenes = f"{len(kept)} scene{'s' * (len(kept) != 1)}"
+    print(f"{count - len(red)} of {count} runs of {scenes} end as expected")
 
 
 def _draw(runs: Path, scenes: dict[str, dict]) -> None:
@@ -91,10 +108,15 @@ def main(argv: list[str]) -> int:
         scenes[entry.name] = table.kept_of(entry, runs, scenes.get(entry.name))
         _say(entry, runs, scenes[entry.name])
         table.write(scenes)
-        write_page(scenes)
+        write_page(scenes, PAGE)
+    kept = {entry.name: scenes[entry.name] for entry in asked if entry.name in scenes}
+    missing = [entry.name for entry in asked if entry.name not in kept]
+    if missing and (args.names or not kept):
+        raise UserError(f"{table.FILE}: nothing kept of {missing[0]}: ./bench catalogue {missing[0]}")
     if args.sheet:
         _draw(args.runs, scenes)
     if args.no_run:
-        write_page(scenes)
-    kept = [scenes[entry.name] for entry in asked if entry.name in scenes]
-    return 1 if any(row["red"] for one in kept for row in one["rows"]) else 0
+        _say_kept(kept)
+        write_page(scenes, PAGE)
+    print(PAGE)
+    return 1 if any(row["red"] for one in kept.values() for row in one["rows"]) else 0

@@ -8,12 +8,11 @@ import sys
 import textwrap
 from typing import NoReturn
 
-from ..errors import UserError
-from ..program import RELEASE, become
+from ..errors import TRY_AGAIN, UserError
+from ..program import RELEASE, become, built_program
 from . import verbs
 from .table import HELP
 
-INTERRUPTED = 130
 WIDTH = 116
 
 
@@ -35,13 +34,17 @@ def usage() -> str:
             if verb.group == group:
                 lines += usage_of(verb)
         lines.append("")
-    lines.append("./bench VERB --help says more; what runs the program is run after an incremental build.")
+    lines.append(
+        "./bench VERB --help says more; what runs the program is run after an incremental build, or by the"
+        " program that BARRIERBENCH_PROGRAM names."
+    )
     return "\n".join(lines)
 
 
 def become_program(arguments: list[str]) -> NoReturn:
-    """Replaces this process by the program, so that standard streams and signals are its own. Errors:
-    UserError where it cannot be built.
+    """Replaces this process by the program, so that standard streams and signals are its own; by that of
+    BARRIERBENCH_PROGRAM, where it is set, as the verbs in Python do, and nothing is built then. Errors:
+    UserError where it cannot be built or started.
     """
     from . import building
 
@@ -53,7 +56,7 @@ def become_program(arguments: list[str]) -> NoReturn:
             f"found {word!r}; allowed: one of the verbs of ./bench help"
             + (f"; did you mean {near}?" if near else "")
         )
-    built = building.ensure_program()
+    built = built_program() if "BARRIERBENCH_PROGRAM" in os.environ else building.ensure_program()
     os.environ["BENCH_VERBS"] = " ".join(verb.name for verb in verbs.TABLE)  # for its own suggestion
     become(built, arguments)
 
@@ -89,4 +92,5 @@ def main(arguments: list[str]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except KeyboardInterrupt:
-        return INTERRUPTED
+        print(f"bench {arguments[0]}: interrupted; it may be called again", file=sys.stderr)
+        return TRY_AGAIN

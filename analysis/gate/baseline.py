@@ -140,6 +140,18 @@ def _line(path: Path, name: str, line, made_by: str) -> Kept:
     )
 
 
+def how_to_accept(option: str, path: Path, *more: str) -> str:
+    """The command that makes a baseline of what another program has written (--record or --matrix)."""
+    return " ".join(["bench accept", option, "...", "--baseline", str(path), *more, '--reason "..."'])
+
+
+def _remedy(path: Path, case: str | None, kind: str | None) -> str:
+    """A baseline of a case of ours is measured; one of files of another program is made of them."""
+    if case is not None or kind is None:
+        return '`bench calibrate` measures one and `bench accept --reason "..."` keeps it'
+    return f"`{how_to_accept('--matrix' if kind == 'matrix' else '--record', path)}` makes one"
+
+
 def read(path: str | Path, case: str | None = None, kind: str | None = None) -> Baseline:
     """Raises UserError with file and place: not there, empty, another version, of another case or kind, a
     number that is none.
@@ -147,8 +159,7 @@ def read(path: str | Path, case: str | None = None, kind: str | None = None) -> 
     path = Path(path)
     if not path.is_file():
         raise UserError(
-            f'{path}: no such baseline; `bench calibrate` measures one and `bench accept --reason "..."`'
-            " keeps it"
+            f"{path}: {'a folder' if path.is_dir() else 'no such baseline'}; {_remedy(path, case, kind)}"
         )
     text = path.read_text(errors="replace")
     if not text.strip():

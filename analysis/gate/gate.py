@@ -51,14 +51,20 @@ def same_subject(kept: Baseline, run: Run, path: Path) -> None:
         raise UserError("\n".join([f"{path}: a baseline of another scene than {run.path}:", *unlike]))
 
 
-def numbers(case: str, kept: Baseline, run: Run, same_build_kind: bool) -> list[Finding]:
+def numbers(
+    case: str,
+    kept: Baseline,
+    run: Run,
+    same_build_kind: bool,
+    new: tuple[str, str] = judge.not_in_the_baseline(),
+) -> list[Finding]:
     """The lines of classes III to V of a run. What only some copies had at the calibration, or means
-    something else in the baseline's version, is shown and not judged.
+    something else in the baseline's version, is shown and not judged. new: of what the baseline lacks.
     """
     metrics, values, not_compared = meanings.shared(
         case, kept.metrics, measure(run), kept.record_version or meanings.PRESENT, run.version
     )
-    lines = not_compared + judge.numbers(case, metrics, values, same_build_kind)
+    lines = not_compared + judge.numbers(case, metrics, values, same_build_kind, new=new)
     for f in lines:
         if f.metric in kept.unsteady and f.metric not in kept.metrics:
             f.verdict, f.judged, f.note = "not_judged", 0, "only some copies of the calibration had it"
@@ -152,12 +158,22 @@ def judge_record(record: Path, path: Path) -> list[Finding]:
     lines += meanings.of_other_version(
         case, [run], kept.record_version or meanings.PRESENT, run.version
     ) + meanings.without_version(case, kept.record_version)
-    return dropped + lines + numbers(case, kept, run, bool(kept.made_by) and kept.made_by == run.made_by)
+    same_kind = bool(kept.made_by) and kept.made_by == run.made_by
+    new = judge.not_in_the_baseline("bench accept --record")
+    return dropped + lines + numbers(case, kept, run, same_kind, new)
 
 
 def findings_case(findings: list[Finding]) -> str:
     """A case that was run: its record says which commit the numbers are of."""
     return next(f.case for f in findings if f.gate_class == "III")
+
+
+def _to_hold(args: argparse.Namespace) -> str:
+    """The commands that make better numbers the baseline."""
+    if args.baseline:
+        option = "--matrix" if args.matrix else "--record"
+        return baseline.how_to_accept(option, args.baseline, "--better")
+    return 'bench calibrate, then bench accept --better --reason "..."'
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
@@ -209,11 +225,7 @@ def main(argv: list[str]) -> int:
         print(report.table(lines))
     print(report.closing(findings))
     if any(f.verdict == "better" for f in findings):
-        print(
-            "bench gate: to hold the better numbers from now on: bench calibrate, then bench accept --better"
-            ' --reason "..."',
-            file=sys.stderr,
-        )
+        print(f"bench gate: to hold the better numbers from now on: {_to_hold(args)}", file=sys.stderr)
     if args.history and not args.baseline:
         made = read_run(args.out / findings_case(findings) / "threads-1", allow_not_finite=True)
         trend.append(

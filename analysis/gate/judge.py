@@ -14,12 +14,13 @@ from .metrics import LOWER_BETTER, UPPER_BETTER, Metric
 
 COST_EACH, COST_TOGETHER = 1.03, 1.01
 NOT_OF_A_RECORD = ("instructions",)  # counted in a run of its own (instructions.py)
-NOT_IN_THE_BASELINE = (
-    "FAIL",
-    "not in the baseline: accept it (bench calibrate, bench accept)",
-)  # verdict and note
 NOT_IN_THE_REFERENCE = ("FAIL", "not in the reference")
 NOT_JUDGED = ("not_judged", "not in the reference, which is of another config or version")
+
+
+def not_in_the_baseline(how: str = "bench calibrate, bench accept") -> tuple[str, str]:
+    """Verdict and note. how: the verbs that take the number into the baseline."""
+    return "FAIL", f"not in the baseline: accept it ({how})"
 
 
 def around(values: dict[Metric, float]) -> dict[str, Kept]:
@@ -181,7 +182,7 @@ def numbers(
     kept: dict[str, Kept],
     values: dict[Metric, float],
     same_build_kind: bool,
-    new: tuple[str, str] = NOT_IN_THE_BASELINE,
+    new: tuple[str, str] = not_in_the_baseline(),
 ) -> list[Finding]:
     """A line for every metric of either side. Chaotic ones are left to distributions(). new: verdict and note
     of what only the run has.

@@ -29,9 +29,11 @@ PCG_TOLERANCE, PCG_CAP = 1e-6, 20000
 
 
 def read_matrix(path: Path) -> sparse.csc_matrix:
-    """Raises UserError with file and reason: no Matrix Market, not real, not square, not symmetric, a number
-    that is none, empty.
+    """Raises UserError with file and reason: not there, a folder, no Matrix Market, not real, not square, not
+    symmetric, a number that is none, empty.
     """
+    if path.is_dir():
+        raise UserError(f"{path}: a folder; allowed: Matrix Market files, {path}/*.mtx")
     if not path.is_file():
         raise UserError(f"{path}: no such file")
     try:
@@ -211,7 +213,7 @@ def _same_matrices(kept: Baseline, spectra: dict[str, Spectrum], path: Path) -> 
 def _lonely(case: str, old: set[str], new: set[str]) -> list[Finding]:
     """A line for every matrix that only one side has, instead of one for each of its numbers."""
     said = [(name, "missing: the baseline has it") for name in sorted(old - new)] + [
-        (name, judge.NOT_IN_THE_BASELINE[1]) for name in sorted(new - old)
+        (name, judge.not_in_the_baseline("bench accept --matrix")[1]) for name in sorted(new - old)
     ]
     return [Finding(case, "III", f"matrix {name}", "FAIL", judged=0, note=note) for name, note in said]
 

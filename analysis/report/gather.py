@@ -11,7 +11,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ..errors import UserError
-from ..record_file import RecordError, leaves, named_files, read_record
+from ..record_file import RecordError, leaves, named_files, read_record, read_trace
 from ..records import run_row
 from ..sweeps.cases import read_cases, sighted, split_records
 
@@ -29,6 +29,7 @@ class Entry:
     failed_checks: tuple[str, ...]  # of `validity`
     frames: int  # that the record names
     argv: tuple[str, ...]  # of the program
+    trace_fault: str = ""  # why its trace cannot be read; its figures over time lack it
 
     @property
     def run(self) -> str:
@@ -90,6 +91,11 @@ class Folder:
     def by_run(self) -> dict[str, Entry]:
         return {entry.run: entry for entry in self.entries}
 
+    @property
+    def lost(self) -> list[str]:
+        """Every file that cannot be read: lists of cases, records, and traces of records that can."""
+        return [*self.unreadable, *(entry.trace_fault for entry in self.entries if entry.trace_fault)]
+
     @cached_property
     def groups(self) -> dict[str, list[Entry]]:
         found: dict[str, list[Entry]] = {}
@@ -107,6 +113,14 @@ class Folder:
         return found if same else None
 
 
+def _trace_fault(record: dict, folder: Path) -> str:
+    try:
+        read_trace(record, folder)
+    except RecordError as error:
+        return str(error)
+    return ""
+
+
 def _entry(path: Path, root: Path) -> Entry | str:
     """An entry, or why the record cannot be read."""
     try:
@@ -121,6 +135,7 @@ def _entry(path: Path, root: Path) -> Entry | str:
         tuple(check["name"] for check in checks if not check["pass"]),
         len(named_files(record, "frame")),
         tuple((record.get("provenance") or {}).get("argv") or ()),
+        _trace_fault(record, path.parent),
     )
 
 
@@ -156,7 +171,7 @@ def _half_written(root: Path) -> list[str]:
 
 def gathered(root: Path) -> Folder:
     """Errors: UserError: no folder, or no record in it that can be read; the faults are named.
-    Cost: 3 to 6 ms a record and core.
+    Cost: 3 to 15 ms a record and core, most of them for its trace.
     """
     if not root.is_dir():
         what = "a file" if root.exists() else "nothing there"

@@ -143,14 +143,15 @@ def failures(folder: Folder, page: Path) -> Table:
         why = Cell(f"{one.state}; ./bench status says more, and ./bench sweep goes on with it")
         lead = [Cell(one.label), Cell(one.group), Cell("no record", tone="bad"), why]
         table.rows.append([*lead, Cell(one.detail or "-"), none, none, none])
+    unreadable = Cell("unreadable", tone="bad")
     for fault in folder.unreadable:
-        lead = [
-            Cell("a file"),
-            none,
-            Cell("unreadable", tone="bad"),
-            Cell("it is in no other number of this page"),
-        ]
+        lead = [Cell("a file"), none, unreadable, Cell("it is in no other number of this page")]
         table.rows.append([*lead, Cell(fault), none, none, none])
+    for entry in folder.entries:
+        if entry.trace_fault:
+            why = Cell("its trace: the numbers of its record count, and no figure over time has it")
+            lead = [_head(entry), Cell(entry.group), unreadable, why, Cell(entry.trace_fault)]
+            table.rows.append([*lead, _how_far(entry), _record(entry, page), _command(entry)])
     for path in folder.earlier:
         why = Cell("no case of its sweep as it is now; it is in no other number of this page")
         lead = [Cell(path.parent.name), Cell(path.parent.parent.name), Cell("left out", tone="bad"), why]

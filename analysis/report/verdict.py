@@ -29,7 +29,7 @@ def _are(count: int) -> str:
 def headline(folder: Folder) -> Sentence:
     runs = folder.entries
     bad = [run for run in runs if not run.good]
-    lost = len(folder.unreadable) + len(folder.absent) + len(folder.earlier)
+    lost = len(folder.lost) + len(folder.absent) + len(folder.earlier)
     if not bad and not lost:
         all_of = "The run" if len(runs) == 1 else f"All {len(runs)} runs"
         return Sentence(f"{all_of} ended ok and {_are(len(runs))} valid.", GOOD)
@@ -43,7 +43,7 @@ def headline(folder: Folder) -> Sentence:
         f" {'has' if len(folder.absent) == 1 else 'have'} no"
         " record yet"
     ] * bool(folder.absent)
-    parts += [f"{counted(len(folder.unreadable), 'file')} cannot be read"] * bool(folder.unreadable)
+    parts += [f"{counted(len(folder.lost), 'file')} cannot be read"] * bool(folder.lost)
     parts += [f"{counted(len(folder.earlier), 'record')} of an earlier sweep file left out"] * bool(
         folder.earlier
     )

@@ -19,7 +19,8 @@ DEAD_AFTER_S = 60  # dead_after_s of core/record/folder_lock.hpp
 HOLDER = re.compile(r"process (\d+) on (.*) since (\S+)", re.S)
 
 OVER, RUNNING, DEAD, STOPPED, WAITING = "over", "running", "dead", "stopped", "waiting"
-STATES = (OVER, RUNNING, DEAD, STOPPED, WAITING)
+UNREADABLE = "unreadable"  # its record is: the run is made again
+STATES = (OVER, RUNNING, DEAD, STOPPED, UNREADABLE, WAITING)
 
 
 @dataclass(frozen=True)
@@ -117,7 +118,8 @@ def _holder(lock: Path) -> Sighting | None:
 
 def sighted(case: Case) -> Sighting:
     """A run is dead when its process is gone, or has given no sign of life for DEAD_AFTER_S seconds; stopped
-    when it has left a checkpoint: ./bench sweep goes on with both.
+    when it has left a checkpoint: ./bench sweep goes on with both. Its record is not opened: status.py tells
+    one that cannot be read from one that can.
     """
     holder = _holder(case.folder / "bench.lock")
     if holder and holder.state == RUNNING:

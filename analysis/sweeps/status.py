@@ -1,5 +1,6 @@
 """Where the runs of a sweep are: over with their outcomes, running, dead (their process is gone, or has given
-no sign of life for a minute), stopped with a checkpoint, or waiting. `./bench sweep` goes on with all.
+no sign of life for a minute), stopped with a checkpoint, unreadable (their record is cut or no record), or
+waiting. `./bench sweep` goes on with all that are not over.
 
 Exit codes: 0 every run is over, 1 not every run, 2 no list of cases in the folder.
 """
@@ -14,29 +15,42 @@ from pathlib import Path
 
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
-from ..json_file import read_object
+from ..record_file import RecordError, read_record
 from ..text_table import aligned
-from .cases import OVER, RUNNING, STATES, Case, Sighting, read_cases, sighted
+from .cases import OVER, RUNNING, STATES, UNREADABLE, WAITING, Case, Sighting, read_cases, sighted
 
 CLEAR = "\033[H\033[2J"
 
 
 class Outcomes:
-    """Outcomes of records; each file is read once as long as it stays as it is."""
+    """What records say; each file is read once as long as it stays as it is."""
 
     def __init__(self):
-        self.known: dict[Path, tuple[tuple[int, int], str]] = {}
+        self.known: dict[Path, tuple[tuple[int, int], Sighting]] = {}
 
-    def of(self, case: Case) -> str:
+    def _read(self, case: Case) -> Sighting:
+        try:
+            return Sighting(OVER, read_record(case.record)["status"]["outcome"])
+        except RecordError as error:
+            return Sighting(UNREADABLE, str(error).replace(f"{case.folder}/", ""))
+
+    def of(self, case: Case) -> Sighting:
+        """Over with its outcome, or waiting without a record. One that cannot be read is as good as none:
+        ./bench sweep makes the run again.
+        """
         try:
             found = case.record.stat()
-            key = (found.st_mtime_ns, found.st_size)
-            if self.known.get(case.record, (None,))[0] != key:
-                status = read_object(case.record).get("status") or {}
-                self.known[case.record] = key, str(status.get("outcome", "no outcome"))
-            return self.known[case.record][1]
-        except (OSError, UserError):
-            return "unreadable"
+        except OSError:
+            return Sighting(WAITING)
+        key = (found.st_mtime_ns, found.st_size)
+        if self.known.get(case.record, (None,))[0] != key:
+            self.known[case.record] = key, self._read(case)
+        return self.known[case.record][1]
+
+    def sighted(self, case: Case) -> Sighting:
+        """What a case is doing, with its outcome where it is over."""
+        seen = sighted(case)
+        return self.of(case) if seen.state == OVER else seen
 
 
 def _counts(counter: Counter) -> str:
@@ -58,9 +72,9 @@ def text(folder: Path, cases: list[Case], outcomes: Outcomes, every: bool) -> tu
     """A line of counts, a row for each run that is under way or came to a halt (or for every run), and
     whether all are over.
     """
-    seen = [sighted(case) for case in cases]
+    seen = [outcomes.sighted(case) for case in cases]
     states = Counter(one.state for one in seen)
-    ended = Counter(outcomes.of(case) for case, one in zip(cases, seen) if one.state == OVER)
+    ended = Counter(one.detail for one in seen if one.state == OVER)
     parts = [
         f"{states[state]} {state}" + (f" ({_counts(ended)})" if state == OVER and ended else "")
         for state in STATES
@@ -68,14 +82,9 @@ def text(folder: Path, cases: list[Case], outcomes: Outcomes, every: bool) -> tu
     ]
     lines = [f"{folder}: {len(cases)} runs: {', '.join(parts)}{eta(cases, seen)}"]
     rows = [
-        [
-            str(case.index),
-            one.state,
-            case.label,
-            one.detail or (outcomes.of(case) if one.state == OVER else ""),
-        ]
+        [str(case.index), one.state, case.label, one.detail]
         for case, one in zip(cases, seen)
-        if every or one.state not in (OVER, "waiting")
+        if every or one.state not in (OVER, WAITING)
     ]
     if rows:
         lines += aligned(["index", "state", "run", "detail"], rows, {0})
@@ -89,7 +98,8 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--missing",
         action="store_true",
-        help="only the indices of the runs without a record, one a line: for ./bench sweep --index",
+        help="only the indices of the runs without a record that can be read, one a line: for ./bench sweep"
+        " --index",
     )
     parser.add_argument(
         "--watch",
@@ -126,7 +136,8 @@ def main(argv: list[str]) -> int:
         return watch(args)
     cases = read_cases(args.folder)
     if args.missing:
-        missing = [case for case in cases if not case.record.is_file()]
+        outcomes = Outcomes()
+        missing = [case for case in cases if outcomes.of(case).state != OVER]
         print("".join(f"{case.index}\n" for case in missing), end="")
         return 1 if missing else 0
     shown, is_over = text(args.folder, cases, Outcomes(), args.all)

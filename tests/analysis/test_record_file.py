@@ -6,13 +6,14 @@ import shutil
 import pytest
 
 from analysis.errors import UserError
-from analysis import causes, load, render
+from analysis import causes, load, render, stills
 from analysis.figures import newton_steps
 from analysis.figures import verb as figures
 from analysis.gate import compare
 from analysis.matching.runs import read_strictly
 from analysis.record_file import CHANGED, RecordError, bound_file, other_meanings, read_record, read_trace
 from analysis.record_rule import RecordRule
+from analysis.run import Run
 from synthetic import bind, write_run, write_set
 
 
@@ -26,6 +27,16 @@ def test_what_is_nested_too_deeply_is_refused(folder, depth):
     (folder / "run.json").write_text('{"schema": ' + "[" * depth + "]" * depth + "}")
     with pytest.raises(RecordError, match="run.json"):
         read_record(folder / "run.json")
+
+
+def test_a_record_that_is_not_there_is_not_called_bad_json(tmp_path, capsys):
+    with pytest.raises(RecordError, match=r"nope/run.json: not there; allowed: the run.json of a run"):
+        Run(tmp_path / "nope")
+    assert stills.main([str(tmp_path / "nope"), "--out", str(tmp_path / "a.png")]) == 2
+    assert f"{tmp_path / 'nope/run.json'}: not there" in capsys.readouterr().err
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RecordError, match="file/run.json: cannot be read: Not a directory"):
+        Run(tmp_path / "file")
 
 
 @pytest.fixture

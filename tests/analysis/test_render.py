@@ -294,6 +294,22 @@ def test_frames_that_are_not_those_of_the_record_are_not_drawn(run, tmp_path, ca
     assert ("names no frames" if damage == "not named" else "allowed: ") in said
 
 
+@pytest.mark.parametrize("bare", [[], ["--bare"]])
+def test_the_path_that_is_said_is_the_file_that_is_written(run, tmp_path, capsys, bare):
+    (tmp_path / "there").mkdir()
+    for out, file in (("pic", "pic.png"), ("there", "there/step_000004_body.png"), ("a.png", "a.png")):
+        assert render.main([str(run), "--out", str(tmp_path / out), "--size", "60", "40", *bare]) == 0
+        assert capsys.readouterr().out.strip() == str(tmp_path / file)
+        assert (tmp_path / file).read_bytes().startswith(b"\x89PNG") and (tmp_path / file).with_suffix(".txt").is_file()
+
+
+def test_another_ending_is_refused_before_anything_is_drawn(run, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(render, "_drawn", None)
+    assert render.main([str(run), "--out", str(tmp_path / "README.md")]) == 2
+    assert f"bench render: --out {tmp_path / 'README.md'}: found the ending .md; allowed: a file that ends in .png" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("content", [b"", b"ply\nend_header\n", b"not a mesh", b"ply\nformat ascii 1.0\nend_header\n"])
 def test_files_that_are_no_frames(tmp_path, content):
     (tmp_path / "a.ply").write_bytes(content)

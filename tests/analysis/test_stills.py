@@ -56,3 +56,16 @@ def test_what_cannot_be_drawn_is_named(runs, tmp_path):
     assert "nowhere" in told(tmp_path / "nowhere", "--out", tmp_path / "a.png")
     assert "in 0 columns" in told(runs[0], "--out", tmp_path / "a.png", "--columns", "0")
     assert not (tmp_path / "a.png").exists()
+
+
+def test_the_path_that_is_said_is_the_file_that_is_written(runs, tmp_path, capsys):
+    (tmp_path / "there").mkdir()
+    for out, file in (("pic", "pic.png"), ("there", "there/stills.png"), ("a.PNG", "a.PNG")):
+        assert stills.main([str(runs[0]), "--out", str(tmp_path / out)]) == 0
+        assert capsys.readouterr().out.strip() == str(tmp_path / file) and (tmp_path / file).read_bytes().startswith(b"\x89PNG")
+
+
+def test_another_ending_is_refused_before_anything_is_drawn(runs, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(stills, "render", None)
+    assert stills.main([str(runs[0]), "--out", str(tmp_path / "st.foo")]) == 2
+    assert f"bench stills: --out {tmp_path / 'st.foo'}: found the ending .foo; allowed: a file that ends in .png" in capsys.readouterr().err

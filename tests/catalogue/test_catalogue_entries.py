@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from analysis.catalogue import page, table
 from analysis.catalogue.entry import FOLDER, FULL, MINI, entries, names, read_entry
 from analysis.catalogue.layouts import house_of_cards, placed, row, spiral
 from analysis.catalogue.scenes import main
@@ -69,6 +70,36 @@ def test_a_scene_without_a_config_is_refused(tmp_path, change, message):
 
 def test_an_unknown_scene_ends_with_2(capsys):
     assert main(["drapes"]) == 2 and "one of belt, cards" in capsys.readouterr().err
+
+
+def test_the_page_is_made_of_the_kept_numbers():
+    assert page.PAGE.read_text() == page.page_of(table.read())
+
+
+def kept_of(monkeypatch, tmp_path, *red: str) -> None:
+    """Two scenes, one of them with a red row, and a page elsewhere."""
+    scenes = {name: table.read()[name] for name in ("belt", "drape")}
+    for row in (row for one in scenes.values() for row in one["rows"]):
+        row["red"] = []
+    scenes["drape"]["rows"][0]["red"] = list(red)
+    monkeypatch.setattr(table, "read", lambda: scenes)
+    monkeypatch.setattr(page, "PAGE", tmp_path / "CATALOGUE.md")
+
+
+def test_without_runs_it_says_what_is_red_and_which_page_is_written(tmp_path, monkeypatch, capsys):
+    kept_of(monkeypatch, tmp_path, "fell: 0.1")
+    assert page.main(["--no-run"]) == 1
+    *red, count, file = capsys.readouterr().out.splitlines()
+    assert len(red) == 1 and red[0].startswith("drape") and "fell: 0.1" in red[0] and "9 of 10 runs of 2 scenes" in count
+    assert file == str(tmp_path / "CATALOGUE.md") and (tmp_path / "CATALOGUE.md").is_file()
+
+
+def test_without_runs_a_scene_of_which_nothing_is_kept_is_an_error(tmp_path, monkeypatch, capsys):
+    kept_of(monkeypatch, tmp_path)
+    assert page.main(["belt", "--no-run"]) == 0 and "5 of 5 runs of 1 scene end as expected" in capsys.readouterr().out
+    assert page.main(["twist", "--no-run"]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and "nothing kept of twist: ./bench catalogue twist" in said.err
 
 
 def test_one_is_written_as_an_ordinary_config(tmp_path, capsys):

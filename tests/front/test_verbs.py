@@ -146,5 +146,32 @@ def test_the_program_takes_the_place_of_the_front_door(tmp_path, monkeypatch):
     stand_in.chmod(0o755)
     text = (f"import sys; sys.path[0] = {str(ROOT)!r}\nfrom pathlib import Path\nfrom analysis.front import building, door\n"
             f"building.ensure_program = lambda: Path({str(stand_in)!r})\nsys.exit(door.main(['eval', '-']))")
-    done = subprocess.run([sys.executable, "-c", text], input="hello\n", capture_output=True, text=True, check=False, cwd=tmp_path)
+    environment = {name: value for name, value in os.environ.items() if name != "BARRIERBENCH_PROGRAM"}
+    done = subprocess.run([sys.executable, "-c", text], input="hello\n", capture_output=True, text=True, check=False, cwd=tmp_path, env=environment)
     assert done.returncode == 75 and done.stdout == f"{len(verbs.TABLE)}\nhello eval -\n", done.stderr
+
+
+def called(*words, **environment) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, ROOT / "analysis", *words], capture_output=True, text=True, check=False, env=os.environ | environment)
+
+
+def test_a_program_that_is_named_stands_for_the_build_in_verbs_of_the_program_too(tmp_path):
+    """PATH has no CMake, so that a build would fail."""
+    stand_in = tmp_path / "program"
+    stand_in.write_text("#!/bin/sh\necho stand-in $*\n")
+    done = called("list", "shapes", BARRIERBENCH_PROGRAM=str(stand_in), PATH="/nowhere")
+    assert done.returncode == 2 and done.stderr == f"bench: {stand_in}: cannot be started: Permission denied; allowed: a program\n"
+    stand_in.chmod(0o755)
+    done = called("list", "shapes", BARRIERBENCH_PROGRAM=str(stand_in), PATH="/nowhere")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "stand-in list shapes\n", "")
+    done = called("list", "shapes", BARRIERBENCH_PROGRAM=str(tmp_path / "none"))
+    assert done.returncode == 2 and f"{tmp_path / 'none'} is not built" in done.stderr
+
+
+def test_an_interrupt_says_so_and_may_be_tried_again(monkeypatch, capsys):
+    def interrupted(verb, arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(door, "run", interrupted)
+    assert door.main(["claims"]) == 75
+    assert capsys.readouterr() == ("", "bench claims: interrupted; it may be called again\n")

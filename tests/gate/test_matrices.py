@@ -67,6 +67,32 @@ def test_a_file_that_is_not_there(gate, tmp_path, capsys):
     assert "no such file" in capsys.readouterr().err and not kept.exists()
 
 
+def test_a_folder_is_called_one(gate, tmp_path, capsys):
+    kept = tmp_path / "b.json"
+    good = write(tmp_path / "good.mtx", laplace(2))
+    assert gate("accept", "--matrix", good, "--baseline", kept, "--reason", "first") == 0
+    (tmp_path / "more").mkdir()
+    assert gate("gate", "--matrix", tmp_path / "more", "--baseline", kept) == 2
+    assert f"{tmp_path / 'more'}: a folder; allowed: Matrix Market files, {tmp_path / 'more'}/*.mtx" in capsys.readouterr().err
+    assert gate("gate", "--matrix", good, "--baseline", tmp_path / "more") == 2
+    assert f"{tmp_path / 'more'}: a folder; `bench accept --matrix" in capsys.readouterr().err
+
+
+def test_advice_is_the_command_for_matrices(gate, tmp_path, capsys):
+    kept, matrix, command = tmp_path / "b.json", tmp_path / "a.mtx", f"bench accept --matrix ... --baseline {tmp_path / 'b.json'}"
+    worse = laplace(30)
+    worse[0, 0] = 100
+    assert gate("gate", "--matrix", write(matrix, worse), "--baseline", kept) == 2
+    assert f"{kept}: no such baseline; `{command} --reason \"...\"` makes one" in capsys.readouterr().err
+    assert gate("accept", "--matrix", matrix, "--baseline", kept, "--reason", "first") == 0
+    write(matrix, laplace(30))
+    assert gate("gate", "--matrix", matrix, write(tmp_path / "b.mtx", laplace(30)), "--baseline", kept) == 1
+    said = capsys.readouterr()
+    assert f"from now on: {command} --better --reason" in said.err and "calibrate" not in said.err + said.out
+    assert "accept it (bench accept --matrix)" in said.out
+    assert gate("accept", "--matrix", matrix, "--baseline", kept, "--better", "--reason", "better") == 0
+
+
 def test_one_that_is_not_positive_definite_is_red_and_never_accepted(gate, tmp_path, answer):
     good, kept = write(tmp_path / "good.mtx", laplace(6)), tmp_path / "b.json"
     bad = write(tmp_path / "bad.mtx", laplace(6) - np.eye(6))

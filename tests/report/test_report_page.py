@@ -204,6 +204,18 @@ def test_a_run_without_a_record_and_a_file_that_cannot_be_read_are_failures(runs
     assert f"{runs / 'cubic/run.json'}: not JSON" in rows[2][4]
 
 
+def test_a_lost_or_torn_trace_is_a_failure_on_the_page_and_on_stdout(runs, capsys):
+    changed(runs / "quadratic", status={"outcome": "ok", "valid": True})
+    (runs / "cubic/trace.jsonl").unlink()
+    (runs / "log/trace.jsonl").write_text('{"step": 0')
+    text = page_of(runs)
+    assert "every file could be read" not in text
+    assert "4 of 4 runs ended ok and are valid; 2 files cannot be read." in capsys.readouterr().out
+    rows = [[cell.text for cell in row] for row in tables.failures(gathered(runs), runs / "report.html").rows]
+    assert [row[2] for row in rows] == ["unreadable"] * 2 and {row[0] for row in rows} == {"cubic", "log"}
+    assert {row[4].split(": ")[0] for row in rows} == {str(runs / "cubic/trace.jsonl"), str(runs / "log/trace.jsonl")}
+
+
 def test_a_record_of_an_earlier_form_of_the_sweep_is_in_no_number_and_named(runs):
     list_cases(runs, "log", "cubic", "cubic_dynamic")
     folder = gathered(runs)

@@ -69,3 +69,16 @@ def test_a_written_plan_lets_status_tell_what_is_missing(program, tmp_path):
     assert (missing.returncode, missing.stdout) == (1, "0\n")
     assert bench(program, "sweep", file, "--out", out, "--index", 0).returncode == 0
     assert verb("status", out, "--missing").stdout == "" and verb("status", out).returncode == 0
+
+
+@pytest.mark.parametrize("left", ["", "{}", '{"schema": {"name": "barrierbench.run"', "[1]"])
+def test_a_record_that_cannot_be_read_is_made_again_and_not_over(program, tmp_path, left):
+    file, out = write_sweep(tmp_path, STEPS), tmp_path / "out"
+    assert bench(program, "sweep", file, "--out", out).returncode == 0
+    (out / planned(program, file)[1] / "run.json").write_text(left)
+    seen, missing = verb("status", out), verb("status", out, "--missing")
+    assert seen.returncode == 1 and "2 runs: 1 over (1 ok), 1 unreadable" in seen.stdout and "run.json" in seen.stdout.splitlines()[-1]
+    assert (missing.returncode, missing.stdout) == (1, "1\n")
+    assert bench(program, "plan", file, "--out", out).stdout.splitlines()[2].split()[3] != "there"
+    assert bench(program, "sweep", file, "--out", out).returncode == 0
+    assert "2 over (2 ok)" in verb("status", out).stdout and verb("status", out).returncode == 0

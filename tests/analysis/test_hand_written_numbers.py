@@ -1,0 +1,69 @@
+"""Numbers that stand in hand-written text of docs are those of the kept results."""
+
+import math
+import statistics
+
+import pytest
+
+from analysis.json_file import read_object
+from analysis.places import ROOT
+from analysis.readme import cost, numbers
+
+RUNS = {(row["group"], row["series"]): row for row in numbers.read()["runs"]}
+LOG, CUBIC, LAGGED = (RUNS["demo_drape", name] for name in ("log", "cubic", "cubic_dynamic_lagged"))
+
+
+def page(name: str) -> str:
+    return " ".join((ROOT / name).read_text().split())
+
+
+def cond(value: float) -> str:
+    power = math.floor(math.log10(value))
+    return f"{value / 10**power:.1f}e{power}" if power > 2 else f"{value:.0f}"
+
+
+def ends(group: str) -> list[float]:
+    """The log's condition number over the cubic's at the ends of steps in contact with both."""
+    log, cubic = (RUNS[group, name]["cond_steps"] for name in ("log", "cubic"))
+    return [log[step] / cubic[step] for step in sorted(log.keys() & cubic.keys())]
+
+
+def test_the_text_on_the_drape_is_that_of_its_table():
+    text, strip = page("docs/results.md"), ends("demo_strip")
+    pcg = [f"{row['probe_pcg']:g}" for row in (LOG, CUBIC, RUNS["demo_strip", "log"], RUNS["demo_strip", "cubic"])]
+    assert "PCG takes {} against {} iterations (strip: {} against {})".format(*pcg) in text
+    assert "and {:.1f} and {:.1f} times in the last two".format(*ends("demo_drape")[-2:]) in text
+    assert f"is {LOG['cond_raw_max'] / CUBIC['cond_raw_max']:.1f} times the cubic's in the drape; in the strip it is {statistics.median(strip):.1f} in the median of the step ends, {max(strip):.1f} at most" in text
+
+
+def test_the_text_on_a_stiffness_refreshed_once_a_step_is_that_of_its_table():
+    text = page("docs/results.md")
+    for what, key in (("median", "cond_raw_median"), ("largest", "cond_raw_max")):
+        assert LAGGED[key] > CUBIC[key] and f"{what} {cond(LAGGED[key])} against {cond(CUBIC[key])}" in text
+    assert LAGGED["gap_min_rel"] < CUBIC["gap_min_rel"] and f"narrower ({LAGGED['gap_min_rel']:.3f} against {CUBIC['gap_min_rel']:.3f} d_hat)" in text
+    scaled = [cond(row[key]) for row in (LAGGED, CUBIC) for key in ("cond_bj_median", "cond_bj_max")]
+    counts = [f"{row[key]:g}" for key in ("probe_pcg", "newton_iterations") for row in (LAGGED, CUBIC)]
+    assert "after block-Jacobi scaling {} and {} against {} and {}, PCG {} against {}, Newton {} against {} iterations".format(*scaled, *counts) in text
+    assert all(LAGGED[key] < CUBIC[key] for key in ("cond_bj_median", "cond_bj_max", "probe_pcg", "newton_iterations"))
+
+
+def days(parts) -> str:
+    """First to last day of all runs."""
+    found = sorted({day for part in parts for day in part["about"]["date"].split(", ")})
+    return f"{found[0]} to {found[-1]}"
+
+
+@pytest.mark.parametrize("name", ["docs/results.md", "docs/jobs/reproduce-a-figure.md"])
+def test_what_claims_take_is_what_their_runs_took(name):
+    (claims,) = (one for one in cost.gather() if one["study"] == "claims")
+    of = days(read_object(ROOT / "results/claims.json")["sweeps"].values())
+    assert f"{claims['core_s'] / 3600:.2f} core hours" in page(name) and f"runs of {of}" in page(name)
+    if name == "docs/results.md":
+        assert f"The kept verdicts are of runs of {of};" in page(name)
+
+
+def test_what_the_stress_suite_takes_is_what_its_runs_took():
+    (stress,) = (one for one in cost.gather() if one["study"] == "stress suite")
+    of = days(read_object(ROOT / "results/stress.json")["tests"].values())
+    assert f"{stress['runs']} runs, {stress['core_s'] / 60:.1f} minutes of one core ({of})" in page("docs/verbs.md")
+    assert f"{stress['core_s'] / 60:.1f} minutes in all" in page("results/STRESS.md")
