@@ -179,9 +179,10 @@ def _why(part: dict, runs: Runs, kept: set[tuple[str, str]]) -> str:
 def outcomes(part: dict, runs: Runs) -> Judged:
     """`case` gets through everything, or (needs: "more") through more than `over`: a sign test over scenes,
     of those scenes and levels alone that have what a verdict needs. Where the same share of starts gets
-    through at every place it is no more than the other. Places where no case of the sweep gets through compare
-    nothing and are left out of a comparison; where one case is asked for every run they are failures. bad: a metric that is 1 where a run failed in the way
-    meant, in the place of any outcome but ok; or `common`, the success that all methods share (success.py).
+    through at every place it is no more than the other. Places where no case of the sweep gets through
+    compare nothing and are left out of a comparison; where one case is asked for every run they are failures.
+    bad: a metric that is 1 where a run failed in the way meant, in the place of any outcome but ok; or
+    `common`, the success that all methods share (success.py).
     """
     if part.get("bad") == COMMON:
         check_times(runs.rows, [part[key] for key in ("case", "over") if key in part])
