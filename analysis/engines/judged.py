@@ -40,11 +40,8 @@ def energy_of(frames: list[dict]) -> dict:
     """
     rows = [f for f in frames if "gravity_J" in f]
     moving = rows[1:]
-    if (
-        len(rows) < 2
-        or any(f.get("kinetic_J") is None for f in moving)
-        or any(f["gravity_J"] is None for f in rows)
-    ):
+    numbers = [f["gravity_J"] for f in rows] + [f.get("kinetic_J") for f in moving]
+    if len(rows) < 2 or None in numbers:  # absent, or beyond double
         return {}
     gravity = np.array([f["gravity_J"] for f in rows])
     kinetic = np.array([f["kinetic_J"] for f in moving])

@@ -35,7 +35,7 @@ def of_pc2(path: Path) -> Trajectory:
 
 def _arrays(path: Path) -> dict[str, np.ndarray]:
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
     except Exception as error:  # noqa: BLE001 (cut off, empty or of another kind, it fails in any way)
         why = str(error) or "nothing was said"
