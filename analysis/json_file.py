@@ -8,12 +8,30 @@ from pathlib import Path
 from .errors import UserError
 
 
+class RepeatedKey(ValueError):
+    """A key that one object has twice: which value was meant?"""
+
+
+def _each_key_once(pairs: list[tuple[str, object]]) -> dict:
+    made = dict(pairs)
+    if len(made) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise RepeatedKey(next(key for key in keys if keys.count(key) > 1))
+    return made
+
+
 def read_json(path: Path, remedy: str = "") -> object:
-    """What a file holds. remedy: behind what is said of a file that cannot be read. Errors: UserError."""
+    """What a file holds. remedy: behind what is said of a file that cannot be read. Errors: UserError, also
+    for a key that is given twice in one object.
+    """
     try:
-        return json.loads(path.read_bytes())
+        return json.loads(path.read_bytes(), object_pairs_hook=_each_key_once)
     except OSError as fault:
         raise UserError(f"{path}: {fault.strerror}{remedy}") from None
+    except RepeatedKey as key:
+        raise UserError(
+            f"{path}: the key {str(key)!r} is given twice in one object; each once{remedy}"
+        ) from None
     except (ValueError, RecursionError) as fault:
         raise UserError(f"{path}: not JSON: {fault}{remedy}") from None
 

@@ -5,10 +5,29 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from .errors import UserError
+
 
 def write_whole(path: Path, text: str) -> None:
     """write_whole_bytes of a text."""
     write_whole_bytes(path, text.encode())
+
+
+def check_can_be_written(path: Path) -> None:
+    """Before long work whose result goes there: makes the folder, writes into it, and takes that back.
+    Errors: UserError that names what is in the way.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
+        part.write_bytes(b"")
+        part.unlink()
+    except OSError as fault:
+        raise UserError(
+            f"{path.parent}: {fault.strerror}; a folder that can be written to is needed"
+        ) from None
+    if path.is_dir():
+        raise UserError(f"{path}: is a folder; a file, or nothing, is needed there")
 
 
 def write_whole_bytes(path: Path, content: bytes) -> None:

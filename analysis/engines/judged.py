@@ -39,10 +39,12 @@ def energy_of(frames: list[dict]) -> dict:
     that was gained above the start, and what is left at the end. Elastic energy is in neither.
     """
     rows = [f for f in frames if "gravity_J" in f]
-    if len(rows) < 2 or any("kinetic_J" not in f for f in rows[1:]):
+    moving = rows[1:]
+    numbers = [f["gravity_J"] for f in rows] + [f.get("kinetic_J") for f in moving]
+    if len(rows) < 2 or None in numbers:  # absent, or beyond double
         return {}
     gravity = np.array([f["gravity_J"] for f in rows])
-    kinetic = np.array([f["kinetic_J"] for f in rows[1:]])
+    kinetic = np.array([f["kinetic_J"] for f in moving])
     total = kinetic + (gravity[1:] + gravity[:-1]) / 2 - gravity[0]
     return {"energy_most_J": float(total.max()), "energy_last_J": float(total[-1])}
 
@@ -71,6 +73,6 @@ def judge(folder: Path, scene: dict) -> dict:
         "passages": total["passages"],
         "depth_obstacles_m": max(beyond),
         "depth_bodies_m": max(deep),
-        "stretch_most": max((f.get("stretch_max", 1.0) for f in frames), default=1.0),
+        "stretch_most": max((f.get("stretch_max") or 1.0 for f in frames), default=1.0),
         **energy_of(frames),
     }

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..spec_file import read_spec, refused
-from .trajectory import Trajectory, checked
+from .trajectory import MOST_METRES, Topology, Trajectory, checked
 
 
 @dataclass(frozen=True)
@@ -23,9 +23,25 @@ class About:
     gravity_m_s2: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-def _cells(data: dict, key: str, n: int, own: np.ndarray) -> np.ndarray:
-    more = np.array(data.get(key, []), np.int64).reshape(-1, n)
-    return np.concatenate([own, more])
+def _cells(data: dict, path: Path, key: str, topology: Topology) -> np.ndarray:
+    """Those of the frames, and those of the file."""
+    own, n, rows = getattr(topology, key), topology.n_vertices, data.get(key, [])
+    for k, row in enumerate(rows):
+        if max(row) >= n or len(set(row)) < len(row):
+            raise refused(path, f"{key}/{k}", row, f"a list of different numbers from 0 to {n - 1}")
+    return np.concatenate([own, np.array(rows, np.int64).reshape(-1, own.shape[1])])
+
+
+def _check_obstacle(one: dict, path: Path, place: str) -> None:
+    """What the schema does not say. Errors: UserError."""
+    point, axis, radius = one.get("point_m", [0]), one.get("axis", [1]), one.get("radius_m", 0.0)
+    for key, numbers in (("point_m", point), ("axis", axis), ("radius_m", [radius])):
+        if max(map(abs, numbers)) > MOST_METRES:
+            raise refused(path, f"{place}/{key}", one[key], f"at most {MOST_METRES:g} in size")
+    if not np.linalg.norm(axis) > 0:
+        raise refused(path, f"{place}/axis", axis, "a direction, a vector that is not zero,")
+    if one["kind"] != "plane" and "radius_m" not in one:
+        raise UserError(f"{path}#/{place}/radius_m: is missing; a {one['kind']} needs a number > 0 in m")
 
 
 def _with_bodies(data: dict, path: Path, trajectory: Trajectory) -> Trajectory:
@@ -59,10 +75,10 @@ def with_cells(trajectory: Trajectory, path: Path | None) -> tuple[dict, Traject
     t = trajectory.topology
     topology = replace(
         t,
-        triangles=_cells(data, "triangles", 3, t.triangles),
-        segments=_cells(data, "segments", 2, t.segments),
-        tetrahedra=_cells(data, "tetrahedra", 4, t.tetrahedra),
+        **{name: _cells(data, path, name, t) for name in ("triangles", "segments", "tetrahedra")},
     )
+    for k, one in enumerate(data.get("obstacles", [])):
+        _check_obstacle(one, path, f"obstacles/{k}")
     more = replace(
         trajectory,
         topology=topology,
@@ -72,26 +88,36 @@ def with_cells(trajectory: Trajectory, path: Path | None) -> tuple[dict, Traject
     return data, _with_bodies(data, path, checked(more))
 
 
+def _half_thickness(data: dict, path: Path, trajectory: Trajectory) -> np.ndarray | None:
+    if "thickness_m" not in data:
+        return None
+    said, n = data["thickness_m"], trajectory.topology.n_vertices
+    by_body = said if isinstance(said, dict) else {}
+    half = np.full(n, 0.0 if isinstance(said, dict) else said / 2)
+    for name, value in by_body.items():
+        half[_body(name, path, f"thickness_m/{name}", trajectory)] = value / 2
+    if half.max() > MOST_METRES:
+        raise refused(path, "thickness_m", said, f"at most {2 * MOST_METRES:g} m")
+    return half
+
+
 def about_of(data: dict, path: Path | None, trajectory: Trajectory) -> About:
     """What refers to bodies by name. Errors: UserError with the place in the file."""
     n = trajectory.topology.n_vertices
     given = [_body(name, path, f"given/{k}", trajectory) for k, name in enumerate(data.get("given", []))]
-    vertices = np.array(data.get("given_vertices", []), int)
-    if len(vertices) and vertices.max() >= n:
-        raise refused(path, "given_vertices", int(vertices.max()), f"numbers below {n}")
-    thickness = None
-    if "thickness_m" in data:
-        said = data["thickness_m"]
-        thickness = np.full(n, said / 2 if not isinstance(said, dict) else 0.0)
-        for name, value in said.items() if isinstance(said, dict) else ():
-            thickness[_body(name, path, f"thickness_m/{name}", trajectory)] = value / 2
+    vertices = data.get("given_vertices", [])
+    for k, vertex in enumerate(vertices):
+        if vertex >= n:
+            raise refused(path, f"given_vertices/{k}", vertex, f"a number below {n}")
     for name in data.get("density", {}):
         _body(name, path, f"density/{name}", trajectory)
     if "density" in data and data.get("dt_s") is None and trajectory.times_s is None:
         raise UserError(f"{path}#/density: needs times of the frames for velocities: dt_s")
+    if not np.isfinite(data.get("dt_s", 0.0) * len(trajectory.labels)):
+        raise refused(path, "dt_s", data["dt_s"], "a step with which all times are finite")
     return About(
-        np.unique(np.concatenate([*given, vertices]).astype(int)),
-        thickness,
+        np.unique(np.concatenate([*given, np.array(vertices, int)]).astype(int)),
+        _half_thickness(data, path, trajectory),
         data.get("density", {}),
         data.get("dt_s"),
         tuple(data.get("gravity_m_s2", (0.0, 0.0, 0.0))),

@@ -16,10 +16,19 @@ import numpy as np
 from ..errors import UserError
 from ..program import piped
 from .about import About
-from .trajectory import Trajectory, surface_of
+from .trajectory import MOST_METRES, Trajectory, surface_of
 
 CROSSED, CLEAN = 1, 0  # exit codes of the program that are answers
 REACH_SHARE = 0.1  # of the mean edge of the first frame: gaps above it are not measured
+
+
+def _reach_of(first: np.ndarray, sides: np.ndarray) -> float:
+    """0 without edges, and where their ends are not finite."""
+    if not len(sides) or not np.isfinite(first[sides]).all():
+        return 0.0
+    with np.errstate(over="ignore"):
+        length = np.linalg.norm(first[sides[:, 1]] - first[sides[:, 0]], axis=1)
+        return min(float(length.mean()) * REACH_SHARE, MOST_METRES)
 
 
 def subject_of(trajectory: Trajectory, about: About, first: np.ndarray, reach_m: float | None) -> dict:
@@ -27,12 +36,10 @@ def subject_of(trajectory: Trajectory, about: About, first: np.ndarray, reach_m:
     t = trajectory.topology
     triangles = surface_of(t)
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]], t.segments])
-    length = np.linalg.norm(first[sides[:, 1]] - first[sides[:, 0]], axis=1)
-    mean = float(length.mean()) if len(length) and np.isfinite(length).all() else 0.0
     subject = {
         "schema": "barrierbench.subject/1",
         "n_vertices": t.n_vertices,
-        "reach_m": mean * REACH_SHARE if reach_m is None else reach_m,
+        "reach_m": _reach_of(first, sides) if reach_m is None else reach_m,
         "planar": trajectory.planar,
         "bodies": [{"name": name, "first_vertex": first} for name, first in zip(t.names, t.first_vertex)],
         "triangles": triangles.tolist(),
@@ -71,9 +78,8 @@ def audited(
                 for thread in threads:
                     thread.join()
     if child.returncode not in (CLEAN, CROSSED):
-        raise UserError(
-            f"the program's audit ended with {child.returncode}: {said['stderr'].decode().strip()}"
-        )
+        why = said["stderr"].decode().strip().replace(str(path), f"what was handed on of {trajectory.source}")
+        raise UserError(f"the program's audit ended with {child.returncode}: {why}")
     lines = [json.loads(line) for line in said["stdout"].splitlines()]
     return lines[:-1], lines[-1]["total"], reading
 

@@ -13,12 +13,12 @@ from .trajectory import Topology, fans
 def _corners(path: Path, line: bytes, n_vertices: int) -> np.ndarray:
     """0-based corners of an `f` or `l` line; negative numbers count from the last vertex."""
     try:
-        numbers = [int(word.split(b"/")[0]) for word in line.split()[1:]]
-    except ValueError:
+        numbers = np.array([int(word.split(b"/")[0]) for word in line.split()[1:]], np.int64)
+    except (ValueError, OverflowError):
         raise UserError(
-            f"{path}: the line {line.decode('ascii', 'replace')!r} has a corner that is no number"
+            f"{path}: the line {line.decode('ascii', 'replace')!r} has a corner that is no number of a vertex"
         ) from None
-    return np.array([n - 1 if n > 0 else n_vertices + n for n in numbers])
+    return np.where(numbers > 0, numbers - 1, n_vertices + numbers)
 
 
 def read_obj(path: Path) -> tuple[np.ndarray, Topology]:

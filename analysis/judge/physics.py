@@ -1,5 +1,6 @@
 """Numbers of a frame that need no audit: stretch, volumes, momentum and energies. Where a material or a time
-is not given, they are not computed.
+is not given, they are not computed; what overflows, or is relative to a first frame that is not finite,
+is None.
 """
 
 from __future__ import annotations
@@ -10,12 +11,16 @@ from .about import About
 from .trajectory import Topology, surface_of
 
 
+def finite_or_none(values: np.ndarray | float) -> list | float | None:
+    """For JSON: the numbers; None where one of them is none."""
+    return np.asarray(values).tolist() if np.isfinite(values).all() else None
+
+
 def _frames_of(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """[n, 2, 2] edge vectors of triangles in their own planes, as columns."""
     a, b = (x[triangles[:, k]] - x[triangles[:, 0]] for k in (1, 2))
     length = np.linalg.norm(a, axis=1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        along = (a * b).sum(1) / length
+    along = (a * b).sum(1) / length
     across = np.linalg.norm(np.cross(a, b), axis=1) / length
     zero = np.zeros(len(a))
     return np.stack([np.stack([length, along], 1), np.stack([zero, across], 1)], 1)
@@ -24,10 +29,13 @@ def _frames_of(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 class Physics:
     """Of the frames of one trajectory, in order; the first is the rest."""
 
+    @np.errstate(all="ignore")
     def __init__(self, topology: Topology, about: About, rest: np.ndarray, times_s: np.ndarray | None):
         self.topology, self.about, self.times_s = topology, about, times_s
         frames = _frames_of(rest, topology.triangles)
-        self.sound = np.abs(np.linalg.det(frames)) > 0
+        finite = np.isfinite(frames).all(axis=(1, 2))
+        self.rest_is_known = bool(finite.all())
+        self.sound = finite & (np.abs(np.linalg.det(frames)) > 0)
         self.to_rest = np.linalg.inv(frames[self.sound])
         self.mass = self._masses(rest)
         self.volumes = self._volumes(rest)
@@ -62,6 +70,23 @@ class Physics:
         six = np.einsum("ni,ni->n", x[t[:, 0]], np.cross(x[t[:, 1]], x[t[:, 2]]))
         return np.bincount(body[t[:, 0]], six / 6, len(self.topology.names))
 
+    def _stretches(self, x: np.ndarray) -> dict[str, float | None]:
+        """Of the triangles that have an area at rest; nothing without any."""
+        none = {"stretch_max": None, "stretch_min": None}
+        if not self.rest_is_known:
+            return none
+        if not self.sound.any():
+            return {}
+        gradient = _frames_of(x, self.topology.triangles[self.sound]) @ self.to_rest
+        if not np.isfinite(gradient).all():
+            return none
+        stretches = np.linalg.svd(gradient, compute_uv=False)
+        return {
+            "stretch_max": finite_or_none(stretches.max()),
+            "stretch_min": finite_or_none(stretches.min()),
+        }
+
+    @np.errstate(all="ignore")
     def of(self, number: int, x: np.ndarray) -> dict:
         """A frame that is not finite has no numbers. Volumes are of all bodies, open ones too."""
         out: dict = {}
@@ -69,21 +94,18 @@ class Physics:
             self.last = None
             return out
         t = self.topology
-        if self.sound.any():
-            gradient = _frames_of(x, t.triangles[self.sound]) @ self.to_rest
-            stretches = np.linalg.svd(gradient, compute_uv=False)
-            out["stretch_max"], out["stretch_min"] = float(stretches.max()), float(stretches.min())
+        out |= self._stretches(x)
         if len(t.tetrahedra):
             inner = np.linalg.det(x[t.tetrahedra[:, 1:]] - x[t.tetrahedra[:, :1]])
-            out["tetrahedra_inverted"] = int((inner <= 0).sum())
-        with np.errstate(invalid="ignore", divide="ignore"):
-            out["volume_rel"] = dict(zip(t.names, (self._volumes(x) / self.volumes).tolist()))
+            out["tetrahedra_inverted"] = int((inner <= 0).sum()) if np.isfinite(inner).all() else None
+        volumes = self._volumes(x) / self.volumes
+        out["volume_rel"] = {name: finite_or_none(v) for name, v in zip(t.names, volumes)}
         if self.mass is not None and self.last is not None:
             dt = self.times_s[number] - self.times_s[number - 1]
             v = (x - self.last) / dt
-            out["momentum_kg_m_s"] = (self.mass @ v).tolist()
-            out["kinetic_J"] = float(0.5 * self.mass @ (v * v).sum(1))
+            out["momentum_kg_m_s"] = finite_or_none(self.mass @ v)
+            out["kinetic_J"] = finite_or_none(0.5 * self.mass @ (v * v).sum(1))
         if self.mass is not None:
-            out["gravity_J"] = float(-self.mass @ (x @ np.array(self.about.gravity_m_s2)))
+            out["gravity_J"] = finite_or_none(-self.mass @ (x @ np.array(self.about.gravity_m_s2)))
         self.last = x
         return out

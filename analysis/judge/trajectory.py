@@ -11,6 +11,8 @@ from scipy.sparse.csgraph import connected_components
 
 from ..errors import UserError
 
+MOST_METRES = 1e15  # that the program takes of reach, thickness and obstacles
+
 
 @dataclass(frozen=True)
 class Topology:
@@ -46,6 +48,10 @@ class Trajectory:
 
 def no_cells(n: int) -> np.ndarray:
     return np.zeros((0, n), np.int64)
+
+
+def has_cells(topology: Topology) -> bool:
+    return any(len(cells) for cells in (topology.triangles, topology.segments, topology.tetrahedra))
 
 
 def fans(polygons: list[np.ndarray]) -> np.ndarray:
@@ -106,7 +112,7 @@ def checked(trajectory: Trajectory) -> Trajectory:
                 f"{trajectory.source}: {name}[{k}] has the corners {cells[k].tolist()}; allowed: different "
                 f"numbers from 0 to {t.n_vertices - 1}"
             )
-    if not (len(t.triangles) or len(t.segments) or len(t.tetrahedra) or trajectory.obstacles):
+    if not has_cells(t) and not trajectory.obstacles:
         raise UserError(
             f"{trajectory.source}: no triangle, rod, tetrahedron or obstacle; at least one is needed, or "
             "nothing can be judged (topology from another file: --topology; from JSON: --about)"

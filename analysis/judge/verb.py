@@ -14,17 +14,18 @@ import numpy as np
 
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
-from ..whole_file import write_whole
+from ..whole_file import check_can_be_written, write_whole
 from .about import About, about_of, with_cells
 from .ask import audited, subject_of
 from .page import page_of
-from .physics import Physics
+from .physics import Physics, finite_or_none
 from .readers import read_trajectory
-from .trajectory import Trajectory, checked, with_parts
+from .trajectory import MOST_METRES, Trajectory, checked, with_parts
 from .verdict import VERDICTS, findings, verdict_of
 
 CLEAN, NOT_CLEAN = 0, 1
-MOST_METRES = 100.0  # beyond it coordinates are asked about: millimetres look like that
+FILES = ("judgement.json", "judgement.html")  # record and page
+WIDE_M = 100.0  # beyond it coordinates are asked about: millimetres look like that
 DOC = """TRAJECTORY: a folder of numbered OBJ, PLY or VTU frames, a .pvd collection, .pc2, .npz, or a run of
 barrierbench. What its files do not say (obstacles, rods, thickness, densities): --about FILE
 (configs/schema/judge.schema.json). Every frame is judged by exact signs, and the straight line from each
@@ -38,7 +39,10 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("trajectory", type=Path)
     parser.add_argument("--about", type=Path, metavar="FILE.json")
     parser.add_argument(
-        "--topology", type=Path, metavar="MESH", help="for .pc2 and .npz: a mesh file of the same vertices"
+        "--topology",
+        type=Path,
+        metavar="MESH",
+        help="for frames without cells (.pc2, .npz): a mesh file of the same vertices",
     )
     parser.add_argument(
         "--reference", type=Path, metavar="TRAJECTORY", help="another one of the same vertices: how far apart"
@@ -66,13 +70,18 @@ def parse(argv: list[str]) -> argparse.Namespace:
         value = getattr(options, name)
         if value is not None and not (np.isfinite(value) and value > 0):
             raise UserError(f"--{name} {value}: a finite number above 0 is needed")
+    if options.reach is not None and options.reach > MOST_METRES:
+        raise UserError(f"--reach {options.reach:g}: at most {MOST_METRES:g} m is allowed")
     return options
 
 
 def scaled(trajectory: Trajectory, scale: float) -> Trajectory:
     if scale == 1.0:
         return trajectory
-    return replace(trajectory, frames=lambda: (x * scale for x in trajectory.frames()))
+    of_one = np.errstate(over="ignore")(
+        lambda x: x * scale
+    )  # beyond double it is not finite, which the verdict says
+    return replace(trajectory, frames=lambda: map(of_one, trajectory.frames()))
 
 
 def read(options: argparse.Namespace) -> tuple[Trajectory, About]:
@@ -102,7 +111,9 @@ class Watch:
         self.rows: list[dict] = []
         self.reference = reference.frames() if reference else None
         self.largest_m = 0.0
+        self.unknown = 0  # frames of the reference that are not finite
 
+    @np.errstate(all="ignore")
     def __call__(self, number: int, x: np.ndarray) -> None:
         t = self.trajectory
         if self.physics is None:
@@ -111,14 +122,16 @@ class Watch:
         row = self.physics.of(number, x)
         if self.reference is not None and (other := next(self.reference, None)) is not None:
             apart = np.linalg.norm(x - other, axis=1)
-            row |= {"apart_max_m": float(apart.max()), "apart_rms_m": float(np.sqrt((apart**2).mean()))}
+            row["apart_max_m"] = finite_or_none(apart.max())
+            row["apart_rms_m"] = finite_or_none(np.sqrt((apart**2).mean()))
+            self.unknown += not np.isfinite(other).all()
         self.rows.append(row)
 
 
 def reference_of(options: argparse.Namespace, trajectory: Trajectory) -> Trajectory | None:
     if options.reference is None:
         return None
-    found = read_trajectory(options.reference, options.topology)
+    found = read_trajectory(options.reference)  # its vertices alone are asked for
     n, m = trajectory.topology.n_vertices, found.topology.n_vertices
     if n != m:
         raise UserError(f"{options.reference}: {m} vertices; the trajectory has {n}")
@@ -135,10 +148,14 @@ def judged(options: argparse.Namespace) -> dict:
     watch = Watch(trajectory, about, reference_of(options, trajectory))
     first = next(trajectory.frames())
     subject = subject_of(trajectory, about, first, options.reach)
+    for name in FILES:
+        check_can_be_written(options.out / name)
     frames, total, reading_s = audited(trajectory, subject, watch)
     notes = list(trajectory.notes)
-    if watch.largest_m > MOST_METRES:
+    if watch.largest_m > WIDE_M:
         notes.append(f"the first frame is {watch.largest_m:g} m wide: if its unit is mm, --scale 0.001")
+    if watch.unknown:
+        notes.append(f"{watch.unknown} frames of the reference hold numbers that are none")
     for frame, row, label in zip(frames, watch.rows, trajectory.labels):
         frame |= row | {"label": label}
         volumes = frame.pop("volume_rel", {})  # the program says which bodies are closed
@@ -195,8 +212,9 @@ def main(argv: list[str]) -> int:
     options = parse(argv)
     record = judged(options) | {"command": shlex.join(["./bench", "judge", *argv])}
     text = json.dumps(record, indent=1, allow_nan=False)
-    write_whole(options.out / "judgement.json", text + "\n")
-    write_whole(options.out / "judgement.html", page_of(record))
+    json_file, page_file = (options.out / name for name in FILES)
+    write_whole(json_file, text + "\n")
+    write_whole(page_file, page_of(record))
     print(said(record))
-    print(f"{options.out / 'judgement.html'}", file=sys.stderr)
+    print(page_file, file=sys.stderr)
     return CLEAN if record["verdict"] == "clean" else NOT_CLEAN

@@ -10,7 +10,8 @@ VERDICTS = {  # word: what it says; the first that holds is the verdict
     ),
     "passes_between_frames": (
         "no frame shows a crossing of parts that are free, but on the straight line from one frame to the"
-        " next something passes through something; what the program itself did between its frames is not known"
+        " next something passes through something; what the program itself did between its frames is not"
+        " known"
     ),
     "given_parts_cross": "only parts that the scene itself moves cross each other",
     "unproven": (

@@ -275,3 +275,10 @@ def test_an_engine_of_others_falls_and_holds_what_is_given(program, tmp_path, na
     x = np.load(tmp_path / "held/frames.npz")["positions"]
     assert np.abs(x[:, [0, 3]] - x[0, [0, 3]]).max() < 1e-6 and x[-1, 15, 2] < 0.999
     assert judge(tmp_path / "held", held)["verdict"] == "clean"
+
+
+def test_an_energy_that_overflowed_is_none():
+    frames = [{"gravity_J": 1.0}, {"gravity_J": 0.5, "kinetic_J": 0.25}]
+    assert energy_of(frames)["energy_last_J"] == 0.0
+    assert energy_of([frames[0], {"gravity_J": 0.5, "kinetic_J": None}]) == {}
+    assert energy_of([{"gravity_J": None}, frames[1]]) == {}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from analysis.judge import verb
-from analysis.judge.readers import MESHES
+from analysis.judge.meshes import MESHES
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 CUBE_TRIANGLES = [[0, 1, 3], [4, 6, 7], [0, 4, 5], [2, 3, 7], [0, 2, 6], [1, 5, 7], [0, 3, 2], [4, 7, 5], [0, 5, 1], [2, 7, 6], [0, 6, 4], [1, 7, 3]]

@@ -1,0 +1,86 @@
+"""Collections of ParaView (.pvd): VTU files with their times. Several parts of one time are one frame."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import UserError
+from .sequence import of_parts
+from .times import increasing
+from .trajectory import Trajectory
+
+PartName = tuple[int, str]  # part and group
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One <DataSet>."""
+
+    number: int  # in the file, from 0
+    time_s: float
+    part: PartName
+    file: str
+
+
+def _entries(path: Path) -> list[Entry]:
+    """In the order of the file. Without any timestep, entries are numbered. Errors: UserError."""
+    try:
+        sets = ElementTree.parse(path).getroot().findall("Collection/DataSet")
+    except (ElementTree.ParseError, LookupError, ValueError) as error:
+        raise UserError(f"{path}: not a collection of ParaView: {error}") from None
+    if not sets:
+        raise UserError(f"{path}: names no file; <Collection> with <DataSet timestep= file=> is needed")
+    timeless = not any("timestep" in one.attrib for one in sets)
+    return [
+        _entry(path, k, {"timestep": str(k)} | one.attrib if timeless else one.attrib)
+        for k, one in enumerate(sets)
+    ]
+
+
+def _entry(path: Path, k: int, said: dict[str, str]) -> Entry:
+    place = f"{path}: DataSet {k}"
+    missing = next((key for key in ("timestep", "file") if key not in said), None)
+    if missing:
+        raise UserError(f"{place}: has no {missing}; every one needs timestep= and file=")
+    try:
+        time_s = float(said["timestep"])
+    except ValueError:
+        raise UserError(f"{place}: found the timestep {said['timestep']!r}; a number is needed") from None
+    try:
+        part = int(said.get("part") or 0)
+    except ValueError:
+        raise UserError(f"{place}: found the part {said['part']!r}; an integer is needed") from None
+    return Entry(k, time_s, (part, said.get("group", "")), said["file"])
+
+
+def _check_same_times(path: Path, one: list[Entry], other: list[Entry]) -> None:
+    """Errors: UserError with the first time that only one of two parts has."""
+    for a, b in ((one, other), (other, one)):
+        there = {entry.time_s for entry in b}
+        lone = next((entry for entry in a if entry.time_s not in there), None)
+        if lone:
+            raise UserError(
+                f"{path}: part {b[0].part[0]} has no file at {lone.time_s!r}, part {lone.part[0]} has"
+                "; the same parts at every time are needed"
+            )
+
+
+def of_pvd(path: Path) -> Trajectory:
+    """A frame a time: its parts one after the other, in the order of their numbers. Errors: UserError for
+    times of a part that do not increase in the file, and for a part that is not there at every time.
+    """
+    parts: dict[PartName, list[Entry]] = {}
+    for entry in _entries(path):
+        parts.setdefault(entry.part, []).append(entry)
+    ordered = [parts[name] for name in sorted(parts)]
+    for entries in ordered:
+        increasing([e.time_s for e in entries], lambda k, entries=entries: _place(path, entries[k]))
+        _check_same_times(path, ordered[0], entries)
+    frames = [[path.parent / entry.file for entry in frame] for frame in zip(*ordered)]
+    return of_parts(frames, str(path), "pvd", [entry.time_s for entry in ordered[0]])
+
+
+def _place(path: Path, entry: Entry) -> str:
+    return f"{path}: DataSet {entry.number} (part {entry.part[0]}, file {entry.file!r})"

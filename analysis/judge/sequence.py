@@ -1,0 +1,80 @@
+"""Trajectories of one or more mesh files a frame.
+
+The topology is that of the first frame; one of another topology is refused by name.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import UserError
+from .meshes import read_mesh, same_topology
+from .trajectory import Topology, Trajectory
+
+
+def numbered(paths: list[Path]) -> list[Path]:
+    """In the order of the last number in their names. Errors: UserError for two with one number, and for a
+    sequence with holes.
+    """
+    if len(paths) < 2:
+        return paths
+    number = {}
+    for path in sorted(paths):
+        found = re.findall(r"\d+", path.stem)
+        if not found:
+            raise UserError(f"{path}: no number in the name of one of {len(paths)} frames")
+        if int(found[-1]) in number:
+            raise UserError(f"{path}: has the number of {number[int(found[-1])].name}")
+        number[int(found[-1])] = path
+    order = sorted(number)
+    steps = np.diff(order)
+    if len(set(steps)) > 1:
+        k = int(np.flatnonzero(steps > steps.min())[0])
+        raise UserError(
+            f"{paths[0].parent}: no frame between {number[order[k]].name} and {number[order[k + 1]].name}; "
+            f"numbers in even steps (here {steps.min()}) are needed"
+        )
+    return [number[k] for k in order]
+
+
+def joined(parts: list[Topology]) -> Topology:
+    """One after the other: vertices are counted on from part to part."""
+    before = np.cumsum([0, *(part.n_vertices for part in parts)])
+
+    def cells(name: str) -> np.ndarray:
+        return np.concatenate([getattr(part, name) + n for part, n in zip(parts, before)])
+
+    polygons = sum(part.polygons for part in parts)
+    return Topology(int(before[-1]), cells("triangles"), cells("segments"), cells("tetrahedra"), polygons)
+
+
+def of_files(paths: list[Path], source: str) -> Trajectory:
+    """A file a frame."""
+    return of_parts([[path] for path in paths], source, paths[0].suffix.lower()[1:])
+
+
+def of_parts(
+    frames: list[list[Path]], source: str, kind: str, times_s: list[float] | None = None
+) -> Trajectory:
+    """A list of files a frame, as many in each."""
+    first = [read_mesh(path)[1] for path in frames[0]]
+
+    def read() -> Iterator[np.ndarray]:
+        for paths in frames:
+            points = []
+            for path, topology in zip(paths, first):
+                x, other = read_mesh(path)
+                same_topology(path, topology, other)
+                points.append(x)
+            yield np.concatenate(points)
+
+    return Trajectory(joined(first), read, [_label(paths) for paths in frames], source, kind, times_s)
+
+
+def _label(paths: list[Path]) -> str:
+    more = f" and {len(paths) - 1} more" if len(paths) > 1 else ""
+    return f"{paths[0].name}{more}"
