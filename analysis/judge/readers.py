@@ -23,15 +23,24 @@ from .trajectory import Topology, Trajectory, has_cells, no_cells
 
 # --- folders
 
+OBSTACLES = "obstacles"  # the name of their mesh, whatever its format (frames_out)
+
 
 def of_folder(folder: Path) -> Trajectory:
     """All files of the one format of frames that is there, by a collection (.pvd) where one is; or one PC2
-    and the mesh of its name.
+    and the mesh of its name. The obstacles beside them, as `bench frames` writes them, are no frame.
     """
+    files = [p for p in sorted(folder.iterdir()) if p.suffix.lower() in (*MESHES, ".pc2", ".pvd")]
+    frames = [p for p in files if p.stem != OBSTACLES or p.suffix.lower() not in MESHES] or files
+    notes = tuple(f"{p.name} is no frame: obstacles are given by --about" for p in files if p not in frames)
+    found = _of_frames(folder, frames)
+    return replace(found, notes=found.notes + notes)
+
+
+def _of_frames(folder: Path, files: list[Path]) -> Trajectory:
     found: dict[str, list[Path]] = defaultdict(list)
-    for path in sorted(folder.iterdir()):
-        if path.suffix.lower() in (*MESHES, ".pc2", ".pvd"):
-            found[path.suffix.lower()].append(path)
+    for path in files:
+        found[path.suffix.lower()].append(path)
     if found[".pc2"]:
         return _of_pc2_folder(folder, [path for paths in found.values() for path in paths])
     there = [suffix for suffix in MESHES if found[suffix]]

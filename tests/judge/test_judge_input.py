@@ -35,6 +35,16 @@ def test_parts_of_one_time_are_one_frame(program, tmp_path, order):
         assert row["frame"] == "f_1_0.vtu and 1 more" and "part 0" in row["pair"] and "part 1" in row["pair"]
 
 
+@pytest.mark.parametrize("kind", ["obj", "ply", "vtu"])
+def test_obstacles_beside_frames_are_no_frame_and_named(program, tmp_path, kind):
+    """As `bench frames` writes them."""
+    folder, _ = written(tmp_path / "a", kind, CLEAN)
+    (folder / f"obstacles.{kind}").write_text("never opened")
+    code, record = judge(tmp_path, folder)
+    assert code == 0 and record["total"]["frames"] == 3
+    assert any(f"obstacles.{kind} is no frame" in note for note in record["notes"])
+
+
 def test_a_folder_of_pc2_is_judged_by_it_and_not_by_its_mesh(program, tmp_path):
     pc2, _ = written(tmp_path / "a", "pc2", INTO)
     (tmp_path / "a" / "start.obj").rename(tmp_path / "a" / "all.obj")
