@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import meshio
 import numpy as np
 
 from ..errors import UserError
+from ..frames import read_frame
 from .obj import read_obj
 from .trajectory import Topology, fans, no_cells
 
@@ -47,10 +47,21 @@ def read_foreign(path: Path, reader: Callable) -> Mesh:
     return points, Topology(len(points), triangles, lines, tetrahedra, len(polygons))
 
 
+def read_ply(path: Path) -> Mesh:
+    """As this program writes it, with numbers at faces, which meshio does not read; else as meshio does."""
+    try:
+        frame = read_frame(path)
+    except UserError:
+        return read_foreign(path, meshio.ply.read)
+    triangles, lines = (np.asarray(cells, np.int64) for cells in (frame.triangles, frame.edges))
+    points = frame.vertices.astype(float)
+    return points, Topology(len(points), triangles, lines, no_cells(4))
+
+
 MESHES: dict[str, Callable[[Path], Mesh]] = {
     ".obj": read_obj,
-    ".ply": partial(read_foreign, reader=meshio.ply.read),
-    ".vtu": partial(read_foreign, reader=meshio.vtu.read),
+    ".ply": read_ply,
+    ".vtu": lambda path: read_foreign(path, meshio.vtu.read),
 }
 
 

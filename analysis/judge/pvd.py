@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import UserError
-from .sequence import of_parts
+from .sequence import OBSTACLES, no_frames, of_parts
 from .times import increasing
 from .trajectory import Trajectory
 
@@ -72,14 +72,18 @@ def of_pvd(path: Path) -> Trajectory:
     times of a part that do not increase in the file, and for a part that is not there at every time.
     """
     parts: dict[PartName, list[Entry]] = {}
-    for entry in _entries(path):
+    every = _entries(path)
+    kept = [entry for entry in every if Path(entry.file).stem != OBSTACLES] or every
+    for entry in kept:
         parts.setdefault(entry.part, []).append(entry)
     ordered = [parts[name] for name in sorted(parts)]
     for entries in ordered:
         increasing([e.time_s for e in entries], lambda k, entries=entries: _place(path, entries[k]))
         _check_same_times(path, ordered[0], entries)
     frames = [[path.parent / entry.file for entry in frame] for frame in zip(*ordered)]
-    return of_parts(frames, str(path), "pvd", [entry.time_s for entry in ordered[0]])
+    found = of_parts(frames, str(path), "pvd", [entry.time_s for entry in ordered[0]])
+    notes = no_frames([Path(entry.file).name for entry in every if entry not in kept])
+    return replace(found, notes=(*found.notes, *notes))
 
 
 def _place(path: Path, entry: Entry) -> str:

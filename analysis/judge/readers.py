@@ -17,13 +17,11 @@ from ..record_file import read_record
 from .meshes import MESHES, read_mesh
 from .packed import of_npz, of_pc2
 from .pvd import of_pvd
-from .sequence import numbered, of_files
+from .sequence import OBSTACLES, no_frames, numbered, of_files
 from .times import increasing
 from .trajectory import Topology, Trajectory, has_cells, no_cells
 
 # --- folders
-
-OBSTACLES = "obstacles"  # the name of their mesh, whatever its format (frames_out)
 
 
 def of_folder(folder: Path) -> Trajectory:
@@ -32,9 +30,11 @@ def of_folder(folder: Path) -> Trajectory:
     """
     files = [p for p in sorted(folder.iterdir()) if p.suffix.lower() in (*MESHES, ".pc2", ".pvd")]
     frames = [p for p in files if p.stem != OBSTACLES or p.suffix.lower() not in MESHES] or files
-    notes = tuple(f"{p.name} is no frame: obstacles are given by --about" for p in files if p not in frames)
     found = _of_frames(folder, frames)
-    return replace(found, notes=found.notes + notes)
+    notes = [
+        note for note in no_frames([p.name for p in files if p not in frames]) if note not in found.notes
+    ]
+    return replace(found, notes=(*found.notes, *notes))
 
 
 def _of_frames(folder: Path, files: list[Path]) -> Trajectory:

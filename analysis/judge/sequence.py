@@ -15,6 +15,13 @@ from ..errors import UserError
 from .meshes import read_mesh, same_topology
 from .trajectory import Topology, Trajectory
 
+OBSTACLES = "obstacles"  # how the mesh of analytic obstacles beside frames is called (frames_out)
+
+
+def no_frames(names: list[str]) -> tuple[str, ...]:
+    """Notes on meshes of obstacles, which are coarser than what they stand for."""
+    return tuple(f"{name} is no frame: obstacles are given by --about" for name in sorted(set(names)))
+
 
 def numbered(paths: list[Path]) -> list[Path]:
     """In the order of the last number in their names. Errors: UserError for two with one number, and for a

@@ -186,9 +186,11 @@ def test_a_file_that_the_record_does_not_name_is_none_of_the_run(folder):
 def test_fields_that_changed_their_meaning_are_those_between_two_versions():
     said = set(other_meanings("3.4.0", "3.5.0"))
     assert {"comparability.verdict", "trace contraction"} <= said and said == set(other_meanings("3.5.0", "3.4.0"))
+    pairs, ends = set(other_meanings("3.5.2", "3.6.0")), set(other_meanings("3.6.0", "3.7.0"))
+    assert {"summary.contacts", "trace contacts"} <= pairs and ends == {"steps[].end_error_m", "steps[].end_error_tolerances", "summary.end_error_tolerances"}
     later = set(other_meanings("3.5.2"))
-    assert {"summary.contacts", "trace contacts"} <= later and not said & later and set(other_meanings("3.4.0")) == said | later
-    assert not other_meanings("3.6.0", "3.99.0") and not other_meanings("3.3.0", "3.4.0") and set(other_meanings("3.3.0")) == said | later
+    assert later == pairs | ends and not said & later and set(other_meanings("3.4.0")) == said | later
+    assert not other_meanings("3.7.0", "3.99.0") and not other_meanings("3.3.0", "3.4.0") and set(other_meanings("3.3.0")) == said | later
     assert "smallest gap" in CHANGED["comparability.verdict"]["before"]
 
 

@@ -1,9 +1,13 @@
 """`bench judge`: parts of one time, folders of PC2, times, numbers beyond double, faults of files by file and place."""
 
+import subprocess
+from pathlib import Path
+
 import meshio
 import numpy as np
 import pytest
 
+from analysis.frames_out.verb import main as write_frames
 from analysis.judge import verb
 from tests.judge.test_judge_verb import CLEAN, INTO, about, judge, write_obj, written
 
@@ -33,6 +37,17 @@ def test_parts_of_one_time_are_one_frame(program, tmp_path, order):
         assert record["total"]["frames"] == 2 and record["total"]["vertices"] == 6 and record["trajectory"]["times_s"] == [0, 1]
         row = record["findings"][0]
         assert row["frame"] == "f_1_0.vtu and 1 more" and "part 0" in row["pair"] and "part 1" in row["pair"]
+
+
+@pytest.mark.parametrize("kind", ["obj", "ply", "vtu", "pc2"])
+def test_what_bench_frames_writes_is_judged(program, tmp_path, kind):
+    run, out = tmp_path / "run", tmp_path / "frames"
+    stack = Path(__file__).parents[2] / "configs/scenes/stack.json"
+    words = ["run", stack, "--out", run, "--set", "/time/steps=4", "--set", "/output/frames_every=1", "--progress", "none"]
+    subprocess.run([program, *map(str, words)], check=True, capture_output=True)
+    assert write_frames([str(run), str(out), "--format", kind]) == 0
+    code, record = judge(tmp_path, out)
+    assert code == 0 and record["total"]["frames"] == 5 and record["total"]["triangles"] == 4
 
 
 @pytest.mark.parametrize("kind", ["obj", "ply", "vtu"])
