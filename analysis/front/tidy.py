@@ -13,7 +13,7 @@ from .sources import sources
 
 TIDIED = ("core/", "barriers/", "experiments/")
 OF_GCC = re.compile(
-    r" -include [^ ]*cmake_pch\.hxx| -fpch-preprocess| -Winvalid-pch"
+    r" -include [^ ]*cmake_pch\.hxx| -fpch-preprocess| -Winvalid-pch| --param=ggc-[^ ]*"
 )  # these mean nothing to clang
 
 

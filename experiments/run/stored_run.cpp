@@ -12,6 +12,7 @@ namespace {
 
 std::vector<std::string> hashes(const std::vector<PluginFile>& plugins) {
   std::vector<std::string> out;
+  out.reserve(plugins.size());
   for (const PluginFile& plugin : plugins) out.push_back(plugin.sha256);
   std::sort(out.begin(), out.end());
   return out;
@@ -97,7 +98,7 @@ std::string why_run_again(const RunRecord& then, const RunRecord& now) {
 }
 
 std::string why_run_again(const StoredRun& then, const RunRecord& now) {
-  const std::string why = why_run_again(then.record, now);
+  std::string why = why_run_again(then.record, now);
   if (!why.empty()) return why;
   if (const auto fault = trace_fault(then)) return fault->what();
   for (const Artifact& file : then.record.artifacts) {
