@@ -244,7 +244,7 @@ void Simulation::remember(const PositionsView& x, double dt_used) {
 // that while it is held; what it is let go with is the velocity of its motion. First order has that of the step.
 void Simulation::follow_pins(double t_end, double dt) {
   const Integrator& integrator = *method_.integrator;
-  if (integrator.one_step() && !integrator.needs_acceleration()) return;
+  if (!held_.changes() || (integrator.one_step() && !integrator.needs_acceleration())) return;
   for (const Pin& pin : held_.now().pins) {
     v_next_.col(pin.vertex) = pin_velocity(scene_, pin, t_end, dt);
     if (integrator.needs_acceleration()) a_next_.col(pin.vertex).setZero();
