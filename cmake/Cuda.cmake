@@ -116,6 +116,8 @@ else()
     set(CMAKE_CUDA_STANDARD 20)
     set(CMAKE_CUDA_STANDARD_REQUIRED ON)
     set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
+    # Of the host compiler alone, and behind every -Xcompiler: nvcc makes device code at its highest level by itself.
+    set(CMAKE_CUDA_FLAGS_RELEASE "")
     # No contraction on either side: host and device give the same bits. Eigen's defaulted members raise 20012, which is
     # harmless; a host function called on the device is an error.
     set(BB_DEVICE_FLAGS $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012 --fmad=false

@@ -11,6 +11,20 @@ sys.path.insert(0, str(ROOT))
 sys.path.insert(0, str(ROOT / "tests" / "analysis"))
 
 
+def _name_the_blas_kernel() -> None:
+    """The kernel for which the program would start itself again (core/linear/blas_kernel.cpp), where the processor has it: so each of the
+    thousands of starts in these tests is one. What the program does without is the subject of tests/experiments/test_blas_kernel.py.
+    """
+    cpuinfo = Path("/proc/cpuinfo")
+    flags = cpuinfo.read_text().split() if cpuinfo.exists() else []
+    if "avx2" in flags and "fma" in flags:
+        os.environ.setdefault("OPENBLAS_CORETYPE", "Haswell")
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+_name_the_blas_kernel()
+
+
 @pytest.fixture(scope="session")
 def program() -> str:
     """Path of the program; the test is skipped when it was not built."""

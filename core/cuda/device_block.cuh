@@ -53,6 +53,18 @@ struct DeviceBlock {
     f(static_cast<int>(threadIdx.x));
     __syncthreads();
   }
+  template <class F>
+  __device__ void threads(int n, const F& f) const {
+    const int t = static_cast<int>(threadIdx.x);
+    if (t < n) f(t);
+    __syncthreads();
+  }
+  __device__ int busy(int) const { return block_threads; }
+  template <class F>
+  __device__ void once(const F& f) const {
+    if (threadIdx.x == 0) f();
+    __syncthreads();
+  }
   template <int W, class F>
   __device__ void tiles(const F& f) const {
     const DeviceTile<W> tile;

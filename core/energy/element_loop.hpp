@@ -43,6 +43,22 @@ void store_terms(const ElementTerms<T, N>& terms, std::size_t e, PassParts parts
   }
 }
 
+/// Of elements first to first + n - 1, n of the L lanes.
+template <class T, int L, int W>
+void store_abreast(const TermsAbreast<T, L, W>& terms, std::size_t first, std::size_t n, PassParts parts,
+                   LocalTerms& out) {
+  constexpr std::size_t numbers = n_lower_numbers(W), size = 3 * W;
+  for (std::size_t lane = 0; lane < n; ++lane) {
+    const std::size_t e = first + lane;
+    if (parts.values) {
+      out.energy[e] = terms.energy[lane];
+      for (std::size_t k = 0; k < size; ++k) out.grad[size * e + k] = terms.grad[k][lane];
+    }
+    if (!parts.hessians) continue;
+    for (std::size_t k = 0; k < numbers; ++k) out.hess[numbers * e + k] = terms.hess[k][lane];
+  }
+}
+
 /// terms.operator()<T>(e), the ElementTerms of element e in the scalar T, of n elements: each part in the scalar that
 /// the precision has for it.
 template <class Terms>

@@ -6,11 +6,10 @@
 
 namespace bb {
 
-#define BB_ELEMENT_TERMS(T)                                                                   \
-  template ElementTerms<T, 12> hinge_terms<T>(const Vec<T, 3>(&)[4], T, T, Projection);       \
-  template ElementTerms<T, 12> hinge_terms<T>(const Vec<T, 3>(&)[4], T, T, T, T, Projection); \
-  template ElementTerms<T, 9> rod_bend_terms<T>(const Vec<T, 3>(&)[3], T, T, Projection);     \
-  template ElementTerms<T, 6> spring_terms<T>(const Vec<T, 3>(&)[2], T, T, Projection);       \
+#define BB_ELEMENT_TERMS(T)                                                                                 \
+  template ElementTerms<T, 12> hinge_terms_of<T>(const Vec<T, 3>(&)[4], const HingeEnergy<T>&, Projection); \
+  template ElementTerms<T, 9> rod_bend_terms<T>(const Vec<T, 3>(&)[3], T, T, Projection);                   \
+  template ElementTerms<T, 6> spring_terms<T>(const Vec<T, 3>(&)[2], T, T, Projection);                     \
   template ElementTerms<T, 6> cloth_spring_terms<T>(const Vec<T, 3>(&)[2], T, const SpringLaw<T>&, Projection)
 BB_ELEMENT_TERMS(float);
 BB_ELEMENT_TERMS(double);

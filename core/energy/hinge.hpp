@@ -119,19 +119,27 @@ BB_HD Vec<T, 9> edge_stretch(const Vec<T, 3> (&x)[4], const Mat<T, 4, 3>& basis)
   return out;
 }
 
-/// Energy (J) k/2 (theta - theta0)^2, k in J, angles in rad, the difference taken in (-pi,
-/// pi]. Host-device: yes.
+/// Energy w(theta) of a hinge: w (J), w'' (J) and w'/w'' (rad), which is theta - theta0 where the energy is quadratic.
 template <class T>
-BB_HD T hinge_value(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle) {
+struct HingeEnergy {
+  T energy, stiffness, deviation;
+};
+
+/// k/2 (theta - theta0)^2, k in J, angles in rad, the difference taken in (-pi, pi]. Host-device: yes.
+template <class T>
+BB_HD HingeEnergy<T> hinge_energy(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle) {
   const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
-  return stiffness / T(2) * deviation * deviation;
+  return {stiffness / T(2) * deviation * deviation, stiffness, deviation};
 }
 
 /// The same with a stiffness that grows (stiffening.hpp): `exponential` J at rest, `exponent` 1/rad.
 template <class T>
-BB_HD T hinge_value(const Vec<T, 3> (&x)[4], T stiffness, T exponential, T exponent, T rest_angle) {
-  return stiffened<T>(hinge_deviation<T>(hinge_angle<T>(x), rest_angle), stiffness, exponential, exponent)
-      .energy;
+BB_HD HingeEnergy<T> hinge_energy(const Vec<T, 3> (&x)[4], T stiffness, T exponential, T exponent,
+                                  T rest_angle) {
+  if (!(exponential > T(0))) return hinge_energy<T>(x, stiffness, rest_angle);  // k u/k is not always u
+  const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
+  const Stiffened<T> w = stiffened<T>(deviation, stiffness, exponential, exponent);
+  return {w.energy, w.curvature, w.slope / w.curvature};
 }
 
 /// The rest angle of a hinge after it has crept at x, rad. Host-device: yes.
@@ -142,17 +150,20 @@ BB_HD T crept_rest_angle(const Vec<T, 3> (&x)[4], T rest_angle, T yield, T kept)
   return left != turned && left - left == T(0) ? rest_angle + (turned - left) : rest_angle;
 }
 
-/// Terms of a hinge whose energy w(theta) has been taken: `energy` w, `stiffness` w'' > 0 or 0, `deviation` w'/w''. Lanes: yes.
+/// Terms of a hinge whose energy has been taken: gradient and Hessian k (grad theta grad theta^T + w'/w'' grad^2 theta), k = w''.
+/// Projections are those of the 12 x 12 matrix, done on the 8 x 8 matrix left when its null vectors, three translations
+/// and the stretch along the edge, are split off. Not finite when a triangle has no area. Host-device: yes. Lanes: yes.
 template <class T>
-BB_HD ElementTerms<T, 12> hinge_terms_of(const Vec<T, 3> (&x)[4], T energy, T stiffness, T deviation,
+BB_HD ElementTerms<T, 12> hinge_terms_of(const Vec<T, 3> (&x)[4], const HingeEnergy<T>& of,
                                          Projection projection) {
+  const T stiffness = of.stiffness, deviation = of.deviation;
   const HingeAngleTerms<T> angle = hinge_angle_terms<T>(x);
   const Mat<T, 9, 9> reduced = stiffness * (angle.grad * angle.grad.transpose() + deviation * angle.hess);
   Mat<T, 4, 3> difference;  // (e, a, b) = difference^T (e0, e1, v0, v1)
   difference << T(-1), T(-1), T(-1), T(1), T(0), T(0), T(0), T(1), T(0), T(0), T(0), T(1);
 
   ElementTerms<T, 12> out;
-  out.energy = energy;
+  out.energy = of.energy;
   for (int i = 0; i < 4; ++i) {
     out.grad.template segment<3>(3 * i) = stiffness * deviation *
                                           (difference(i, 0) * angle.grad.template segment<3>(0) +
@@ -174,43 +185,18 @@ BB_HD ElementTerms<T, 12> hinge_terms_of(const Vec<T, 3> (&x)[4], T energy, T st
   return out;
 }
 
-/// hinge_terms of a deviation theta - theta0 that is known. Lanes: yes.
-template <class T>
-BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T deviation,
-                                         Projection projection) {
-  return hinge_terms_of<T>(x, stiffness / T(2) * deviation * deviation, stiffness, deviation, projection);
-}
-
-/// Energy, gradient and Hessian k (grad theta grad theta^T + (theta - theta0) grad^2 theta). Projections are
-/// those of the 12 x 12 matrix, done on the 8 x 8 matrix left when its null vectors, three translations
-/// and the stretch along the edge, are split off. Not finite when a triangle has no area. Host-device: yes.
-template <class T>
-BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle,
-                                      Projection projection) {
-  const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
-  return hinge_terms_at<T>(x, stiffness, deviation, projection);
-}
-
-/// The same with a stiffness that grows (stiffening.hpp): `exponential` J at rest, `exponent` 1/rad.
-template <class T>
-BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T exponential, T exponent,
-                                      T rest_angle, Projection projection) {
-  const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
-  const Stiffened<T> w = stiffened<T>(deviation, stiffness, exponential, exponent);
-  const T ratio = exponential > T(0) ? w.slope / w.curvature : deviation;  // k u/k is not always u
-  return hinge_terms_of<T>(x, w.energy, w.curvature, ratio, projection);
+/// Energy, gradient and Hessian of a hinge; `of` as hinge_energy() takes it behind x: {stiffness, rest_angle}, or with what grows.
+template <class T, class... Of>
+BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], Projection projection, Of... of) {
+  return hinge_terms_of<T>(x, hinge_energy<T>(x, of...), projection);
 }
 
 // Compiled once for these scalars, in element_terms.cpp: kernels that call it are in headers of many files.
 #ifndef __CUDACC__
-extern template ElementTerms<float, 12> hinge_terms<float>(const Vec<float, 3> (&)[4], float, float,
-                                                           Projection);
-extern template ElementTerms<float, 12> hinge_terms<float>(const Vec<float, 3> (&)[4], float, float, float,
-                                                           float, Projection);
-extern template ElementTerms<double, 12> hinge_terms<double>(const Vec<double, 3> (&)[4], double, double,
-                                                             Projection);
-extern template ElementTerms<double, 12> hinge_terms<double>(const Vec<double, 3> (&)[4], double, double,
-                                                             double, double, Projection);
+extern template ElementTerms<float, 12> hinge_terms_of<float>(const Vec<float, 3> (&)[4],
+                                                              const HingeEnergy<float>&, Projection);
+extern template ElementTerms<double, 12> hinge_terms_of<double>(const Vec<double, 3> (&)[4],
+                                                                const HingeEnergy<double>&, Projection);
 #endif
 
 }  // namespace bb

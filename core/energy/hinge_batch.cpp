@@ -2,50 +2,9 @@
 #include "core/energy/hinge_batch.hpp"
 
 #include "core/energy/element_loop.hpp"
-#include "core/energy/hinge.hpp"
-#include "core/math/lanes.hpp"
-#include "core/math/lower_blocks.hpp"
+#include "core/energy/hinge_lanes.hpp"
 
 namespace bb {
-
-namespace {
-
-// The projection's chain of square roots and divisions bounds a hinge: four run side by side.
-constexpr std::size_t kLanes = 4;
-
-template <class T>
-struct HingeGroup {
-  using Real = Lanes<T, kLanes>;
-  Vec<Real, 3> x[4];
-  Real energy, stiffness, deviation;
-
-  /// turned: by how much from rest. bent: what that costs.
-  void set(std::size_t lane, const Vec<T, 3> (&points)[4], T turned, const Stiffened<T>& bent, bool linear) {
-    for (int i = 0; i < 4; ++i) {
-      for (int c = 0; c < 3; ++c) x[i][c].v[lane] = points[i][c];
-    }
-    energy.v[lane] = bent.energy;
-    stiffness.v[lane] = bent.curvature;
-    deviation.v[lane] = linear || !(bent.curvature > T(0)) ? turned : bent.slope / bent.curvature;
-  }
-};
-
-template <class Real>
-void store(const ElementTerms<Real, 12>& terms, std::size_t first, std::size_t n, PassParts parts,
-           LocalTerms& out) {
-  for (std::size_t lane = 0; lane < n; ++lane) {
-    const std::size_t e = first + lane;
-    if (parts.values) {
-      out.energy[e] = terms.energy.v[lane];
-      for (std::size_t k = 0; k < 12; ++k) out.grad[12 * e + k] = terms.grad.data()[k].v[lane];
-    }
-    if (!parts.hessians) continue;
-    store_lower_blocks(4, terms.hess, &out.hess[n_lower_numbers(4) * e],
-                       [lane](const Real& entry) -> double { return entry.v[lane]; });
-  }
-}
-
-}  // namespace
 
 HingeBatch::HingeBatch(std::span<const std::array<int, 4>> hinges, std::vector<double> stiffness,
                        std::vector<double> rest_angle, Precision precision)
@@ -57,8 +16,7 @@ HingeBatch::HingeBatch(std::span<const std::array<int, 4>> hinges, std::vector<d
 
 void HingeBatch::values(const PositionsView& x, double* energy) const {
   const auto value = [&]<class T>(std::size_t e) {
-    const Points<4, T> p(x, vertices_, e);
-    return bent<T>(e, hinge_deviation<T>(hinge_angle<T>(p.x), static_cast<T>(rest_angle_[e]))).energy;
+    return energy_of<T>(Points<4, T>(x, vertices_, e).x, e).energy;
   };
   store_energies(size(), precision_, value, energy);
 }
@@ -70,26 +28,27 @@ void HingeBatch::derivatives(const PositionsView& x, Projection projection, Loca
 
 template <class T>
 void HingeBatch::fill(const PositionsView& x, Projection projection, PassParts parts, LocalTerms& out) const {
-  using Real = typename HingeGroup<T>::Real;
-  for_each_element((size() + kLanes - 1) / kLanes, [&](std::size_t g) {
-    const std::size_t first = kLanes * g, n = std::min(kLanes, size() - first);
-    HingeGroup<T> group;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  constexpr std::size_t lanes = hinge_lanes;
+  for_each_element((size() + lanes - 1) / lanes, [&](std::size_t g) {
+    const std::size_t first = lanes * g, n = std::min(lanes, size() - first);
+    HingesAbreast<T> hinges;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::size_t e = first + std::min(lane, n - 1);  // lanes beyond the end repeat the last hinge
       const Points<4, T> p(x, vertices_, e);
-      const T turned = hinge_deviation<T>(hinge_angle<T>(p.x), static_cast<T>(rest_angle_[e]));
-      group.set(lane, p.x, turned, bent<T>(e, turned), exponential_.empty());
+      hinges.set(static_cast<int>(lane), p.x, energy_of<T>(p.x, e));
     }
-    store<Real>(hinge_terms_of<Real>(group.x, group.energy, group.stiffness, group.deviation, projection),
-                first, n, parts, out);
+    TermsAbreast<T, hinge_lanes, 4> terms;
+    hinge_terms_abreast(hinges, projection, terms);
+    store_abreast(terms, first, n, parts, out);
   });
 }
 
 template <class T>
-Stiffened<T> HingeBatch::bent(std::size_t e, T deviation) const {
-  const T k = static_cast<T>(stiffness_[e]);
-  if (exponential_.empty()) return {k / T(2) * deviation * deviation, k * deviation, k};
-  return stiffened<T>(deviation, k, static_cast<T>(exponential_[e]), static_cast<T>(exponent_[e]));
+HingeEnergy<T> HingeBatch::energy_of(const Vec<T, 3> (&p)[4], std::size_t e) const {
+  const T stiffness = static_cast<T>(stiffness_[e]), rest_angle = static_cast<T>(rest_angle_[e]);
+  if (exponential_.empty()) return hinge_energy<T>(p, stiffness, rest_angle);
+  return hinge_energy<T>(p, stiffness, static_cast<T>(exponential_[e]), static_cast<T>(exponent_[e]),
+                         rest_angle);
 }
 
 void HingeBatch::set_stiffening(std::vector<double> exponential, std::vector<double> exponent) {

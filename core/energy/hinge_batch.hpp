@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/energy/element_batch.hpp"
-#include "core/energy/stiffening.hpp"
+#include "core/energy/hinge.hpp"
 #include "core/math/precision.hpp"
 
 namespace bb {
@@ -31,9 +31,8 @@ class HingeBatch final : public EnergyBatch {
   void flow(const PositionsView& x, double dt, std::span<double> memory) const override;
 
  private:
-  /// Of hinge e that has turned by `deviation` from rest.
   template <class T>
-  Stiffened<T> bent(std::size_t e, T deviation) const;
+  HingeEnergy<T> energy_of(const Vec<T, 3> (&p)[4], std::size_t e) const;
   template <class T>
   void fill(const PositionsView& x, Projection projection, PassParts parts, LocalTerms& out) const;
 

@@ -1,6 +1,7 @@
 // What every element energy returns.
 #pragma once
 
+#include "core/math/lower_blocks.hpp"
 #include "core/math/projection.hpp"
 #include "core/math/types.hpp"
 
@@ -22,6 +23,14 @@ struct ElementTerms {
   T energy;           // J
   Vec<T, N> grad;     // N
   Mat<T, N, N> hess;  // N/m, symmetric bit for bit
+};
+
+/// Terms of L elements of W points, number by number: what a function on lanes hands over. Host only.
+template <class T, int L, int W>
+struct TermsAbreast {
+  T energy[L];
+  T grad[3 * W][L];
+  T hess[n_lower_numbers(W)][L];  // lower blocks
 };
 
 }  // namespace bb

@@ -26,16 +26,11 @@ void HostExecutor::launch(const KernelInfo& kernel, Index n, const void* f) {
 // On threads a launch of few items runs at once: one that is small costs less than to hand it out.
 void HostExecutor::run(const KernelInfo& kernel, Index n, const void* f) {
   if (order_ == Order::threads) {
-    static const std::vector<int> in_order = [] {
-      std::vector<int> out(block_threads);
-      std::iota(out.begin(), out.end(), 0);
-      return out;
-    }();
     const Index grain = kernel.blocks ? 1 : 256;
-    if (n <= grain) return kernel.run(f, nullptr, 0, n, in_order.data());
+    if (n <= grain) return kernel.run(f, nullptr, 0, n, nullptr);
     tbb::parallel_for(
         tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)),
-        [&](const auto& range) { kernel.run(f, nullptr, range.begin(), range.end(), in_order.data()); });
+        [&](const auto& range) { kernel.run(f, nullptr, range.begin(), range.end(), nullptr); });
     return;
   }
   std::vector<int> threads;

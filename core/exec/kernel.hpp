@@ -34,12 +34,12 @@ struct HostTile {
     for (int lane = 0; lane < W; ++lane) out.of[lane] = f(lane);
     return out;
   }
-  /// The sum over the lanes, in every lane: a butterfly, halves first.
+  /// The sum over the lanes, in every lane: a butterfly, halves first. All lanes add the same numbers in the same order, so
+  /// here one does.
   template <class T>
   T sum(LaneValues<T, W> values) const {
-    for (int distance = W / 2; distance > 0; distance /= 2) {
-      const LaneValues<T, W> before = values;
-      for (int lane = 0; lane < W; ++lane) values.of[lane] = before.of[lane] + before.of[lane ^ distance];
+    for (int half = W / 2; half > 0; half /= 2) {
+      for (int lane = 0; lane < half; ++lane) values.of[lane] = values.of[lane] + values.of[lane + half];
     }
     return values.of[0];
   }
@@ -52,30 +52,54 @@ struct HostTile {
 
 /// The threads of a block. Between two calls lies a barrier: what a call wrote to Shared, the next one reads.
 struct HostBlock {
-  const int* order;  // [256] in which threads run
+  const int* order;  // [256] in which threads run; null: 0, 1, ...
   /// f(thread) of all threads.
   template <class F>
   void threads(const F& f) const {
-    for (int i = 0; i < block_threads; ++i) f(order[i]);
+    threads(block_threads, f);
+  }
+  /// f(thread) of the first n threads.
+  template <class F>
+  void threads(int n, const F& f) const {
+    const int last = order ? block_threads : n;
+    for (int i = 0; i < last; ++i) {
+      const int t = order ? order[i] : i;
+      if (t < n) f(t);
+    }
+  }
+  /// How many threads to ask where those from n on have nothing to do and may be asked all the same: here n; on a device all,
+  /// since there they cost nothing and a constant saves registers.
+  int busy(int n) const { return n; }
+  /// f() in one thread.
+  template <class F>
+  void once(const F& f) const {
+    f();
   }
   /// f(tile, number of the tile) of all 256/W tiles.
   template <int W, class F>
   void tiles(const F& f) const {
     const HostTile<W> tile;
-    for (int i = 0; i < block_threads; ++i) {
-      if (order[i] < block_threads / W) f(tile, order[i]);
-    }
+    threads(block_threads / W, [&](int k) { f(tile, k); });
   }
 };
 
-/// a[0] = sum of a[0, n), n a power of two up to 256, a in shared memory: a tree, halves first.
+/// How many threads fold n numbers: the least power of two that is not below n, 256 at most.
+BB_HD inline int fold_width(Index n) {
+  int width = block_threads;
+  while (width / 2 >= n && width > 1) width /= 2;
+  return width;
+}
+
+/// a[0] = a[0] + ... + a[n - 1] with join(a, b) for +, n a power of two up to 256, a in shared memory: a tree, halves first.
+template <class Block, class T, class Join>
+BB_HD void fold(Block& block, T* a, int n, const Join& join) {
+  for (int half = n / 2; half > 0; half /= 2) {
+    block.threads(half, [=](int t) { a[t] = join(a[t], a[t + half]); });
+  }
+}
 template <class Block, class T>
 BB_HD void fold(Block& block, T* a, int n) {
-  for (int half = n / 2; half > 0; half /= 2) {
-    block.threads([=](int t) {
-      if (t < half) a[t] = a[t] + a[t + half];
-    });
-  }
+  fold(block, a, n, [](const T& x, const T& y) { return x + y; });
 }
 
 /// The bits of x >= 0, which compare as x does.

@@ -11,7 +11,7 @@
 namespace bb::exec {
 
 /// The items or blocks order[begin] to order[end - 1] (order null: begin to end - 1) of the kernel at f, on the calling
-/// thread; threads [256]: the order of threads within a block.
+/// thread; threads [256]: the order of threads within a block, null: 0, 1, ...
 using RunRange = void (*)(const void* f, const Index* order, Index begin, Index end, const int* threads);
 
 struct KernelInfo {
@@ -24,10 +24,22 @@ struct KernelInfo {
   std::string name() const;
 };
 
+/// A kernel over items may have a form for hosts that takes several at a time: `static constexpr int lanes`, and abreast(i),
+/// which leaves what items i to i + lanes - 1 leave, bit for bit. Where items are in an order the plain form runs.
+template <class F>
+concept HasLaneForm = requires(const F& f, Index i) {
+  f.abreast(i);
+};
+
 namespace detail {
 template <class F>
 void run_each(const void* f, const Index* order, Index begin, Index end, const int*) {
   const F& kernel = *static_cast<const F*>(f);
+  if constexpr (HasLaneForm<F>) {
+    if (!order) {
+      for (; begin + F::lanes <= end; begin += F::lanes) kernel.abreast(begin);
+    }
+  }
   for (Index i = begin; i < end; ++i) kernel(order ? order[i] : i);
 }
 template <class F>

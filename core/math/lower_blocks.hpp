@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "core/math/host_device.hpp"
+
 namespace bb {
 
 /// Blocks kept of a matrix on `width` points, and the numbers in them.
@@ -16,17 +18,23 @@ constexpr std::size_t lower_block(std::size_t width, std::size_t a, std::size_t 
   return b * (2 * width - b + 1) / 2 + (a - b);
 }
 
+/// f(row, column) of each of these numbers, in their order.
+template <class F>
+BB_HD void for_each_lower_number(int width, const F& f) {
+  for (int b = 0; b < width; ++b) {
+    for (int a = b; a < width; ++a) {
+      for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) f(3 * a + r, 3 * b + c);
+      }
+    }
+  }
+}
+
 /// The lower blocks of the 3 width x 3 width matrix m, entry by entry through `number`, written
 /// to blocks [n_lower_numbers(width)].
 template <class Matrix, class Number = std::identity>
 void store_lower_blocks(int width, const Matrix& m, double* blocks, const Number& number = {}) {
-  for (int b = 0; b < width; ++b) {
-    for (int a = b; a < width; ++a) {
-      for (int c = 0; c < 3; ++c) {
-        for (int r = 0; r < 3; ++r) *blocks++ = number(m(3 * a + r, 3 * b + c));
-      }
-    }
-  }
+  for_each_lower_number(width, [&](int row, int column) { *blocks++ = number(m(row, column)); });
 }
 
 }  // namespace bb

@@ -140,6 +140,59 @@ void put_finished_in_place(const std::filesystem::path& folder, Checkpoint& chec
   put_in_place(folder);
 }
 
+/// simulate(); where memory or a device fails before the first step, the record says so. Interrupted: nothing of this run is left
+/// but what it can go on from.
+void simulate_or_say(const RunConfig& config, const Scene& scene, const RunOptions& options,
+                     Checkpoint& checkpoint, Resumed* resumed, RunRecord& record, RunFiles& files) {
+  try {
+    simulate(config, scene, options, checkpoint, resumed, record, files);
+  } catch (const std::bad_alloc&) {  // of a step: see Pass
+    record.status.outcome = Outcome::oom;
+    record.status.detail = "memory ran out before the first step";
+  } catch (const exec::OutOfMemory& error) {
+    record.status.outcome = Outcome::oom;
+    record.status.detail = fmt::format("before the first step of a pass: {}", error.what());
+  } catch (const exec::ExecutionError& error) {
+    record.status.outcome = Outcome::kernel_failed;
+    record.status.detail = fmt::format("before the first step of a pass: {}", error.what());
+  } catch (const Interrupted&) {
+    if (checkpoint.exists()) throw Interrupted{goes_on_text(checkpoint)};
+    files.leave_nothing();
+    remove_unfinished(options.folder);
+    throw;
+  }
+}
+
+/// What a record says of a whole run, once its last step is over.
+void complete(const RunConfig& config, const RunOptions& options, const RunFiles& files, RunRecord& record) {
+  record.artifacts = files.written();  // also where memory ran out beside a step
+  fill_labels(config, options, record);
+  record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
+  record.status.ended_utc = utc_now();
+  record.summary.peak_rss_bytes = peak_rss_bytes();
+}
+
+/// The record and its files take the place of what is in the folder, unless that says more than they do. Errors: EarlierStays,
+/// DeviceStopped.
+void put_record(const RunConfig& config, const RunOptions& options, bool resumed, Checkpoint& checkpoint,
+                RunRecord& record, RunFiles& files) {
+  const bool device_stopped = can_lose_device(config) && stops_device(record.status.outcome);
+  // A resumed run that has made a step of its pass is beyond what is kept; one that was stopped before has nothing yet.
+  const bool beyond = resumed && !record.steps.empty();
+  if (const std::string why = beyond ? "" : why_earlier_stays(record, options); !why.empty()) {
+    const std::string told = checkpoint.exists() ? why + "; " + goes_on_text(checkpoint) : why;
+    if (device_stopped) throw DeviceStopped(record.status.outcome, record.status.detail + "\n" + told);
+    throw EarlierStays(told);
+  }
+  files.close();
+  write_atomically(pending_record(options.folder), to_json(record));
+  if (!was_cut(record.status.outcome)) checkpoint.remove();
+  put_in_place(options.folder);
+  if (device_stopped) {
+    throw DeviceStopped(record.status.outcome, stopped_text(record, options, checkpoint));
+  }
+}
+
 }  // namespace
 
 std::string run_label(const RunConfig& config) {
@@ -196,43 +249,9 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   record.validity.build = options.build;
 
   RunFiles files;
-  try {
-    simulate(config, scene, options, checkpoint, resumed ? &*resumed : nullptr, record, files);
-  } catch (const std::bad_alloc&) {  // of a step: see Pass
-    record.status.outcome = Outcome::oom;
-    record.status.detail = "memory ran out before the first step";
-  } catch (const exec::OutOfMemory& error) {
-    record.status.outcome = Outcome::oom;
-    record.status.detail = fmt::format("before the first step of a pass: {}", error.what());
-  } catch (const exec::ExecutionError& error) {
-    record.status.outcome = Outcome::kernel_failed;
-    record.status.detail = fmt::format("before the first step of a pass: {}", error.what());
-  } catch (const Interrupted&) {
-    if (checkpoint.exists()) throw Interrupted{goes_on_text(checkpoint)};
-    files.leave_nothing();
-    remove_unfinished(options.folder);
-    throw;
-  }
-  record.artifacts = files.written();  // also where memory ran out beside a step
-  fill_labels(config, options, record);
-  record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
-  record.status.ended_utc = utc_now();
-  record.summary.peak_rss_bytes = peak_rss_bytes();
-  const bool device_stopped = can_lose_device(config) && stops_device(record.status.outcome);
-  // A resumed run that has made a step of its pass is beyond what is kept; one that was stopped before has nothing yet.
-  const bool beyond = resumed && !record.steps.empty();
-  if (const std::string why = beyond ? "" : why_earlier_stays(record, options); !why.empty()) {
-    const std::string told = checkpoint.exists() ? why + "; " + goes_on_text(checkpoint) : why;
-    if (device_stopped) throw DeviceStopped(record.status.outcome, record.status.detail + "\n" + told);
-    throw EarlierStays(told);
-  }
-  files.close();
-  write_atomically(pending_record(options.folder), to_json(record));
-  if (!was_cut(record.status.outcome)) checkpoint.remove();
-  put_in_place(options.folder);
-  if (device_stopped) {
-    throw DeviceStopped(record.status.outcome, stopped_text(record, options, checkpoint));
-  }
+  simulate_or_say(config, scene, options, checkpoint, resumed ? &*resumed : nullptr, record, files);
+  complete(config, options, files, record);
+  put_record(config, options, resumed.has_value(), checkpoint, record, files);
   return record;
 }
 

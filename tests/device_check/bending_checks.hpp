@@ -25,7 +25,7 @@ struct Hinge : Columns<T> {
     Vec<T, 3> x[4];
     for (Vec<T, 3>& p : x) p = slots.template read<Vec<T, 3>>();
     const T stiffness = slots.scalar(), rest_angle = slots.scalar();
-    const ElementTerms<T, 12> terms = hinge_terms<T>(x, stiffness, rest_angle, Projection::psd);
+    const ElementTerms<T, 12> terms = hinge_terms<T>(x, Projection::psd, stiffness, rest_angle);
     slots.write(terms.energy), slots.write(terms.grad), slots.write(terms.hess);
   }
 };

@@ -157,7 +157,7 @@ TEST(HingeBatch, StoresTheElementTerms) {
     const auto [e0, e1, v0, v1] = hinges.strip.hinges[e];
     const Vec3d points[4] = {x.col(e0), x.col(e1), x.col(v0), x.col(v1)};
     const auto terms =
-        hinge_terms<double>(points, hinges.stiffness[e], hinges.rest_angle[e], Projection::psd);
+        hinge_terms<double>(points, Projection::psd, hinges.stiffness[e], hinges.rest_angle[e]);
     EXPECT_EQ(out.energy[e], terms.energy);
     const Eigen::Map<const Vec<double, 12>> grad(&out.grad[12 * e]);
     const Eigen::MatrixXd hess = stored_hessian(out, e, 4);

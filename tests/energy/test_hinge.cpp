@@ -81,17 +81,17 @@ TEST(Hinge, EnergyDerivativesAndProjection) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
     const Points<double, 4> p(c.x);
-    const auto exact = hinge_terms<double>(p.x, stiffness, c.rest_angle, Projection::none);
-    const auto psd = hinge_terms<double>(p.x, stiffness, c.rest_angle, Projection::psd);
+    const auto exact = hinge_terms<double>(p.x, Projection::none, stiffness, c.rest_angle);
+    const auto psd = hinge_terms<double>(p.x, Projection::psd, stiffness, c.rest_angle);
     const VecXl at = c.x.cast<Long>();
     const auto value = [&](const VecXl& x) {
-      return hinge_value<Long>(Points<Long, 4>(x).x, stiffness, c.rest_angle);
+      return hinge_energy<Long>(Points<Long, 4>(x).x, stiffness, c.rest_angle).energy;
     };
     const auto gradient = [&](const VecXl& x) {
-      return hinge_terms<Long>(Points<Long, 4>(x).x, stiffness, c.rest_angle, Projection::none).grad;
+      return hinge_terms<Long>(Points<Long, 4>(x).x, Projection::none, stiffness, c.rest_angle).grad;
     };
     const double scale = exact.hess.cwiseAbs().maxCoeff();
-    EXPECT_EQ(exact.energy, hinge_value<double>(p.x, stiffness, c.rest_angle));
+    EXPECT_EQ(exact.energy, hinge_energy<double>(p.x, stiffness, c.rest_angle).energy);
     if (c.angle == c.rest_angle) {
       EXPECT_LT(exact.grad.norm(), 1e-14);
     } else {
@@ -107,8 +107,8 @@ TEST(Hinge, EnergyDerivativesAndProjection) {
 
 TEST(Hinge, SomeStateIsIndefinite) {
   const Points<double, 4> p(cases[3].x);
-  const auto exact = hinge_terms<double>(p.x, stiffness, 0.1, Projection::none);
-  const auto psd = hinge_terms<double>(p.x, stiffness, 0.1, Projection::psd);
+  const auto exact = hinge_terms<double>(p.x, Projection::none, stiffness, 0.1);
+  const auto psd = hinge_terms<double>(p.x, Projection::psd, stiffness, 0.1);
   EXPECT_GT((exact.hess - psd.hess).norm(), 0.01);
 }
 
@@ -125,7 +125,7 @@ TEST(Hinge, NoForceOnTheWholeAndNoTorque) {
     if (c.angle == c.rest_angle) continue;
     SCOPED_TRACE(c.name);
     const auto terms =
-        hinge_terms<double>(Points<double, 4>(c.x).x, stiffness, c.rest_angle, Projection::psd);
+        hinge_terms<double>(Points<double, 4>(c.x).x, Projection::psd, stiffness, c.rest_angle);
     Vec3d force = Vec3d::Zero(), torque = Vec3d::Zero();
     for (int i = 0; i < 4; ++i) {
       force += terms.grad.segment<3>(3 * i);
@@ -143,9 +143,9 @@ TEST(Hinge, FloatAgreesWithDouble) {
     const Case& c = cases[i];
     SCOPED_TRACE(c.name);
     const auto exact =
-        hinge_terms<double>(Points<double, 4>(c.x).x, stiffness, c.rest_angle, Projection::psd);
+        hinge_terms<double>(Points<double, 4>(c.x).x, Projection::psd, stiffness, c.rest_angle);
     const auto single =
-        hinge_terms<float>(Points<float, 4>(c.x).x, float(stiffness), float(c.rest_angle), Projection::psd);
+        hinge_terms<float>(Points<float, 4>(c.x).x, Projection::psd, float(stiffness), float(c.rest_angle));
     const double scale = exact.hess.cwiseAbs().maxCoeff();
     EXPECT_NEAR(static_cast<double>(single.energy), exact.energy, 1e-5 * exact.energy);
     EXPECT_LT(relative_difference(single.grad.cast<double>(), exact.grad, scale), 1e-4);

@@ -30,9 +30,24 @@ struct BlockSums {
       tile.once([&] { shared.tile[k] = sum; });
     });
     exec::fold(block, shared.tile, 32);
-    block.threads([&](int t) {
-      if (t == 0) out[b] = shared.tile[0];
-    });
+    block.once([&] { out[b] = shared.tile[0]; });
+  }
+};
+
+/// The largest of the first 200 of 256 numbers: some of the threads, a fold by another sum.
+struct LargestOfSome {
+  static constexpr int some = 200;
+  struct Shared {
+    double most[exec::block_threads];
+  };
+  const double* in;
+  double* out;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
+    block.threads([&](int t) { shared.most[t] = -1e300; });
+    block.threads(some, [&](int t) { shared.most[t] = in[256 * b + t]; });
+    exec::fold(block, shared.most, exec::block_threads, [](double x, double y) { return y > x ? y : x; });
+    block.once([&] { out[b] = shared.most[0]; });
   }
 };
 

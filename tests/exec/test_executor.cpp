@@ -14,7 +14,7 @@
 namespace {
 
 using namespace bb::exec;
-using bb::sample::BlockSums, bb::sample::Square;
+using bb::sample::BlockSums, bb::sample::LargestOfSome, bb::sample::Square;
 
 constexpr Order all_orders[] = {Order::threads, Order::forward, Order::reverse, Order::shuffled};
 
@@ -38,6 +38,16 @@ struct MissingBarrier {
       shared.a[t] = t;
       out[256 * b + t] = shared.a[(t + 1) % 256];
     });
+  }
+};
+
+/// Tells which of its forms an item came from.
+struct OneOrFour {
+  static constexpr int lanes = 4;
+  double* out;
+  BB_HD void operator()(Index i) const { out[i] = static_cast<double>(2 * i); }
+  void abreast(Index i) const {
+    for (Index k = i; k < i + lanes; ++k) out[k] = static_cast<double>(2 * k + 1);
   }
 };
 
@@ -80,6 +90,40 @@ TEST(HostExecutor, GivesTheSameBitsInEveryOrder) {
   for (const Order order : all_orders) {
     EXPECT_EQ(result<Square>(order, 256 * 20), squares);
     EXPECT_EQ(result<BlockSums>(order, 20), sums);
+  }
+}
+
+TEST(HostExecutor, RunsSomeThreadsOfABlock) {
+  const std::vector<double> in = numbers(256 * 20);
+  for (const Order order : all_orders) {
+    const std::vector<double> most = result<LargestOfSome>(order, 20);
+    int beyond = 0;  // blocks whose largest number is of a thread that has nothing to do
+    for (std::size_t b = 0; b < 20; ++b) {
+      const auto begin = in.begin() + 256 * static_cast<long>(b);
+      EXPECT_EQ(most[b], *std::max_element(begin, begin + LargestOfSome::some));
+      beyond += *std::max_element(begin, begin + 256) > most[b] ? 1 : 0;
+    }
+    EXPECT_GT(beyond, 0);
+  }
+}
+
+TEST(HostExecutor, TakesItemsAbreastWhereTheyAreInNoOrder) {
+  constexpr Index n = 1030;
+  for (const Order order : all_orders) {
+    HostExecutor executor(order, 3);
+    Buffer<double> out(executor, "out", n);
+    out.fill_zero();
+    executor.each(n, OneOrFour{out.data()});
+    const std::vector<double> got = out.download();
+    Index abreast = 0;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      const auto k = static_cast<std::size_t>(got[i]);
+      ASSERT_EQ(k / 2, i);
+      abreast += static_cast<Index>(k % 2);
+    }
+    EXPECT_EQ(abreast % OneOrFour::lanes, 0);
+    EXPECT_EQ(abreast > 0, order == Order::threads);
+    EXPECT_TRUE(abreast == 0 || abreast > n / 2);
   }
 }
 

@@ -5,6 +5,7 @@
 
 EACH(bb::sample::Square)
 BLOCKS(bb::sample::BlockSums)
+BLOCKS(bb::sample::LargestOfSome)
 BLOCKS(bb::sample::TileSums<4>)
 BLOCKS(bb::sample::TileSums<32>)
 EACH(bb::sample::Atomics)

@@ -54,6 +54,12 @@ TEST(PtxExecutor, RunsBlocksAndTiles) {
     executor.blocks(20, BlockSums{in.data(), out.data()});
     return out.download();
   });
+  expect_same_bits([](Executor& executor) {
+    Buffer<double> in(executor, "in"), out(executor, "out", 20);
+    in.upload(numbers(20 * 256));
+    executor.blocks(20, LargestOfSome{in.data(), out.data()});
+    return out.download();
+  });
 }
 
 template <int W>

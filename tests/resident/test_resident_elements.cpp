@@ -169,18 +169,25 @@ TEST(ResidentElements, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
   const StepFrame frame = step_frame(scene);
   const Positions x = strained(scene), dx = wave(scene, 0.3);
   struct Found {
-    std::vector<double> matrix;
+    std::vector<double> matrix, some_clamped;
     Positions gradient;
     double change = 0, carry = 0, bound = 0;
     bool operator==(const Found&) const = default;
   };
+  std::vector<double> sizes(static_cast<std::size_t>(scene.n_vertices()),
+                            0);  // N: some vertices have a large force
+  for (std::size_t v = 0; v < sizes.size(); v += 7) sizes[v] = 1;
   const auto find = [&](exec::Executor& executor, exec::Index piece) {
+    exec::Buffer<double> force(executor, "force");
+    force.upload(sizes);
     OnExecutor resident(executor, scene, options, frame, piece);
     resident.linearise(x);
     Found out;
     out.gradient = resident.gradient();
     resident.fill(TermSet::all(), {Projection::none, 0.25, -1, nullptr});
     out.matrix = resident.matrix();
+    resident.fill(TermSet::all(), {Projection::none, 0, 0.5, force.data()});
+    out.some_clamped = resident.matrix();
     EXPECT_TRUE(resident.evaluate(x + 1e-3 * dx));
     const resident::Compensated change = resident.change();
     out.change = change.sum, out.carry = change.carry;
@@ -190,6 +197,7 @@ TEST(ResidentElements, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
   test::TestedExecutor first;
   const Found expected = find(first, resident::ElementMatrix::default_piece);
   EXPECT_NE(expected.change, 0);
+  EXPECT_NE(expected.matrix, expected.some_clamped);
   EXPECT_GT(expected.bound, 0);
   EXPECT_LT(expected.bound, 1);
   for (const auto& executor : all_orders()) EXPECT_TRUE(find(*executor, 1000) == expected);

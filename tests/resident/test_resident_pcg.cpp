@@ -81,10 +81,12 @@ TEST(ResidentPcg, TakesManyRowsABlock) {
   const ReducedSystem system = grid_system(m, 1, 1);
   const VecXd b = random_vector(system.lower.rows(), 3);
   VecXd x;
-  const LinearReport host = host_pcg(system, b, 1e-6, x);
-  const Solved got = solve(system, b, no_fixed(m * m), {.tolerance = 1e-6});
+  const double tolerance = 1e-2;  // as PTX every iteration costs a second
+  const LinearReport host = host_pcg(system, b, tolerance, x);
+  const Solved got = solve(system, b, no_fixed(m * m), {.tolerance = tolerance});
   ASSERT_EQ(got.report.status, LinearStatus::ok);
   EXPECT_EQ(got.report.iterations, host.iterations);
+  EXPECT_GT(got.report.iterations, 2);
   EXPECT_LT((got.x - x).norm(), 1e-9 * x.norm());
 }
 

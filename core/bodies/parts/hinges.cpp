@@ -95,8 +95,8 @@ class Hinges final : public Part {
           fields.has("exponential") ? static_cast<T>(fields.number("exponential", kNonNegative)) : T(0);
       const T a = fields.has("exponent") ? static_cast<T>(fields.number("exponent", kPositive)) : T(2);
       fields.finish();
-      return element_answer<T, 12>(hinge_terms<T>(x.x, k, q, a, angle, Projection::none),
-                                   hinge_terms<T>(x.x, k, q, a, angle, Projection::psd));
+      return element_answer<T, 12>(hinge_terms<T>(x.x, Projection::none, k, q, a, angle),
+                                   hinge_terms<T>(x.x, Projection::psd, k, q, a, angle));
     });
   }
 };

@@ -85,14 +85,8 @@ struct LargestCoordinate {
         most[t] = bits > most[t] ? bits : most[t];
       }
     });
-    for (int half = exec::block_threads / 2; half > 0; half /= 2) {
-      block.threads([=](int t) {
-        if (t < half) most[t] = most[t + half] > most[t] ? most[t + half] : most[t];
-      });
-    }
-    block.threads([=](int t) {
-      if (t == 0) exec::atomic_min(k.largest, ~most[0]);
-    });
+    exec::fold(block, most, exec::block_threads, [](Key x, Key y) { return y > x ? y : x; });
+    block.once([=] { exec::atomic_min(k.largest, ~most[0]); });
   }
 };
 

@@ -113,19 +113,15 @@ struct RankRows {
     });
     rank_block<true>(block, shared.rank, to, b, counts);
     exec::fold(block, shared.free, exec::block_threads);
-    for (int half = exec::block_threads / 2; half > 0; half /= 2) {
-      block.threads([&](int t) {
-        if (t < half && shared.least[t + half] < shared.least[t]) shared.least[t] = shared.least[t + half];
-      });
-    }
-    block.threads([&](int t) {
+    exec::fold(block, shared.least, exec::block_threads, LeastOf{});
+    block.once([&] {
       const int free = shared.free[0];
-      if (t != 0 || free == 0) return;
+      if (free == 0) return;
       exec::atomic_add(&numbers->slots, static_cast<Key>(free & 0xffff));
       exec::atomic_add(&numbers->contributions, static_cast<Key>(free >> 16));
     });
-    block.threads([&](int t) {
-      if (t == 0 && shared.least[0] != ~Key{0}) exec::atomic_min(&numbers->least_gap, shared.least[0]);
+    block.once([&] {
+      if (shared.least[0] != ~Key{0}) exec::atomic_min(&numbers->least_gap, shared.least[0]);
     });
   }
 

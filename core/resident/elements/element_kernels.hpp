@@ -3,7 +3,11 @@
 //   double value(const double* x, Index e)                                          J
 //   ElementTerms<double, 3 width> terms(const double* x, Index e, Projection)       J, N, N/m
 //   int vertex(int k, Index e)
+// and, where a host takes several abreast, with the bits of terms(),
+//   lanes, void terms_abreast(const double* x, Index first, Projection, TermsAbreast<double, lanes, width>& out)
 #pragma once
+
+#include <cstring>
 
 #include "core/energy/terms.hpp"
 #include "core/exec/kernel.hpp"
@@ -44,6 +48,16 @@ struct HessianRequest {
   const double* force = nullptr;  // [n_vertices] N, read where there is a threshold
 };
 
+/// How many a host takes abreast; 1: there is no such form.
+template <class Elements>
+constexpr int lanes_of() {
+  if constexpr (requires { Elements::lanes; }) {
+    return Elements::lanes;
+  } else {
+    return 1;
+  }
+}
+
 template <class Elements>
 struct ElementValues {
   Elements elements;
@@ -67,6 +81,15 @@ struct ElementGradients {
     energy[e] = terms.energy;
     for (int c = 0; c < size; ++c) grad[c * piece.n + i] = terms.grad[c];
   }
+  static constexpr int lanes = lanes_of<Elements>();
+  void abreast(Index i) const requires(lanes > 1) {
+    TermsAbreast<double, lanes, Elements::width> terms;
+    elements.terms_abreast(x, piece.begin + i, Projection::none, terms);
+    memcpy(energy + piece.begin + i, terms.energy, sizeof terms.energy);
+    for (int c = 0; c < 3 * Elements::width; ++c) {
+      memcpy(grad + c * piece.n + i, terms.grad[c], sizeof terms.grad[c]);
+    }
+  }
 };
 
 /// Item i: element piece.begin + i; its lower blocks (core/math/lower_blocks.hpp).
@@ -86,6 +109,25 @@ struct ElementHessians {
       store(elements.terms(x, e, projection).hess, i, pass == 0 ? 0 : request.t);
     }
   }
+  static constexpr int lanes = lanes_of<Elements>();
+  void abreast(Index i) const requires(lanes > 1) {
+    const Index e = piece.begin + i;
+    const bool clamp = has_large_force(e);
+    for (int lane = 1; lane < lanes; ++lane) {
+      if (has_large_force(e + lane) == clamp) continue;
+      for (int one = 0; one < lanes; ++one) (*this)(i + one);
+      return;
+    }
+    for (int pass = 0; pass < (request.t > 0 ? 2 : 1); ++pass) {
+      TermsAbreast<double, lanes, Elements::width> terms;
+      elements.terms_abreast(x, e, clamp || pass == 1 ? Projection::psd : request.first, terms);
+      double* out = hess + i;
+      for (const auto& number : terms.hess) {
+        for (int lane = 0; lane < lanes; ++lane) put(number[lane], pass == 0 ? 0 : request.t, out[lane]);
+        out += piece.n;
+      }
+    }
+  }
 
  private:
   static constexpr int size = 3 * Elements::width;
@@ -97,20 +139,16 @@ struct ElementHessians {
     }
     return large;
   }
-  /// t = 0: the numbers of m; else what is there brought to m by t.
+  /// t = 0: number; else what is there brought to it by t.
+  BB_HD static void put(double number, double t, double& there) {
+    there = t > 0 ? there + t * (number - there) : number;
+  }
   BB_HD void store(const Mat<double, size, size>& m, Index i, double t) const {
     double* out = hess + i;
-    for (int b = 0; b < Elements::width; ++b) {
-      for (int a = b; a < Elements::width; ++a) {
-        for (int c = 0; c < 3; ++c) {
-          for (int r = 0; r < 3; ++r) {
-            const double number = m(3 * a + r, 3 * b + c);
-            *out = t > 0 ? *out + t * (number - *out) : number;
-            out += piece.n;
-          }
-        }
-      }
-    }
+    for_each_lower_number(Elements::width, [&](int row, int column) {
+      put(m(row, column), t, *out);
+      out += piece.n;
+    });
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/energy/hinge.hpp"
+#include "core/energy/hinge_lanes.hpp"
 #include "core/energy/membrane_list.hpp"
 #include "core/energy/membrane_rest.hpp"
 #include "core/energy/rod_bend.hpp"
@@ -98,38 +99,52 @@ struct Springs : ElementVertices<2> {
   }
 };
 
-struct Hinges : ElementVertices<4> {
-  const double* stiffness;   // [n] J
-  const double* rest_angle;  // [n] rad
+/// Of: hinges with their constants, and energy(p, e) of one of them.
+template <class Of>
+struct HingeElements : Of {
   BB_HD double value(const double* x, Index e) const {
     Vec3d p[4];
-    points(x, e, p);
-    return hinge_value<double>(p, stiffness[e], rest_angle[e]);
+    this->points(x, e, p);
+    return this->energy(p, e).energy;
   }
   BB_HD ElementTerms<double, 12> terms(const double* x, Index e, Projection projection) const {
     Vec3d p[4];
-    points(x, e, p);
-    return hinge_terms<double>(p, stiffness[e], rest_angle[e], projection);
+    this->points(x, e, p);
+    return hinge_terms_of<double>(p, this->energy(p, e), projection);
+  }
+  static constexpr int lanes = hinge_lanes;
+  void terms_abreast(const double* x, Index first, Projection projection,
+                     TermsAbreast<double, lanes, 4>& out) const {
+    HingesAbreast<double> hinges;
+    for (int lane = 0; lane < lanes; ++lane) {
+      Vec3d p[4];
+      this->points(x, first + lane, p);
+      hinges.set(lane, p, this->energy(p, first + lane));
+    }
+    hinge_terms_abreast(hinges, projection, out);
   }
 };
 
+struct QuadraticHinges : ElementVertices<4> {
+  const double* stiffness;   // [n] J
+  const double* rest_angle;  // [n] rad
+  BB_HD HingeEnergy<double> energy(const Vec3d (&p)[4], Index e) const {
+    return hinge_energy<double>(p, stiffness[e], rest_angle[e]);
+  }
+};
+struct Hinges : HingeElements<QuadraticHinges> {};
+
 /// Those with a part that grows.
-struct StiffeningHinges : ElementVertices<4> {
+struct GrowingHinges : ElementVertices<4> {
   const double* stiffness;    // [n] J
   const double* rest_angle;   // [n] rad
   const double* exponential;  // [n] J, at rest
   const double* exponent;     // [n] 1/rad
-  BB_HD double value(const double* x, Index e) const {
-    Vec3d p[4];
-    points(x, e, p);
-    return hinge_value<double>(p, stiffness[e], exponential[e], exponent[e], rest_angle[e]);
-  }
-  BB_HD ElementTerms<double, 12> terms(const double* x, Index e, Projection projection) const {
-    Vec3d p[4];
-    points(x, e, p);
-    return hinge_terms<double>(p, stiffness[e], exponential[e], exponent[e], rest_angle[e], projection);
+  BB_HD HingeEnergy<double> energy(const Vec3d (&p)[4], Index e) const {
+    return hinge_energy<double>(p, stiffness[e], exponential[e], exponent[e], rest_angle[e]);
   }
 };
+struct StiffeningHinges : HingeElements<GrowingHinges> {};
 
 /// rest_angle [n] becomes what it is after a step of dt (s) that ended at x.
 struct FlowHinges {

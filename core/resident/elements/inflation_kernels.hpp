@@ -56,9 +56,7 @@ struct BodyCentres {
       for (int c = 0; c < 3; ++c) shared.sum[c][t] = sum[c];
     });
     for (int c = 0; c < 3; ++c) exec::fold(block, shared.sum[c], exec::block_threads);
-    block.threads([&](int t) {
-      if (t < 3) centre[3 * b + t] = shared.sum[t][0] / of.n;
-    });
+    block.threads(3, [&](int t) { centre[3 * b + t] = shared.sum[t][0] / of.n; });
   }
 };
 

@@ -46,24 +46,21 @@ BB_HD void precondition_rows(Block& block, VertexChunk& chunk, const Partition& 
                              const double* inverse, const NewR& new_r, double* z, double* partial_rz,
                              double* partial_rr) {
   const Index last = partition.last(b);
-  block.threads([&](int t) { chunk.rz[t] = chunk.rr[t] = 0; });
+  const int width = block.busy(partition.width(1));
+  block.threads(width, [&](int t) { chunk.rz[t] = chunk.rr[t] = 0; });
   for (Index base = partition.first(b); base < last; base += exec::block_threads) {
     const int count = static_cast<int>(last - base < exec::block_threads ? last - base : exec::block_threads);
     block.threads([&](int t) {
       for (int i = t; i < 3 * count; i += exec::block_threads) chunk.r[i] = new_r(3 * base + i);
     });
-    block.threads([&](int t) {
-      if (t < count) precondition_vertex(chunk, t, inverse, partition.n_rows, base + t);
-    });
+    block.threads(count, [&](int t) { precondition_vertex(chunk, t, inverse, partition.n_rows, base + t); });
     block.threads([&](int t) {
       for (int i = t; i < 3 * count; i += exec::block_threads) z[3 * base + i] = chunk.z[i];
     });
   }
-  fold(block, chunk.rz, exec::block_threads);
-  fold(block, chunk.rr, exec::block_threads);
-  block.threads([&](int t) {
-    if (t == 0) partial_rz[b] = chunk.rz[0], partial_rr[b] = chunk.rr[0];
-  });
+  fold(block, chunk.rz, width);
+  fold(block, chunk.rr, width);
+  block.once([&] { partial_rz[b] = chunk.rz[0], partial_rr[b] = chunk.rr[0]; });
 }
 
 /// z = M^-1 r; partial sums of r^T z and r^T r.
@@ -87,8 +84,8 @@ BB_HD bool step_length(Block& block, double* scratch, const double* partial_pq, 
   const double curvature = fold_partials(block, scratch, partial_pq, partition.n_blocks());
   alpha = scalars->state[k % 2].rz / curvature;
   const double kept = alpha;
-  block.threads([&](int t) {
-    if (b == 0 && t == 0) scalars->curvature = curvature, scalars->alpha[k] = kept;
+  block.once([&] {
+    if (b == 0) scalars->curvature = curvature, scalars->alpha[k] = kept;
   });
   return gives_step(curvature);
 }

@@ -60,17 +60,17 @@ struct FactorizeClusters {
   BB_HD static FactorStatus factorize(Block& block, Shared& s, int m, int& column) {
     double largest = 0;
     for (int i = 0; i < m; ++i) largest = largest < s.a[i * stride + i] ? s.a[i * stride + i] : largest;
-    block.threads([](int) {});  // all have read the diagonal
+    block.threads(0, [](int) {});  // all have read the diagonal
     for (column = 0; column < m; ++column) {
       const int k = column;
       const double pivot = s.a[k * stride + k];
       const FactorStatus status = judge(pivot, largest);
       if (status != FactorStatus::ok) return status;
-      block.threads([](int) {});  // all have read the pivot
+      block.threads(0, [](int) {});  // all have read the pivot
       const double root = std::sqrt(pivot);
-      block.threads([&](int t) {
+      block.threads(m, [&](int t) {
         if (t == k) s.a[k * stride + k] = root;
-        if (t > k && t < m) s.a[k * stride + t] /= root;
+        if (t > k) s.a[k * stride + t] /= root;
       });
       block.threads([&](int t) {
         const int rest = m - k - 1;
@@ -99,11 +99,9 @@ struct FactorizeClusters {
     block.threads([&](int t) {
       for (int i = t; i < ClusterLevel::most_rows * stride; i += exec::block_threads) s.a[i] = 0;
     });
-    block.threads([&](int t) {
-      if (t < 3 * m) fill(s.a, cluster, t / 9, t % 9);
-    });
-    block.threads([&](int t) {
-      if (t < m && is_fixed(level.fixed[level.member[level.start[cluster] + t / 3]], t % 3)) {
+    block.threads(3 * m, [&](int t) { fill(s.a, cluster, t / 9, t % 9); });
+    block.threads(m, [&](int t) {
+      if (is_fixed(level.fixed[level.member[level.start[cluster] + t / 3]], t % 3)) {
         s.a[t * stride + t] = 1;
       }
     });
@@ -111,14 +109,10 @@ struct FactorizeClusters {
     const FactorStatus status = factorize(block, s, m, column);
     if (status != FactorStatus::ok) {
       const int node = level.member[level.start[cluster] + column / 3];
-      block.threads([&](int t) {
-        if (t == 0) report_fault(faults, status, level_fault(number, node));
-      });
+      block.once([&] { report_fault(faults, status, level_fault(number, node)); });
       return;
     }
-    block.threads([&](int t) {
-      if (t < m) invert_column(s.a, t, m);
-    });
+    block.threads(m, [&](int t) { invert_column(s.a, t, m); });
     block.threads([&](int t) {
       double* out = level.factor + level.offset[cluster];
       for (int e = t; e < m * m; e += exec::block_threads) {

@@ -9,17 +9,15 @@ namespace bb::resident {
 /// scratch: [256] in shared memory, free afterwards.
 template <class Block>
 BB_HD double fold_partials(Block& block, double* scratch, const double* partial, Index n) {
-  int width = exec::block_threads;
-  while (width / 2 >= n && width > 1) width /= 2;
-  block.threads([=](int t) {
-    if (t >= width) return;
+  const int width = exec::fold_width(n);
+  block.threads(width, [=](int t) {
     double sum = 0;
     for (Index i = t; i < n; i += width) sum += partial[i];
     scratch[t] = sum;
   });
   fold(block, scratch, width);
   const double total = scratch[0];
-  block.threads([](int) {});  // all have read it
+  block.threads(0, [](int) {});  // all have read it
   return total;
 }
 

@@ -40,9 +40,7 @@ struct MultiplyDot {
   BB_HD void operator()(Block& block, Shared& shared, Index b) const {
     if (state && !state->running()) return;
     const Index first = partition.first(b), last = partition.last(b);
-    block.threads([&](int t) {
-      if (t < rows) shared.dot[t] = 0;
-    });
+    block.threads(rows, [&](int t) { shared.dot[t] = 0; });
     for (Index base = first; base < last; base += rows) {
       block.template tiles<lanes>([&](auto& tile, int k) {
         const Index row = base + k;
@@ -61,9 +59,7 @@ struct MultiplyDot {
       });
     }
     fold(block, shared.dot, rows);
-    block.threads([&](int t) {
-      if (t == 0) partial[b] = shared.dot[0];
-    });
+    block.once([&] { partial[b] = shared.dot[0]; });
   }
 };
 
@@ -94,14 +90,13 @@ struct MagnitudeDot {
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index b) const {
     const Index first = partition.first(b), last = partition.last(b);
-    block.threads([&](int t) {
+    const int width = block.busy(partition.width(1));
+    block.threads(width, [&](int t) {
       shared.sum[t] = 0;
       for (Index row = first + t; row < last; row += exec::block_threads) shared.sum[t] += row_sum(row);
     });
-    fold(block, shared.sum, exec::block_threads);
-    block.threads([&](int t) {
-      if (t == 0) partial[b] = shared.sum[0];
-    });
+    fold(block, shared.sum, width);
+    block.once([&] { partial[b] = shared.sum[0]; });
   }
 };
 
@@ -117,7 +112,8 @@ struct SetResidual {
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index b) const {
     const Index first = 3 * partition.first(b), last = 3 * partition.last(b);
-    block.threads([&](int t) {
+    const int width = block.busy(partition.width(3));
+    block.threads(width, [&](int t) {
       double rr = 0;
       for (Index i = first + t; i < last; i += exec::block_threads) {
         const double value = is_fixed(fixed[i / 3], static_cast<int>(i % 3)) ? 0
@@ -128,10 +124,8 @@ struct SetResidual {
       }
       shared.rr[t] = rr;
     });
-    fold(block, shared.rr, exec::block_threads);
-    block.threads([&](int t) {
-      if (t == 0) partial_rr[b] = shared.rr[0];
-    });
+    fold(block, shared.rr, width);
+    block.once([&] { partial_rr[b] = shared.rr[0]; });
   }
 };
 
@@ -146,9 +140,7 @@ struct FinishSum {
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index) const {
     const double sum = fold_partials(block, shared.a, partial, n);
-    block.threads([&](int t) {
-      if (t == 0) scalars->sum = sum;
-    });
+    block.once([&] { scalars->sum = sum; });
   }
 };
 
@@ -166,8 +158,7 @@ struct BeginRun {
   BB_HD void operator()(Block& block, Shared& shared, Index) const {
     const double rz = fold_partials(block, shared.a, partial_rz, n);
     const double rr = fold_partials(block, shared.a, partial_rr, n);
-    block.threads([&](int t) {
-      if (t != 0) return;
+    block.once([&] {
       const bool factors =
           faults->non_finite == no_fault && faults->indefinite == no_fault && faults->singular == no_fault;
       if (first) scalars->goal = cg_goal(rr, scalars->tolerance);
@@ -205,12 +196,12 @@ struct StepDirection {
     const double beta = after.rz / now.rz;
     if (after.running()) {
       const Index first = 3 * partition.first(b), last = 3 * partition.last(b);
-      block.threads([&](int t) {
+      block.threads(block.busy(partition.width(3)), [&](int t) {
         for (Index i = first + t; i < last; i += exec::block_threads) p[i] = fma(beta, p[i], z[i]);
       });
     }
-    block.threads([&](int t) {
-      if (b != 0 || t != 0) return;
+    block.once([&] {
+      if (b != 0) return;
       if (now.running()) scalars->beta[k] = beta;
       scalars->state[1 - k % 2] = after;
     });

@@ -52,6 +52,8 @@ struct Partition {
     const Index end = (b + 1) * rows_a_block;
     return end < n_rows ? end : n_rows;
   }
+  /// Threads of a block that have one of its numbers or more, `each` numbers a row.
+  BB_HD int width(int each) const { return exec::fold_width(each * rows_a_block); }
 };
 
 }  // namespace bb::resident

@@ -67,7 +67,8 @@ struct UpdateResidual {
     double alpha;
     if (!step_length(block, shared.rr, partial_pq, partition, scalars, k, b, alpha)) return;
     const Index first = 3 * partition.first(b), last = 3 * partition.last(b);
-    block.threads([&](int t) {
+    const int width = block.busy(partition.width(3));
+    block.threads(width, [&](int t) {
       double rr = 0;
       for (Index i = first + t; i < last; i += exec::block_threads) {
         x[i] = fma(alpha, p[i], x[i]);
@@ -77,10 +78,8 @@ struct UpdateResidual {
       }
       shared.rr[t] = rr;
     });
-    fold(block, shared.rr, exec::block_threads);
-    block.threads([&](int t) {
-      if (t == 0) partial_rr[b] = shared.rr[0];
-    });
+    fold(block, shared.rr, width);
+    block.once([&] { partial_rr[b] = shared.rr[0]; });
   }
 };
 
@@ -113,7 +112,8 @@ struct AddLevels {
   BB_HD void operator()(Block& block, Shared& shared, Index b) const {
     if (state && !state->running()) return;
     const Index first = 3 * partition.first(b), last = 3 * partition.last(b);
-    block.threads([&](int t) {
+    const int width = block.busy(partition.width(3));
+    block.threads(width, [&](int t) {
       double rz = 0;
       for (Index i = first + t; i < last; i += exec::block_threads) {
         const Index v = i / 3;
@@ -124,10 +124,8 @@ struct AddLevels {
       }
       shared.rz[t] = rz;
     });
-    fold(block, shared.rz, exec::block_threads);
-    block.threads([&](int t) {
-      if (t == 0) partial_rz[b] = shared.rz[0];
-    });
+    fold(block, shared.rz, width);
+    block.once([&] { partial_rz[b] = shared.rz[0]; });
   }
 };
 

@@ -80,9 +80,7 @@ BB_HD void sum_block(Block& block, SumShared<Sum>& shared, const Parts& parts, I
     shared.at[t] = sum;
   });
   exec::fold(block, shared.at, exec::block_threads);
-  block.threads([&](int t) {
-    if (t == 0) partial[b] = shared.at[0];
-  });
+  block.once([&] { partial[b] = shared.at[0]; });
 }
 
 /// *total += the sum of partial [n]: every thread adds each 256th, then a tree.
@@ -94,17 +92,13 @@ BB_HD void add_partials(Block& block, SumShared<Sum>& shared, const Sum* partial
     shared.at[t] = sum;
   });
   exec::fold(block, shared.at, exec::block_threads);
-  block.threads([&](int t) {
-    if (t == 0) *total = *total + shared.at[0];
-  });
+  block.once([&] { *total = *total + shared.at[0]; });
 }
 
 /// Whether this block is the last one of n; what all of them wrote may be read then.
 template <class Block, class Sum>
 BB_HD bool is_last_block(Block& block, SumShared<Sum>& shared, std::uint32_t* arrived, Index n) {
-  block.threads([&](int t) {
-    if (t == 0) shared.last = exec::last_to_arrive(arrived, n);
-  });
+  block.once([&] { shared.last = exec::last_to_arrive(arrived, n); });
   return shared.last;
 }
 
@@ -126,6 +120,10 @@ struct SumParts {
     if (is_last_block(block, shared, to.arrived, n_blocks))
       add_partials(block, shared, to.partial, n_blocks, to.total);
   }
+};
+
+struct LeastOf {
+  BB_HD Key operator()(Key a, Key b) const { return b < a ? b : a; }
 };
 
 /// Keys whose least is the largest of some numbers, 0 at least, or the smallest of any numbers. A NaN, of whatever bits,
@@ -174,14 +172,8 @@ struct LeastKey {
       }
       shared.at[t] = mine;
     });
-    for (int half = exec::block_threads / 2; half > 0; half /= 2) {
-      block.threads([&](int t) {
-        if (t < half && shared.at[t + half] < shared.at[t]) shared.at[t] = shared.at[t + half];
-      });
-    }
-    block.threads([&](int t) {
-      if (t == 0) exec::atomic_min(least, shared.at[0]);
-    });
+    exec::fold(block, shared.at, exec::block_threads, LeastOf{});
+    block.once([&] { exec::atomic_min(least, shared.at[0]); });
   }
 };
 
