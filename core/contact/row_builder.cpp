@@ -143,16 +143,8 @@ double RowBuilder::min_gap() const {
   return left;
 }
 
-double RowBuilder::build(const PositionsView& x, const Candidates& candidates, ContactTable& rows,
-                         MollifiedTable& mollified) {
-  if (!x.allFinite()) {  // boxes and comparisons mean nothing then
-    rows.resize(0);
-    mollified.resize(0);
-    n_parts_ = 0;
-    return -std::numeric_limits<double>::infinity();
-  }
-  far_.set_state(x);
-  pose(obstacles_, x, posed_);
+// Every list of pairs in chunks, each into a part of its own: rows stand in the order of the pairs.
+void RowBuilder::find_parts(const PositionsView& x, const Candidates& candidates) {
   std::size_t n_parts = 0;
   const auto in_parts = [&](const std::vector<IndexPair>& pairs, const auto& add_range) {
     const std::size_t n = n_chunks(pairs.size());
@@ -178,8 +170,20 @@ double RowBuilder::build(const PositionsView& x, const Candidates& candidates, C
                              });
                            });
   });
-
   n_parts_ = n_parts;
+}
+
+double RowBuilder::build(const PositionsView& x, const Candidates& candidates, ContactTable& rows,
+                         MollifiedTable& mollified) {
+  if (!x.allFinite()) {  // boxes and comparisons mean nothing then
+    rows.resize(0);
+    mollified.resize(0);
+    n_parts_ = 0;
+    return -std::numeric_limits<double>::infinity();
+  }
+  far_.set_state(x);
+  pose(obstacles_, x, posed_);
+  find_parts(x, candidates);
   apply_rules(x);
   fill_tables(rows, mollified);
   return min_gap();

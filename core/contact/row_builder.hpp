@@ -53,6 +53,7 @@ class RowBuilder {
   template <int N, class T>
   void add_obstacle_pair(const PositionsView& x, const Primitives<N>& primitives, IndexPair pair,
                          RowPart& part) const;
+  void find_parts(const PositionsView& x, const Candidates& candidates);
   void apply_rules(const PositionsView& x);
   double min_gap() const;
   void fill_tables(ContactTable& rows, MollifiedTable& mollified);

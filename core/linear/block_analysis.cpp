@@ -46,28 +46,35 @@ void set_workspace(cholmod_factor& f) {
   }
 }
 
-/// Every block by its degrees of freedom. Null when memory runs out.
-cholmod_factor* expanded(const cholmod_factor& blocks, const std::vector<int>& first, cholmod_common& owner) {
-  const std::vector<int> start = permuted_starts(ints(blocks.Perm), first);
-  const int *super = ints(blocks.super), *pi = ints(blocks.pi), *rows = ints(blocks.s);
-  cholmod_factor* f = cholmod_allocate_factor(at(start.back()), &owner);
+int* allocate_ints(std::size_t n, cholmod_common& owner) {
+  return static_cast<int*>(cholmod_malloc(n, sizeof(int), &owner));
+}
+
+/// A factor of n columns in n_super supernodes, with room for where those begin. Null when memory runs out.
+cholmod_factor* empty_factor(std::size_t n, std::size_t n_super, cholmod_common& owner) {
+  cholmod_factor* f = cholmod_allocate_factor(n, &owner);
   if (f == nullptr) return nullptr;
-  f->nsuper = blocks.nsuper;
-  const auto list = [&owner](std::size_t n) {
-    return static_cast<int*>(cholmod_malloc(n, sizeof(int), &owner));
-  };
-  auto* const f_super = list(f->nsuper + 1);
-  auto* const f_pi = list(f->nsuper + 1);
-  auto* const f_px = list(f->nsuper + 1);
-  f->super = f_super, f->pi = f_pi, f->px = f_px;
+  f->nsuper = n_super;
+  f->super = allocate_ints(n_super + 1, owner);
+  f->pi = allocate_ints(n_super + 1, owner);
+  f->px = allocate_ints(n_super + 1, owner);
   f->is_super = f->is_ll = f->is_monotonic = 1;
   f->xtype = CHOLMOD_PATTERN;
   f->ordering = CHOLMOD_GIVEN;
-  if (owner.status < CHOLMOD_OK) return cholmod_free_factor(&f, &owner), nullptr;
+  if (owner.status < CHOLMOD_OK) cholmod_free_factor(&f, &owner);
+  return f;
+}
 
+/// Where the columns, rows and values of each supernode begin, and how many there are. start: degrees of freedom before
+/// each block. False where an int does not count the values.
+bool place_supernodes(const cholmod_factor& blocks, const std::vector<int>& start, cholmod_factor& f) {
+  const int *super = ints(blocks.super), *pi = ints(blocks.pi), *rows = ints(blocks.s);
+  auto* const f_super = static_cast<int*>(f.super);
+  auto* const f_pi = static_cast<int*>(f.pi);
+  auto* const f_px = static_cast<int*>(f.px);
   double n_values = 0;
   std::size_t n_rows = 0;
-  for (std::size_t s = 0; s < f->nsuper; ++s) {
+  for (std::size_t s = 0; s < f.nsuper; ++s) {
     f_super[s] = start[at(super[s])];
     f_pi[s] = static_cast<int>(n_rows);
     f_px[s] = static_cast<int>(n_values);
@@ -75,27 +82,43 @@ cholmod_factor* expanded(const cholmod_factor& blocks, const std::vector<int>& f
     for (int p = pi[s]; p < pi[s + 1]; ++p) height += at(start[at(rows[p]) + 1] - start[at(rows[p])]);
     n_rows += height;
     n_values += static_cast<double>(height) * (start[at(super[s + 1])] - f_super[s]);
-    if (n_values > std::numeric_limits<int>::max()) {
-      owner.status = CHOLMOD_TOO_LARGE;
-      return cholmod_free_factor(&f, &owner), nullptr;
-    }
+    if (n_values > std::numeric_limits<int>::max()) return false;
   }
-  f_super[f->nsuper] = start.back();
-  f_pi[f->nsuper] = static_cast<int>(n_rows);
-  f_px[f->nsuper] = static_cast<int>(n_values);
-  f->ssize = n_rows;
-  f->xsize = static_cast<std::size_t>(n_values);
-  int* next = list(n_rows);
-  f->s = next;
-  if (next == nullptr) return cholmod_free_factor(&f, &owner), nullptr;
-  for (int p = 0; p < pi[blocks.nsuper]; ++p) {
+  f_super[f.nsuper] = start.back();
+  f_pi[f.nsuper] = static_cast<int>(n_rows);
+  f_px[f.nsuper] = static_cast<int>(n_values);
+  f.ssize = n_rows;
+  f.xsize = static_cast<std::size_t>(n_values);
+  return true;
+}
+
+/// The rows of all supernodes and the order of the columns, block by block.
+void expand_rows_and_order(const cholmod_factor& blocks, const std::vector<int>& start,
+                           const std::vector<int>& first, cholmod_factor& f) {
+  const int *rows = ints(blocks.s), *order = ints(blocks.Perm);
+  auto* next = static_cast<int*>(f.s);
+  for (int p = 0; p < ints(blocks.pi)[blocks.nsuper]; ++p) {
     for (int i = start[at(rows[p])]; i < start[at(rows[p]) + 1]; ++i) *next++ = i;
   }
-  auto* permutation = static_cast<int*>(f->Perm);
+  auto* permutation = static_cast<int*>(f.Perm);
   for (std::size_t k = 0; k < blocks.n; ++k) {
-    const std::size_t block = at(ints(blocks.Perm)[k]);
+    const std::size_t block = at(order[k]);
     for (int i = first[block]; i < first[block + 1]; ++i) *permutation++ = i;
   }
+}
+
+/// Every block by its degrees of freedom. Null when memory runs out, or where there are too many values.
+cholmod_factor* expanded(const cholmod_factor& blocks, const std::vector<int>& first, cholmod_common& owner) {
+  const std::vector<int> start = permuted_starts(ints(blocks.Perm), first);
+  cholmod_factor* f = empty_factor(at(start.back()), blocks.nsuper, owner);
+  if (f == nullptr) return nullptr;
+  if (!place_supernodes(blocks, start, *f)) {
+    owner.status = CHOLMOD_TOO_LARGE;
+    return cholmod_free_factor(&f, &owner), nullptr;
+  }
+  f->s = allocate_ints(f->ssize, owner);
+  if (f->s == nullptr) return cholmod_free_factor(&f, &owner), nullptr;
+  expand_rows_and_order(blocks, start, first, *f);
   set_workspace(*f);
   return f;
 }

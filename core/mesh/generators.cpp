@@ -27,6 +27,15 @@ constexpr std::array<std::array<int, 3>, 20> icosahedron_faces = {
      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
 
+/// The lattice point (u, v) of the side of a box at `height` along an axis; u, v and axis are right-handed.
+std::array<int, 3> on_side(std::size_t axis, int height, int u, int v) {
+  std::array<int, 3> point{};
+  point[axis] = height;
+  point[(axis + 1) % 3] = u;
+  point[(axis + 2) % 3] = v;
+  return point;
+}
+
 }  // namespace
 
 TriangleMesh grid_mesh(int n_x, int n_y, double size_x, double size_y) {
@@ -136,16 +145,11 @@ TriangleMesh box_mesh(int n, const Vec3d& size) {
     for (const bool upper : {false, true}) {
       for (int j = 0; j < n; ++j) {
         for (int i = 0; i < n; ++i) {
-          // (u, v, axis) is right-handed, so that (a, b, d) faces along +axis
           const auto corner = [&](int di, int dj) {
-            std::array<int, 3> cell{};
-            cell[axis] = upper ? n : 0;
-            cell[(axis + 1) % 3] = i + di;
-            cell[(axis + 2) % 3] = j + dj;
-            return vertex(cell);
+            return vertex(on_side(axis, upper ? n : 0, i + di, j + dj));
           };
           const int a = corner(0, 0), b = corner(1, 0), c = corner(0, 1), d = corner(1, 1);
-          if (upper) {
+          if (upper) {  // (a, b, d) faces along +axis
             triangles.insert(triangles.end(), {{a, b, d}, {a, d, c}});
           } else {
             triangles.insert(triangles.end(), {{a, d, b}, {a, c, d}});

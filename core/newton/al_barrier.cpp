@@ -49,6 +49,19 @@ class AlBarrier final : public StepSolver {
   std::unique_ptr<StepSolver> newton_;
 };
 
+/// Errors: ConfigError for a release that is not above near: a gap that drops multipliers would give one.
+void set_barrier_multipliers(const StepSolverOptions& options, TermOptions& terms) {
+  const auto of = [&](const char* name) { return number(options.parameters, name); };
+  if (of("al_barrier_release") <= of("al_barrier_near")) {
+    throw ConfigError("/step_solver/al_barrier_release", std::to_string(of("al_barrier_release")),
+                      "a number above al_barrier_near = " + std::to_string(of("al_barrier_near")));
+  }
+  terms.barrier_multipliers = BarrierMultiplierRules{.near = of("al_barrier_near"),
+                                                     .release = of("al_barrier_release"),
+                                                     .growth = of("al_barrier_growth"),
+                                                     .growth_most = of("al_barrier_growth_most")};
+}
+
 }  // namespace
 
 StepSolverEntry step_solver_al_barrier() {
@@ -83,17 +96,7 @@ StepSolverEntry step_solver_al_barrier() {
        OverSteps::sum},
   };
   entry.needs.multipliers = true;
-  entry.set_terms = [](const StepSolverOptions& options, TermOptions& terms) {
-    const auto of = [&](const char* name) { return number(options.parameters, name); };
-    if (of("al_barrier_release") <= of("al_barrier_near")) {
-      throw ConfigError("/step_solver/al_barrier_release", std::to_string(of("al_barrier_release")),
-                        "a number above al_barrier_near = " + std::to_string(of("al_barrier_near")));
-    }
-    terms.barrier_multipliers = BarrierMultiplierRules{.near = of("al_barrier_near"),
-                                                       .release = of("al_barrier_release"),
-                                                       .growth = of("al_barrier_growth"),
-                                                       .growth_most = of("al_barrier_growth_most")};
-  };
+  entry.set_terms = set_barrier_multipliers;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AlBarrier>(options);
   };

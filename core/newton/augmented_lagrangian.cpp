@@ -36,6 +36,15 @@ class AugmentedLagrangian final : public StepSolver {
   std::unique_ptr<StepSolver> newton_;
 };
 
+void set_contact_multipliers(const StepSolverOptions& options, TermOptions& terms) {
+  const auto of = [&](const char* name) { return number(options.parameters, name); };
+  terms.multipliers = MultiplierRules{.initial = of("al_penalty_initial_N_per_m"),
+                                      .factor = of("al_penalty_factor"),
+                                      .largest = of("al_penalty_largest_N_per_m"),
+                                      .reduction = of("al_reduction"),
+                                      .tolerance_m = of("al_tolerance_m")};
+}
+
 }  // namespace
 
 StepSolverEntry step_solver_augmented_lagrangian() {
@@ -72,14 +81,7 @@ StepSolverEntry step_solver_augmented_lagrangian() {
   };
   entry.needs.step_bound = false;
   entry.needs.overlap = entry.needs.multipliers = true;
-  entry.set_terms = [](const StepSolverOptions& options, TermOptions& terms) {
-    const auto of = [&](const char* name) { return number(options.parameters, name); };
-    terms.multipliers = MultiplierRules{.initial = of("al_penalty_initial_N_per_m"),
-                                        .factor = of("al_penalty_factor"),
-                                        .largest = of("al_penalty_largest_N_per_m"),
-                                        .reduction = of("al_reduction"),
-                                        .tolerance_m = of("al_tolerance_m")};
-  };
+  entry.set_terms = set_contact_multipliers;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AugmentedLagrangian>(options);
   };

@@ -42,71 +42,70 @@ class LineSearch final : public StepSolver {
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
-    search_.begin_step(step);
-    error_.reset();
-    crawl_.begin_step();
+    begin_search(step);
     const double tolerance = tolerance_of(system, task.dt);
-    collapsed_ = 0;
-    int escapes = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
-      IterationReport report = begin_iteration(system, task.step, iteration);
-      find_direction(system, report, observer);
+      IterationReport report = begin_iteration(system, task.step, iteration);  // 1
+      find_direction(system, report, observer);                                // 2
       const bool at_pose = system.view().at_target();
-      const bool small = estimate_error(report) < tolerance && at_pose;
+      const bool small = estimate_error(report) < tolerance && at_pose;  // 3
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
         fail_step(system, step, *failed, report);
         return step;
       }
       const EndCheck end = small ? check_end(system, options_.saddle, step, report) : EndCheck();
-      if (end.proof == EndProof::saddle && options_.saddle == SaddleRule::escape && escapes < most_escapes &&
-          search_.out_of_saddle(system, report, tolerance)) {
-        ++escapes;
-        error_.took(0);
-        crawl_.reset();
-        finish_iteration(system, step, report, observer);
-        show_motion(system, task.step, observer);
-        continue;
-      }
-      const bool moved = search_.along_direction(system, report, at_pose, small, crawl_.length());
-      const bool truncated = search_.truncated();
-      // another direction than dx, or another length of it, says nothing about the rate
-      error_.took(report.detours > 0 || truncated || search_.taken() > 1 ? 0 : report.alpha);
-      crawl_.took(moved && !truncated && !search_.noise() ? search_.taken() : 0, report);
+      const bool escaped = end.proof == EndProof::saddle && escape_saddle(system, report, tolerance);
+      const bool moved = escaped || follow_direction(system, report, at_pose, small);  // 4 to 6
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
+      if (escaped) continue;
       if (moved && after_motion_ && after_motion_(system)) {
         begin_anew(iteration);
-        continue;
-      }
-      if (small && is_enough(report, moved, tolerance)) {
-        if (system.renew_lag()) {
-          if (renewals_) ++*renewals_;
-          begin_anew(iteration);
-          continue;
+      } else if (small && is_enough(report, moved, tolerance)) {
+        if (!renew_lag(system)) {
+          end_in_minimum(step, end, report, task.dt);
+          return step;
         }
-        end_converged(step, end, report.error_estimate_m.value + left_of(report),
-                      options_.tol_velocity * task.dt);
-        return step;
-      }
-      if (!moved && search_.bound() >= collapsed_step) {
-        step.status = StepStatus::line_search_failed;
-        return step;
-      }
-      collapsed_ = in_a_row(collapsed_, report.alpha < collapsed_step);
-      if (collapsed_ == collapse_iterations) {
-        step.status = at_pose ? StepStatus::step_collapse : StepStatus::pin_infeasible;
-        step.detail = at_pose ? describe_bound(system) : describe_short_pin(system, task);
+        begin_anew(iteration);
+      } else if (gives_up(system, task, report, moved, at_pose, step)) {
         return step;
       }
     }
-    step.still_falling = error_.still_falling();
-    step.detail = fmt::format("|dx| {:.3g} m, {}", error_.last(),
-                              step.still_falling ? "still falling" : "no longer falling");
+    end_at_cap(step);
     return step;
   }
 
  private:
+  void begin_search(StepReport& step) {
+    search_.begin_step(step);
+    error_.reset();
+    crawl_.begin_step();
+    collapsed_ = escapes_ = 0;
+  }
+
+  // Of 3: a step out of a saddle along negative curvature, which says nothing about the rate. False where the rule has
+  // none, after most_escapes of them, and where E is level; dx is what is left then.
+  bool escape_saddle(StepSystem& system, IterationReport& report, double tolerance) {
+    if (options_.saddle != SaddleRule::escape || escapes_ >= most_escapes) return false;
+    if (!search_.out_of_saddle(system, report, tolerance)) return false;
+    ++escapes_;
+    error_.took(0);
+    crawl_.reset();
+    return true;
+  }
+
+  // 4 to 6: a motion along dx, or a detour or lengthening of it, and what it says about the rate. True where one was
+  // accepted.
+  bool follow_direction(StepSystem& system, IterationReport& report, bool at_pose, bool small) {
+    const bool moved = search_.along_direction(system, report, at_pose, small, crawl_.length());
+    const bool truncated = search_.truncated();
+    // another direction than dx, or another length of it, says nothing about the rate
+    error_.took(report.detours > 0 || truncated || search_.taken() > 1 ? 0 : report.alpha);
+    crawl_.took(moved && !truncated && !search_.noise() ? search_.taken() : 0, report);
+    return moved;
+  }
+
   // Of x + dx, m.
   double estimate_error(IterationReport& report) {
     error_.add(report.dx_beyond_m, report.solve.linear.residual_true, report.dx_rounding_m);
@@ -130,6 +129,13 @@ class LineSearch final : public StepSolver {
         largest = std::max(largest, std::abs(system.view().x().data()[i]));
     }
     return std::max(asked, 8 * value_epsilon(system.view().precision()) * largest);
+  }
+
+  // Whether terms have renewed what they lag, so that E is another one.
+  bool renew_lag(StepSystem& system) {
+    if (!system.renew_lag()) return false;
+    if (renewals_) ++*renewals_;
+    return true;
   }
 
   // E is another one: its minimum is looked for by what is left of the iterations.
@@ -162,6 +168,33 @@ class LineSearch final : public StepSolver {
            std::abs(report.energy_change_J.value - modelled) <= tolerance * std::abs(modelled);
   }
 
+  // The step, dt s long, ends in the minimum of E.
+  void end_in_minimum(StepReport& step, const EndCheck& end, const IterationReport& last, double dt) const {
+    end_converged(step, end, last.error_estimate_m.value + left_of(last), options_.tol_velocity * dt);
+  }
+
+  // Whether the step ends short of it, which it then says: E falls nowhere along a direction that is free to be taken, or
+  // next to nothing was taken of collapse_iterations directions in a row.
+  bool gives_up(const StepSystem& system, const StepTask& task, const IterationReport& last, bool moved,
+                bool at_pose, StepReport& step) {
+    if (!moved && search_.bound() >= collapsed_step) {
+      step.status = StepStatus::line_search_failed;
+      return true;
+    }
+    collapsed_ = in_a_row(collapsed_, last.alpha < collapsed_step);
+    if (collapsed_ != collapse_iterations) return false;
+    step.status = at_pose ? StepStatus::step_collapse : StepStatus::pin_infeasible;
+    step.detail = at_pose ? describe_bound(system) : describe_short_pin(system, task);
+    return true;
+  }
+
+  // The step ends by the cap of iterations.
+  void end_at_cap(StepReport& step) const {
+    step.still_falling = error_.still_falling();
+    step.detail = fmt::format("|dx| {:.3g} m, {}", error_.last(),
+                              step.still_falling ? "still falling" : "no longer falling");
+  }
+
   StepSolverOptions options_;
   StepSearch search_;
   double* renewals_;
@@ -169,6 +202,7 @@ class LineSearch final : public StepSolver {
   ErrorEstimate error_;
   CrawlWatch crawl_;
   int collapsed_ = 0;  // steps in a row
+  int escapes_ = 0;    // of the step
 };
 
 }  // namespace

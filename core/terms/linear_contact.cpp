@@ -155,6 +155,21 @@ LinearContact::Advance LinearContact::advance(const PositionsView& x, PhaseClock
   const std::vector<MotionHit>& hits = pairs_.hits(anchor_, x);
   out.bound = pairs_.earliest();
   out.hits = hits.size();
+  const double first = take_hits(hits, out);
+  renew_constraints(out);
+  out.time = hits.empty() ? 1 : rules_.advance * first;
+  if (out.time > least_advance) {
+    anchor_ = hits.empty() ? Positions(x) : Positions(anchor_ + out.time * (x - anchor_));
+  } else {
+    out.time = 0;
+  }
+  note_stall(out.time);
+  linearise_constraints();
+  return out;
+}
+
+// The time of the first hit, at most 1. Fresh are hits of pairs that are no constraints.
+double LinearContact::take_hits(const std::vector<MotionHit>& hits, Advance& out) {
   fresh_.clear();
   std::fill(earliest_.begin(), earliest_.end(), std::numeric_limits<double>::infinity());
   double first = 1;
@@ -168,6 +183,11 @@ LinearContact::Advance LinearContact::advance(const PositionsView& x, PhaseClock
         earliest_[static_cast<std::size_t>(v)] = std::min(earliest_[static_cast<std::size_t>(v)], hit.time);
     }
   }
+  return first;
+}
+
+// Drops constraints whose weight is too small, and admits fresh hits that are the first for one of their vertices.
+void LinearContact::renew_constraints(Advance& out) {
   merged_.clear();
   for (const Constraint& each : constraints_) {
     if (std::pow(rules_.decay, each.quiet) >= rules_.least_weight) merged_.push_back(each);
@@ -186,15 +206,6 @@ LinearContact::Advance LinearContact::advance(const PositionsView& x, PhaseClock
   std::sort(merged_.begin(), merged_.end(),
             [](const Constraint& a, const Constraint& b) { return a.pair < b.pair; });
   constraints_.swap(merged_);
-  out.time = hits.empty() ? 1 : rules_.advance * first;
-  if (out.time > least_advance) {
-    anchor_ = hits.empty() ? Positions(x) : Positions(anchor_ + out.time * (x - anchor_));
-  } else {
-    out.time = 0;
-  }
-  note_stall(out.time);
-  linearise_constraints();
-  return out;
 }
 
 void LinearContact::note_stall(double time) {

@@ -84,6 +84,8 @@ class LinearContact final : public Term {
   double weight(const Constraint& of) const;
   void linearise_constraints();
   void list_stencils();
+  double take_hits(const std::vector<MotionHit>& hits, Advance& out);
+  void renew_constraints(Advance& out);
   void note_stall(double time);
   const Constraint* find(PairId pair) const;
   template <class Table>

@@ -66,6 +66,30 @@ void measure(const Sweep& sweep, CostBook& book, std::vector<RunSize>& sizes) {
   if (!violations.empty()) throw ConfigError(violations);
 }
 
+/// One line a run, and what is expected of those that are not there.
+Total print_cases(const Sweep& sweep, const CostBook& book, const std::vector<RunSize>& sizes) {
+  Total total;
+  std::error_code none;
+  const bool any_there = std::filesystem::exists(sweep.out, none);
+  fmt::print("{:>6} {:<16} {:>9} {:<8} {}\n", "index", "config_id", "core_s", "by", "run");
+  for (const std::size_t i : sweep.chosen) {
+    const SweepCase& one = sweep.spec.cases[i];
+    std::error_code unreachable;
+    const bool has_record = any_there && std::filesystem::exists(sweep.folder(i) / "run.json", unreachable);
+    const bool done = has_record && why_to_run(sweep, i, resolved(sweep.spec, one)).empty();
+    const ExpectedCost cost = book.expected(sizes[i]);
+    const auto source = static_cast<std::size_t>(cost.source);
+    fmt::print("{:>6} {:<16} {:>9.3g} {:<8} {}\n", i, one.config_id.substr(0, 16), cost.core_s,
+               done ? "there" : source_words[source], one.label);
+    if (done) continue;
+    ++total.runs;
+    ++total.of_source[source];
+    total.core_s += cost.core_s;
+    total.longest_s = std::max(total.longest_s, cost.core_s);
+  }
+  return total;
+}
+
 int plan(const PlanVerb& verb, const CommonOptions& common) {
   CostBook book;
   for (const std::string& folder : verb.records) {
@@ -87,26 +111,7 @@ int plan(const PlanVerb& verb, const CommonOptions& common) {
   sweep.options.plugins = common.loaded;
   if (verb.records.empty()) book.add_records(sweep.out);
   if (verb.write) write_sweep_files(sweep);
-  Total total;
-  std::error_code none;
-  const bool any_there = std::filesystem::exists(sweep.out, none);
-  fmt::print("{:>6} {:<16} {:>9} {:<8} {}\n", "index", "config_id", "core_s", "by", "run");
-  for (const std::size_t i : sweep.chosen) {
-    const SweepCase& one = sweep.spec.cases[i];
-    std::error_code unreachable;
-    const bool has_record = any_there && std::filesystem::exists(sweep.folder(i) / "run.json", unreachable);
-    const bool done = has_record && why_to_run(sweep, i, resolved(sweep.spec, one)).empty();
-    const ExpectedCost cost = book.expected(sizes[i]);
-    const auto source = static_cast<std::size_t>(cost.source);
-    fmt::print("{:>6} {:<16} {:>9.3g} {:<8} {}\n", i, one.config_id.substr(0, 16), cost.core_s,
-               done ? "there" : source_words[source], one.label);
-    if (done) continue;
-    ++total.runs;
-    ++total.of_source[source];
-    total.core_s += cost.core_s;
-    total.longest_s = std::max(total.longest_s, cost.core_s);
-  }
-  print_total(sweep, total);
+  print_total(sweep, print_cases(sweep, book, sizes));
   return exit_ok;
 }
 

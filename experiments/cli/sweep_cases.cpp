@@ -76,6 +76,22 @@ Axis repetitions(std::size_t n) {
   return out;
 }
 
+/// Pointer -> the first axis that sets it.
+using AxisOf = std::map<std::string, std::size_t>;
+
+/// `seed` gives every run its seed, so nothing else may.
+void check_seed(const json& spec, const AxisOf& axis_of, const std::string& path,
+                std::vector<Violation>& violations) {
+  for (const char* pointer : {"/seeds/main", "/seeds"}) {
+    if (!spec.contains("seed") ||
+        (!axis_of.contains(pointer) && !spec.value("set", json::object()).contains(pointer)))
+      continue;
+    violations.push_back({path + "#/seed",
+                          fmt::format("a seed beside \"{}\", which the file sets too", pointer),
+                          "one of the two: the runs have one seed"});
+  }
+}
+
 /// Everything that the file alone can tell, counted before anything is expanded. The axes.
 Axes checked_axes(json spec, const std::string& path) {
   std::vector<Violation> violations;
@@ -91,7 +107,7 @@ Axes checked_axes(json spec, const std::string& path) {
                       fmt::format("at most {} cases in one sweep", max_sweep_cases));
   }
   Axes axes;
-  std::map<std::string, std::size_t> axis_of;  // pointer -> the first axis that sets it
+  AxisOf axis_of;
   for (std::size_t i = 0; i < spec["axes"].size(); ++i) {
     const std::string where = fmt::format("{}#/axes/{}", path, i);
     axes.add(expand_axis(where, spec["axes"][i], violations));
@@ -103,14 +119,7 @@ Axes checked_axes(json spec, const std::string& path) {
       }
     }
   }
-  for (const char* pointer : {"/seeds/main", "/seeds"}) {
-    if (!spec.contains("seed") ||
-        (!axis_of.contains(pointer) && !spec.value("set", json::object()).contains(pointer)))
-      continue;
-    violations.push_back({path + "#/seed",
-                          fmt::format("a seed beside \"{}\", which the file sets too", pointer),
-                          "one of the two: the runs have one seed"});
-  }
+  check_seed(spec, axis_of, path, violations);
   if (!violations.empty()) throw ConfigError(std::move(violations));
   if (const auto n = spec.value("repeat", std::size_t{1}); n > 1) {
     axes.add(repetitions(n));
@@ -172,6 +181,31 @@ bool leaves_out(const json& rule, const Combination& combination) {
   return std::all_of(labels.begin(), labels.end(), [&](const json& label) {
     return label.is_string() && combination.labels.contains(label.get<std::string>());
   });
+}
+
+/// Whether a rule of `exclude` leaves a combination out. met: how many each rule has met, counted on.
+bool is_left_out(const json& rules, const Combination& combination, std::vector<std::size_t>& met) {
+  bool out = false;
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    if (!leaves_out(rules[r], combination)) continue;
+    ++met[r];
+    out = true;
+  }
+  return out;
+}
+
+/// What a case has beside what its axes set: its seed, and in front of all else the settings of the file.
+void set_common(const json& spec, const Axes& axes, const std::vector<std::size_t>& digits, SweepCase& one) {
+  if (spec.contains("seed")) {
+    const std::string seed = std::to_string(seed_of(spec["seed"].get<std::uint64_t>(), axes, digits, one));
+    one.set.push_back("/seeds/main=" + seed);
+    one.swept["/seeds/main"] = seed;
+  }
+  if (spec.contains("set")) {
+    std::vector<std::string> common;
+    append_set(spec["set"], common);
+    one.set.insert(one.set.begin(), common.begin(), common.end());
+  }
 }
 
 /// A rule without a condition would leave out everything, one that meets nothing is a mistake.
@@ -243,24 +277,9 @@ SweepSpec parse_sweep(const std::string& text, const std::string& path) {
   for (std::size_t i = 0; i < n; ++i) {
     const std::vector<std::size_t> digits = digits_of(axes, i);
     Combination combination = combine(axes, digits);
-    bool is_out = false;
-    for (std::size_t r = 0; r < rules.size(); ++r) {
-      if (!leaves_out(rules[r], combination)) continue;
-      ++met[r];
-      is_out = true;
-    }
-    if (is_out) continue;
+    if (is_left_out(rules, combination, met)) continue;
     SweepCase& one = combination.one;
-    if (out.seeded) {
-      const std::string seed = std::to_string(seed_of(spec["seed"].get<std::uint64_t>(), axes, digits, one));
-      one.set.push_back("/seeds/main=" + seed);
-      one.swept["/seeds/main"] = seed;
-    }
-    if (spec.contains("set")) {
-      std::vector<std::string> common;
-      append_set(spec["set"], common);
-      one.set.insert(one.set.begin(), common.begin(), common.end());
-    }
+    set_common(spec, axes, digits, one);
     one.reference = marked_reference(axes, digits);
     kept[i] = out.cases.size();
     out.cases.push_back(std::move(one));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <unordered_map>
 
 #include "core/input/names.hpp"
@@ -84,6 +85,44 @@ void decide(Resolved& found, std::size_t i, const SeenCase& seen) {
 /// share most of their settings.
 constexpr std::size_t side_by_side = 4096, a_thread_at_once = 128;
 
+/// Cases side by side. found: one a case.
+void resolve_all(const SweepSpec& spec, std::span<const std::size_t> cases, Families& families,
+                 const SeenCase& seen, std::vector<Resolved>& found) {
+  found.clear();
+  found.resize(cases.size());
+  const oneapi::tbb::blocked_range<std::size_t> all(0, found.size(), a_thread_at_once);
+  oneapi::tbb::parallel_for(
+      all,
+      [&](const oneapi::tbb::blocked_range<std::size_t>& some) {
+        for (std::size_t k = some.begin(); k < some.end(); ++k)
+          found[k] = resolve(spec, cases[k], families, seen);
+      },
+      oneapi::tbb::simple_partitioner());
+}
+
+/// The key of a run, and the label of the first case that is it.
+using FirstOfRuns = std::unordered_map<std::string, const std::string*>;
+
+/// Gives case i its id, or says what is wrong with it, as that an earlier case is the same run.
+void settle_case(const std::string& path, std::size_t i, Resolved& found, const SeenCase& seen,
+                 SweepSpec& spec, FirstOfRuns& first_of, std::vector<Violation>& violations) {
+  SweepCase& one = spec.cases[i];
+  check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
+  try {
+    if (found.error) throw ConfigError(*found.error);
+    decide(found, i, seen);
+  } catch (const ConfigError& error) {
+    append_violations(path, one, error, violations);
+    return;
+  }
+  one.config_id = std::move(found.config_id);
+  if (const auto at = one.swept.find("repetition"); at != one.swept.end()) found.key += " " + at->second;
+  const auto [first, is_new] = first_of.emplace(std::move(found.key), &one.label);
+  if (is_new) return;
+  violations.push_back({path + " [" + one.label + "]", "the same run as [" + *first->second + "]",
+                        "cases that differ in a setting"});
+}
+
 }  // namespace
 
 RunConfig resolved(const SweepSpec& spec, const SweepCase& one) { return load_run(spec.base, one.set); }
@@ -102,44 +141,21 @@ SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& ov
   out.base = (std::filesystem::path(path).parent_path() / out.base).string();
   std::vector<Violation> violations;
   check_overrides(out, overrides, violations);
-  std::unordered_map<std::string, const std::string*> label_of;  // key of a run -> the first case that is it
   std::vector<std::size_t> asked;
   for (std::size_t i = 0; i < out.cases.size(); ++i) {
     out.cases[i].set.insert(out.cases[i].set.end(), overrides.begin(), overrides.end());
     if (!only || *only == i) asked.push_back(i);
   }
+  FirstOfRuns first_of;
   Families families;
   std::vector<Resolved> found;
   for (std::size_t begin = 0; begin < asked.size() && violations.size() < max_violations;
        begin += side_by_side) {
-    found.clear();
-    found.resize(std::min(side_by_side, asked.size() - begin));
-    const oneapi::tbb::blocked_range<std::size_t> all(0, found.size(), a_thread_at_once);
-    oneapi::tbb::parallel_for(
-        all,
-        [&](const oneapi::tbb::blocked_range<std::size_t>& some) {
-          for (std::size_t k = some.begin(); k < some.end(); ++k)
-            found[k] = resolve(out, asked[begin + k], families, seen);
-        },
-        oneapi::tbb::simple_partitioner());
-    for (std::size_t k = 0; k < found.size() && violations.size() < max_violations; ++k) {
-      SweepCase& one = out.cases[asked[begin + k]];
-      check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
-      try {
-        if (found[k].error) throw ConfigError(*found[k].error);
-        decide(found[k], asked[begin + k], seen);
-      } catch (const ConfigError& error) {
-        append_violations(path, one, error, violations);
-        continue;
-      }
-      one.config_id = std::move(found[k].config_id);
-      if (const auto at = one.swept.find("repetition"); at != one.swept.end())
-        found[k].key += " " + at->second;
-      const auto [first, is_new] = label_of.emplace(std::move(found[k].key), &one.label);
-      if (is_new) continue;
-      violations.push_back({path + " [" + one.label + "]", "the same run as [" + *first->second + "]",
-                            "cases that differ in a setting"});
-    }
+    const std::size_t n = std::min(side_by_side, asked.size() - begin);
+    const auto some = std::span<const std::size_t>(asked).subspan(begin, n);
+    resolve_all(out, some, families, seen, found);
+    for (std::size_t k = 0; k < n && violations.size() < max_violations; ++k)
+      settle_case(path, some[k], found[k], seen, out, first_of, violations);
   }
   if (!violations.empty()) throw ConfigError(violations);
   return out;

@@ -41,6 +41,23 @@ std::string solvers_with_minimum() {
   return solvers_where([](const StepSolverEntry& entry) { return entry.needs.minimum; });
 }
 
+/// Settings that ask for a matrix at the end of a step, or for a minimum of E there.
+void check_minimum(const RunConfig& config, const StepNeeds& needs, const Complain& complain) {
+  const StepSolverConfig& solver = config.step_solver;
+  if (solver.saddle == SaddleRule::report && !needs.matrix) {
+    complain("/step_solver/saddle", "\"report\"",
+             "ignore: the step solver " + solver.name + " has no matrix");
+  }
+  if (solver.saddle == SaddleRule::escape && !needs.minimum) {
+    complain("/step_solver/saddle", "\"escape\"",
+             "report or ignore: of step solvers only these can leave a saddle: " + solvers_with_minimum());
+  }
+  if (config.friction.lag_iterations > 1 && !needs.minimum) {
+    complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
+             "1: of step solvers only these solve a step again: " + solvers_with_minimum());
+  }
+}
+
 /// A solver with a term of its own in the matrix asks for one that is positive semi-definite without it.
 void check_hessians(const RunConfig& config, const Complain& complain) {
   for (const HessianChoice& choice : hessian_choices()) {
@@ -97,18 +114,7 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   if (literal && config.strain_limit.argument != Argument::gap) {
     complain("/strain_limit/argument", "\"squared_gap\"", "gap: the step solver is " + solver.name);
   }
-  if (solver.saddle == SaddleRule::report && !needs.matrix) {
-    complain("/step_solver/saddle", "\"report\"",
-             "ignore: the step solver " + solver.name + " has no matrix");
-  }
-  if (solver.saddle == SaddleRule::escape && !needs.minimum) {
-    complain("/step_solver/saddle", "\"escape\"",
-             "report or ignore: of step solvers only these can leave a saddle: " + solvers_with_minimum());
-  }
-  if (config.friction.lag_iterations > 1 && !needs.minimum) {
-    complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
-             "1: of step solvers only these solve a step again: " + solvers_with_minimum());
-  }
+  check_minimum(config, needs, complain);
   if (needs.overlap) check_overlap(config, complain);
   if (bounds_each_vertex(config.contact.step_bound.value_or(StepBoundRule::accd)) && !settings.vertex_steps) {
     complain(

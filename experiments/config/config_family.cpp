@@ -89,10 +89,10 @@ bool ConfigFamily::make_base(std::span<const std::string> overrides) {
   return true;
 }
 
-bool ConfigFamily::read_sections(std::span<const std::string> overrides) {
-  if (!make_base(overrides)) return false;
+/// The overrides of each row into given_. False for one of no row, or of `extends`, which decides what lies
+/// under all of them.
+bool ConfigFamily::sort_overrides(std::span<const std::string> overrides) {
   const std::vector<Parameter>& rows = config_rows();
-  overrides_.resize(rows.size());
   given_.resize(rows.size());
   for (std::string& joined : given_) joined.clear();
   for (const std::string& text : overrides) {
@@ -102,6 +102,13 @@ bool ConfigFamily::read_sections(std::span<const std::string> overrides) {
     if (name == "method") continue;  // base_ has it
     given_[static_cast<std::size_t>(row - rows.data())].append(text).push_back('\0');
   }
+  return true;
+}
+
+bool ConfigFamily::read_sections(std::span<const std::string> overrides) {
+  if (!make_base(overrides) || !sort_overrides(overrides)) return false;
+  const std::vector<Parameter>& rows = config_rows();
+  overrides_.resize(rows.size());
   std::vector<std::string_view> anew;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (known_ && overrides_[r] == given_[r]) continue;

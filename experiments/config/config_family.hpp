@@ -48,6 +48,7 @@ class ConfigFamily {
   bool read_section(const Parameter& row, const std::string& own, std::span<const std::string> overrides);
   void write_section(const std::string& name);
   bool make_base(std::span<const std::string> overrides);
+  bool sort_overrides(std::span<const std::string> overrides);
 
   std::string path_, folder_, text_;
   bool known_ = false;       // base_ and overrides_ are those of read_

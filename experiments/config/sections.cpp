@@ -65,18 +65,12 @@ const Settings<PolicyConfig>& limit_policy_settings() {
   }
 #include "experiments/config/settings.inc"
 
-template <>
-Settings<RunConfig> list_of() {
-  using C = RunConfig;
-  Settings<C> out(
-      "Everything one run is made of. What is left out takes the default of the scene, then the default "
-      "written "
-      "here. Lengths in m, times in s, masses in kg; the unit of each number stands in its key and in the "
-      "annotation \"unit\". Names of shapes, policies, integrators, solvers, scenes and mesh generators "
-      "are open: "
-      "`bench list` shows them.");
+namespace {
+
+/// What the document is, and what it is laid over.
+void add_origin(Settings<RunConfig>& out) {
   out.add_row({"schema", required(word({"barrierbench.config/1"})), no_default, "Version of this format."},
-              nullptr, [](const C&) { return "barrierbench.config/1"; });
+              nullptr, [](const RunConfig&) { return "barrierbench.config/1"; });
   out.add_row({"name", any_text(), no_default, "Free label; no part of the identity of a run."});
   out.add_row({"doc", any_text(), no_default, "Free text; no part of the identity of a run."});
   out.add_row({"extends", any_text(), no_default,
@@ -87,45 +81,69 @@ Settings<RunConfig> list_of() {
           "underneath those that stand beside its name, and over those of a config that this one extends. "
           "The record "
           "names those that are overridden: such a run is of no published method.",
-          &C::method);
-  out.add_row({"scene", required(scene_rule()), no_default, ""}, nullptr,
-              [](const C& config) { return scene_json(config.scene); });
-  out.nest("formulation", settings_of<FormulationConfig>(), &C::formulation, "the name of a preset");
+          &RunConfig::method);
+}
+
+/// A limit that is off is written as that alone.
+void add_strain_limit(Settings<RunConfig>& out) {
   out.add_row(
       {"strain_limit", settings_of<StrainLimitConfig>().rule(), no_default, ""},
-      [](const nlohmann::json* given, C& config) {
+      [](const nlohmann::json* given, RunConfig& config) {
         settings_of<StrainLimitConfig>().read(given ? *given : nlohmann::json::object(), config.strain_limit);
       },
-      [](const C& config) {
+      [](const RunConfig& config) {
         if (!config.strain_limit.enabled) return nlohmann::json{{"enabled", false}};
         return settings_of<StrainLimitConfig>().write(config.strain_limit);
       });
-  out.nest("matching", settings_of<MatchingConfig>(), &C::matching);
-  out.nest("contact", settings_of<ContactConfig>(), &C::contact);
-  out.nest("friction", settings_of<FrictionConfig>(), &C::friction);
-  out.nest("integrator", settings_of<IntegratorConfig>(), &C::integrator);
-  out.nest("time", settings_of<TimeConfig>(), &C::time);
-  out.nest("step_solver", settings_of<StepSolverConfig>(), &C::step_solver);
-  out.nest("hessian", settings_of<HessianConfig>(), &C::hessian);
-  out.nest("linear_solver", settings_of<LinearSolverConfig>(), &C::linear_solver);
+}
+
+/// What a run computes in, and where.
+void add_arithmetic(Settings<RunConfig>& out) {
   out.add(
       "precision", one_of<Precision>(),
       "Arithmetic of the pipeline. mixed: Hessians of elements and contacts in float, all else in double. "
       "float: states are rounded to float, gaps, energies, gradients, Hessians and step bounds computed in "
       "it; "
       "sums, solves and the audit stay double. The times of mixed and float are no times of such a program.",
-      &C::precision);
+      &RunConfig::precision);
   out.add("device", one_of<Device>(),
           "Where it computes. cpu: the CPU pipeline. host: the resident pipeline on threads, the same "
           "kernels as on a "
           "device. cuda: on a CUDA device (./bench device says whether there is one).",
-          &C::device);
-  out.nest("passes", settings_of<PassesConfig>(), &C::passes);
-  out.nest("diagnose", settings_of<DiagnoseConfig>(), &C::diagnose);
-  out.nest("seeds", settings_of<SeedsConfig>(), &C::seeds);
-  out.nest("output", settings_of<OutputConfig>(), &C::output);
+          &RunConfig::device);
+}
+
+}  // namespace
+
+template <>
+Settings<RunConfig> list_of() {
+  Settings<RunConfig> out(
+      "Everything one run is made of. What is left out takes the default of the scene, then the default "
+      "written "
+      "here. Lengths in m, times in s, masses in kg; the unit of each number stands in its key and in the "
+      "annotation \"unit\". Names of shapes, policies, integrators, solvers, scenes and mesh generators "
+      "are open: "
+      "`bench list` shows them.");
+  add_origin(out);
+  out.add_row({"scene", required(scene_rule()), no_default, ""}, nullptr,
+              [](const RunConfig& config) { return scene_json(config.scene); });
+  out.nest("formulation", settings_of<FormulationConfig>(), &RunConfig::formulation, "the name of a preset");
+  add_strain_limit(out);
+  out.nest("matching", settings_of<MatchingConfig>(), &RunConfig::matching);
+  out.nest("contact", settings_of<ContactConfig>(), &RunConfig::contact);
+  out.nest("friction", settings_of<FrictionConfig>(), &RunConfig::friction);
+  out.nest("integrator", settings_of<IntegratorConfig>(), &RunConfig::integrator);
+  out.nest("time", settings_of<TimeConfig>(), &RunConfig::time);
+  out.nest("step_solver", settings_of<StepSolverConfig>(), &RunConfig::step_solver);
+  out.nest("hessian", settings_of<HessianConfig>(), &RunConfig::hessian);
+  out.nest("linear_solver", settings_of<LinearSolverConfig>(), &RunConfig::linear_solver);
+  add_arithmetic(out);
+  out.nest("passes", settings_of<PassesConfig>(), &RunConfig::passes);
+  out.nest("diagnose", settings_of<DiagnoseConfig>(), &RunConfig::diagnose);
+  out.nest("seeds", settings_of<SeedsConfig>(), &RunConfig::seeds);
+  out.nest("output", settings_of<OutputConfig>(), &RunConfig::output);
   out.add("threads", count(0, 4096), "Threads of the loops; 0: all cores. Never changes a result.",
-          &C::threads);
+          &RunConfig::threads);
   return out;
 }
 

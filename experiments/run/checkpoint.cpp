@@ -45,6 +45,20 @@ FilePrefix prefix_of(std::string_view line) {
   return out;
 }
 
+/// The trace that belongs to a checkpoint in `folder`, as `line` has it. Errors: ConfigError: it is another one, or not there.
+FilePrefix trace_of(const fs::path& folder, std::string_view line) {
+  const FilePrefix trace = prefix_of(line);
+  if (trace.bytes == 0 || find_trace(folder, trace)) return trace;
+  const fs::path part = folder / "trace.jsonl.part";
+  std::error_code unreachable;
+  const auto size = fs::file_size(part, unreachable);
+  throw ConfigError(part.string(),
+                    unreachable          ? "not there"
+                    : size < trace.bytes ? "shorter than the checkpoint beside it says"
+                                         : "not as the checkpoint beside it has it",
+                    fmt::format("{}, or no --resume", line));
+}
+
 FilePrefix prefix_of_bytes(std::string_view bytes) { return {bytes.size(), sha256_hex(bytes)}; }
 
 void write_all(int fd, const fs::path& path, std::string_view text, std::uint64_t at) {
@@ -115,16 +129,7 @@ std::optional<Checkpoint::Read> Checkpoint::read_one(const fs::path& file, bool 
     throw ConfigError(log_.string(), "a log that is cut off or damaged, or not there",
                       fmt::format("{}, as {} has it, or no --resume", log, file.filename().string()));
   }
-  out.trace = prefix_of(trace);
-  const fs::path part = folder_ / "trace.jsonl.part";
-  if (out.trace.bytes > 0 && !find_trace(folder_, out.trace)) {
-    const auto size = fs::file_size(part, unreachable);
-    throw ConfigError(part.string(),
-                      unreachable              ? "not there"
-                      : size < out.trace.bytes ? "shorter than the checkpoint beside it says"
-                                               : "not as the checkpoint beside it has it",
-                      fmt::format("{}, or no --resume", trace));
-  }
+  out.trace = trace_of(folder_, trace);
   out.log_hash = std::move(*hash);
   out.log = read_input_file(log_.string(), checkpoint_file).substr(0, logged.bytes);
   out.archive = rest;

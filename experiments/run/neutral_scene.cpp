@@ -84,10 +84,19 @@ class OneOfEach {
   std::map<int, double> values_;
 };
 
-json bodies_json(const Scene& scene) {
-  OneOfEach mu(scene, "lame_mu"), lambda(scene, "lame_lambda"), bending(scene, "bending"),
-      offset(scene, "offset"), d_hat(scene, "d_hat");
+/// What engines have one number of for a body, and a scene may have many. A body without membranes has none of their three.
+struct BodyNumbers {
+  explicit BodyNumbers(const Scene& scene)
+      : mu(scene, "lame_mu"),
+        lambda(scene, "lame_lambda"),
+        bending(scene, "bending"),
+        offset(scene, "offset"),
+        d_hat(scene, "d_hat") {}
+  OneOfEach mu, lambda, bending, offset, d_hat;
   std::map<int, std::string> model;
+};
+
+void add_membranes(const Scene& scene, BodyNumbers& numbers) {
   for (const MembranePart& part : scene.membranes) {
     const bool plain = part.model != "baraff_witkin" && part.shrink.empty() &&
                        part.shrink_keys.list.empty() && part.creep.empty();
@@ -96,38 +105,50 @@ json bodies_json(const Scene& scene) {
              "an isotropic elastic membrane");
     for (std::size_t k = 0; k < part.triangles.size(); ++k) {
       const int vertex = part.triangles[k][0];
-      mu.add(vertex, part.lame_mu[k]);
-      lambda.add(vertex, part.lame_lambda[k]);
-      model.emplace(scene.body[static_cast<std::size_t>(vertex)], part.model);
+      numbers.mu.add(vertex, part.lame_mu[k]);
+      numbers.lambda.add(vertex, part.lame_lambda[k]);
+      numbers.model.emplace(scene.body[static_cast<std::size_t>(vertex)], part.model);
     }
   }
+}
+
+void add_hinges(const Scene& scene, BodyNumbers& numbers) {
   const HingePart& hinges = scene.hinges;
   if (acts(hinges.exponential) || acts(hinges.creep)) {
     refuse(scene, "hinges that stiffen or creep", "elastic hinges");
   }
   for (std::size_t k = 0; k < hinges.hinges.size(); ++k)
-    bending.add(hinges.hinges[k][0], hinges.stiffness[k]);
+    numbers.bending.add(hinges.hinges[k][0], hinges.stiffness[k]);
+}
+
+json body_json(const Body& body, int id, const BodyNumbers& numbers) {
+  json row = {{"name", body.name},
+              {"first_vertex", body.first_vertex},
+              {"vertices", body.n_vertices},
+              {"half_thickness_m", numbers.offset(id)},
+              {"d_hat_m", numbers.d_hat(id)}};
+  if (numbers.mu.has(id)) {
+    row["membrane"] = {{"model", numbers.model.at(id)},
+                       {"lame_mu_N_per_m", numbers.mu(id)},
+                       {"lame_lambda_N_per_m", numbers.lambda(id)}};
+  }
+  row["hinge_J"] = numbers.bending(id);
+  return row;
+}
+
+/// Errors: ConfigError for materials that engines do not share, and for bodies of several.
+json bodies_json(const Scene& scene) {
+  BodyNumbers numbers(scene);
+  add_membranes(scene, numbers);
+  add_hinges(scene, numbers);
   for (int i = 0; i < scene.n_vertices(); ++i) {
     const auto v = static_cast<std::size_t>(i);
-    offset.add(i, scene.offset[v]);
-    d_hat.add(i, scene.d_hat[v]);
+    numbers.offset.add(i, scene.offset[v]);
+    numbers.d_hat.add(i, scene.d_hat[v]);
   }
   json out = json::array();
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    const int id = static_cast<int>(b);
-    json row = {{"name", body.name},
-                {"first_vertex", body.first_vertex},
-                {"vertices", body.n_vertices},
-                {"half_thickness_m", offset(id)},
-                {"d_hat_m", d_hat(id)}};
-    if (mu.has(id)) {
-      row["membrane"] = {
-          {"model", model[id]}, {"lame_mu_N_per_m", mu(id)}, {"lame_lambda_N_per_m", lambda(id)}};
-    }
-    row["hinge_J"] = bending(id);
-    out.push_back(row);
-  }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    out.push_back(body_json(scene.bodies[b], static_cast<int>(b), numbers));
   return out;
 }
 
