@@ -56,7 +56,7 @@ struct DeviceBlock {
   template <class F>
   __device__ void threads(int n, const F& f) const {
     const int t = static_cast<int>(threadIdx.x);
-    if (t < n) f(t);
+    if (n >= block_threads || t < n) f(t);  // no comparison where n is the constant of all
     __syncthreads();
   }
   __device__ int busy(int) const { return block_threads; }

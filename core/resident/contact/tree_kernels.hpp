@@ -210,9 +210,9 @@ struct TreeLevels {
     int width = exec::block_threads;
     for (int level = from + 1; level <= from + levels; ++level) {
       width /= tree_width;
-      block.threads(width, [&](int t) {
+      block.threads([&](int t) {
         const Index i = b * width + t;
-        if (i < to.size(level)) to.node[to.begin[level] + i] = parent(to, level, i);
+        if (t < width && i < to.size(level)) to.node[to.begin[level] + i] = parent(to, level, i);
       });
     }
   }
