@@ -1,6 +1,6 @@
 // W numbers that are computed side by side, so that an element function templated on its scalar runs for W
-// elements at the price of little more than one. No lane depends on another. Eigen sums in another order than
-// for a plain number, so that a lane equals the scalar code to rounding.
+// elements at the price of little more than one. No lane depends on another, and Eigen adds as it does for plain numbers
+// (EIGEN_DONT_VECTORIZE), so that a lane has the bits of the scalar code.
 #pragma once
 
 #include <cmath>

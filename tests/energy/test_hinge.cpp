@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/energy/hinge.hpp"
+#include "core/energy/hinge_lanes.hpp"
 #include "tests/energy/energy_cases.hpp"
 
 namespace bb::test::hinge_test {
@@ -152,6 +153,36 @@ TEST(Hinge, FloatAgreesWithDouble) {
     EXPECT_LT(relative_difference(single.hess.cast<double>(), exact.hess, scale), 1e-4);
   }
 }
+
+/// Bits: what kernels on the host and the CPU path take four of.
+template <class T>
+void compare_abreast() {
+  constexpr int n = static_cast<int>(std::size(cases));
+  for (int first = 0; first < n; ++first) {
+    HingesAbreast<T> hinges;
+    const auto points = [&](int lane) { return Points<T, 4>(cases[(first + lane) % n].x); };
+    const auto energy = [&](int lane) {
+      return hinge_energy<T>(points(lane).x, T(stiffness), T(cases[(first + lane) % n].rest_angle));
+    };
+    for (int lane = 0; lane < hinge_lanes; ++lane) hinges.set(lane, points(lane).x, energy(lane));
+    for (const Projection projection : {Projection::none, Projection::psd}) {
+      TermsAbreast<T, hinge_lanes, 4> got;
+      hinge_terms_abreast(hinges, projection, got);
+      for (int lane = 0; lane < hinge_lanes; ++lane) {
+        SCOPED_TRACE(cases[(first + lane) % n].name);
+        const auto one = hinge_terms_of<T>(points(lane).x, energy(lane), projection);
+        EXPECT_EQ(got.energy[lane], one.energy);
+        for (int k = 0; k < 12; ++k) EXPECT_EQ(got.grad[k][lane], one.grad[k]);
+        EXPECT_GT(one.hess.norm(), 0);
+        const auto* number = got.hess;
+        for_each_lower_number(
+            4, [&](int row, int column) { EXPECT_EQ((*number++)[lane], one.hess(row, column)); });
+      }
+    }
+  }
+}
+
+TEST(Hinge, FourAbreastHaveTheBitsOfOneByOne) { compare_abreast<double>(), compare_abreast<float>(); }
 
 }  // namespace
 }  // namespace bb::test::hinge_test
