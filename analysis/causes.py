@@ -124,6 +124,26 @@ def end_lines(samples: dict[tuple[str, str], dict]) -> list[list[str]]:
     return rows
 
 
+def ends_text(samples: dict[tuple[str, str], dict]) -> list[str]:
+    """The table of the eigenvectors of both ends, or why there are none."""
+    ends = end_lines(samples)
+    if not ends:
+        return ["no eigenvectors: the run had no --set /diagnose/ends=true, or no Cholesky factor"]
+    return aligned(
+        [
+            "stage",
+            "scaling",
+            "end",
+            "lambda",
+            "made by (share of lambda)",
+            "largest element",
+            "body (share of |v|^2)",
+            "vertices",
+        ],
+        ends,
+    )
+
+
 def text(row: dict, count: int, scaling: str) -> str:
     samples = clamped(row)
     worst = samples["full", scaling]
@@ -147,27 +167,9 @@ def text(row: dict, count: int, scaling: str) -> str:
             ["what is added", "multiplies cond by"],
             [[what, f"{factor:.3g}"] for what, factor in ratios(samples)],
         ),
+        "",
+        *ends_text(samples),
     ]
-    ends = end_lines(samples)
-    if ends:
-        lines += [
-            "",
-            *aligned(
-                [
-                    "stage",
-                    "scaling",
-                    "end",
-                    "lambda",
-                    "made by (share of lambda)",
-                    "largest element",
-                    "body (share of |v|^2)",
-                    "vertices",
-                ],
-                ends,
-            ),
-        ]
-    else:
-        lines += ["", "no eigenvectors: the run had no --set /diagnose/ends=true, or no Cholesky factor"]
     return "\n".join(lines)
 
 

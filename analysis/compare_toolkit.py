@@ -225,6 +225,20 @@ def arguments(argv: list[str] | None) -> argparse.Namespace:
     return args
 
 
+def measured(args: argparse.Namespace, x0, x1, faces) -> tuple[dict, float]:
+    """All answers by stage and side, and the load of the machine when it began. Raises UserError where the
+    two disagree.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        problem = Path(folder) / "problem.bin"
+        write_problem(problem, x0, x0, x1, faces, args.d_hat)
+        ours = Ours(args.program, problem, args.threads)
+        load = os.getloadavg()[0]
+        answers = compare(ours, Toolkit(x0, x1, faces, args.d_hat, args.threads), args.rounds)
+        ours.close()
+    return answers, load
+
+
 @tells("compare-toolkit")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
@@ -237,13 +251,7 @@ def main(argv: list[str]) -> int:
         )
         return 2
     name, x0, x1, faces = load_mesh(args.mesh, args.size, args.d_hat)
-    with tempfile.TemporaryDirectory() as folder:
-        problem = Path(folder) / "problem.bin"
-        write_problem(problem, x0, x0, x1, faces, args.d_hat)
-        ours = Ours(args.program, problem, args.threads)
-        load = os.getloadavg()[0]
-        answers = compare(ours, Toolkit(x0, x1, faces, args.d_hat, args.threads), args.rounds)
-        ours.close()
+    answers, load = measured(args, x0, x1, faces)
     rows = rows_of_table(answers)
     now = datetime.datetime.now(datetime.timezone.utc)
     record = {

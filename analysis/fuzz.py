@@ -60,16 +60,10 @@ def parse_log(text: str) -> dict:
     }
 
 
-def run_target(
-    name: str, build: Path, crashes: Path, seconds: int | None, runs: int | None, seed: int
-) -> dict:
-    """One target until its seconds or runs are over, or to its first finding. A run without any execution is
-    a failure too.
-    """
-    corpus, kept = build / "corpus" / name, crashes / name
-    corpus.mkdir(parents=True, exist_ok=True)
-    kept.mkdir(parents=True, exist_ok=True)
-    before = {path.name for path in kept.iterdir()}
+def _command(
+    name: str, build: Path, kept: Path, seconds: int | None, runs: int | None, seed: int
+) -> list[str]:
+    """The target with its limits and its dictionary, where it has one; findings go to `kept`."""
     words = [
         str(build / "tests" / "fuzz" / f"fuzz_{name}"),
         *LIMITS,
@@ -81,9 +75,23 @@ def run_target(
     dictionary = build / "seeds" / f"{name}.dict"
     if dictionary.is_file() and dictionary.stat().st_size > 0:
         words.append(f"-dict={dictionary}")
+    return [*words, str(build / "corpus" / name), str(build / "seeds" / name)]
+
+
+def run_target(
+    name: str, build: Path, crashes: Path, seconds: int | None, runs: int | None, seed: int
+) -> dict:
+    """One target until its seconds or runs are over, or to its first finding. A run without any execution is
+    a failure too.
+    """
+    corpus, kept = build / "corpus" / name, crashes / name
+    corpus.mkdir(parents=True, exist_ok=True)
+    kept.mkdir(parents=True, exist_ok=True)
+    before = {path.name for path in kept.iterdir()}
+    words = _command(name, build, kept, seconds, runs, seed)
     start = time.monotonic()
     done = subprocess.run(
-        [*words, str(corpus), str(build / "seeds" / name)],
+        words,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         check=False,

@@ -167,6 +167,27 @@ def markdown(records: list[dict], prices: dict) -> str:
     return "\n".join(text)
 
 
+def _rates(axis, record: dict, kernels: list[dict]) -> list[dict]:
+    """The panel of one card, and its numbers."""
+    copy = record["device"]["copy"]["on_the_card_Bps"]
+    shares = [kernel["Bps"] / copy for kernel in kernels]
+    axis.barh([re.sub(r"\w+::", "", kernel["name"]) for kernel in kernels], shares, color="#0072B2")
+    axis.axvline(1, color="#666666", linewidth=0.6, gid=style.REFERENCE)
+    axis.invert_yaxis()
+    axis.set_xlabel("rate of a kernel / rate of a copy")
+    axis.set_title(f"{record['device']['card']}, copy {1e-9 * copy:,.0f} GB/s")
+    return [
+        {
+            "card": record["device"]["card"],
+            "date": record["date_utc"],
+            "kernel": k["name"],
+            "Bps": k["Bps"],
+            "copy_Bps": copy,
+        }
+        for k in kernels
+    ]
+
+
 def draw(records: list[dict], stem: Path) -> list[Path]:
     """Rates of kernels over that of a copy, one panel a card. Empty where no kernel has a rate."""
     shown = [
@@ -184,23 +205,7 @@ def draw(records: list[dict], stem: Path) -> list[Path]:
     )
     numbers = []
     for axis, (record, kernels) in zip(axes[:, 0], shown):
-        copy = record["device"]["copy"]["on_the_card_Bps"]
-        shares = [kernel["Bps"] / copy for kernel in kernels]
-        axis.barh([re.sub(r"\w+::", "", kernel["name"]) for kernel in kernels], shares, color="#0072B2")
-        axis.axvline(1, color="#666666", linewidth=0.6, gid=style.REFERENCE)
-        axis.invert_yaxis()
-        axis.set_xlabel("rate of a kernel / rate of a copy")
-        axis.set_title(f"{record['device']['card']}, copy {1e-9 * copy:,.0f} GB/s")
-        numbers += [
-            {
-                "card": record["device"]["card"],
-                "date": record["date_utc"],
-                "kernel": k["name"],
-                "Bps": k["Bps"],
-                "copy_Bps": copy,
-            }
-            for k in kernels
-        ]
+        numbers += _rates(axis, record, kernels)
     return style.save(
         fig,
         stem,

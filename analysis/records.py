@@ -65,6 +65,17 @@ def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
     return tuple((str((folder / plugin["file"]).resolve()), plugin["sha256"]) for plugin in plugins)
 
 
+def _loaded(record: dict, folder: Path, run: str) -> dict:
+    """A row of `runs` with the files of its plugins, when it began (empty for a case of a sweep, whose place
+    is that of its list) and its dt, s.
+    """
+    return run_row(record, run) | {
+        "plugin_files": _plugins(record, folder),
+        "begun": "" if has_list(folder.parent) else record["status"].get("started_utc", ""),
+        "config_dt_s": ((record.get("config") or {}).get("time") or {}).get("dt_s"),
+    }
+
+
 def load(root: str | Path, files: Iterable[Path] | None = None) -> Records:
     """Every record below `root`, or these of them; of a sweep's folder those of its cases, in their order,
     whenever they ran. Others of a group are in the order in which they began.
@@ -82,14 +93,7 @@ def load(root: str | Path, files: Iterable[Path] | None = None) -> Records:
             unreadable.append(str(error))
             continue
         run = str(path.parent.relative_to(root))
-        runs.append(
-            run_row(record, run)
-            | {
-                "plugin_files": _plugins(record, path.parent),
-                "begun": "" if has_list(path.parent.parent) else record["status"].get("started_utc", ""),
-                "config_dt_s": ((record.get("config") or {}).get("time") or {}).get("dt_s"),
-            }
-        )
+        runs.append(_loaded(record, path.parent, run))
         for step in record["steps"]:
             steps.append({"run": run, **fields.row("steps", step)})
         for n, line in enumerate(lines):

@@ -4,6 +4,7 @@ gap|stretch|load|body].
 
 from __future__ import annotations
 
+import argparse
 import io
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -219,8 +220,7 @@ def render(
     return path
 
 
-@tells("render")
-def main(arguments: list[str]) -> int:
+def parse(arguments: list[str]) -> argparse.Namespace:
     parser = parser_of("render")
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
     parser.add_argument("--step", type=int, help="a step with a frame, -1: the start (default: the last)")
@@ -257,7 +257,12 @@ def main(arguments: list[str]) -> int:
     parser.add_argument(
         "--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn, such as a container"
     )
-    given = parser.parse_args(arguments)
+    return parser.parse_args(arguments)
+
+
+@tells("render")
+def main(arguments: list[str]) -> int:
+    given = parse(arguments)
     if min(given.size) < 16 or max(given.size) > 8000:
         raise UserError("--size: from 16 to 8000 pixels")
     look = Look(

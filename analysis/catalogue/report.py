@@ -33,12 +33,25 @@ def markdown_page(
     """The whole page, of all scenes that there are results of."""
     picture = ["![The end of every mini scene](../docs/catalogue.png)", ""] if has_picture else []
     here = [entry for entry in asked if entry.name in scenes]
+    text = [
+        *_head(asked, here, scenes),
+        *picture,
+        *_outcomes(here, scenes),
+        *_red(here, scenes),
+        *_robust(robust),
+        *_described(here, scenes),
+    ]
+    return "\n".join(text)
+
+
+def _head(asked: list[Entry], here: list[Entry], scenes: dict[str, dict]) -> list[str]:
+    """What was run, when and where, and how a cell is read."""
     abouts = [scenes[entry.name]["about"] for entry in here]
     dates, machines, commits = (
         ", ".join(sorted({about[key] for about in abouts})) for key in ("date", "machine", "commit")
     )
     rows = [row for entry in here for row in scenes[entry.name]["rows"]]
-    text = [
+    return [
         "# Catalogue",
         "",
         (
@@ -55,7 +68,11 @@ def markdown_page(
             + "."
         ),
         "",
-        *picture,
+    ]
+
+
+def _outcomes(here: list[Entry], scenes: dict[str, dict]) -> list[str]:
+    return [
         "## Outcomes",
         "",
         *markdown(
@@ -70,11 +87,12 @@ def markdown_page(
             ],
         ),
         "",
-        *_red(here, scenes),
-        *_robust(robust),
-        "## Scenes",
-        "",
     ]
+
+
+def _described(here: list[Entry], scenes: dict[str, dict]) -> list[str]:
+    """Of every scene where it comes from, what it stresses, how it deviates and what was seen."""
+    text = ["## Scenes", ""]
     for entry in here:
         log = _by_label(scenes[entry.name]).get("log", {"seen": []})
         text += [
@@ -86,7 +104,7 @@ def markdown_page(
             *(f"- seen with log: {_text(word)}." for word in log["seen"]),
             "",
         ]
-    return "\n".join(text)
+    return text
 
 
 def _red(here: list[Entry], scenes: dict[str, dict]) -> list[str]:

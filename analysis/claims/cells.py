@@ -107,10 +107,7 @@ def judge_scenes(
     levels: list[tuple[str, str]] = (),
     enough: int | None = None,
 ) -> Judged:
-    """`enough`: how many scenes have all that is needed. The verdict is that of the interval over scenes. A
-    scene contradicts it when all its levels lie on the other side (no interval: a statement about these
-    levels), and then scenes are the condition, if every one of them lies on one side.
-    """
+    """`enough`: how many scenes have all that is needed."""
     threshold, back = Threshold(part, log), math.exp if log else float
     enough = len(scenes) if enough is None else enough
     counted = f"{sum(map(len, groups))} {what} count{left_out_text(left_out)}"
@@ -131,16 +128,22 @@ def judge_scenes(
         return undecided(
             f"indication: {enough} scenes have {needed(part)}, {SCENES} are needed ({counted})", **more
         )
-    verdict, by_scene = (
-        threshold.judge(lower, upper),
-        [(s.name, threshold.judge(s.low, s.high)) for s in scenes],
-    )
+    verdict = threshold.judge(lower, upper)
+    by_scene = [(s.name, threshold.judge(s.low, s.high)) for s in scenes]
+    return _decided(verdict, by_scene, list(levels), more)
+
+
+def _decided(
+    verdict: str, by_scene: list[tuple[str, str]], by_level: list[tuple[str, str]], more: dict
+) -> Judged:
+    """The verdict is that of the interval over scenes. A scene contradicts it when all its levels lie on the
+    other side (no interval: a statement about these levels), and then scenes are the condition, if every one
+    of them lies on one side. more: what else a judgement says.
+    """
     contradicting = [name for name, v in by_scene if v == {HOLDS: NOT, NOT: HOLDS}.get(verdict)]
     if verdict != OPEN and not contradicting:
         return Judged(verdict, **more)
-    if condition := _condition(list(levels), "level") or (
-        _condition(by_scene, "scene") if contradicting else ""
-    ):
+    if condition := _condition(by_level, "level") or (_condition(by_scene, "scene") if contradicting else ""):
         return Judged(ONLY_IF, condition=condition, **more)
     if contradicting:
         return undecided(

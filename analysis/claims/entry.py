@@ -166,13 +166,10 @@ def sweep_path(name: str, folder: Path = FOLDER) -> Path:
     return found[0] if found else folder / "sweeps" / f"{name}.json"
 
 
-@cache
-def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
-    """Cases labelled SCENE LEVEL, the cases that are compared, values of /seeds/main, and any further axes by
-    pointer, whose values become part of the place.
+def _axes_of(data: dict, name: str, path: Path) -> tuple[list[dict], int]:
+    """The axes of a sweep of claims, and which of them is that of the seeds. Errors: UserError for a sweep of
+    another form.
     """
-    path = sweep_path(name, folder)
-    data = read_object(path)
     axes = data.get("axes", [])
     seeds = [k for k, axis in enumerate(axes) if axis.get("pointer") == SEEDS]
     if (
@@ -188,7 +185,17 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
             f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is"
             " varied beside is an axis by pointer; every combination is run, and every value is written out"
         )
-    others = [k for k in range(2, len(axes)) if k != seeds[0]]
+    return axes, seeds[0]
+
+
+@cache
+def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
+    """Cases labelled SCENE LEVEL, the cases that are compared, values of /seeds/main, and any further axes by
+    pointer, whose values become part of the place.
+    """
+    path = sweep_path(name, folder)
+    axes, seeds = _axes_of(read_object(path), name, path)
+    others = [k for k in range(2, len(axes)) if k != seeds]
     cases, more = {}, {}
     for chosen in itertools.product(*(settings_of(axis, path) for axis in axes)):
         labels = [label for label, _ in chosen]
@@ -196,7 +203,7 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
         if not level:
             raise UserError(f"{path}: {labels}: the first axis is SCENE LEVEL")
         note = note_of(name, labels)
-        cases[note] = scene, level, labels[1], int(labels[seeds[0]].removeprefix("main="))
+        cases[note] = scene, level, labels[1], int(labels[seeds].removeprefix("main="))
         more[note] = {word(axes[k]["pointer"]): json.loads(labels[k].partition("=")[2]) for k in others}
     solvers = {
         case["label"]: solver

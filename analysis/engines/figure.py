@@ -39,6 +39,26 @@ def _draw(axis, points: list[tuple], colour: str, mark: str) -> None:
         axis.plot(*zip(*crossed), "x", color="#cc0000", ms=8, mew=1.4)
 
 
+def _key(axis, looks: dict[tuple, tuple[str, str]], has_starts: bool) -> None:
+    """Who has which colour and mark, and what crosses, bars and the dotted line are."""
+    for name, (colour, mark) in looks.items():
+        axis.plot([], [], "-", marker=mark, color=colour, ms=4, lw=1, label=" ".join(name))
+    axis.plot(
+        [],
+        [],
+        "x",
+        color="#cc0000",
+        ms=8,
+        mew=1.4,
+        label="surfaces cross, or are in an obstacle",
+    )
+    if has_starts:
+        axis.plot([], [], "-", color="#666666", lw=1.6, label="jittered starts: least to most")
+    axis.plot([], [], " ", label=f"{MOST} %: that or more")
+    axis.plot([], [], ":", color="#999999", lw=0.8, label="reference, against twice its time step")
+    axis.legend(loc="center", frameon=False)
+
+
 def paint(record: dict, path: Path) -> None:
     scenes = record["scenes"]
     height = -(-(len(scenes) + 1) // COLUMNS)
@@ -64,23 +84,7 @@ def paint(record: dict, path: Path) -> None:
         )
     for axis in axes.flat[len(scenes) :]:
         axis.axis("off")
-    key = axes.flat[len(scenes)]
-    for name, (colour, mark) in looks.items():
-        key.plot([], [], "-", marker=mark, color=colour, ms=4, lw=1, label=" ".join(name))
-    key.plot(
-        [],
-        [],
-        "x",
-        color="#cc0000",
-        ms=8,
-        mew=1.4,
-        label="surfaces cross, or are in an obstacle",
-    )
-    if any(one.get("starts") for one in scenes):
-        key.plot([], [], "-", color="#666666", lw=1.6, label="jittered starts: least to most")
-    key.plot([], [], " ", label=f"{MOST} %: that or more")
-    key.plot([], [], ":", color="#999999", lw=0.8, label="reference, against twice its time step")
-    key.legend(loc="center", frameon=False)
+    _key(axes.flat[len(scenes)], looks, any(one.get("starts") for one in scenes))
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=160)
     plt.close(figure)

@@ -127,6 +127,27 @@ def _found(
     return cycles, [row["series"] for _, row in runs.iterrows() if row["run"] in cycling]
 
 
+def _finish(axes: np.ndarray, kappa: Kappa) -> None:
+    """Scales, names, and the two bounds that a gap and a change are read against."""
+    for axis in axes:
+        if any(len(line.get_ydata()) for line in axis.lines):
+            axis.set_yscale("log")
+        else:
+            style.not_measured(axis, "no kappa that changes")
+        axis.set(xscale="log", xlabel="Newton iteration of the step, counted from 1")
+        style.keep_span(axis)
+    ends = [line.get_ydata()[-1] for line in axes[0].lines if len(line.get_ydata())]
+    style.reference_line(
+        axes[0],
+        EDGE,
+        r"half of it: below, $\kappa = m/$gap$^2$ amplifies errors",
+        below=max(ends, default=0) > EDGE,
+    )
+    style.reference_line(axes[1], SETTLED, "1%: settled below", ":")
+    axes[0].set_ylabel(kappa.gap_label)
+    axes[1].set_ylabel(rf"relative change of a $\kappa$, {kappa.whose}")
+
+
 def _draw(
     axes: np.ndarray, cycle: Cycle, runs: pd.DataFrame, traces: dict[str, pd.DataFrame]
 ) -> tuple[pd.DataFrame, list[tuple[str, swings.Band]]]:
@@ -156,23 +177,7 @@ def _draw(
                 }
             )
         )
-    for axis in axes:
-        if any(len(line.get_ydata()) for line in axis.lines):
-            axis.set_yscale("log")
-        else:
-            style.not_measured(axis, "no kappa that changes")
-        axis.set(xscale="log", xlabel="Newton iteration of the step, counted from 1")
-        style.keep_span(axis)
-    ends = [line.get_ydata()[-1] for line in axes[0].lines if len(line.get_ydata())]
-    style.reference_line(
-        axes[0],
-        EDGE,
-        r"half of it: below, $\kappa = m/$gap$^2$ amplifies errors",
-        below=max(ends, default=0) > EDGE,
-    )
-    style.reference_line(axes[1], SETTLED, "1%: settled below", ":")
-    axes[0].set_ylabel(kappa.gap_label)
-    axes[1].set_ylabel(rf"relative change of a $\kappa$, {kappa.whose}")
+    _finish(axes, kappa)
     return pd.concat(numbers), bands
 
 

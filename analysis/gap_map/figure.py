@@ -140,6 +140,52 @@ def _part(found: Map) -> str:
     )
 
 
+def _fit_y(axis) -> None:
+    """Holds 1 and every number that is drawn, over a factor 3 at least."""
+    low, high = _span(
+        [1.0]
+        + [float(y) for shown in axis.lines if shown.get_gid() != style.REFERENCE for y in shown.get_ydata()],
+        3.0,
+    )
+    axis.set_ylim(low, high)
+    log_ticks(axis.yaxis, low, high)
+
+
+def _panel(axis, found: Map, limit: str, shapes: list[str], metric: str) -> list[dict]:
+    """One metric in one limit mode, with the law where it is of the first metric and the limit does not
+    follow theta; the numbers.
+    """
+    axis.set(xscale="log", yscale="log")
+    over = _over(found, limit, metric)
+    numbers = [row for shape in shapes for row in _series(axis, found, limit, shape, metric, over)]
+    if metric == METRICS[0][0]:
+        axis.set_title(TITLES[limit], fontsize=8)
+        if limit != "on":
+            _law(axis, found, limit, shapes, metric, over)
+    axis.axhline(1, color="#666666", linewidth=0.5, gid=style.REFERENCE)
+    _fit_y(axis)
+    return numbers
+
+
+def _legend(fig, axis) -> None:
+    """Shapes with their markers, and the law."""
+    handles, labels = axis.get_legend_handles_labels()
+    for handle, label in zip(handles, labels):
+        handle.set_marker(style.look(label).marker)
+    handles.append(plt.Line2D([], [], color="#444444", linestyle=":", linewidth=1.0))
+    fig.legend(handles, [*labels, "area law"], loc="outside lower center", ncols=6, frameon=False)
+
+
+def _shown(found: Map) -> str:
+    scenes = found.about["scenes"]
+    modes = " ".join(
+        f"{TITLES[m][0].upper()}{TITLES[m][1:]}: {LIMITS[m]}." for m in found.limits if LIMITS[m] != TITLES[m]
+    )
+    return SHOWN.format(
+        n=len(scenes), scenes=", ".join(scenes), gaps=", ".join(f"{g:g}" for g in found.gaps), modes=modes
+    )
+
+
 def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None = None) -> list[Path]:
     """width_in: of the figure; None: what the modes of its page need."""
     limits = found.limits
@@ -154,46 +200,15 @@ def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None =
     numbers = []
     for k, (metric, title) in enumerate(METRICS):
         for axis, limit in zip(axes[k], limits):
-            axis.set(xscale="log", yscale="log")
-            over = _over(found, limit, metric)
-            for shape in shapes:
-                numbers += _series(axis, found, limit, shape, metric, over)
-            if k == 0:
-                axis.set_title(TITLES[limit], fontsize=8)
-            if k == 0 and limit != "on":
-                _law(axis, found, limit, shapes, metric, over)
-            axis.axhline(1, color="#666666", linewidth=0.5, gid=style.REFERENCE)
-            low, high = _span(
-                [1.0]
-                + [
-                    float(y)
-                    for shown in axis.lines
-                    if shown.get_gid() != style.REFERENCE
-                    for y in shown.get_ydata()
-                ],
-                3.0,
-            )
-            axis.set_ylim(low, high)
-            log_ticks(axis.yaxis, low, high)
+            numbers += _panel(axis, found, limit, shapes, metric)
         axes[k, 0].set_ylabel(f"{title}\nover the log's at first")
     low = min([n["gap"] for n in numbers] or [1e-3]) / 1.3
     axes[0, 0].set_xlim(1.0, low)
     for axis in axes[-1]:
         log_ticks(axis.xaxis, low, 1.0, 7 if len(limits) < 3 else 5)
         axis.set_xlabel(r"reached gap / $\hat d$ (deeper to the right)")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    for handle, label in zip(handles, labels):
-        handle.set_marker(style.look(label).marker)
-    handles.append(plt.Line2D([], [], color="#444444", linestyle=":", linewidth=1.0))
-    fig.legend(handles, [*labels, "area law"], loc="outside lower center", ncols=6, frameon=False)
-    scenes = found.about["scenes"]
-    modes = " ".join(
-        f"{TITLES[m][0].upper()}{TITLES[m][1:]}: {LIMITS[m]}." for m in limits if LIMITS[m] != TITLES[m]
-    )
-    shown = SHOWN.format(
-        n=len(scenes), scenes=", ".join(scenes), gaps=", ".join(f"{g:g}" for g in found.gaps), modes=modes
-    )
-    return style.save(fig, stem, pd.DataFrame(numbers), f"{shown} {_part(found)}".strip())
+    _legend(fig, axes[0, 0])
+    return style.save(fig, stem, pd.DataFrame(numbers), f"{_shown(found)} {_part(found)}".strip())
 
 
 def law_sentence(found: list[Pair], what: str) -> str:

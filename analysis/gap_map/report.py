@@ -118,24 +118,32 @@ def _rests(found: Map, limit: str) -> str:
     )
 
 
-def sentences(found: Map) -> list[str]:
-    """What a reader keeps: three sentences, each computed from the rows."""
-    off, parts = "off" if "off" in found.limits else found.limits[-1], []
+def _same_loads(found: Map, limit: str) -> str:
+    """Raw condition numbers over the log's at the largest and the smallest theta, of the shapes that have one
+    in half of the scenes.
+    """
+    parts = []
     for theta in (max(found.gaps), min(found.gaps)):
         of = {
             s: r
             for s in _others(found)
-            if (r := at_theta(found.rows, off, s, "cond_p95", theta)) is not None and 2 * r.n >= r.of
+            if (r := at_theta(found.rows, limit, s, "cond_p95", theta)) is not None and 2 * r.n >= r.of
         }
         parts.append(
             f"at theta {theta:g} "
             + (_words(of) if of else "no shape got through beside it in half of the scenes")
         )
-    first = (
-        f"With {TITLES[off]} and under the same loads, raw condition numbers over the log's are"
+    return (
+        f"With {TITLES[limit]} and under the same loads, raw condition numbers over the log's are"
         f" {'; '.join(parts)}."
     )
-    second, spans = _rests(found, off), []
+
+
+def _in_iterations(found: Map) -> str:
+    """How far a shape moves each number in each limit mode, and how often contact makes the log's largest
+    eigenvalue.
+    """
+    spans = []
     for limit in found.limits:
         of = [
             [
@@ -153,14 +161,16 @@ def sentences(found: Map) -> list[str]:
             + ", and contact makes the log's largest eigenvalue at step ends in"
             f" {sum(p.by_log for p in made)} of {len(made)} pairs"
         )
-    return [
-        first,
-        second,
-        (
-            "What of this arrives in iterations, as ratios to the log's, smallest to largest over all shapes"
-            f" and targets: {'; '.join(spans)}."
-        ),
-    ]
+    return (
+        "What of this arrives in iterations, as ratios to the log's, smallest to largest over all shapes"
+        f" and targets: {'; '.join(spans)}."
+    )
+
+
+def sentences(found: Map) -> list[str]:
+    """What a reader keeps: three sentences, each computed from the rows."""
+    off = "off" if "off" in found.limits else found.limits[-1]
+    return [_same_loads(found, off), _rests(found, off), _in_iterations(found)]
 
 
 def _law(found: Map) -> list[str]:
@@ -196,21 +206,26 @@ def _of(found: Map, key: str) -> str:
     return ", ".join(sorted({source[key] for source in found.about["sources"]}))
 
 
+def _not_run(found: Map, n: dict) -> list[str]:
+    """How much of the map is not there yet; n: counts of its rows."""
+    if not n[NOT_RUN]:
+        return []
+    return [
+        (
+            f"**{n[NOT_RUN]} of {n['cells']} cells are not run yet**: `./bench gap-map` goes on. By"
+            f" scene, runs that are there of those that can be: {extent(found.rows)}. Every number below"
+            " is of the runs that are there."
+        ),
+        "",
+    ]
+
+
 def _head(found: Map) -> list[str]:
     """What was run, by what, and what the numbers are."""
     about, n = found.about, counts(found.rows)
     hours = sum(r["seconds"] or 0 for r in found.rows) / 3600
     low, high = about["unknowns"]
-    lines = ["# Gap map", "", f"{about['doc']}.", ""]
-    if n[NOT_RUN]:
-        lines += [
-            (
-                f"**{n[NOT_RUN]} of {n['cells']} cells are not run yet**: `./bench gap-map` goes on. By"
-                f" scene, runs that are there of those that can be: {extent(found.rows)}. Every number below"
-                " is of the runs that are there."
-            ),
-            "",
-        ]
+    lines = ["# Gap map", "", f"{about['doc']}.", "", *_not_run(found, n)]
     lines += [
         (
             f"{n['cells']} cells, {about['runs']} runs of {low} to {high} unknowns, {hours:.2g} h of one core"

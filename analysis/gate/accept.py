@@ -167,6 +167,31 @@ def keep(
         print(f"  better than before: {', '.join(offered)} (--better accepts these alone)")
 
 
+def _check(args: argparse.Namespace) -> None:
+    """Errors: UserError for options that do not go together, and for a reason that is none."""
+    if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
+        raise UserError("--record or --matrix goes with --baseline FILE.json")
+    if not args.reason.strip():
+        raise UserError("--reason: say why in a sentence")
+    if args.better and args.metric:
+        raise UserError("--better chooses the metrics itself; leave --metric out")
+
+
+def other_program_arguments(parser: argparse.ArgumentParser) -> None:
+    """A baseline of what another program has written."""
+    parser.add_argument(
+        "--record",
+        type=Path,
+        nargs="+",
+        metavar="RUN.json",
+        help="make the baseline of these records of one config",
+    )
+    parser.add_argument(
+        "--matrix", type=Path, nargs="+", metavar="FILE.mtx", help="make the baseline of these matrices"
+    )
+    parser.add_argument("--baseline", type=Path, metavar="FILE.json", help="of --record and --matrix")
+
+
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("accept", __doc__)
     parser.add_argument(
@@ -196,24 +221,9 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--baselines", type=Path, default=baseline.FOLDER, metavar="DIR", help="default: results/baselines"
     )
-    parser.add_argument(
-        "--record",
-        type=Path,
-        nargs="+",
-        metavar="RUN.json",
-        help="make the baseline of these records of one config",
-    )
-    parser.add_argument(
-        "--matrix", type=Path, nargs="+", metavar="FILE.mtx", help="make the baseline of these matrices"
-    )
-    parser.add_argument("--baseline", type=Path, metavar="FILE.json", help="of --record and --matrix")
+    other_program_arguments(parser)
     args = parser.parse_args(argv)
-    if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
-        raise UserError("--record or --matrix goes with --baseline FILE.json")
-    if not args.reason.strip():
-        raise UserError("--reason: say why in a sentence")
-    if args.better and args.metric:
-        raise UserError("--better chooses the metrics itself; leave --metric out")
+    _check(args)
     return args
 
 

@@ -152,11 +152,8 @@ def _remedy(path: Path, case: str | None, kind: str | None) -> str:
     return f"`{how_to_accept('--matrix' if kind == 'matrix' else '--record', path)}` makes one"
 
 
-def read(path: str | Path, case: str | None = None, kind: str | None = None) -> Baseline:
-    """Raises UserError with file and place: not there, empty, another version, of another case or kind, a
-    number that is none.
-    """
-    path = Path(path)
+def _content(path: Path, case: str | None, kind: str | None) -> dict:
+    """Raises UserError with the file: not there, empty, another version, of another case or kind."""
     if not path.is_file():
         raise UserError(
             f"{path}: {'a folder' if path.is_dir() else 'no such baseline'}; {_remedy(path, case, kind)}"
@@ -178,6 +175,15 @@ def read(path: str | Path, case: str | None = None, kind: str | None = None) -> 
     for key, wanted in (("case", case), ("kind", kind)):
         if wanted is not None and data.get(key) != wanted:
             raise UserError(f"{path}: a baseline of {key} {data.get(key)!r}, asked about {wanted!r}")
+    return data
+
+
+def read(path: str | Path, case: str | None = None, kind: str | None = None) -> Baseline:
+    """Raises UserError with file and place: not there, empty, another version, of another case or kind, a
+    number that is none.
+    """
+    path = Path(path)
+    data = _content(path, case, kind)
     metrics = data.get("metrics")
     if not isinstance(metrics, dict) or not metrics:
         raise UserError(f"{path}: /metrics is empty: it would judge nothing")

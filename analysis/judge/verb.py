@@ -32,6 +32,16 @@ barrierbench. What its files do not say (obstacles, rods, thickness, densities):
 frame to the next as a motion. Exit 0: clean, 1: not, 2: cannot be judged."""
 
 
+def _check(options: argparse.Namespace) -> None:
+    """Errors: UserError for a scale that is none, and a reach that is none or that no gap has."""
+    for name in ("scale", "reach"):
+        value = getattr(options, name)
+        if value is not None and not (np.isfinite(value) and value > 0):
+            raise UserError(f"--{name} {value}: a finite number above 0 is needed")
+    if options.reach is not None and options.reach > MOST_METRES:
+        raise UserError(f"--reach {options.reach:g}: at most {MOST_METRES:g} m is allowed")
+
+
 def parse(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
         "judge", DOC, "./bench judge out/frames --about scene.json --reference results/runs/drape"
@@ -66,12 +76,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
         help="folder of judgement.json and .html (default: judgement)",
     )
     options = parser.parse_args(argv)
-    for name in ("scale", "reach"):
-        value = getattr(options, name)
-        if value is not None and not (np.isfinite(value) and value > 0):
-            raise UserError(f"--{name} {value}: a finite number above 0 is needed")
-    if options.reach is not None and options.reach > MOST_METRES:
-        raise UserError(f"--reach {options.reach:g}: at most {MOST_METRES:g} m is allowed")
+    _check(options)
     return options
 
 
@@ -141,6 +146,16 @@ def reference_of(options: argparse.Namespace, trajectory: Trajectory) -> Traject
     return found
 
 
+def notes_of(trajectory: Trajectory, watch: Watch) -> list[str]:
+    """What a reader has to know beside the verdict: of the files, of their unit, of the reference."""
+    notes = list(trajectory.notes)
+    if watch.largest_m > WIDE_M:
+        notes.append(f"the first frame is {watch.largest_m:g} m wide: if its unit is mm, --scale 0.001")
+    if watch.unknown:
+        notes.append(f"{watch.unknown} frames of the reference hold numbers that are none")
+    return notes
+
+
 def judged(options: argparse.Namespace) -> dict:
     """The record. Errors: UserError."""
     start = time.perf_counter()
@@ -151,11 +166,6 @@ def judged(options: argparse.Namespace) -> dict:
     for name in FILES:
         check_can_be_written(options.out / name)
     frames, total, reading_s = audited(trajectory, subject, watch)
-    notes = list(trajectory.notes)
-    if watch.largest_m > WIDE_M:
-        notes.append(f"the first frame is {watch.largest_m:g} m wide: if its unit is mm, --scale 0.001")
-    if watch.unknown:
-        notes.append(f"{watch.unknown} frames of the reference hold numbers that are none")
     for frame, row, label in zip(frames, watch.rows, trajectory.labels):
         frame |= row | {"label": label}
         volumes = frame.pop("volume_rel", {})  # the program says which bodies are closed
@@ -179,7 +189,7 @@ def judged(options: argparse.Namespace) -> dict:
         "total": total,
         "findings": findings(frames, trajectory.labels),
         "frames": frames,
-        "notes": notes,
+        "notes": notes_of(trajectory, watch),
         "reading_s": reading_s,
         "whole_s": time.perf_counter() - start,
     }

@@ -180,6 +180,26 @@ def text(answer: dict) -> str:
     return "\n".join(shown)
 
 
+def rule_arguments(parser: argparse.ArgumentParser) -> None:
+    """How a formulation gets its stiffness, and what takes the formulation."""
+    parser.add_argument(
+        "--rule", choices=RULES, default="equal_force", help="matching rule (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--theta",
+        type=float,
+        default=0.1,
+        metavar="T",
+        help="gap/d_hat at which forces are equal, in (0, 1) (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--vary",
+        choices=VARY,
+        default="both",
+        help="what takes the formulation; the other keeps the log (default: %(default)s)",
+    )
+
+
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
         "match",
@@ -202,22 +222,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
             " always runs"
         ),
     )
-    parser.add_argument(
-        "--rule", choices=RULES, default="equal_force", help="matching rule (default: %(default)s)"
-    )
-    parser.add_argument(
-        "--theta",
-        type=float,
-        default=0.1,
-        metavar="T",
-        help="gap/d_hat at which forces are equal, in (0, 1) (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--vary",
-        choices=VARY,
-        default="both",
-        help="what takes the formulation; the other keeps the log (default: %(default)s)",
-    )
+    rule_arguments(parser)
     parser.add_argument(
         "--set",
         action="append",

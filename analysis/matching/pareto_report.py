@@ -114,7 +114,8 @@ def _ratios_over_scenes(runs: Runs, gaps: list[float]) -> list[str]:
     return table_lines(_heading(gaps), rows)
 
 
-def markdown(runs: Runs) -> str:
+def _head(runs: Runs) -> list[str]:
+    """How the numbers came about and are read, what was varied, and by what it was run."""
     about = runs.about
     scales = sorted({row["scale"] for row in runs.rows})
     lines = [
@@ -128,7 +129,7 @@ def markdown(runs: Runs) -> str:
             gap=about["gap"],
         )
     ]
-    lines += [
+    return lines + [
         f"{about['doc']}. Varied: {about['vary']}. Stiffness: "
         + ", ".join(f"x{s:g}" for s in scales)
         + f". {len(runs.rows)} runs, {about['unknowns']} unknowns, {about['seconds']:.0f} s of one core in"
@@ -136,6 +137,10 @@ def markdown(runs: Runs) -> str:
         f" {about['build'][:8]}.",
         "",
     ]
+
+
+def markdown(runs: Runs) -> str:
+    lines, gaps = _head(runs), runs.about["gaps"]
     for scene in runs.scenes:
         lines += [
             f"## {scene}",
@@ -146,10 +151,10 @@ def markdown(runs: Runs) -> str:
             "",
             _nobody(runs, scene),
             "",
-            *_ratios(runs, scene, about["gaps"]),
+            *_ratios(runs, scene, gaps),
             "",
         ]
-    lines += ["## All scenes", "", *_ratios_over_scenes(runs, about["gaps"]), "", "## Numbers", ""]
+    lines += ["## All scenes", "", *_ratios_over_scenes(runs, gaps), "", "## Numbers", ""]
     for name in METRICS:
         meaning, unit, machine, _ = MEANINGS[name]
         lines.append(

@@ -23,6 +23,28 @@ FILE = ROOT / "results" / "demo.json"
 RUNS = ROOT / "results" / "runs" / "demo"
 NAME = "barrierbench.demo_numbers/1"
 REMEDY = "; ./bench demo, then ./bench readme --write, makes it"
+SUMMED = (  # columns of the summary table that a row keeps
+    "group",
+    "series",
+    "cond_raw_median",
+    "cond_raw_max",
+    "cond_bj_median",
+    "cond_bj_max",
+    "newton_iterations",
+    "probe_pcg",
+    "gap_min_rel",
+)
+OF_RUN = (  # name in a row, column of the runs
+    ("outcome", "outcome"),
+    ("verdict", "comparability_verdict"),
+    ("step_solver", "step_solver"),
+    ("crossings", "audit_crossings"),
+    ("violations", "audit_violations"),
+    ("unproven", "audit_unproven"),
+    ("judged", "audit_judged"),
+    ("steps", "summary_steps"),
+    ("run", "run_id"),
+)
 GROUPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")
 
 
@@ -57,34 +79,8 @@ def _rows(records: Records, table: pd.DataFrame) -> list[dict]:
     for (_, run), (_, line) in zip(records.runs.iterrows(), table.iterrows()):
         steps = records.steps[records.steps["run"] == run["run"]]
         rows.append(
-            {
-                key: _plain(line[key])
-                for key in (
-                    "group",
-                    "series",
-                    "cond_raw_median",
-                    "cond_raw_max",
-                    "cond_bj_median",
-                    "cond_bj_max",
-                    "newton_iterations",
-                    "probe_pcg",
-                    "gap_min_rel",
-                )
-            }
-            | {
-                key: _plain(run.get(column))
-                for key, column in (
-                    ("outcome", "outcome"),
-                    ("verdict", "comparability_verdict"),
-                    ("step_solver", "step_solver"),
-                    ("crossings", "audit_crossings"),
-                    ("violations", "audit_violations"),
-                    ("unproven", "audit_unproven"),
-                    ("judged", "audit_judged"),
-                    ("steps", "summary_steps"),
-                    ("run", "run_id"),
-                )
-            }
+            {key: _plain(line[key]) for key in SUMMED}
+            | {key: _plain(run.get(column)) for key, column in OF_RUN}
             | {
                 "steps": len(steps),
                 "scale": _plain(run.get("matching_scale")),

@@ -7,6 +7,7 @@ from.
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
 
 from ..errors import UserError, tells
@@ -67,8 +68,7 @@ def write_pages(root: Path, numbers: dict) -> list[str]:
     return changed
 
 
-@tells("readme")
-def main(argv: list[str]) -> int:
+def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
         "readme", __doc__, "./bench demo && ./bench readme --write", "./bench claims && ./bench readme --fill"
     )
@@ -101,14 +101,22 @@ def main(argv: list[str]) -> int:
         metavar="DIR",
         help="folder of the demo's records (default: results/runs/demo)",
     )
-    args = parser.parse_args(argv)
+    return parser.parse_args(argv)
+
+
+def keep_demo(runs: Path) -> None:
+    """Keeps the numbers of the demo's records, copies the figures that the pages show, and says which."""
+    write(gather(runs))
+    copied = figures.copy([(ROOT / page).read_text() for page in PAGES], runs / "figures", ROOT / "docs")
+    print(f"docs: {', '.join(copied) or 'no figure'}")
+
+
+@tells("readme")
+def main(argv: list[str]) -> int:
+    args = arguments(argv)
+    if args.write:
+        keep_demo(args.runs)
     if args.write or args.fill:
-        if args.write:
-            write(gather(args.runs))
-            copied = figures.copy(
-                [(ROOT / page).read_text() for page in PAGES], args.runs / "figures", ROOT / "docs"
-            )
-            print(f"docs: {', '.join(copied) or 'no figure'}")
         print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
         return 0
     built_program()

@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 from ..style import look
-from .comparison import METRICS
+from .comparison import METRICS, Metric
 from .diff import Diff, Pair, changes
 from .gather import Entry, Folder
 from .page import filled, title
@@ -189,6 +189,25 @@ def _two(old: float | None, new: float | None) -> list[Cell]:
     return [numeric(old, 5), numeric(new, 5), numeric(quotient)]
 
 
+SAME_BITS = {None: "not asked", True: "same", False: "differs"}
+
+
+def _pair(pair: Pair, shown: list[Metric], page: Path) -> list[Cell]:
+    red = Cell("?" if pair.fault else str(len(pair.red)), len(pair.red), "bad" if pair.red else "")
+    return [
+        _head(pair.new),
+        Cell(pair.new.group),
+        outcome(pair.old),
+        outcome(pair.new),
+        Cell(SAME_BITS[pair.same_bits], tone="bad" if pair.same_bits is False else ""),
+        red,
+        *(cell for metric in shown for cell in _two(metric.of(pair.old), metric.of(pair.new))),
+        Cell(Path(pair.old.run).name, href=link_to(pair.old.path, page)),
+        Cell(Path(pair.new.run).name, href=link_to(pair.new.path, page)),
+        _command(pair.new),
+    ]
+
+
 def pairs(diff: Diff, page: Path) -> Table:
     shown = [metric for metric in METRICS if any(metric.of(p.old) and metric.of(p.new) for p in diff.pairs)]
     table = Table(
@@ -214,23 +233,7 @@ def pairs(diff: Diff, page: Path) -> Table:
         ],
         is_filtered=True,
     )
-    words = {None: "not asked", True: "same", False: "differs"}
-    for pair in diff.pairs:
-        red = Cell("?" if pair.fault else str(len(pair.red)), len(pair.red), "bad" if pair.red else "")
-        table.rows.append(
-            [
-                _head(pair.new),
-                Cell(pair.new.group),
-                outcome(pair.old),
-                outcome(pair.new),
-                Cell(words[pair.same_bits], tone="bad" if pair.same_bits is False else ""),
-                red,
-                *(cell for metric in shown for cell in _two(metric.of(pair.old), metric.of(pair.new))),
-                Cell(Path(pair.old.run).name, href=link_to(pair.old.path, page)),
-                Cell(Path(pair.new.run).name, href=link_to(pair.new.path, page)),
-                _command(pair.new),
-            ]
-        )
+    table.rows.extend(_pair(pair, shown, page) for pair in diff.pairs)
     return table
 
 

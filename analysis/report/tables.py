@@ -11,7 +11,7 @@ from urllib.parse import quote
 from ..places import ROOT
 from ..style import look
 from .comparison import METRICS, RAW, SCALED, Beside, Factor, compared
-from .gather import Entry, Folder
+from .gather import Absent, Entry, Folder
 from .words import COMPARED, meaning, number
 
 MOST_POINTERS = 6  # swept settings that get a column
@@ -106,6 +106,43 @@ def _how_far(entry: Entry) -> Cell:
     return Cell("-") if steps is None else Cell(f"{steps} of {entry.settings.get('/time/steps', '?')}", steps)
 
 
+NONE = Cell("-")
+UNREADABLE = Cell("unreadable", tone="bad")
+
+
+def _failed(entry: Entry, page: Path) -> list[Cell]:
+    """A run that did not end ok, or is not valid."""
+    said = Cell(entry.row.get("detail") or "-")
+    lead = [_head(entry), Cell(entry.group), outcome(entry), Cell(_why(entry)), said]
+    return [*lead, _how_far(entry), _record(entry, page), _command(entry)]
+
+
+def _absent(one: Absent) -> list[Cell]:
+    """A case of a sweep that has no record."""
+    why = Cell(f"{one.state}; ./bench status says more, and ./bench sweep goes on with it")
+    lead = [Cell(one.label), Cell(one.group), Cell("no record", tone="bad"), why]
+    return [*lead, Cell(one.detail or "-"), NONE, NONE, NONE]
+
+
+def _unreadable(fault: str) -> list[Cell]:
+    lead = [Cell("a file"), NONE, UNREADABLE, Cell("it is in no other number of this page")]
+    return [*lead, Cell(fault), NONE, NONE, NONE]
+
+
+def _without_trace(entry: Entry, page: Path) -> list[Cell]:
+    """A run whose record can be read, and its trace cannot."""
+    why = Cell("its trace: the numbers of its record count, and no figure over time has it")
+    lead = [_head(entry), Cell(entry.group), UNREADABLE, why, Cell(entry.trace_fault)]
+    return [*lead, _how_far(entry), _record(entry, page), _command(entry)]
+
+
+def _earlier(path: Path) -> list[Cell]:
+    """A record in the folder of a sweep that is none of its cases."""
+    why = Cell("no case of its sweep as it is now; it is in no other number of this page")
+    lead = [Cell(path.parent.name), Cell(path.parent.parent.name), Cell("left out", tone="bad"), why]
+    return [*lead, NONE, NONE, NONE, NONE]
+
+
 def failures(folder: Folder, page: Path) -> Table:
     """Runs that do not count, runs without a record, and files that cannot be read."""
     table = Table(
@@ -122,40 +159,11 @@ def failures(folder: Folder, page: Path) -> Table:
             COMMAND,
         ],
     )
-    for entry in folder.entries:
-        if not entry.good:
-            said = Cell(entry.row.get("detail") or "-")
-            why = Cell(_why(entry))
-            table.rows.append(
-                [
-                    _head(entry),
-                    Cell(entry.group),
-                    outcome(entry),
-                    why,
-                    said,
-                    _how_far(entry),
-                    _record(entry, page),
-                    _command(entry),
-                ]
-            )
-    none = Cell("-")
-    for one in folder.absent:
-        why = Cell(f"{one.state}; ./bench status says more, and ./bench sweep goes on with it")
-        lead = [Cell(one.label), Cell(one.group), Cell("no record", tone="bad"), why]
-        table.rows.append([*lead, Cell(one.detail or "-"), none, none, none])
-    unreadable = Cell("unreadable", tone="bad")
-    for fault in folder.unreadable:
-        lead = [Cell("a file"), none, unreadable, Cell("it is in no other number of this page")]
-        table.rows.append([*lead, Cell(fault), none, none, none])
-    for entry in folder.entries:
-        if entry.trace_fault:
-            why = Cell("its trace: the numbers of its record count, and no figure over time has it")
-            lead = [_head(entry), Cell(entry.group), unreadable, why, Cell(entry.trace_fault)]
-            table.rows.append([*lead, _how_far(entry), _record(entry, page), _command(entry)])
-    for path in folder.earlier:
-        why = Cell("no case of its sweep as it is now; it is in no other number of this page")
-        lead = [Cell(path.parent.name), Cell(path.parent.parent.name), Cell("left out", tone="bad"), why]
-        table.rows.append([*lead, none, none, none, none])
+    table.rows.extend(_failed(entry, page) for entry in folder.entries if not entry.good)
+    table.rows.extend(_absent(one) for one in folder.absent)
+    table.rows.extend(_unreadable(fault) for fault in folder.unreadable)
+    table.rows.extend(_without_trace(entry, page) for entry in folder.entries if entry.trace_fault)
+    table.rows.extend(_earlier(path) for path in folder.earlier)
     return table
 
 
@@ -241,6 +249,30 @@ def _setting(value) -> Cell:
     return Cell("-" if value is None else str(value))
 
 
+def _run(entry: Entry, swept: list[str], page: Path) -> list[Cell]:
+    row, faults = entry.row, entry.faults
+    word = row.get("comparability_verdict") or ""
+    return [
+        _head(entry),
+        Cell(entry.group),
+        Cell(row["formulation"]),
+        outcome(entry),
+        Cell(COMPARED.get(word, word or "-")),
+        numeric(entry.cond(RAW)),
+        numeric(entry.cond(RAW, "max")),
+        numeric(entry.cond(SCALED)),
+        numeric(row.get("newton_iterations"), 6),
+        numeric(row.get("probe_pcg_median"), 4),
+        numeric(row.get("gap_min_rel_min")),
+        Cell("-" if faults is None else str(faults), faults, "bad" if faults else ""),
+        numeric(entry.wall_s),
+        numeric(row.get("scene_free_dofs"), 9),
+        *(_setting(row.get(name)) for name in swept),
+        _record(entry, page),
+        _command(entry),
+    ]
+
+
 def runs(folder: Folder, page: Path) -> Table:
     swept = pointers(folder.entries)
     table = Table(
@@ -269,29 +301,5 @@ def runs(folder: Folder, page: Path) -> Table:
         ],
         is_filtered=True,
     )
-    for entry in folder.entries:
-        row = entry.row
-        faults = entry.faults
-        word = row.get("comparability_verdict") or ""
-        table.rows.append(
-            [
-                _head(entry),
-                Cell(entry.group),
-                Cell(row["formulation"]),
-                outcome(entry),
-                Cell(COMPARED.get(word, word or "-")),
-                numeric(entry.cond(RAW)),
-                numeric(entry.cond(RAW, "max")),
-                numeric(entry.cond(SCALED)),
-                numeric(row.get("newton_iterations"), 6),
-                numeric(row.get("probe_pcg_median"), 4),
-                numeric(row.get("gap_min_rel_min")),
-                Cell("-" if faults is None else str(faults), faults, "bad" if faults else ""),
-                numeric(entry.wall_s),
-                numeric(row.get("scene_free_dofs"), 9),
-                *(_setting(row.get(name)) for name in swept),
-                _record(entry, page),
-                _command(entry),
-            ]
-        )
+    table.rows.extend(_run(entry, swept, page) for entry in folder.entries)
     return table

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import shlex
 import sys
@@ -15,7 +16,7 @@ from ..origin import machine_of
 from ..places import ROOT
 from ..whole_file import write_whole
 from . import judge, runs
-from .candidate import candidate
+from .candidate import Candidate, candidate
 from .page import page
 
 SPEC = ROOT / "configs" / "score" / "default.json"
@@ -28,9 +29,7 @@ cases of the stress suite. Writes score.json and score.html into the folder. Fin
 """
 
 
-@tells("score")
-def main(argv: list[str]) -> int:
-    """0: scored; 2: nothing that can be scored."""
+def _arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
         "score", DOC, "./bench score cubic_dynamic_lagged", "./bench score build/plugin/inverse_shape.so"
     )
@@ -40,23 +39,15 @@ def main(argv: list[str]) -> int:
     args = parser.parse_args(argv)
     if args.jobs < 1:
         raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
-    begun = time.monotonic()
-    of = candidate(args.what)
-    out = args.out or ROOT / "results" / "runs" / "score" / of.label
-    spec = read_spec(SPEC)
+    return args
 
-    def say(text: str) -> None:
-        print(f"score: {text}, {time.monotonic() - begun:.0f} s", file=sys.stderr)
 
-    records = runs.run(runs.matched(spec, of), of, out, args.jobs)
-    say(f"{len(records)} matched runs")
-    starts = runs.starts(of, runs.run(runs.jittered(spec, of), of, out, args.jobs))
-    say("jittered starts")
-    cases = runs.hard_cases(of, out, args.jobs)
-    say(f"{len(cases)} hard runs")
-    rows = runs.rows(spec, of, records)
+def _score(
+    of: Candidate, records: dict, rows: list[dict], starts: list[dict], cases: list[dict], begun: float
+) -> dict:
+    """The content of score.json. begun: by time.monotonic()."""
     some = next((one[0] for one in records.values() if one), None)
-    score = {
+    return {
         "schema": SCHEMA,
         "candidate": {"label": of.label, "formulation": of.formulation, "about": of.about},
         "command": shlex.join(["./bench", "score", *of.place]),
@@ -73,6 +64,27 @@ def main(argv: list[str]) -> int:
         "starts": starts,
         "hard_cases": cases,
     }
+
+
+@tells("score")
+def main(argv: list[str]) -> int:
+    """0: scored; 2: nothing that can be scored."""
+    args = _arguments(argv)
+    begun = time.monotonic()
+    of = candidate(args.what)
+    out = args.out or ROOT / "results" / "runs" / "score" / of.label
+    spec = read_spec(SPEC)
+
+    def say(text: str) -> None:
+        print(f"score: {text}, {time.monotonic() - begun:.0f} s", file=sys.stderr)
+
+    records = runs.run(runs.matched(spec, of), of, out, args.jobs)
+    say(f"{len(records)} matched runs")
+    starts = runs.starts(of, runs.run(runs.jittered(spec, of), of, out, args.jobs))
+    say("jittered starts")
+    cases = runs.hard_cases(of, out, args.jobs)
+    say(f"{len(cases)} hard runs")
+    score = _score(of, records, runs.rows(spec, of, records), starts, cases, begun)
     write_whole(out / "score.json", json.dumps(score, indent=1, allow_nan=False) + "\n")
     write_whole(out / "score.html", page(score))
     print("\n".join(score["decides"]))

@@ -69,6 +69,22 @@ def _approach(rng, pair: str, gap: float, offset: float, scalar):
     return start.astype(scalar), (start + way @ turn.T).astype(scalar)
 
 
+def _approaches(offsets: tuple, gaps: tuple, n: int, precision: str) -> list[tuple]:
+    """Pair, offset (m), gap (m), start and end of n motions through themselves at each; the same every
+    time.
+    """
+    rng = np.random.default_rng(2)
+    made = []
+    for pair in PAIRS:
+        for offset in offsets:
+            for gap in gaps:
+                made += [
+                    (pair, offset, gap, *_approach(rng, pair, gap, offset, SCALAR[precision]))
+                    for _ in range(n)
+                ]
+    return made
+
+
 def ccd(quick: bool) -> list[Count]:
     counts: dict[tuple, Count] = {}
     offsets, gaps, n = (
@@ -77,15 +93,7 @@ def ccd(quick: bool) -> list[Count]:
         else ((0, 1, 10, 100, 1000), (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8), 8)
     )
     for precision in PRECISIONS:
-        rng = np.random.default_rng(2)
-        made = []
-        for pair in PAIRS:
-            for offset in offsets:
-                for gap in gaps:
-                    made += [
-                        (pair, offset, gap, *_approach(rng, pair, gap, offset, SCALAR[precision]))
-                        for _ in range(n)
-                    ]
+        made = _approaches(offsets, gaps, n, precision)
         answers = evaluated(
             [
                 {

@@ -56,9 +56,8 @@ def _own(results: dict[str, Result], tests: dict[str, Test], name: str) -> bool:
     return bool(tests[name].formulations) and not tests[name].groups
 
 
-def markdown(results: dict[str, Result], tests: dict[str, Test], command: str = "./bench stress") -> str:
-    """The whole page."""
-    results = {name: results[name] for name in tests if name in results}
+def _head(results: dict[str, Result], command: str) -> list[str]:
+    """When, where and how long, and how many of each kind are as expected."""
     rows = [row for result in results.values() for row in result.rows]
     judged = [row for row in rows if row.outcome != WAITS]
     counts = [count for result in results.values() for count in result.counts]
@@ -67,7 +66,7 @@ def markdown(results: dict[str, Result], tests: dict[str, Test], command: str = 
     machines = sorted({result.about.get("machine", "") for result in results.values()} - {""})
     commits = sorted({result.about.get("commit", "") for result in results.values()} - {""})
     seconds = sum(result.about.get("seconds", 0) for result in results.values())
-    text = [
+    return [
         "# Stress suite",
         "",
         (
@@ -91,6 +90,12 @@ def markdown(results: dict[str, Result], tests: dict[str, Test], command: str = 
         ),
         "",
     ]
+
+
+def markdown(results: dict[str, Result], tests: dict[str, Test], command: str = "./bench stress") -> str:
+    """The whole page."""
+    results = {name: results[name] for name in tests if name in results}
+    text = _head(results, command)
     text += _outcomes(results, tests)
     text += _own_tables(results, tests)
     text += _relations(results)

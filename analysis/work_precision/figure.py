@@ -79,47 +79,53 @@ def _chosen(scenes: list[dict], costs: tuple[str, ...], names: tuple[str, ...]) 
     return [cost for cost in costs if COSTS[cost][1] in kept], said
 
 
-def _panel(axis, scene: dict, cost: str, names: tuple[str, ...]) -> None:
-    all_points, band = points(scene, cost), band_of(scene)
-    drawn = [(p, True) for p in all_points] + [(p, False) for p in aside(scene, cost)]
-    drawn = [(p, ranked) for p, ranked in drawn if 0 < p.cost < math.inf and p.formulation in names]
-    for name in names:
-        look = style.look(name)
-        mine = [(p, ranked) for p, ranked in drawn if p.formulation == name]
-        for opacity, which in ((0.45, True), (0.15, False)):
-            good = [p for p, ranked in mine if p.error is not None and ranked == which]
-            axis.plot(
-                [p.cost for p in good],
-                [p.error for p in good],
-                linestyle="none",
-                marker=look.marker,
-                color=look.color,
-                markersize=2.6,
-                alpha=opacity,
-                markeredgewidth=0,
-            )
-        line = [(c, e) for c, e in front(all_points, name) if c > 0]
-        if line:
-            axis.plot(
-                [c for c, _ in line],
-                [e for _, e in line],
-                color=look.color,
-                linestyle=look.dash,
-                marker=look.marker,
-                markersize=4,
-                label=name,
-            )
-        else:
-            axis.plot(
-                [],
-                [],
-                color=look.color,
-                linestyle=look.dash,
-                marker=look.marker,
-                label=f"{name} (no run counts)",
-            )
-    axis.set_xscale("log")
-    axis.set_yscale("log")
+def _mark_runs(axis, name: str, drawn: list[tuple[Point, bool]]) -> None:
+    """The runs of a formulation that have an error; faint those that are not ranked."""
+    look = style.look(name)
+    mine = [(p, ranked) for p, ranked in drawn if p.formulation == name]
+    for opacity, which in ((0.45, True), (0.15, False)):
+        good = [p for p, ranked in mine if p.error is not None and ranked == which]
+        axis.plot(
+            [p.cost for p in good],
+            [p.error for p in good],
+            linestyle="none",
+            marker=look.marker,
+            color=look.color,
+            markersize=2.6,
+            alpha=opacity,
+            markeredgewidth=0,
+        )
+
+
+def _draw_front(axis, name: str, all_points: list[Point]) -> None:
+    """The runs of a formulation that none of its cheaper ones equals; where there are none, its legend says
+    so.
+    """
+    look = style.look(name)
+    line = [(c, e) for c, e in front(all_points, name) if c > 0]
+    if line:
+        axis.plot(
+            [c for c, _ in line],
+            [e for _, e in line],
+            color=look.color,
+            linestyle=look.dash,
+            marker=look.marker,
+            markersize=4,
+            label=name,
+        )
+    else:
+        axis.plot(
+            [],
+            [],
+            color=look.color,
+            linestyle=look.dash,
+            marker=look.marker,
+            label=f"{name} (no run counts)",
+        )
+
+
+def _cross_failures(axis, drawn: list[tuple[Point, bool]]) -> None:
+    """Runs without an error, at the upper edge."""
     for p, _ in drawn:
         if p.error is None:
             axis.plot(
@@ -133,6 +139,18 @@ def _panel(axis, scene: dict, cost: str, names: tuple[str, ...]) -> None:
                 markeredgewidth=1.2,
                 gid=style.FAILURE,
             )
+
+
+def _panel(axis, scene: dict, cost: str, names: tuple[str, ...]) -> None:
+    all_points, band = points(scene, cost), band_of(scene)
+    drawn = [(p, True) for p in all_points] + [(p, False) for p in aside(scene, cost)]
+    drawn = [(p, ranked) for p, ranked in drawn if 0 < p.cost < math.inf and p.formulation in names]
+    for name in names:
+        _mark_runs(axis, name, drawn)
+        _draw_front(axis, name, all_points)
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    _cross_failures(axis, drawn)
     if band > 0:
         axis.axhspan(band / 1e6, band, color="#bbbbbb", alpha=0.5, linewidth=0, zorder=0, gid=style.REFERENCE)
     axis.set_xlabel(COSTS[cost][1])
@@ -253,13 +271,23 @@ def _profile_panel(
     return rows
 
 
-def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
-    """Data profiles over all scenes: one row a target level, one column a cost; and the supplement."""
-    names, paths, levels = formulations(scenes[0]), [], range(max(len(scene["targets"]) for scene in scenes))
-    targets = "; ".join(
+def _targets(scenes: list[dict]) -> str:
+    """Of every scene its error and the targets of it."""
+    return "; ".join(
         f"{scene['name']} {scene['error']} " + ", ".join(f"{t:g}" for t in scene["targets"])
         for scene in scenes
     )
+
+
+def _largest(scenes: list[dict], cost: str) -> float:
+    """What the dearest run cost, where a profile ends; 1 where no cost is finite."""
+    return max((p.cost for scene in scenes for p in points(scene, cost) if p.cost < math.inf), default=1)
+
+
+def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
+    """Data profiles over all scenes: one row a target level, one column a cost; and the supplement."""
+    names, paths, levels = formulations(scenes[0]), [], range(max(len(scene["targets"]) for scene in scenes))
+    targets = _targets(scenes)
     for part in series.parts(names, by_rank(scenes), stem.name):
         costs, left_out = _chosen(scenes, ("newton", "factorizations", "products"), part.names)
         fig, axes = plt.subplots(
@@ -271,12 +299,7 @@ def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
             layout="constrained",
             squeeze=False,
         )
-        most = {
-            cost: max(
-                (p.cost for scene in scenes for p in points(scene, cost) if p.cost < math.inf), default=1
-            )
-            for cost in costs
-        }
+        most = {cost: _largest(scenes, cost) for cost in costs}
         rows = [
             row
             for level in levels
