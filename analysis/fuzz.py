@@ -163,7 +163,6 @@ def prepare(names: list[str]) -> None:
 
 
 @tells("fuzz")
-@tells("fuzz")
 def main(argv: list[str]) -> int:
     parser = parser_of("fuzz", __doc__.split("\n\n", 1)[1])
     parser.add_argument(

@@ -26,8 +26,6 @@ from .templates import PARTS, filled, lacking
 PAGES = tuple(PARTS)
 # Pages whose snippets are checked and which have no generated numbers.
 MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
-# Pages whose snippets are checked and which have no generated numbers.
-MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
