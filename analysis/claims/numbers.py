@@ -140,12 +140,17 @@ def _every(cells: Cells, left_out: Counter, part: dict) -> Judged:
 
 
 def _line(points: list[tuple[float, float]]) -> tuple[float, float, float]:
-    """Slope of the least-squares line, and the least and the largest between neighbouring levels."""
-    import numpy as np
+    """Slope of the least-squares line, and the least and the largest between neighbouring levels.
 
+    The slope has the same bits on every machine, and is 0 where all values are equal: no library of linear
+    algebra is asked.
+    """
     points = sorted(points)
     between = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(points, points[1:])]
-    return float(np.polyfit(*zip(*points), 1)[0]), min(between), max(between)
+    x, y = zip(*points)
+    middle = math.fsum(x) / len(x)
+    slope = math.fsum((a - middle) * (b - y[0]) for a, b in points) / math.fsum((a - middle) ** 2 for a in x)
+    return slope, min(between), max(between)
 
 
 def _log_level(name: str, sweep: str) -> float:

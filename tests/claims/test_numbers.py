@@ -6,7 +6,7 @@ from made import SCENES, runs
 from analysis.errors import UserError
 from analysis.claims.entry import read_sweep
 from analysis.claims.judge import judge_part
-from analysis.claims.numbers import level, ratio, slope
+from analysis.claims.numbers import _line, level, ratio, slope
 from analysis.claims.parts import check
 from analysis.claims.table import DIGITS, Table, _rounded
 from analysis.claims.threshold import Threshold
@@ -174,6 +174,13 @@ def test_a_slope():
     assert uneven.value == pytest.approx(0.5) and uneven.per_scene[0][2:4] == (pytest.approx(0.5), pytest.approx(0.5))
     assert slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv)}, scenes=("a", "b"))).missing.startswith("indication")
     assert slope({**part, "scenes": ["a", "b"]}, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv)})).missing.startswith("indication")
+
+
+def test_the_slope_of_equal_values_is_zero_and_not_rounding():
+    for value in (0.1, -7.3e-5, 1e300):
+        assert _line([(x, value) for x in (0.1, 0.7, 1.9, 2.3)]) == (0, 0, 0)
+    slope, least, largest = _line([(3, 7), (1, 2), (2, 4)])
+    assert slope == 2.5 and (least, largest) == (2, 3)
 
 
 def test_two_levels_make_no_line():
