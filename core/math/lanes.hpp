@@ -1,6 +1,6 @@
 // W numbers that are computed side by side, so that an element function templated on its scalar runs for W
 // elements at the price of little more than one. No lane depends on another, and Eigen adds as it does for plain numbers
-// (EIGEN_DONT_VECTORIZE), so that a lane has the bits of the scalar code.
+// (EIGEN_DONT_VECTORIZE), so that a lane has the numbers of the scalar code; abs() here keeps the sign of a zero.
 #pragma once
 
 #include <cmath>

@@ -17,7 +17,7 @@ namespace bb::ccd {
 namespace {
 
 using Points = Mat<double, 3, 4>;
-constexpr int n_random = 3000;
+constexpr int n_random = 6000;
 
 /// Eight rows: a point at (0, 0, z0) that moves to z1, above the triangle (0 0 0), (1 0 0), (0 1/3 0).
 std::string rows(const std::string& z0, const std::string& z1, const std::string& truth) {
