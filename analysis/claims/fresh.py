@@ -27,16 +27,16 @@ TUNING = (
     "configs/stress",
     "configs/gap_map",
 )
-RESOLUTION = {
-    "n",
-    "n_x",
-    "n_y",
-    "level",
-    "n_around",
-    "n_along",
-    "n_segments",
-}  # of a generated mesh: a finer mesh is no other scene
+# Of a generated mesh `level`, `n` and all that begins with n_ is its resolution, and a finer mesh is no other
+# scene; these numbers are its shape.
+SHAPE = {"helix": {"n_turns"}, "woven_tube": {"n_axial", "n_rings"}, "knit": {"n_rows", "n_loops"}}
 LEAST = 8  # confirmation scenes of a sweep
+
+
+def _is_resolution(mesh: dict, key: str) -> bool:
+    """Whether `key` of this mesh says how fine it is."""
+    counts = key in ("n", "level") or key.startswith("n_")
+    return counts and key not in SHAPE.get(mesh.get("generator"), ())
 
 
 @cache
@@ -61,7 +61,7 @@ def _plain(value, schema: dict, folder: Path):
         mesh = "generator" in value or "file" in value
         if (
             (key == "name" and "generator" not in value)
-            or (mesh and key in RESOLUTION)
+            or (mesh and _is_resolution(value, key))
             or ("default" in rule and one == rule["default"])
         ):
             continue

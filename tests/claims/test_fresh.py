@@ -46,6 +46,21 @@ def test_materials_meshes_and_obstacles_do(other):
     assert identity(other) != identity(scene())
 
 
+def of_mesh(generator, **numbers):
+    return identity({"name": "bodies", "bodies": [{"mesh": {"generator": generator, **numbers}}]})
+
+
+@pytest.mark.parametrize("generator, key", [
+    ("solid_box", "n_z"), ("solid_torus", "n_radial"), ("cone", "n_rings"), ("knotted_strip", "n_across"), ("knit", "n_per_loop"), ("icosphere", "level")])
+def test_a_finer_mesh_is_no_other_scene(generator, key):
+    assert of_mesh(generator, **{key: 2}) == of_mesh(generator, **{key: 3})
+
+
+@pytest.mark.parametrize("generator, key", [(generator, key) for generator, keys in fresh.SHAPE.items() for key in sorted(keys)])
+def test_what_a_mesh_has_of_a_thing_is_its_shape(generator, key):
+    assert of_mesh(generator, **{key: 2}) != of_mesh(generator, **{key: 3})
+
+
 def test_a_mesh_file_is_its_contents(tmp_path):
     for name, text in (("a.obj", "v 0 0 0"), ("b.obj", "v 0 0 0"), ("c.obj", "v 1 0 0")):
         (tmp_path / name).write_text(text)
