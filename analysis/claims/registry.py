@@ -29,7 +29,7 @@ from .verdict import LEVELS, SCENES, STARTS
 FILE = FOLDER / "confirmation" / "registry.json"
 NAME = "barrierbench.confirmation/1"
 # What a rule means beside its parts. A change of how verdicts are computed is a change here, and of every
-# hash.
+# hash. What takes a verdict away for want of a subject (numbers.with_subject) gives none and is not here.
 STATISTICS = {
     "interval": "95%, Student's t over scenes, a scene the mean over levels of the mean over starts",
     "sign_test": LEVEL,

@@ -33,6 +33,23 @@ def test_a_ratio_holds_or_does_not():
     assert ratio({**below, "beyond": 1.5}, runs(twice)).verdict == HOLDS and ratio({**below, "beyond": 2.5}, runs(twice)).verdict == NOT
 
 
+def of_gaps(same):
+    """Runs of which those of the scenes in `same` are one run in both cases; the metric is the same in all."""
+    return lambda scene, level, case, seed: {"newton": 10.0, "convergence": "asked", "end_error_tolerances_median": 0.5,
+                                             "gaps": {"a|b": [0.1 if case == "x" or scene in same else 0.2, 0.3, 0.4, True]}}
+
+
+def test_one_run_twice_decides_nothing():
+    """A step solver that never does what it differs in: the ratio is 1, and it says nothing of the solver."""
+    judged = ratio(PART, runs(of_gaps(SCENES)))
+    assert judged.verdict == OPEN and "made the same run in every pair" in judged.missing and judged.value == 1
+    assert "in 45 of 45 both cases made the same run" in judged.counted
+    some = ratio(PART, runs(of_gaps(("a",))))
+    assert some.verdict == NOT and "in 15 of 45 both cases made the same run" in some.counted
+    assert "same run" not in ratio(PART, runs(of_gaps(()))).counted
+    assert "same run" not in ratio(PART, runs(lambda s, lv, c, k: {"newton": 10.0})).counted, "numbers of before 3.5.0 have no gaps"
+
+
 def test_an_interval_round_the_threshold_decides_nothing():
     of_x = {"a": 14.0, "b": 16.0, "c": 20.0}
     judged = ratio(PART, runs(lambda s, lv, c, k: {"newton": of_x[s] if c == "x" else 10.0}))
