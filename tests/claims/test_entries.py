@@ -18,7 +18,7 @@ from analysis.claims.slices import slice_of
 from analysis.claims.success import read_for
 from analysis.claims.table import FILE, Table, collect, read, used_metrics, write
 
-WANTED = {*(f"K{k}" for k in range(1, 18)), *(f"H{k}" for k in range(1, 10)), "N1"}
+WANTED = {*(f"K{k}" for k in range(1, 18)), *(f"H{k}" for k in range(1, 10)), "N1", "N2"}
 
 
 def test_every_claim_is_there_and_refers_to_what_exists():
@@ -58,7 +58,7 @@ def test_trivial_truths_are_named():
 
 def test_claims_on_shells_can_be_confirmed():
     assert {name for name in ids() if confirmable(read_claim(name))} == {
-        "K1", "K2", "K3", "K4", "K7", "K8", "K9", "K10", "K12", "K13", "K14", "K15", "K16", "H1", "H2", "H3", "H4", "H5", "H7", "N1"}
+        "K1", "K2", "K3", "K4", "K7", "K8", "K9", "K10", "K12", "K13", "K14", "K15", "K16", "H1", "H2", "H3", "H4", "H5", "H7", "N1", "N2"}
     for claim in map(read_claim, ids()):
         for part in confirmed_parts(claim) if confirmable(claim) else []:
             if "sweep" in part:
