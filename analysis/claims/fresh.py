@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -132,23 +132,28 @@ def scenes_of(path: Path) -> list[dict]:
     return [*scenes, *once, *twice]
 
 
-@cache
-def used(root: Path = ROOT) -> dict[str, str]:
-    """identity -> a file of runs that has the scene."""
+def _of_files(paths: Iterable[Path], root: Path) -> dict[str, str]:
+    """identity -> the first of these files of runs that has the scene."""
     found: dict[str, str] = {}
-    for folder in TUNING:
-        for path in sorted((root / folder).glob("*.json")):
-            for scene in scenes_of(path):
-                if scene.get("name") == "bodies":
-                    found.setdefault(identity(scene, path.parent), str(path.relative_to(root)))
+    for path in paths:
+        for scene in scenes_of(path):
+            if scene.get("name") == "bodies":
+                found.setdefault(identity(scene, path.parent), str(path.relative_to(root)))
     return found
 
 
-def check(sweep: Sweep, root: Path = ROOT) -> None:
-    """Errors: UserError when a scene is no `bodies` (whose definition is all written out), is a tuning
-    sweep's, or when there are too few.
+@cache
+def used(root: Path = ROOT) -> dict[str, str]:
+    return _of_files((path for folder in TUNING for path in sorted((root / folder).glob("*.json"))), root)
+
+
+def check(sweep: Sweep, root: Path = ROOT, own: Iterable[Sweep] = ()) -> None:
+    """own: sweeps that the claim itself was judged by before; one of them may have confirmed another claim.
+    Errors: UserError when a scene is no `bodies` (whose definition is all written out), is a tuning sweep's or
+    one of `own`, or when there are too few.
     """
     data = read_object(sweep.path)
+    taken = _of_files((one.path for one in own), ROOT) | used(root)
     names = {case["label"].partition(" ")[0] for case in data["axes"][0]["cases"]}
     if len(names) < LEAST:
         raise UserError(f"{sweep.file}: {len(names)} scenes; a confirmation has at least {LEAST}")
@@ -159,7 +164,7 @@ def check(sweep: Sweep, root: Path = ROOT) -> None:
                 f"{sweep.file}: {case['label']}: the scene is {scene.get('name')!r}; a confirmation scene is"
                 " of bodies, all written out"
             )
-        if file := used(root).get(identity(scene, sweep.path.parent)):
+        if file := taken.get(identity(scene, sweep.path.parent)):
             raise UserError(
                 f"{sweep.file}: {case['label']}: its scene is one of {file}, where rules were tuned; labels"
                 " and resolution make no other scene"

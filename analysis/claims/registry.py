@@ -138,7 +138,7 @@ def register(claim: Claim, table: Table, file: Path = FILE, run_before: str = ""
         )
     entries = read(file)
     for name in claim.confirmation_sweeps:
-        fresh.check(read_sweep(name))
+        fresh.check(read_sweep(name), own=map(read_sweep, claim.sweeps))
         if name in table.sweeps and table.sweeps[name].rows:
             raise UserError(
                 f"{claim.id}: {name} has been run ({table.sweeps[name].about.get('date')}): a rule is"
@@ -197,7 +197,7 @@ def _changed(claim: Claim, entry: dict) -> str:
                 else "the entry has none: register it before another first run"
             )
         try:
-            fresh.check(read_sweep(name))
+            fresh.check(read_sweep(name), own=map(read_sweep, claim.sweeps))
         except UserError as error:
             return str(error)
     return ""

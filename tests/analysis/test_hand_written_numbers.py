@@ -5,6 +5,10 @@ import statistics
 
 import pytest
 
+from analysis.claims import table as claims_table
+from analysis.claims.entry import read_claim
+from analysis.claims.judge import judge
+from analysis.claims.proofs import Eval
 from analysis.json_file import read_object
 from analysis.places import ROOT
 from analysis.readme import cost, numbers
@@ -67,3 +71,18 @@ def test_what_the_stress_suite_takes_is_what_its_runs_took():
     of = days(read_object(ROOT / "results/stress.json")["tests"].values())
     assert f"{stress['runs']} runs, {stress['core_s'] / 60:.1f} minutes of one core ({of})" in page("docs/verbs.md")
     assert f"{stress['core_s'] / 60:.1f} minutes in all" in page("results/STRESS.md")
+
+
+def test_the_text_on_confirmed_claims_is_that_of_their_numbers():
+    table, text = claims_table.read(claims_table.FILE), page("docs/results.md")
+    asker = Eval(None, table.answers, fresh=False)
+
+    def of(claim: str, part: int, digits: str = ".2f") -> str:
+        judged = judge(read_claim(claim), table, asker).confirmed_parts[part]
+        return "{} [{}, {}]".format(*(f"{x:{digits}}" for x in (judged.value, judged.lower, judged.upper)))
+
+    assert f"(K2: {of('K2', 0, '.3g')} seconds)" in text
+    assert f"contact terms {of('K7', 0, '.2g')} times as fast" in text and f"is not decided ({of('K7', 1)};" in text
+    assert f"(K8: {of('K8', 0)})" in text and f"it is not decided ({of('K8', 1)})" in text
+    assert f"(K9: {of('K9', 0)})" in text and f"(K14: {of('K14', 0, '.2g')})" in text
+    assert f"clamped takes {of('N2', 0)} times as many" in text and f"in the mean ({of('N2', 1)})" in text

@@ -20,7 +20,7 @@ class Repository:
 
     def __init__(self, root):
         self.root = root
-        for file in (f"claims/confirmation/{NAME}.json", "configs/scenes/hang.json"):
+        for file in (f"claims/confirmation/{NAME}.json", *(f"claims/sweeps/{name}.json" for name in CLAIM.sweeps), "configs/scenes/hang.json"):
             (root / file).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / file, root / file)
         self.git("init", "--quiet", "--initial-branch=main")

@@ -126,3 +126,12 @@ def test_a_scene_with_defaults_is_refused(tmp_path):
 def test_too_few_scenes_are_refused(tmp_path):
     with pytest.raises(UserError, match="7 scenes; a confirmation has at least 8"):
         fresh.check(edited(tmp_path, lambda cases: cases.__delitem__(slice(21, None))))
+
+
+def test_what_a_claim_was_made_from_does_not_confirm_it():
+    """A sweep that confirmed another claim is no tuning sweep; for the claim that was made of its numbers it is one."""
+    first, second = read_sweep("solids_let_go"), read_sweep("solids_both_ways")
+    fresh.check(first)
+    fresh.check(second, own=[first])
+    with pytest.raises(UserError, match="its scene is one of claims/confirmation/solids_let_go.json, where rules were tuned"):
+        fresh.check(first, own=[first])
