@@ -9,7 +9,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
-from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from .. import style
 from .judge import Answer
@@ -31,9 +31,10 @@ SHOWN = (
     " scenes (Student's t); for shares of scenes in which every run gets through Wilson's interval and no"
     " dots; where a part asks for every run, or has a closed form (diamond), a bar from the least to the"
     " largest number. Black ticks: the threshold of the rule, or the share of the case that has to be beaten."
-    " The colour is the exploratory verdict of the whole claim (or that of a closed form), which may have"
-    " more parts and other conditions (results/CLAIMS.md). Where steps are not asked to converge, the label"
-    " has the residual of their ends."
+    " Squares, below their circles: the same number over the scenes of a confirmation, which no rule was"
+    " tuned on. The colour of a circle is the exploratory verdict of the whole claim (or that of a closed"
+    " form), that of a square the confirmed one; both may have more parts and other conditions"
+    " (results/CLAIMS.md). Where steps are not asked to converge, the label has the residual of their ends."
 )
 
 
@@ -46,31 +47,45 @@ def _dots(j: Judged) -> list[float]:
     return [] if j.rule == "outcomes" else [value for _, value, *_ in j.per_scene]
 
 
-def _row(axis, k: int, a: Answer) -> dict:
-    j, color = a.main, COLORS[a.verdict.verdict]
+def confirmed_main(a: Answer) -> Judged | None:
+    """The number of the same part over scenes that no rule was tuned on; None where there is none, or where
+    no scene decides.
+    """
+    if a.main.proof:
+        return None
+    same = [j for j in a.confirmed_parts if j.says == a.main.says and j.value is not None]
+    return same[0] if a.confirmed is not None and same else None
+
+
+def _number(axis, j: Judged, y: float, color: str, marker: str) -> None:
+    """A number with its interval at the height y, its scenes a little below."""
     dots = _dots(j)
     axis.plot(
         dots,
-        [k + 0.24] * len(dots),
+        [y + 0.16] * len(dots),
         marker="o",
-        markersize=2.6,
+        markersize=2.2,
         color=color,
         alpha=0.45,
         markeredgewidth=0,
         linestyle="none",
     )
     if j.lower is not None:
-        axis.plot([j.lower, j.upper], [k, k], color=color, linewidth=1.4, solid_capstyle="butt")
-    axis.plot([j.value], [k], marker="D" if j.proof else "o", color=color, linestyle="none")
+        axis.plot([j.lower, j.upper], [y, y], color=color, linewidth=1.4, solid_capstyle="butt")
+    axis.plot([j.value], [y], marker=marker, markersize=3.6, color=color, linestyle="none")
+
+
+def _row(axis, k: int, a: Answer) -> dict:
+    j, again = a.main, confirmed_main(a)
+    first = k if again is None else k - 0.2
+    _number(axis, j, first, COLORS[a.verdict.verdict], "D" if j.proof else "o")
+    text = f"{interval(j)}, asked {j.threshold}"
+    if again is not None:
+        _number(axis, again, k + 0.16, COLORS[a.confirmed.verdict], "s")
+        text += f"\n{interval(again)}, confirmation"
     for bound in j.bounds:
         axis.plot([bound, bound], [k - 0.36, k + 0.36], color="black", linewidth=0.9)
-    axis.annotate(
-        f"{interval(j)}, asked {j.threshold}",
-        (1.02, k),
-        xycoords=("axes fraction", "data"),
-        va="center",
-        fontsize=5.5,
-    )
+    axis.annotate(text, (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=5.5)
     return {
         "panel": kind_of(j),
         "claim": a.claim.id,
@@ -82,7 +97,11 @@ def _row(axis, k: int, a: Answer) -> dict:
         "upper": j.upper,
         "threshold": j.threshold,
         "ends": j.ends,
-        "scenes": " ".join(f"{x:.4g}" for x in dots),
+        "scenes": " ".join(f"{x:.4g}" for x in _dots(j)),
+        "confirmed_verdict": a.confirmed.verdict if a.confirmed is not None else "",
+        "confirmed_value": again.value if again else None,
+        "confirmed_lower": again.lower if again else None,
+        "confirmed_upper": again.upper if again else None,
     }
 
 
@@ -93,7 +112,7 @@ def _panel(axis, kind: str, shown: list[Answer]) -> list[dict]:
         axis.set_xscale("log")
         low, high = axis.get_xlim()
         axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 100 else (1,), numticks=12))
-        axis.xaxis.set_major_formatter(ScalarFormatter() if high < 1e4 else axis.xaxis.get_major_formatter())
+        axis.xaxis.set_major_formatter("{x:g}" if high < 1e4 else axis.xaxis.get_major_formatter())
         axis.xaxis.set_minor_formatter(NullFormatter())
     axis.set_yticks(
         range(len(shown)), [f"{a.claim.id}  {_wrapped(_says(a.main))}" for a in shown], fontsize=5.5
@@ -118,7 +137,7 @@ def draw(answers: list[Answer], stem: Path) -> list[Path]:
     fig, axes = plt.subplots(
         len(by_kind),
         1,
-        figsize=(style.WIDE_IN, 0.5 + 0.31 * sum(heights)),
+        figsize=(style.WIDE_IN, 0.5 + 0.34 * sum(heights)),
         layout="constrained",
         height_ratios=heights,
         squeeze=False,
@@ -141,8 +160,9 @@ def draw(answers: list[Answer], stem: Path) -> list[Path]:
         linestyle="none",
         label="a scene",
     )
+    first.plot([], [], color="#888888", marker="s", markersize=3.6, label="confirmation")
     first.plot([], [], color="black", marker="|", linestyle="none", label="threshold")
-    fig.legend(loc="outside lower center", ncols=7, frameon=False)
+    fig.legend(loc="outside lower center", ncols=4, frameon=False)
     return style.save(fig, stem, pd.DataFrame(rows), SHOWN)
 
 

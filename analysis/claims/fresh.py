@@ -149,8 +149,8 @@ def used(root: Path = ROOT) -> dict[str, str]:
 
 def check(sweep: Sweep, root: Path = ROOT, own: Iterable[Sweep] = ()) -> None:
     """own: sweeps that the claim itself was judged by before; one of them may have confirmed another claim.
-    Errors: UserError when a scene is no `bodies` (whose definition is all written out), is a tuning sweep's or
-    one of `own`, or when there are too few.
+    Errors: UserError when a scene is no `bodies` (whose definition is all written out), when it is one of a
+    tuning sweep or of `own`, and when there are too few.
     """
     data = read_object(sweep.path)
     taken = _of_files((one.path for one in own), ROOT) | used(root)

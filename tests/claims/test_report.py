@@ -38,6 +38,22 @@ def test_panels_by_kind_of_number(tmp_path):
     assert "Light dots below: the scenes" in (tmp_path / "claims.txt").read_text().replace("\n", " ")
 
 
+def test_the_figure_has_the_number_of_a_confirmation_beside_that_of_its_rule(tmp_path):
+    """The square is the number of the same part, and a proof has none: no scene decides it."""
+    first, *others = answers()
+    again = judged("ratio", ratio, above=1)
+    again.value, again.lower, again.upper = 0.5, 0.25, 0.75
+    another = judged("ratio", ratio, above=1)
+    another.says, another.value = "another part", 9.0
+    proof = others[-1]
+    proof.confirmed, proof.confirmed_parts = Judged("holds"), [proof.parts[0]]
+    figure.draw([replace(first, confirmed=Judged("does not hold"), confirmed_parts=[another, again]), *others], tmp_path / "claims")
+    rows = {row["claim"]: row for row in csv.DictReader((tmp_path / "claims.csv").read_text().split("\n"))}
+    assert (rows["K3"]["verdict"], rows["K3"]["confirmed_verdict"]) == ("holds", "does not hold")
+    assert [float(rows["K3"][f"confirmed_{key}"]) for key in ("value", "lower", "upper")] == [0.5, 0.25, 0.75]
+    assert rows["H8"]["confirmed_value"] == rows["K17"]["confirmed_value"] == ""
+
+
 def test_scatter_slice_and_starts_stand_in_the_text():
     a = answers()[0]
     a.parts[0].slice, a.parts[0].sweep = "theta 0.1, limit off", "s"
