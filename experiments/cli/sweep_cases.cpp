@@ -14,6 +14,7 @@
 #include "core/record/provenance.hpp"
 #include "experiments/cli/sweep_axes.hpp"
 #include "experiments/config/config_list.hpp"
+#include "experiments/config/document.hpp"
 
 namespace bb {
 namespace {
@@ -94,6 +95,7 @@ void check_seed(const json& spec, const AxisOf& axis_of, const std::string& path
 
 /// Everything that the file alone can tell, counted before anything is expanded. The axes.
 Axes checked_axes(json spec, const std::string& path) {
+  require_format(spec, "barrierbench.sweep/1", path);
   std::vector<Violation> violations;
   Rule rule;
   rule.kind = Kind::object;

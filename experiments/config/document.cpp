@@ -170,6 +170,7 @@ json with_base(json document, const std::string& source, const std::string& fold
   expand_shorthands(document);
   absolute_mesh_paths(document, folder);
   if (!document.is_object()) return document;
+  require_format(document, "barrierbench.config/1", source);
   if (method_above) document.erase("method");
   const bool has_method = document.contains("method");
   json base = base_of(document, source, folder, std::move(chain), method_above || has_method);
@@ -288,6 +289,17 @@ void apply_override(json& document, const std::string& text, const std::string& 
          "of arrays are not"});
   }
   absolute_mesh_paths(document, folder);
+}
+
+void require_format(const json& document, std::string_view format, const std::string& source) {
+  const auto found = document.is_object() ? document.find("schema") : document.end();
+  if (found == document.end() || !found->is_string()) return;
+  const std::string_view name = found->get_ref<const std::string&>();
+  if (!name.starts_with("barrierbench.") || name == format) return;
+  std::string allowed = fmt::format("\"{}\"", format);
+  if (name == "barrierbench.sweep/1") allowed += ": this is a sweep, ./bench sweep FILE --dry-run lists its runs";
+  if (name == "barrierbench.config/1") allowed += ": this is the config of one run, ./bench run FILE";
+  throw ConfigError(source + "#/schema", fmt::format("\"{}\"", name), std::move(allowed));
 }
 
 json make_document(const std::string& text, const std::string& source, const std::string& folder,

@@ -6,18 +6,23 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/math/error.hpp"
 
 namespace bb {
 
+/// Errors: ConfigError, alone and with the verb to use, when the document says that it is of another format of ours than
+/// `format`, such as "barrierbench.config/1": every key of a sweep is wrong in a config.
+void require_format(const nlohmann::json& document, std::string_view format, const std::string& source);
+
 /// Text to a document: mesh paths made absolute from `folder`, "extends" laid underneath (and its own, in
 /// turn), then the overrides "/pointer=value": an override
 /// makes missing keys of objects, but never elements of an array. Violations of overrides are appended.
 /// The settings of a method are laid over what its file extends and under what the file itself says; those of a method that
 /// an override names over the file and under all overrides. Only the highest method counts.
-/// Errors: ConfigError as parse_json, unreadable, circular or too long `extends`.
+/// Errors: ConfigError as parse_json and require_format, unreadable, circular or too long `extends`.
 nlohmann::json make_document(const std::string& text, const std::string& source, const std::string& folder,
                              std::span<const std::string> overrides, std::vector<Violation>& violations);
 

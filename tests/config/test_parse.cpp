@@ -17,6 +17,19 @@ TEST(Parse, TheConfigsOfTheTestsAreAccepted) {
   EXPECT_EQ(parsed(bodies_config()).scene.bodies.size(), 1u);
 }
 
+TEST(Parse, AFileOfAnotherFormatIsOneViolationWithItsVerb) {
+  json sweep = with(hang_config(), "/schema", "barrierbench.sweep/1");
+  sweep["axes"] = json::array();
+  try {
+    parsed(sweep);
+    FAIL() << "a sweep was read as a config";
+  } catch (const ConfigError& error) {
+    ASSERT_EQ(error.violations().size(), 1u) << error.what();
+    EXPECT_NE(error.violations()[0].where.find("#/schema"), std::string::npos);
+    EXPECT_NE(error.violations()[0].allowed.find("./bench sweep FILE"), std::string::npos);
+  }
+}
+
 TEST(Parse, UnknownKeysSuggestTheNearest) {
   const std::vector<std::pair<std::string, std::string>> keys = {
       {"/tim", "time"},

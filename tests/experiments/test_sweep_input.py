@@ -80,3 +80,10 @@ def test_swept_pointers_are_columns_and_outcomes_stand_beside_their_comparabilit
     assert "/time/dt_s" in as_text(table).splitlines()[0]
     written = json.loads(next(out.glob("*/run.json")).read_text())["labels"]["swept"]
     assert set(written) == {"/time/dt_s", "/formulation/stiffness_policy/kappa_N_per_m"}
+
+
+def test_a_config_is_told_that_it_is_no_sweep(program, tmp_path):
+    """One line with the verb, and not one for every key."""
+    done = bench(program, "sweep", BLOCK, "--dry-run")
+    refused(done, f"{BLOCK}#/schema", "./bench run FILE")
+    assert len(done.stderr.strip().splitlines()) == 1
