@@ -297,7 +297,8 @@ void require_format(const json& document, std::string_view format, const std::st
   const std::string_view name = found->get_ref<const std::string&>();
   if (!name.starts_with("barrierbench.") || name == format) return;
   std::string allowed = fmt::format("\"{}\"", format);
-  if (name == "barrierbench.sweep/1") allowed += ": this is a sweep, ./bench sweep FILE --dry-run lists its runs";
+  if (name == "barrierbench.sweep/1")
+    allowed += ": this is a sweep, ./bench sweep FILE --dry-run lists its runs";
   if (name == "barrierbench.config/1") allowed += ": this is the config of one run, ./bench run FILE";
   throw ConfigError(source + "#/schema", fmt::format("\"{}\"", name), std::move(allowed));
 }
