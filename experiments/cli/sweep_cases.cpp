@@ -166,7 +166,7 @@ std::uint64_t seed_of(std::uint64_t main, const Axes& axes, const std::vector<st
   }
   if (const auto found = one.swept.find("repetition"); found != one.swept.end()) of_problem.insert(*found);
   std::string text = std::to_string(main) + "\n";
-  for (const auto& [pointer, value] : of_problem) text += pointer + "=" + value + "\n";
+  for (const auto& [pointer, value] : of_problem) text.append(pointer).append("=").append(value).append("\n");
   return std::stoull(sha256_hex(text).substr(0, 12), nullptr, 16);
 }
 

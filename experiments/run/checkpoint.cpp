@@ -47,7 +47,7 @@ FilePrefix prefix_of(std::string_view line) {
 
 /// The trace that belongs to a checkpoint in `folder`, as `line` has it. Errors: ConfigError: it is another one, or not there.
 FilePrefix trace_of(const fs::path& folder, std::string_view line) {
-  const FilePrefix trace = prefix_of(line);
+  FilePrefix trace = prefix_of(line);
   if (trace.bytes == 0 || find_trace(folder, trace)) return trace;
   const fs::path part = folder / "trace.jsonl.part";
   std::error_code unreachable;
