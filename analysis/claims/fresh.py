@@ -54,7 +54,8 @@ def _plain(value, schema: dict, folder: Path):
             for one in value
         ]
     if isinstance(value, bool) or not isinstance(value, dict):
-        return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        return float(value) + 0.0 if number else value  # -0.0 is 0
     rules, found = schema.get("properties", {}), {}
     for key, one in value.items():
         rule = rules.get(key, {})
@@ -72,11 +73,15 @@ def _plain(value, schema: dict, folder: Path):
 
 def identity(scene: dict, folder: Path) -> str:
     """Canonical hash of what a scene is made of: bodies with meshes, materials, places and speeds, obstacles,
-    gravity.
+    gravity; in whatever order.
     """
     if scene.get("name") != "bodies":
         return of_text(json.dumps(scene, sort_keys=True))
-    return of_text(json.dumps(_plain(scene, _defaults(), folder), sort_keys=True))
+    plain = _plain(scene, _defaults(), folder)
+    for key in ("bodies", "obstacles"):
+        if isinstance(plain.get(key), list):
+            plain[key].sort(key=lambda one: json.dumps(one, sort_keys=True))
+    return of_text(json.dumps(plain, sort_keys=True))
 
 
 def _found(value, key: str) -> Iterator:
@@ -132,19 +137,24 @@ def scenes_of(path: Path) -> list[dict]:
     return [*scenes, *once, *twice]
 
 
-def _of_files(paths: Iterable[Path], root: Path) -> dict[str, str]:
-    """identity -> the first of these files of runs that has the scene."""
-    found: dict[str, str] = {}
-    for path in paths:
-        for scene in scenes_of(path):
-            if scene.get("name") == "bodies":
-                found.setdefault(identity(scene, path.parent), str(path.relative_to(root)))
-    return found
+def identities(path: Path) -> set[str]:
+    """Of all scenes of bodies that a file of runs can make."""
+    return {identity(scene, path.parent) for scene in scenes_of(path) if scene.get("name") == "bodies"}
 
 
 @cache
 def used(root: Path = ROOT) -> dict[str, str]:
-    return _of_files((path for folder in TUNING for path in sorted((root / folder).glob("*.json"))), root)
+    """identity -> a file of runs that has the scene."""
+    found: dict[str, str] = {}
+    for path in (path for folder in TUNING for path in sorted((root / folder).glob("*.json"))):
+        found = dict.fromkeys(identities(path), str(path.relative_to(root))) | found
+    return found
+
+
+def shared(sweep: Sweep, others: Iterable[Sweep]) -> str:
+    """The file of the first of the other sweeps that has a scene of this one; empty when none has."""
+    mine = identities(sweep.path)
+    return next((one.file for one in others if mine & identities(one.path)), "")
 
 
 def check(sweep: Sweep, root: Path = ROOT, own: Iterable[Sweep] = ()) -> None:
@@ -153,10 +163,11 @@ def check(sweep: Sweep, root: Path = ROOT, own: Iterable[Sweep] = ()) -> None:
     tuning sweep or of `own`, and when there are too few.
     """
     data = read_object(sweep.path)
-    taken = _of_files((one.path for one in own), ROOT) | used(root)
+    taken = {scene: one.file for one in own for scene in identities(one.path)} | used(root)
     names = {case["label"].partition(" ")[0] for case in data["axes"][0]["cases"]}
     if len(names) < LEAST:
         raise UserError(f"{sweep.file}: {len(names)} scenes; a confirmation has at least {LEAST}")
+    label_of: dict[str, str] = {}
     for case in data["axes"][0]["cases"]:
         scene = merged(data, sweep.path, case["set"])["scene"]
         if scene.get("name") != "bodies":
@@ -164,7 +175,12 @@ def check(sweep: Sweep, root: Path = ROOT, own: Iterable[Sweep] = ()) -> None:
                 f"{sweep.file}: {case['label']}: the scene is {scene.get('name')!r}; a confirmation scene is"
                 " of bodies, all written out"
             )
-        if file := taken.get(identity(scene, sweep.path.parent)):
+        mine, label = identity(scene, sweep.path.parent), case["label"].partition(" ")[0]
+        if label_of.setdefault(mine, label) != label:
+            raise UserError(
+                f"{sweep.file}: {case['label']}: its scene is that of {label_of[mine]}: a scene counts once"
+            )
+        if file := taken.get(mine):
             raise UserError(
                 f"{sweep.file}: {case['label']}: its scene is one of {file}, where rules were tuned; labels"
                 " and resolution make no other scene"

@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 from pathlib import Path
 
+from ..errors import UserError
 from ..json_file import read_object
 from .entry import METHOD, ROOT, method_set
 
@@ -40,7 +41,11 @@ def base_path(data: dict, path: Path) -> Path:
 
 
 def base_of(data: dict, path: Path) -> dict:
-    return read_object(base_path(data, path))
+    """Errors: UserError for a base that extends another config: nothing here lays one over the other."""
+    base = read_object(base_path(data, path))
+    if "extends" in base:
+        raise UserError(f"{base_path(data, path)}: /extends: a config that stands alone is needed here")
+    return base
 
 
 def _length(config: dict, pointer: str) -> None:

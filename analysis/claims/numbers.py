@@ -76,14 +76,18 @@ def one_run(a: dict, b: dict, metric: str) -> bool:
     return a.get("gaps") is not None and all(a.get(key) == b.get(key) for key in kept)
 
 
-def with_subject(judged: Judged, same: int, pairs: int) -> Judged:
-    """Says in how many pairs both cases made the same run. Where all did, what the cases differ in never
-    acted, and there is no verdict.
+def with_subject(judged: Judged, same: Cells, judged_cells: Cells) -> Judged:
+    """Says in how many pairs both cases made the same run; same: of every pair 1 where they did. Where all of
+    those that are judged did, what the cases differ in never acted, and there is no verdict.
     """
-    if not same:
+    of_all, of_judged = (
+        [value for levels in cells.values() for starts in levels.values() for value in starts]
+        for cells in (same, judged_cells)
+    )
+    if not any(of_all):
         return judged
-    counted = f"{judged.counted}; in {same} of {pairs} both cases made the same run"
-    if same < pairs:
+    counted = f"{judged.counted}; in {sum(of_all):g} of {len(of_all)} both cases made the same run"
+    if not of_judged or not all(of_judged):
         return replace(judged, counted=counted)
     missing = "both cases made the same run in every pair: what they differ in never acted"
     return replace(judged, counted=counted, verdict=OPEN, condition="", missing=missing)
@@ -96,7 +100,7 @@ def _scene(part: dict, place: tuple) -> bool:
 def ratio(part: dict, runs: Runs) -> Judged:
     """metric of `case` over that of `over` in the same scene, level and start: geometric means."""
     mine, other = by_place(runs, part["case"], part["sweep"]), by_place(runs, part["over"], part["sweep"])
-    cells, left_out, example, same, pairs = {}, Counter(), [], 0, 0
+    cells, same, left_out, example = {}, {}, Counter(), []
     for place in sorted(mine.keys() & other.keys()):
         if not _scene(part, place):
             continue
@@ -108,8 +112,9 @@ def ratio(part: dict, runs: Runs) -> Judged:
             math.log(a[part["metric"]] / b[part["metric"]])
         )
         example = example or [a["run"], b["run"]]
-        same, pairs = same + one_run(a, b, part["metric"]), pairs + 1
-    judged = with_subject(judge_cells(cells, left_out, part, True, "pairs"), same, pairs)
+        alike = float(one_run(a, b, part["metric"]))
+        same.setdefault(place[0], {}).setdefault(place[1], []).append(alike)
+    judged = with_subject(judge_cells(cells, left_out, part, True, "pairs"), same, complete(same, part))
     judged.measures = f"{METRICS[part['metric']][0]}: {part['case']} / {part['over']}"
     judged.runs = example
     return judged
@@ -153,7 +158,7 @@ def _every(cells: Cells, left_out: Counter, part: dict) -> Judged:
         "upper": max(values),
         "extremes": True,
     }
-    if threshold.judge(min(values), max(values)) != HOLDS:
+    if any(threshold.judge(value, value) != HOLDS for value in values):
         return Judged(NOT, **more)
     if (enough := len(complete(cells, part))) < SCENES:
         return undecided(
@@ -190,8 +195,11 @@ def _log_level(name: str, sweep: str) -> float:
 def slope(part: dict, runs: Runs) -> Judged:
     """d log(metric) / d log(level), level a number: a least-squares line a start, and one value a scene, the
     mean over its starts. Its scatter is that of the slopes between neighbouring levels. A number that has no
-    logarithm is left out. Errors: UserError for a level that is no number.
+    logarithm is left out. Errors: UserError for a level that is no number, and where starts shall matter: a
+    line of a start is no sample of a level.
     """
+    if "starts" in part:
+        raise UserError(f"{part.get('says', part)}: starts: found {part['starts']!r}; a slope has none")
     lines, left_out, example = {}, Counter(), []
     for place, row in sorted(by_place(runs, part["case"], part["sweep"]).items()):
         if not _scene(part, place):

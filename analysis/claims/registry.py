@@ -137,12 +137,18 @@ def register(claim: Claim, table: Table, file: Path = FILE, run_before: str = ""
             " sweep of claims/confirmation"
         )
     entries = read(file)
+    run = [name for name, runs in table.sweeps.items() if runs.rows and name not in claim.sweeps]
     for name in claim.confirmation_sweeps:
         fresh.check(read_sweep(name), own=map(read_sweep, claim.sweeps))
         if name in table.sweeps and table.sweeps[name].rows:
             raise UserError(
                 f"{claim.id}: {name} has been run ({table.sweeps[name].about.get('date')}): a rule is"
                 " registered before the first run of its sweep"
+            )
+        if not run_before and (other := fresh.shared(read_sweep(name), map(read_sweep, run))):
+            raise UserError(
+                f"{claim.id}: {name} has scenes of {other}, which has been run: --run-before TEXT says"
+                " when and with what, and the page repeats it"
             )
     rule = rule_of(claim)
     entries[claim.id] = ({RUN_BEFORE: run_before} if run_before else {}) | {

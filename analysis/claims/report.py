@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 
 from ..text_table import markdown as table_lines
-from . import frontiers
+from . import frontiers, verdict_code
 from .entry import read_sweep
 from .judge import Answer
 from .metrics import METRICS
@@ -231,6 +231,7 @@ def in_page(page: str, answers: list[Answer]) -> str:
 def markdown(answers: list[Answer], table: Table) -> str:
     lines = [
         HEAD,
+        *verdict_code.lines(),
         "![main number of every claim by kind, with its scenes, interval and threshold](../docs/claims.png)",
         "",
         *verdict_table(answers),

@@ -86,9 +86,9 @@ def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
     elif name == "method" and isinstance(node, str) and (file := entry.METHODS / f"{node}.json").is_file():
         yield file.read_bytes()
         yield from _inputs(read_object(file)["set"], folder)
-    elif name in ("base", "file") and isinstance(node, str) and (folder / node).is_file():
+    elif name in ("base", "extends", "file") and isinstance(node, str) and (folder / node).is_file():
         yield (folder / node).read_bytes()
-        if name == "base":
+        if name != "file":
             yield from _inputs(read_object(folder / node), (folder / node).parent)
 
 

@@ -26,6 +26,8 @@ struct Prediction {
   double c = 1;       // inertia weight M/(c h^2); 0 means no inertia (quasi-static)
   Positions x_tilde;  // [3 x n] m; holds no force
   double t_end = 0;   // s, at the end of the step: set by what starts the step, not by an integrator
+  bool at_start =
+      false;  // no step: forces at t_end, where a step of this length begins and what acts in it acts
 };
 
 class Integrator {

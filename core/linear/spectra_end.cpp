@@ -49,10 +49,19 @@ class CountedOperator {
   mutable VecXd in_, out_;
 };
 
+/// Whether C v is value v up to `tol` of it. Spectra goes by estimates of residuals, and where a Krylov space is exhausted its
+/// vector may be none of C's.
+bool is_pair(const SymmetricOperator& c, double value, const VecXd& v, double tol) {
+  if (!std::isfinite(value) || !v.allFinite()) return false;
+  VecXd image;
+  c(v, image);
+  return (image - value * v).norm() <= tol * std::abs(value) * v.norm();
+}
+
 /// value(eigenvalue as Spectra gives it, scale): that of C.
 template <class Solver, class Value>
-SpectraEnd find(Solver& solver, const CountedOperator& op, const VecXd& start, Spectra::SortRule rule,
-                double tol, const Value& value) {
+SpectraEnd find(Solver& solver, const SymmetricOperator& c, const CountedOperator& op, const VecXd& start,
+                Spectra::SortRule rule, double tol, const Value& value) {
   SpectraEnd end;
   try {
     solver.init(start.data());
@@ -65,7 +74,7 @@ SpectraEnd find(Solver& solver, const CountedOperator& op, const VecXd& start, S
   if (!end.converged) return end;
   end.value = value(solver.eigenvalues()[0], op.scale());
   end.vector = solver.eigenvectors(1).col(0);
-  end.converged = std::isfinite(end.value) && end.vector.allFinite();
+  end.converged = is_pair(c, end.value, end.vector, tol);
   return end;
 }
 
@@ -76,7 +85,7 @@ SpectraEnd spectra_largest(const SymmetricOperator& op, const VecXd& start, int 
   if (n < 2) return {};  // Spectra needs a space beside the eigenvector
   CountedOperator counted(op, n, most);
   Spectra::SymEigsSolver<CountedOperator> solver(counted, 1, std::min<Eigen::Index>(n, product_basis));
-  return find(solver, counted, start, Spectra::SortRule::LargestAlge, tol,
+  return find(solver, op, counted, start, Spectra::SortRule::LargestAlge, tol,
               [](double nu, double scale) { return nu * scale; });
 }
 
@@ -87,7 +96,7 @@ SpectraEnd spectra_smallest_inverted(const SymmetricOperator& solve, const VecXd
   CountedOperator counted(solve, n, most);
   Spectra::SymEigsShiftSolver<CountedOperator> solver(counted, 1, std::min<Eigen::Index>(n, solve_basis),
                                                       0.0);
-  return find(solver, counted, start, Spectra::SortRule::LargestMagn, tol,
+  return find(solver, solve, counted, start, Spectra::SortRule::LargestMagn, tol,
               [](double lambda, double scale) { return scale / lambda; });
 }
 

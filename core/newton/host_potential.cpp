@@ -49,7 +49,8 @@ void HostPotential::set_fixed_families(const Method& method) {
 }
 
 void HostPotential::begin_step(const StepColumns& step) {
-  frame_ = {points(step.x_n), points(step.x_tilde), step.dt, step.c, step.load_factor, step.t_end};
+  frame_ = {points(step.x_n), points(step.x_tilde), step.dt,      step.c,
+            step.load_factor, step.t_end,           step.at_start};
   energies_known_ = trial_evaluated_ = false;
   if (solver_) solver_->begin_step();
   for (const auto& term : terms_) term->begin_step(frame_, clock());

@@ -23,10 +23,11 @@ struct KnownStep;
 using Column = exec::Buffer<double>;
 
 /// One time step: where it starts and leads without force, s, inertia weight c, factor of the external force, and the time
-/// at its end, s.
+/// at its end, s. at_start: as in Prediction.
 struct StepColumns {
   const Column &x_n, &x_tilde;
   double dt = 0, c = 1, load_factor = 1, t_end = 0;
+  bool at_start = false;
 };
 
 class IncrementalPotential {

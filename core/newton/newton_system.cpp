@@ -45,7 +45,7 @@ NewtonSystem::NewtonSystem(const Scene& scene, Method& method)
 NewtonSystem::~NewtonSystem() = default;
 
 StepColumns NewtonSystem::step_columns() const {
-  return {state_.x_n, state_.x_tilde, dt_, c_, load_factor_, t_end_};
+  return {state_.x_n, state_.x_tilde, dt_, c_, load_factor_, t_end_, at_start_};
 }
 
 void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt,
@@ -59,6 +59,7 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   dt_ = dt;
   c_ = prediction.c;
   t_end_ = prediction.t_end;
+  at_start_ = prediction.at_start;
   load_factor_ = load_factor;
   state_.level.reset();
   served_at_once_ = false;

@@ -93,6 +93,7 @@ class NewtonSystem : public StepSystem {
   bool factored_ = false;        // the last solve made a factor of the matrix that it solved
   bool served_at_once_ = false;  // the first matrix of the last solve did: the next may be nearer to exact
   double dt_ = 0, c_ = 1, load_factor_ = 1, t_end_ = 0;
+  bool at_start_ = false;
   Positions target_;
   MotionEnd end_ = MotionEnd::free;  // of the motion in progress
   std::unique_ptr<Diagnosis> diagnosis_;

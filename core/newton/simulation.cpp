@@ -6,6 +6,7 @@
 #include "core/archive/archive.hpp"
 #include "core/newton/iteration.hpp"
 #include "core/newton/velocity_damping.hpp"
+#include "core/terms/pull.hpp"
 
 namespace bb {
 
@@ -96,7 +97,13 @@ bool Simulation::hold_pins(std::vector<int> holding) {
   return true;
 }
 
-// Forces jump where vertices are let go or held: an acceleration of before is not theirs.
+// Whether the nominal step that begins has other pulls than the one before.
+bool Simulation::other_pulls() const {
+  return step_ > 0 && parts_.at_start() &&
+         acting_pulls(scene_, nominal_start_ + dt_ / 2) != acting_pulls(scene_, nominal_start_ - dt_ / 2);
+}
+
+// Forces jump where vertices are let go or held, and where pulls begin or end: an acceleration of before is not theirs.
 void Simulation::begin_anew() {
   history_.anew = true;
   if (!method_.integrator->needs_acceleration()) return;
@@ -136,7 +143,7 @@ StepReport Simulation::step(StepObserver& observer) {
   clock.restart(Phase::step_control);
   ChargedObserver charged(observer, clock);
   if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
-  if (others) begin_anew();
+  if (others || other_pulls()) begin_anew();
   StepReport report = attempt_until_converged(charged);
 
   remember(system_->view().x(), report.dt_s);
@@ -201,6 +208,7 @@ void Simulation::start_acceleration() {
   method_.integrator->predict(history_, dt_, at_rest);  // for its c
   at_rest.x_tilde = history_.x;
   at_rest.t_end = history_.t;
+  at_rest.at_start = true;
   system_->begin_step(history_.x, at_rest, dt_, 1.0);
   system_->assemble();
   for (Eigen::Index i = 0; i < history_.a.cols(); ++i) {

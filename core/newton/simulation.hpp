@@ -45,6 +45,7 @@ class Simulation {
   bool hold_pins(std::vector<int> holding);
   void begin_anew();
   void start_acceleration();
+  bool other_pulls() const;
   StepReport attempt(StepObserver& observer);
   StepReport attempt_until_converged(StepObserver& observer);
   void measure_residual(StepReport& report);

@@ -27,6 +27,10 @@ class ExternalForce final : public Term {
 
   void begin_step(const StepFrame& frame, PhaseClock&) override {
     x_n_ = frame.x_n;
+    change_frame(frame);
+  }
+  // Gravity may depend on when the step ends.
+  void change_frame(const StepFrame& frame) override {
     force_.resize(3, x_n_.cols());
     const Vec3d gravity = gravity_at(scene_, frame.t_end);
     for (Eigen::Index i = 0; i < x_n_.cols(); ++i) {

@@ -16,22 +16,27 @@ std::vector<int> pulled_vertices(const Scene& scene) {
 
 namespace {
 
-/// Of the stiffness in a step. One whose middle is not within the span has none, whatever its ends are rounded to.
-double factor_of(const Pull& pull, double t_end, double dt) {
-  const double middle = t_end - dt / 2;
-  if (!(middle > pull.span.hold && middle < pull.span.release)) return 0;
+/// Of the stiffness in a step.
+double factor_of(const Pull& pull, double t_end, double middle) {
+  if (!pull.span.holds(middle)) return 0;
   return pull.factors.empty() ? 1 : value_at(pull.factors, t_end);
 }
 
 }  // namespace
 
-std::vector<PulledTo> pulls_of_step(const Scene& scene, double t_end, double dt) {
+std::vector<PulledTo> pulls_of_step(const Scene& scene, double t_end, double middle) {
   std::vector<PulledTo> out;
   for (const Pull& pull : scene.pulls) {
     const RigidMotion& motion = scene.motions[static_cast<std::size_t>(pull.motion)];
-    const double stiffness = pull.stiffness * factor_of(pull, t_end, dt);
+    const double stiffness = pull.stiffness * factor_of(pull, t_end, middle);
     for (const int v : pull.vertices) out.push_back({motion(scene.x0.col(v), t_end), stiffness});
   }
+  return out;
+}
+
+std::vector<bool> acting_pulls(const Scene& scene, double middle) {
+  std::vector<bool> out;
+  for (const Pull& pull : scene.pulls) out.push_back(pull.span.holds(middle));
   return out;
 }
 
@@ -44,7 +49,7 @@ class PullTerm final : public VertexQuadratic {
 
   void change_frame(const StepFrame& frame) override {
     std::size_t e = 0;
-    for (const PulledTo& to : pulls_of_step(scene_, frame.t_end, frame.dt)) {
+    for (const PulledTo& to : pulls_of_step(scene_, frame.t_end, frame.middle())) {
       set(e++, to.place, to.stiffness * Mat3d::Identity());
     }
   }

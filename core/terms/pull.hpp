@@ -15,7 +15,9 @@ struct PulledTo {
   Vec3d place;
   double stiffness;
 };
-/// Of every element in the step of length dt that ends at t_end, s.
-std::vector<PulledTo> pulls_of_step(const Scene& scene, double t_end, double dt);
+/// Of every element in the step with that middle, as at t_end, s.
+std::vector<PulledTo> pulls_of_step(const Scene& scene, double t_end, double middle);
+/// Which pulls act in it, one flag a pull.
+std::vector<bool> acting_pulls(const Scene& scene, double middle);
 
 }  // namespace bb

@@ -31,6 +31,9 @@ struct StepFrame {
   double c = 1;            // inertia weight M/(c dt^2); 0 when quasi-static
   double load_factor = 1;  // of the external force
   double t_end = 0;        // s, when the step is over: what is given as a function of time is taken there
+  bool at_start = false;   // no step: forces at t_end, where a step of length dt begins
+  /// s, in the middle of the step: what acts then acts in the whole of it, whatever the ends of spans are rounded to.
+  double middle() const { return at_start ? t_end + dt / 2 : t_end - dt / 2; }
 };
 
 /// What a term may read of the others while it is linearised at an iterate.

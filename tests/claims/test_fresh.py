@@ -38,6 +38,14 @@ def test_names_resolution_and_defaults_make_no_other_scene(same):
     assert identity(same) == identity(scene())
 
 
+def test_the_order_of_bodies_and_the_sign_of_a_zero_make_no_other_scene():
+    two, swapped = scene(), scene()
+    two["bodies"].append({**two["bodies"][0], "material": {"youngs_N_per_m": 5}})
+    swapped["bodies"] = two["bodies"][::-1]
+    assert identity(two) == identity(swapped) != identity(scene())
+    assert identity(changed(("gravity_m_per_s2",), [-0.0, 0, -9.81])) == identity(scene())
+
+
 @pytest.mark.parametrize("other", [
     changed(("bodies", 0, "material", "youngs_N_per_m"), 21), changed(("obstacles", 0, "kind"), "sphere"), changed(("bodies", 0, "mesh", "size_x_m"), 0.6),
     changed(("gravity_m_per_s2",), [0, 0, -1.62]), changed(("bodies", 0, "velocity_m_per_s"), [0, 0, -1]), changed(("bodies", 0, "mesh", "generator"), "box"),
@@ -135,3 +143,19 @@ def test_what_a_claim_was_made_from_does_not_confirm_it():
     fresh.check(second, own=[first])
     with pytest.raises(UserError, match="its scene is one of claims/confirmation/solids_let_go.json, where rules were tuned"):
         fresh.check(first, own=[first])
+
+
+def test_a_scene_counts_once(tmp_path):
+    def twice(cases):
+        for case in cases:
+            if case["label"].startswith("trough "):
+                case["set"]["/scene"] = next(one["set"]["/scene"] for one in cases if one["label"] == "bar 6")
+
+    with pytest.raises(UserError, match="trough 6: its scene is that of bar: a scene counts once"):
+        fresh.check(edited(tmp_path, twice))
+
+
+def test_scenes_of_another_confirmation_are_found():
+    shells, solids = read_sweep("shells_contact"), read_sweep("solids_let_go")
+    assert fresh.shared(read_sweep("shells_shapes"), [solids, shells]) == "claims/confirmation/shells_contact.json"
+    assert fresh.shared(solids, [shells, read_sweep("solids_both_ways")]) == ""

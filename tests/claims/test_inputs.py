@@ -11,10 +11,12 @@ from analysis.claims import inputs
 from analysis.claims import judge as judging
 from analysis.claims.entry import FOLDER, ROOT, ids, read_claim, read_sweep
 from analysis.claims.judge import missing
-from analysis.claims.merged import merged, put
+from analysis.claims.merged import base_of, merged, put
 from analysis.claims.table import Runs, Table, collect
 from analysis.gate.cases import read_set
 from analysis.matching import formulations
+from analysis.matching.runs import Sweep as Made
+from analysis.matching.runs import inputs_sha256
 
 NOTES = [f"s: strip {level} {case} main=1" for level in (4, 6) for case in ("log", "cubic")]
 
@@ -153,3 +155,16 @@ def test_steps_and_a_duration_replace_each_other():
     assert merged(data, path, {"/time/steps": 3}, {"/time/duration_s": 0.2})["time"] == {"duration_s": 0.2}
     assert merged(data, path, {"/time/duration_s": 0.2}, {"/time/steps": 3})["time"] == {"steps": 3}
     assert merged(data, path, {"/time/steps": 3}, {"/time/dt_s": 0.1})["time"] == {"steps": 3, "dt_s": 0.1}
+
+
+def test_a_base_that_extends_another_is_in_the_hash_and_refused_as_a_config(tmp_path):
+    """What the base extends is an input of the runs; what it is laid over nobody here works out."""
+    parent, base = tmp_path / "parent.json", tmp_path / "base.json"
+    base.write_text(json.dumps({"extends": "parent.json"}))
+    data, hashes = {"base": str(base), "axes": []}, []
+    for dt in (0.01, 0.02):
+        parent.write_text(json.dumps({"time": {"dt_s": dt}}))
+        hashes.append(inputs_sha256(Made("s", json.dumps(data), ())))
+    assert hashes[0] != hashes[1]
+    with pytest.raises(UserError, match="base.json: /extends: a config that stands alone"):
+        base_of({"base": "base.json"}, tmp_path / "s.json")

@@ -50,6 +50,26 @@ def test_one_run_twice_decides_nothing():
     assert "same run" not in ratio(PART, runs(lambda s, lv, c, k: {"newton": 10.0})).counted, "numbers of before 3.5.0 have no gaps"
 
 
+def test_a_pair_that_is_not_judged_is_no_subject():
+    """A fourth scene, whose runs differ, has one level: it decides nothing, and does not make the other three a comparison."""
+    made = runs(of_gaps(SCENES), scenes=(*SCENES, "d"))
+    made.rows = [row for row in made.rows if row["scene"] != "d" or row["level"] == "1"]
+    judged = ratio(PART, made)
+    assert judged.verdict == OPEN and "made the same run in every pair" in judged.missing and "in 45 of 50" in judged.counted
+
+
+def test_every_run_beyond_a_threshold_lies_on_either_side():
+    part = {"says": "x", "sweep": "s", "metric": "newton", "case": "x", "beyond": 1, "every": True}
+    of = {"a": -2.0, "b": 3.0, "c": 4.0}
+    assert level(part, runs(lambda s, lv, c, k: {"newton": of[s]})).verdict == HOLDS
+    assert level({**part, "beyond": 2.5}, runs(lambda s, lv, c, k: {"newton": of[s]})).verdict == NOT
+
+
+def test_a_slope_has_no_starts_that_matter():
+    with pytest.raises(UserError, match="starts: found 'matter'; a slope has none"):
+        slope({**PART, "starts": "matter", "reason": "r"}, runs(twice))
+
+
 def test_an_interval_round_the_threshold_decides_nothing():
     of_x = {"a": 14.0, "b": 16.0, "c": 20.0}
     judged = ratio(PART, runs(lambda s, lv, c, k: {"newton": of_x[s] if c == "x" else 10.0}))

@@ -43,5 +43,24 @@ TEST(ConditionEnds, ANeighbourIsNeverReportedAsOk) {
   }
 }
 
+/// One soft direction among equal ones: the Krylov space of any start has two dimensions. Spectra calls pairs of it converged
+/// whose vectors are none.
+TEST(ConditionEnds, AnExhaustedKrylovSpaceIsNoPair) {
+  ConditionEstimator estimator;
+  int judged = 0;
+  for (const double soft : {1e-6, 1e-9, 1e-12, 1e-13}) {
+    for (int n = 60; n < 150; n += 3) {
+      Eigen::SparseMatrix<double> a(n, n);
+      for (int i = 0; i < n; ++i) a.insert(i, i) = i == n / 3 ? soft : 1;
+      const ConditionEstimate e = estimator.estimate(from_sparse(a), {.tier = 2});
+      if (e.status != ConditionStatus::ok) continue;
+      ++judged;
+      EXPECT_NEAR(e.cond * soft, 1, 1e-3) << n << ' ' << soft << ' ' << e.method;
+      EXPECT_LE(e.residual, 1e-3) << n << ' ' << soft;
+    }
+  }
+  EXPECT_GE(judged, 100) << "of 120";
+}
+
 }  // namespace
 }  // namespace bb::condition_ends_test

@@ -29,8 +29,9 @@ double speed_for(double share) { return (1 / share - dt * dt * gravity) / dt; }
 constexpr double height = 100;  // m, of the particle at the start
 
 /// One step of a particle that falls freely.
-Flight fly(const StepSolverOptions& options, double speed) {
+Flight fly(const StepSolverOptions& options, double speed, const std::vector<GravityKey>& keys = {}) {
   Scene scene = test::particle_over_plane(0.2, height, 0.001);
+  scene.gravity_keys = keys;
   scene.v0(2, 0) = -speed;
   Method method = test::fixed_method("cubic", 1);
   const double tolerance = method.step_solver.tol_velocity;
@@ -61,6 +62,18 @@ TEST(AccumulatedToi, a_step_shortened_by_its_largest_motion_ends_where_its_own_t
   EXPECT_NEAR(flight.time, 0.4 * dt, 1e-12);
   EXPECT_NEAR(height - flight.z, fallen(0.4 * dt, speed), 1e-12);
   EXPECT_NEAR(-flight.v, speed + gravity * 0.4 * dt, 1e-9);
+}
+
+TEST(AccumulatedToi, a_shortened_step_has_the_gravity_of_its_own_end) {
+  StepSolverOptions options;
+  options.parameters["target_toi"] = 0.25;
+  const double speed = speed_for(0.4);
+  const Flight flight = fly(options, speed, {{0, Vec3d::Zero()}, {dt, Vec3d(0, 0, -gravity)}});
+  ASSERT_EQ(flight.report.status, StepStatus::converged);
+  const double h = flight.report.dt_s;
+  ASSERT_NEAR(h / dt, 0.4, 0.01);
+  EXPECT_NEAR(height - flight.z, h * speed + h * h * gravity * (h / dt), 1e-12);
+  ASSERT_GT(h * h * gravity * (1 - h / dt), 1e-5) << "what the gravity of the whole step would add";
 }
 
 TEST(AccumulatedToi, parts_accumulate_as_shares_of_what_is_left) {

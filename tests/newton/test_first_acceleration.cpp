@@ -1,6 +1,8 @@
 // a_0 of Newmark's method: the forces at the start over the mass, without inertia.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::first_acceleration_test {
@@ -65,6 +67,45 @@ TEST(FirstAcceleration, holds_elastic_forces_and_none_at_prescribed_vertices) {
   EXPECT_NEAR(a[0], -7 * 0.1 / mass, 1e-3);
   EXPECT_NEAR(a[2], -10, 1e-3);
   EXPECT_EQ(start_acceleration(scene, method, 0), Vec3d(Vec3d::Zero()));
+}
+
+/// A particle without weight that a spring of 3 N/m pulls 0.1 m up, from the time `hold` on.
+Scene pulled_from(double hold) {
+  Scene scene = test::particle_over_plane(mass, 1, d_hat);
+  scene.gravity.setZero();
+  scene.obstacles.clear();
+  scene.motions.emplace_back();
+  scene.motions[0].keyframes = {{0, Vec3d(0, 0, 0.1), 0, 1}};
+  scene.pulls = {{{0}, 0, 3, {}, {hold}}};
+  return scene;
+}
+
+TEST(FirstAcceleration, holds_a_pull_that_acts_from_the_start) {
+  Method method = test::fixed_method("log", 1, "newmark");
+  for (const double hold : {0.0, -std::numeric_limits<double>::infinity()}) {
+    EXPECT_NEAR(start_acceleration(pulled_from(hold), method, 0)[2], 3 * 0.1 / mass, 1e-3) << hold;
+  }
+  EXPECT_EQ(start_acceleration(pulled_from(5 * dt), method, 0)[2], 0) << "not yet";
+}
+
+/// The force jumps in the middle of the run: the order stays 2.
+TEST(FirstAcceleration, is_taken_anew_where_a_pull_begins) {
+  Method method = test::fixed_method("log", 1, "newmark");
+  method.step_solver.tol_velocity = 1e-10;
+  const double begin = 0.04, end = 0.2, exact = 0.1 * (1 - std::cos(std::sqrt(3 / mass) * (end - begin)));
+  double coarse = 0;
+  for (const int steps : {10, 20, 40, 80}) {
+    const Scene scene = pulled_from(begin);
+    Simulation simulation(scene, method, end / steps, steps);
+    StepObserver observer;
+    for (int i = 0; i < steps; ++i) ASSERT_EQ(simulation.step(observer).status, StepStatus::converged);
+    const double error = std::abs(simulation.history().x(2, 0) - scene.x0(2, 0) - exact);
+    ASSERT_GT(error, 1e-8);
+    if (steps > 10) {
+      EXPECT_NEAR(coarse / error, 4, 0.2) << steps;
+    }
+    coarse = error;
+  }
 }
 
 }  // namespace

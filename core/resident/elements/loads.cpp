@@ -23,12 +23,12 @@ class LoadTerm final : public ResidentTerm {
   void begin_step(const ResidentFrame& frame) override {
     loads_.x_n = frame.x_n->data();
     loads_.load_factor = frame.load_factor;
-    const Vec3d gravity = gravity_at(scene_, frame.t_end);
-    for (int k = 0; k < 3; ++k) loads_.gravity[k] = gravity[k];
     change_frame(frame);
   }
   void change_frame(const ResidentFrame& frame) override {
     loads_.x_tilde = frame.x_tilde->data();
+    const Vec3d gravity = gravity_at(scene_, frame.t_end);
+    for (int k = 0; k < 3; ++k) loads_.gravity[k] = gravity[k];
     loads_.dt = frame.dt, loads_.c = frame.c;
   }
   void keep(Archive& archive) override {

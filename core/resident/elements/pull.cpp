@@ -13,7 +13,7 @@ class PullTerm final : public QuadraticTerm {
       : QuadraticTerm(inputs, "pull", pulled_vertices(inputs.scene)), scene_(inputs.scene) {}
 
   void change_frame(const ResidentFrame& frame) override {
-    const std::vector<PulledTo> pulls = pulls_of_step(scene_, frame.t_end, frame.dt);
+    const std::vector<PulledTo> pulls = pulls_of_step(scene_, frame.t_end, frame.middle());
     const std::size_t n = pulls.size();
     std::vector<double> place(3 * n), matrix(9 * n);
     for (std::size_t e = 0; e < n; ++e) {

@@ -32,6 +32,8 @@ struct ExpectedContacts;
 struct ResidentFrame {
   const Column *x_n = nullptr, *x_tilde = nullptr;   // start of the step and prediction
   double dt = 0, c = 1, load_factor = 1, t_end = 0;  // as in StepFrame
+  bool at_start = false;
+  double middle() const { return at_start ? t_end + dt / 2 : t_end - dt / 2; }
 };
 
 /// x0 -> x1, x1 - x0 = dx up to rounding, m; x1 is exact at prescribed vertices.

@@ -81,7 +81,7 @@ class ResidentPotential final : public IncrementalPotential {
     const double* force = nullptr;
   };
   ResidentFrame frame(const StepColumns& step) const {
-    return {&step.x_n, &step.x_tilde, step.dt, step.c, step.load_factor, step.t_end};
+    return {&step.x_n, &step.x_tilde, step.dt, step.c, step.load_factor, step.t_end, step.at_start};
   }
   ResidentMatrix matrix() const;
   void fill(const Column& x, const Filled& level);
