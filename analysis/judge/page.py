@@ -11,7 +11,7 @@ from string import Template
 import numpy as np
 
 from ..style import NARROW_IN, WIDE_IN, plt
-from .verdict import VERDICTS
+from .verdict import meaning
 
 HERE = Path(__file__).resolve().parent
 MOST_ROWS = 200  # of findings on the page; the record has all
@@ -109,11 +109,11 @@ def figure_of(record: dict) -> str:
 
 def page_of(record: dict) -> str:
     notes = "".join(f"<p><strong>Note:</strong> {escape(note)}.</p>" for note in record["notes"])
-    word = record["verdict"]
+    word, said = record["verdict"], meaning(record)
     return Template((HERE / "page.html").read_text()).substitute(
         verdict=escape(word.replace("_", " ")),
         source=escape(record["trajectory"]["source"]),
-        meaning=escape(VERDICTS[word][0].upper() + VERDICTS[word][1:]),
+        meaning=escape(said[0].upper() + said[1:]),
         notes=notes,
         findings=_findings(record),
         figure=figure_of(record),

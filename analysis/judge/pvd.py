@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import UserError
-from .sequence import OBSTACLES, no_frames, of_parts
+from .sequence import no_frames, of_obstacles, of_parts
 from .times import increasing
 from .trajectory import Trajectory
 
@@ -73,7 +73,7 @@ def of_pvd(path: Path) -> Trajectory:
     """
     parts: dict[PartName, list[Entry]] = {}
     every = _entries(path)
-    kept = [entry for entry in every if Path(entry.file).stem != OBSTACLES] or every
+    kept = [entry for entry in every if not of_obstacles(Path(entry.file))] or every
     for entry in kept:
         parts.setdefault(entry.part, []).append(entry)
     ordered = [parts[name] for name in sorted(parts)]

@@ -17,7 +17,7 @@ from ..record_file import read_record
 from .meshes import MESHES, read_mesh
 from .packed import of_npz, of_pc2
 from .pvd import of_pvd
-from .sequence import OBSTACLES, no_frames, numbered, of_files
+from .sequence import no_frames, numbered, of_files, of_obstacles
 from .times import increasing
 from .trajectory import Topology, Trajectory, has_cells, no_cells
 
@@ -29,7 +29,7 @@ def of_folder(folder: Path) -> Trajectory:
     and the mesh of its name. The obstacles beside them, as `bench frames` writes them, are no frame.
     """
     files = [p for p in sorted(folder.iterdir()) if p.suffix.lower() in (*MESHES, ".pc2", ".pvd")]
-    frames = [p for p in files if p.stem != OBSTACLES or p.suffix.lower() not in MESHES] or files
+    frames = [p for p in files if not of_obstacles(p) or p.suffix.lower() not in MESHES] or files
     found = _of_frames(folder, frames)
     notes = [
         note for note in no_frames([p.name for p in files if p not in frames]) if note not in found.notes

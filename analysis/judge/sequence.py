@@ -15,7 +15,12 @@ from ..errors import UserError
 from .meshes import read_mesh, same_topology
 from .trajectory import Topology, Trajectory
 
-OBSTACLES = "obstacles"  # how the mesh of analytic obstacles beside frames is called (frames_out)
+# How meshes of analytic obstacles beside frames are called (frames_out): one, or one a frame where they move.
+OBSTACLES = re.compile(r"obstacles(_\d+)?")
+
+
+def of_obstacles(path: Path) -> bool:
+    return OBSTACLES.fullmatch(path.stem) is not None
 
 
 def no_frames(names: list[str]) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ from .page import page_of
 from .physics import Physics, finite_or_none
 from .readers import read_trajectory
 from .trajectory import MOST_METRES, Trajectory, checked, with_parts
-from .verdict import VERDICTS, findings, verdict_of
+from .verdict import findings, meaning, verdict_of
 
 CLEAN, NOT_CLEAN = 0, 1
 FILES = ("judgement.json", "judgement.html")  # record and page
@@ -187,7 +187,7 @@ def judged(options: argparse.Namespace) -> dict:
         },
         "reach_m": subject["reach_m"],
         "total": total,
-        "findings": findings(frames, trajectory.labels),
+        "findings": findings(frames, trajectory.labels, options.states_only),
         "frames": frames,
         "notes": notes_of(trajectory, watch),
         "reading_s": reading_s,
@@ -200,7 +200,7 @@ def said(record: dict) -> str:
     total = record["total"]
     closed = len(total["closed_bodies"])
     lines = [
-        f"{record['verdict']}: {VERDICTS[record['verdict']]}",
+        f"{record['verdict']}: {meaning(record)}",
         f"judged: {total['frames']} frames of {total['triangles']} triangles, {total['edges']} edges, "
         f"{total['vertices']} vertices and {total['obstacles']} obstacles; {total['state_pairs']} pairs in"
         f" states, {total['motion_pairs']} in motions; {total['sides_asked']} vertices against {closed}"

@@ -24,15 +24,25 @@ VERDICTS = {  # word: what it says; the first that holds is the verdict
 }
 
 
+CLEAN_STATES = "no frame shows a crossing; what happens between frames was not asked"
+
+
+def meaning(record: dict) -> str:
+    """What the verdict of a judgement says."""
+    word = record["verdict"]
+    return CLEAN_STATES if word == "clean" and record["states_only"] else VERDICTS[word]
+
+
 def verdict_of(total: dict, frames: list[dict], states_only: bool) -> str:
     """A word of VERDICTS. states_only: what happens between frames is not asked."""
     beyond = sum(frame["obstacle_violations"] for frame in frames)
     between = total["passages"] + total["obstacle_violations"] - beyond
+    given = sum(frame["given_faults"] for frame in frames) if states_only else total["given_faults"]
     holds = {
         "not_finite": total["not_finite"] > 0,
         "penetrates": total["crossings"] + beyond + total["changed_sides"] > 0,
         "passes_between_frames": between > 0 and not states_only,
-        "given_parts_cross": total["given_faults"] > 0,
+        "given_parts_cross": given > 0,
         "unproven": total["judged"] == 0 or not total["self_test_passed"]
         or (total["unproven"] > 0 and not states_only),
         "clean": True,
@@ -58,11 +68,14 @@ def _kinds(frame: dict) -> list[tuple[str, int, str | None, float | None]]:
     ]
 
 
-def findings(frames: list[dict], labels: list[str]) -> list[dict]:
-    """One row for each kind of thing that was found in a frame, in order."""
+BETWEEN = ("passages before it", "unproven before it")  # of the motion to a frame
+
+
+def findings(frames: list[dict], labels: list[str], states_only: bool) -> list[dict]:
+    """One row for each kind of thing that was found in a frame, in order, of what was asked."""
     return [
         {"frame": label, "what": what, "count": count, "pair": pair, "depth_m": depth}
         for frame, label in zip(frames, labels)
         for what, count, pair, depth in _kinds(frame)
-        if count
+        if count and not (states_only and what in BETWEEN)
     ]

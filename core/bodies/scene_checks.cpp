@@ -103,16 +103,31 @@ void check_step(const Complaints& report, const std::string& what, const MotionS
   }
 }
 
-void check_motion(const Complaints& report, const std::string& what, const RigidMotion& motion) {
-  motion.for_each_step([&](const MotionStep& step) { check_step(report, what, step); });
+void check_in_plane(const Complaints& report, const std::string& what, const MotionStep& step) {
+  const bool out_of_plane =
+      step.velocity[2] != 0 || std::any_of(step.keyframes.begin(), step.keyframes.end(),
+                                           [](const Keyframe& k) { return k.translation[2] != 0; });
+  if (out_of_plane) report(what, "a way with a z component", "0: the scene is planar");
+  if (step.most_turning() > 0 && step.axis.cross(Vec3d(Vec3d::UnitZ())).norm() > 1e-9) {
+    report(what, "a rotation out of the plane", "a rotation about z: the scene is planar");
+  }
+}
+
+void check_motion(const Complaints& report, const std::string& what, const RigidMotion& motion, bool planar) {
+  motion.for_each_step([&](const MotionStep& step) {
+    check_step(report, what, step);
+    if (planar) check_in_plane(report, what, step);
+  });
 }
 
 /// Of what is where its motion says: it begins where it is.
-void check_given_motion(const Complaints& report, const std::string& what, const RigidMotion& motion) {
-  check_motion(report, what, motion);
+void check_given_motion(const Complaints& report, const std::string& what, const RigidMotion& motion,
+                        bool planar) {
+  check_motion(report, what, motion, planar);
   motion.for_each_step([&](const MotionStep& step) {
-    if (step.keyframes.empty() || step.begins_at_start()) return;
-    report(what + "/keyframes", "another place than that of the start at the time 0",
+    if (step.begins_at_start()) return;
+    report(what + (step.keyframes.empty() ? "/start" : "/keyframes"),
+           "another place than that of the start at the time 0",
            "no way, no angle and scale 1 at the time 0: vertices that are prescribed do not jump");
   });
 }
@@ -128,7 +143,7 @@ void check_pull(const Complaints& report, const PinSpec& pin) {
 
 /// An obstacle keeps its size, its normal and its axis.
 void check_obstacle_motion(const Complaints& report, const Obstacle& obstacle, bool planar) {
-  check_given_motion(report, "/motion", obstacle.motion);
+  check_given_motion(report, "/motion", obstacle.motion, planar);
   if (obstacle.motion.changes_size()) report("/motion", "a scale", "1: obstacles keep their size");
   obstacle.motion.for_each_step([&](const MotionStep& step) {
     const bool turns = step.most_turning() > 0;
@@ -136,14 +151,6 @@ void check_obstacle_motion(const Complaints& report, const Obstacle& obstacle, b
       report("/motion", "a rotation that turns its axis",
              obstacle.kind == ObstacleKind::plane ? "a rotation about the plane's normal"
                                                   : "a rotation about the direction of the cylinder's axis");
-    }
-    if (!planar) return;
-    const bool out_of_plane =
-        step.velocity[2] != 0 || std::any_of(step.keyframes.begin(), step.keyframes.end(),
-                                             [](const Keyframe& k) { return k.translation[2] != 0; });
-    if (out_of_plane) report("/motion", "a way with a z component", "0: the scene is planar");
-    if (turns && step.axis.cross(Vec3d(Vec3d::UnitZ())).norm() > 1e-9) {
-      report("/motion", "a rotation out of the plane", "a rotation about z: the scene is planar");
     }
   });
 }
@@ -203,11 +210,11 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
   if (!spec.velocity.allFinite()) report("/velocity", "a non-finite value", "finite numbers");
   if (planar && spec.velocity[2] != 0) report("/velocity", "a z component", "0: the scene is planar");
   if (spec.kind == BodyKind::rigid) {
-    check_given_motion(report, "/motion", spec.motion);
+    check_given_motion(report, "/motion", spec.motion, planar);
   } else {
     check_material(report, spec, planar);
     for (const PinSpec& pin : spec.pins) {
-      (pin.pull ? check_motion : check_given_motion)(report, "/pins/motion", pin.motion);
+      (pin.pull ? check_motion : check_given_motion)(report, "/pins/motion", pin.motion, planar);
       check_pull(report, pin);
     }
   }

@@ -8,7 +8,8 @@
 
 namespace bb {
 
-/// Ranked, most specific first: when several hold, the first in this order is the outcome.
+/// Ranked, most specific first: when several hold, the first in this order is the outcome. But a run that time or memory
+/// cut off is not over: oom, kernel_failed and timeout stay what they are.
 enum class Outcome {
   invalid_scene,         // no first step
   initial_intersection,  // no first step

@@ -27,7 +27,10 @@ struct JsonText {
 
 struct Status {
   BB_RECORD(Status, "how the run ended");
-  BB_FIELD(Outcome, outcome, "of several that hold, the first in the order of this list") = Outcome::ok;
+  BB_FIELD(
+      Outcome, outcome,
+      "of several that hold, the first in the order of this list; where time or memory ended a run, that") =
+      Outcome::ok;
   BB_FIELD(std::string, detail, "one sentence; empty when ok");
   BB_FIELD(bool, valid, "every check of `validity` passed") = false;
   BB_FIELD(Number, resumed_from_step, "first step after the checkpoint that the run went on from",

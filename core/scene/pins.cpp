@@ -1,4 +1,6 @@
 // What of a scene is given as a function of time.
+#include <algorithm>
+
 #include "core/scene/scene.hpp"
 
 namespace bb {
@@ -34,6 +36,12 @@ Scene held_scene(const Scene& scene, const std::vector<int>& holding) {
 
 Vec3d gravity_at(const Scene& scene, double t) {
   return scene.gravity_keys.empty() ? scene.gravity : value_at(scene.gravity_keys, t);
+}
+
+double largest_gravity(const Vec3d& constant, const std::vector<GravityKey>& keys) {
+  double out = keys.empty() ? constant.norm() : 0;
+  for (const GravityKey& key : keys) out = std::max(out, key.value.norm());
+  return out;
 }
 
 }  // namespace bb

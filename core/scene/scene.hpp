@@ -177,5 +177,7 @@ std::vector<int> holding_pins(const Scene& scene, double middle);
 Scene held_scene(const Scene& scene, const std::vector<int>& holding);
 /// Gravity at time t (s), m/s^2.
 Vec3d gravity_at(const Scene& scene, double t);
+/// The largest |gravity| of a scene whose gravity is `constant`, or follows the keys where there are any, m/s^2.
+double largest_gravity(const Vec3d& constant, const std::vector<GravityKey>& keys);
 
 }  // namespace bb

@@ -17,7 +17,7 @@ std::vector<HessianChoice> choices() {
     const std::string name(entry.name);
     out.push_back(
         {name,
-         {{name, computed(word(allowed), "blend with step solvers line_search and penalty, else clamped"),
+         {{name, computed(word(allowed), "blend with step solvers line_search, penalty, augmented_lagrangian and al_barrier, else clamped"),
            no_default, "Hessian in the Newton matrix; " + std::string(entry.doc) + "."}}});
   }
   return out;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
 
@@ -163,6 +164,24 @@ bool given_both_bounds(const PolicyConfig& policy) {
   return policy.parameters.contains("kappa_min_N_per_m") && policy.parameters.contains("kappa_max_N_per_m");
 }
 
+/// c of the inertia M/(c h^2) is 0 without inertia.
+void check_formula_of_inertia(const RunConfig& config, const Complain& complain) {
+  const PolicyConfig& policy = config.formulation.stiffness_policy;
+  if (policy.name != "formula" || config.integrator.name != "quasi_static") return;
+  const std::string& formula = text(policy.parameters, "formula");
+  const auto in_word = [](char letter) {
+    return std::isalnum(static_cast<unsigned char>(letter)) || letter == '_';
+  };
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    const bool alone =
+        (i == 0 || !in_word(formula[i - 1])) && (i + 1 == formula.size() || !in_word(formula[i + 1]));
+    if (formula[i] != 'c' || !alone) continue;
+    complain("/formulation/stiffness_policy/formula", '"' + formula + '"',
+             "a formula without c: it is of the inertia M/(c h^2), and the integrator is quasi_static");
+    return;
+  }
+}
+
 /// kappa of ipc_adaptive starts from the inertia of the contacts and the curvature at d_hat/2, unless both of
 /// its bounds are given.
 void check_adaptive_start(const RunConfig& config, const Complain& complain) {
@@ -203,7 +222,8 @@ void check_solid_limit(const RunConfig& config, const Complain& complain) {
 
 /// Above this tolerance nothing falls: the first Newton step is already below it.
 void check_tolerance(const RunConfig& config, const Complain& complain) {
-  const double dt = config.time.dt, fall = 0.5 * config.scene.gravity.norm() * dt * dt;
+  const double dt = config.time.dt;
+  const double fall = 0.5 * largest_gravity(config.scene.gravity, config.scene.gravity_keys) * dt * dt;
   const bool falls = fall > 0 && config.integrator.name != "quasi_static";
   const double length = falls ? std::min(config.formulation.d_hat, fall) : config.formulation.d_hat;
   const double largest = 0.1 * length / dt;
@@ -224,14 +244,14 @@ void check_ritz(const RunConfig& config, const Complain& complain) {
   const auto& scalings = config.diagnose.scalings;
   const auto is_scaling = [&](Scaling s) { return to_string(s) == preconditioner; };
   if (config.linear_solver.name != "pcg") {
-    complain("/diagnose/tier", "0", "1, 2 or 4, or linear_solver pcg: tier 0 reads the Ritz values of PCG");
+    complain("/diagnose/tier", "0", "1 to 4, or linear_solver pcg: tier 0 reads the Ritz values of PCG");
   } else if (text(config.linear_solver.parameters, "forcing") != "fixed") {
     complain("/diagnose/tier", "0",
-             "1 or 2, or linear_solver.forcing fixed: loose solves know no ends of a spectrum");
+             "1 to 4, or linear_solver.forcing fixed: loose solves know no ends of a spectrum");
   } else if (std::none_of(scalings.begin(), scalings.end(), is_scaling)) {
     complain(
         "/diagnose/tier", "0",
-        fmt::format("1 or 2, or a preconditioner among diagnose.scalings: tier 0 knows the matrix scaled by "
+        fmt::format("1 to 4, or a preconditioner among diagnose.scalings: tier 0 knows the matrix scaled by "
                     "its preconditioner only, and that is {}",
                     preconditioner));
   } else if (std::find(stages.begin(), stages.end(), "full") == stages.end()) {
@@ -257,6 +277,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   check_step_solver(config, complain);
   check_damping(config, complain);
   check_policies(config, complain);
+  check_formula_of_inertia(config, complain);
   check_adaptive_start(config, complain);
   check_matching(config, complain);
   check_solid_limit(config, complain);

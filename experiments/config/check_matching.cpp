@@ -48,7 +48,7 @@ void check_matched_barrier(const MatchingConfig& matching, const MatchedBarrier&
 /// Without weight no pilot can start: loads have to be given, and a policy that makes its own stiffness has
 /// nobody to ask about the contact that carried them.
 void check_pilot(const RunConfig& config, const MatchedBarrier& m, const Complain& complain) {
-  if (config.scene.gravity.norm() > 0) return;
+  if (largest_gravity(config.scene.gravity, config.scene.gravity_keys) > 0) return;
   if (!m.load) complain(m.load_pointer, "nothing", "a load: without gravity no pilot can start");
   if (m.by_number) return;
   complain("/matching/rule", fmt::format("\"{}\"", to_string(config.matching.rule)),

@@ -11,7 +11,9 @@
 
 #include "core/input/json.hpp"
 #include "core/input/names.hpp"
+#include "core/record/schema_version.hpp"
 #include "experiments/config/methods.hpp"
+#include "experiments/config/reader.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {
@@ -292,11 +294,15 @@ void apply_override(json& document, const std::string& text, const std::string& 
 }
 
 void require_format(const json& document, std::string_view format, const std::string& source) {
-  const auto found = document.is_object() ? document.find("schema") : document.end();
-  if (found == document.end() || !found->is_string()) return;
-  const std::string_view name = found->get_ref<const std::string&>();
+  const json& schema = child(document, "schema");
+  const json& word =
+      schema.is_object() ? child(schema, "name") : schema;  // a record has a name and a version
+  if (!word.is_string()) return;
+  const std::string name = word.get<std::string>();
   if (!name.starts_with("barrierbench.") || name == format) return;
   std::string allowed = fmt::format("\"{}\"", format);
+  if (name == run_schema_name)
+    allowed += ": this is the record of a run, ./bench run FILE repeats it; its `config` is one";
   if (name == "barrierbench.sweep/1")
     allowed += ": this is a sweep, ./bench sweep FILE --dry-run lists its runs";
   if (name == "barrierbench.config/1") allowed += ": this is the config of one run, ./bench run FILE";

@@ -24,7 +24,8 @@ using nlohmann::json;
 /// 1e-4 d_hat, and never more than a tenth of the fall in one step from rest (the bound that
 /// check_contradictions holds a given tolerance to).
 double default_tolerance(const RunConfig& config) {
-  const double dt = config.time.dt, fall = 0.5 * config.scene.gravity.norm() * dt * dt;
+  const double dt = config.time.dt;
+  const double fall = 0.5 * largest_gravity(config.scene.gravity, config.scene.gravity_keys) * dt * dt;
   const double length = 1e-4 * config.formulation.d_hat;
   return (fall > 0 && config.integrator.name != "quasi_static" ? std::min(length, 0.1 * fall) : length) / dt;
 }

@@ -2,6 +2,8 @@
 // that exclude each other.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "barriers/formulas.hpp"
@@ -140,6 +142,9 @@ void settle_strain_limit(const json& object, const Reader& reader, const Formula
   }
 }
 
+/// What only a rule that matches forces reads.
+constexpr std::array loads = {"theta", "load_N", "limit_load_N_per_m", "solid_limit_load_Pa"};
+
 void settle_matching(const json& object, const Reader& reader, bool literal, RunConfig& config) {
   const PolicyConfig& contact = config.formulation.stiffness_policy;
   const PolicyConfig& limit = config.strain_limit.stiffness_policy;
@@ -149,7 +154,11 @@ void settle_matching(const json& object, const Reader& reader, bool literal, Run
   const bool solid_given = !of_solids || config.strain_limit.solid_k_s;
   const bool as_given = literal || (contact_given && limit_given && solid_given);
   MatchingConfig& out = config.matching;
-  if (!object.contains("rule")) out.rule = as_given ? MatchingRule::as_given : MatchingRule::equal_force;
+  // A preset has a stiffness of its own: who gives what only matching reads asks for it.
+  const bool asked = !literal && std::any_of(loads.begin(), loads.end(),
+                                             [&object](const char* key) { return object.contains(key); });
+  if (!object.contains("rule"))
+    out.rule = as_given && !asked ? MatchingRule::as_given : MatchingRule::equal_force;
   if (out.rule != MatchingRule::equal_curvature) {
     for (const char* key : {"curvature_N_per_m", "limit_curvature_N_per_m"}) {
       if (!object.contains(key)) continue;

@@ -9,6 +9,7 @@
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/run/calibration.hpp"
+#include "experiments/run/stored_run.hpp"
 
 namespace bb {
 
@@ -100,7 +101,12 @@ void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
 }
 
 void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
-  if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
+  if (worse(outcome, verdict.outcome) != outcome || outcome == verdict.outcome) return;
+  if (was_cut(verdict.outcome)) {
+    verdict.detail += fmt::format("; {} so far: {}", to_string(outcome), detail);
+  } else {
+    verdict = {outcome, detail};
+  }
 }
 
 void fill_stiffness(const PassResult& pass, RunRecord& record) {

@@ -30,7 +30,8 @@ std::optional<Verdict> find_stiffness(const RunConfig& config, const Scene& scen
 void fill_times(const PassResult& timed, bool requested, RunRecord& record);
 void fill_stiffness(const PassResult& pass, RunRecord& record);
 
-/// The outcome that stays of two, with its detail.
+/// The outcome that stays of two, with its detail. A run that was cut off stays one, whatever the audit has found so far: its
+/// detail says it, and the whole run will have that outcome.
 void merge(Verdict& verdict, Outcome outcome, const std::string& detail);
 
 /// Threads that the run may use.

@@ -28,7 +28,7 @@ StaticLoads static_loads(const RunConfig& config, const Scene& scene) {
     mass += m;
     n_free += m > 0;
   }
-  const double weight = mass * scene.gravity.norm();
+  const double weight = mass * largest_gravity(scene.gravity, scene.gravity_keys);
   if (weight == 0) {
     throw ConfigError(config.source + "#/matching/load_N", "nothing",
                       "a load in N: the scene has no weight from which a pilot could start");

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/audit/audit.hpp"
+#include "core/energy/strain_limit_batch.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
 
@@ -74,9 +75,35 @@ std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene&
   return std::nullopt;
 }
 
+// The energy of a limit is infinite at and beyond it.
+template <class Batch, class Elements>
+std::optional<Verdict> beyond_limit(const Scene& scene, const Elements& elements, const StrainBands& bands) {
+  if (elements.empty()) return std::nullopt;
+  Batch batch(elements, scene.rest, bands.onset, bands.width, scene.planar);
+  batch.measure(scene.x0);
+  for (std::size_t e = 0; e < batch.size(); ++e) {
+    if (batch.smallest_gap(e) > 0) continue;
+    const double limit = bands.onset[e] + bands.width[e], stretch = limit - batch.smallest_gap(e);
+    const int body = scene.body[static_cast<std::size_t>(elements[e][0])];
+    return Verdict{
+        Outcome::invalid_scene,
+        fmt::format("body \"{}\": element {} of the strain limit is stretched by {:.4g} at the start, and "
+                    "its limit is {:.4g}",
+                    scene.bodies[static_cast<std::size_t>(body)].name, e, stretch, limit)};
+  }
+  return std::nullopt;
+}
+
+std::optional<Verdict> too_long(const RunConfig& config, const Scene& scene) {
+  if (!config.strain_limit.enabled || config.step_solver.name == "article_literal") return std::nullopt;
+  if (auto found = beyond_limit<StrainLimitBatch>(scene, scene.limit.triangles, scene.limit)) return found;
+  return beyond_limit<SolidLimitBatch>(scene, scene.solid_limit.tetrahedra, scene.solid_limit);
+}
+
 // Errors: Interrupted; TimeOver.
 std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& scene, const RunLimits& limits) {
   limits.look_up(part, "before the start was looked at");
+  if (auto found = too_long(config, scene)) return found;
   const audit::AuditMesh mesh = make_audit_mesh(scene, config.time.dt);
   audit::Audit judge(mesh);
   judge.check_state(scene.x0, -1);

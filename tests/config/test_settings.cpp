@@ -241,6 +241,21 @@ TEST(Settings, EntriesShareARowOnlyWithOneRule) {
   expect_one_rule(integrators());
 }
 
+/// What is said of step solvers that end in a minimum is of all of these, and of no other.
+TEST(Settings, HelpNamesTheStepSolversThatEndInAMinimum) {
+  const auto schema = schema_document("config");
+  const auto& sections = schema["properties"];
+  const auto says = [&](const char* section, const char* key) {
+    return sections[section]["properties"][key]["description"].get<std::string>();
+  };
+  for (const std::string& text : {says("step_solver", "saddle"), says("friction", "lag_iterations"),
+                                  says("contact", "hessian_mode"), says("hessian", "membrane")}) {
+    for (const StepSolverEntry& entry : step_solvers()) {
+      EXPECT_EQ(text.find(entry.name) != std::string::npos, entry.needs.minimum) << entry.name << ": " << text;
+    }
+  }
+}
+
 TEST(Settings, TheSchemaOfTheTreeIsTheOneOfTheLists) {
   for (const char* format : {"config", "sweep"}) {
     std::ifstream file(configs_folder() + "/schema/" + format + ".schema.json");

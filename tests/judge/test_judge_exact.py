@@ -140,7 +140,9 @@ def test_states_agree_with_the_toolkit_where_it_is_right(program):
 
 def test_parts_that_the_scene_moves_hide_no_passage_of_free_ones():
     total = dict(passages=0, obstacle_violations=0, not_finite=0, crossings=0, changed_sides=0, given_faults=1, judged=9, unproven=0, self_test_passed=True)
-    frames = [{"obstacle_violations": 0}]
+    frames = [{"obstacle_violations": 0, "given_faults": 0}]
     assert verdict_of(total, frames, states_only=False) == "given_parts_cross"
     assert verdict_of(total | {"passages": 5}, frames, states_only=False) == "passes_between_frames"
+    assert verdict_of(total | {"passages": 5}, frames, states_only=True) == "clean", "given parts cross between frames alone"
+    frames[0]["given_faults"] = 1
     assert verdict_of(total | {"passages": 5}, frames, states_only=True) == "given_parts_cross"

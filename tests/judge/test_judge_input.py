@@ -51,6 +51,17 @@ def test_what_bench_frames_writes_is_judged(program, tmp_path, kind):
 
 
 @pytest.mark.parametrize("kind", ["obj", "ply", "vtu"])
+def test_moving_obstacles_beside_frames_are_no_frames_either(program, tmp_path, kind):
+    """One mesh a frame, with the frame's number."""
+    folder, _ = written(tmp_path / "a", kind, CLEAN)
+    for number in range(3):
+        (folder / f"obstacles_{number:06d}.{kind}").write_text("never opened")
+    code, record = judge(tmp_path, folder)
+    assert code == 0 and record["total"]["frames"] == 3
+    assert any(f"obstacles_000002.{kind} is no frame" in note for note in record["notes"])
+
+
+@pytest.mark.parametrize("kind", ["obj", "ply", "vtu"])
 def test_obstacles_beside_frames_are_no_frame_and_named(program, tmp_path, kind):
     """As `bench frames` writes them."""
     folder, _ = written(tmp_path / "a", kind, CLEAN)

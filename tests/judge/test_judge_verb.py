@@ -7,6 +7,7 @@ import meshio
 import numpy as np
 import pytest
 
+from analysis.judge.verdict import meaning
 from analysis.judge import verb
 from analysis.judge.meshes import MESHES
 
@@ -90,7 +91,8 @@ def test_what_only_the_straight_line_shows_is_said_apart(program, tmp_path):
     assert (code, record["verdict"]) == (1, "passes_between_frames")
     assert record["total"]["crossings"] == 0 and record["total"]["passages"] > 0
     code, record = judge(tmp_path, path, "--states-only")
-    assert (code, record["verdict"]) == (0, "clean")
+    assert (code, record["verdict"], record["findings"]) == (0, "clean", [])
+    assert "what happens between frames was not asked" in meaning(record) and "straight line" not in meaning(record)
 
 
 def test_numbers_that_are_none_are_a_verdict(program, tmp_path):
