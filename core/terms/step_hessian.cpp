@@ -15,10 +15,12 @@ std::vector<HessianChoice> choices() {
   for (const TermEntry& entry : term_entries()) {
     if (entry.convex) continue;
     const std::string name(entry.name);
-    out.push_back(
-        {name,
-         {{name, computed(word(allowed), "blend with step solvers line_search, penalty, augmented_lagrangian and al_barrier, else clamped"),
-           no_default, "Hessian in the Newton matrix; " + std::string(entry.doc) + "."}}});
+    out.push_back({name,
+                   {{name,
+                     computed(word(allowed),
+                              "blend with step solvers line_search, penalty, augmented_lagrangian and "
+                              "al_barrier, else clamped"),
+                     no_default, "Hessian in the Newton matrix; " + std::string(entry.doc) + "."}}});
   }
   return out;
 }
