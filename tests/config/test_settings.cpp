@@ -251,7 +251,8 @@ TEST(Settings, HelpNamesTheStepSolversThatEndInAMinimum) {
   for (const std::string& text : {says("step_solver", "saddle"), says("friction", "lag_iterations"),
                                   says("contact", "hessian_mode"), says("hessian", "membrane")}) {
     for (const StepSolverEntry& entry : step_solvers()) {
-      EXPECT_EQ(text.find(entry.name) != std::string::npos, entry.needs.minimum) << entry.name << ": " << text;
+      EXPECT_EQ(text.find(entry.name) != std::string::npos, entry.needs.minimum)
+          << entry.name << ": " << text;
     }
   }
 }
