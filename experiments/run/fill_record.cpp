@@ -1,5 +1,6 @@
 #include "experiments/run/fill_record.hpp"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/info.h>
 
 #include "core/bodies/part.hpp"
