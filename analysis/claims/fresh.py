@@ -143,6 +143,12 @@ def identities(path: Path) -> set[str]:
 
 
 @cache
+def scenes_of_sweep(sweep: Sweep) -> frozenset[str]:
+    """identities() of its file, worked out once for all claims that ask."""
+    return frozenset(identities(sweep.path))
+
+
+@cache
 def used(root: Path = ROOT) -> dict[str, str]:
     """identity -> a file of runs that has the scene."""
     found: dict[str, str] = {}
@@ -153,8 +159,8 @@ def used(root: Path = ROOT) -> dict[str, str]:
 
 def shared(sweep: Sweep, others: Iterable[Sweep]) -> str:
     """The file of the first of the other sweeps that has a scene of this one; empty when none has."""
-    mine = identities(sweep.path)
-    return next((one.file for one in others if mine & identities(one.path)), "")
+    mine = scenes_of_sweep(sweep)
+    return next((one.file for one in others if mine & scenes_of_sweep(one)), "")
 
 
 def check(sweep: Sweep, root: Path = ROOT, own: Iterable[Sweep] = ()) -> None:
@@ -163,7 +169,7 @@ def check(sweep: Sweep, root: Path = ROOT, own: Iterable[Sweep] = ()) -> None:
     tuning sweep or of `own`, and when there are too few.
     """
     data = read_object(sweep.path)
-    taken = {scene: one.file for one in own for scene in identities(one.path)} | used(root)
+    taken = {scene: one.file for one in own for scene in scenes_of_sweep(one)} | used(root)
     names = {case["label"].partition(" ")[0] for case in data["axes"][0]["cases"]}
     if len(names) < LEAST:
         raise UserError(f"{sweep.file}: {len(names)} scenes; a confirmation has at least {LEAST}")

@@ -70,7 +70,8 @@ def pair_refusal(a: dict, b: dict, part: dict) -> str:
 
 def one_run(a: dict, b: dict, metric: str) -> bool:
     """Whether two cases made the same run as far as numbers are kept: the gaps of all pairs of bodies, the
-    residual of the ends of steps and the metric. Of numbers of before 3.5.0 nobody knows.
+    residual of the ends of steps and the metric. Of numbers of before 3.5.0 nobody knows, nor of seconds,
+    which no two runs share: two ways to compute the same are compared by these.
     """
     kept = ("gaps", "gap_rel", *ENDS, metric)
     return a.get("gaps") is not None and all(a.get(key) == b.get(key) for key in kept)
