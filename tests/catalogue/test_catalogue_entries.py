@@ -79,8 +79,8 @@ def test_the_page_is_made_of_the_kept_numbers():
 def kept_of(monkeypatch, tmp_path, *red: str) -> None:
     """Two scenes, one of them with a red row, and a page elsewhere."""
     scenes = {name: table.read()[name] for name in ("belt", "drape")}
-    for row in (row for one in scenes.values() for row in one["rows"]):
-        row["red"] = []
+    for record in (record for one in scenes.values() for record in one["rows"]):
+        record["red"] = []
     scenes["drape"]["rows"][0]["red"] = list(red)
     monkeypatch.setattr(table, "read", lambda: scenes)
     monkeypatch.setattr(page, "PAGE", tmp_path / "CATALOGUE.md")

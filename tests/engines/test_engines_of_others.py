@@ -18,13 +18,6 @@ HANG = ROOT / "configs/scenes/hang.json"
 SMALL = ["/scene/n=5", "/strain_limit/enabled=false", "/time/steps=6"]
 
 
-@pytest.fixture
-def here(monkeypatch):
-    """This Python, which has numpy, is the environment of the template; nothing is fetched."""
-    monkeypatch.setattr(environment, "python", lambda card: sys.executable)
-    monkeypatch.setattr(environment, "why_not", lambda card: "" if card.name not in ("mujoco", "newton") else f"not installed: ./bench engine {card.name} setup")
-
-
 def sheet(n=4, height=1.0, steps=10, **keys):
     """n x n vertices, 0.1 m apart, of 0.01 kg each, that falls."""
     i, j = (k.ravel() for k in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))

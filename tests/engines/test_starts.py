@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from test_engines_of_others import HANG, here  # noqa: F401
+from test_engines_of_others import HANG
 
 from analysis.engines import compare, figure, scatter, starts, verb
 from analysis.engines.report import text_of

@@ -2,11 +2,10 @@
 
 import json
 import signal
-import subprocess
-import time
 from pathlib import Path
 
 import pytest
+from processes import started, wait_until
 from test_cli import BLOCK, bench, refused, write
 from test_resume import DRAPE, result, settings
 
@@ -168,10 +167,8 @@ def test_a_run_that_is_stopped_before_its_first_step_leaves_no_folder(program, t
     pierced = {"schema": "barrierbench.config/1", "scene": {"name": "drape", "n": 40}, "formulation": "log",
                "matching": {"rule": "equal_force"}, "time": {"steps": 5}}
     config, out = write(tmp_path / "config.json", pierced), tmp_path / "out"
-    with subprocess.Popen([program, "run", config, "--out", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        while not (out / "bench.lock").exists() and process.poll() is None:
-            time.sleep(0.001)
-        time.sleep(0.05)
+    with started(program, "run", config, "--out", out) as process:
+        wait_until((out / "bench.lock").exists, process)
         process.send_signal(signal.SIGTERM)
         _, err = process.communicate(timeout=120)
     assert process.returncode == 75, err
@@ -197,23 +194,19 @@ def test_the_last_state_of_a_run_has_a_frame(program, tmp_path, ends):
 
 def test_a_checkpoint_does_not_grow_with_the_steps(program, tmp_path):
     """The log grows by what a step adds; the checkpoints beside it stay as long as they were."""
-    sizes = {}
-    for steps in (40, 400):
-        folder = tmp_path / str(steps)
-        more = settings({"/time/steps": 1000000, "/output/checkpoint_every": 1, "/passes/time": True})
-        with subprocess.Popen([program, "run", BLOCK, "--out", folder, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-            log = folder / "checkpoint.log"
-            end = time.monotonic() + 100
-            first = None
-            while time.monotonic() < end and process.poll() is None:
-                if log.exists() and (folder / "checkpoint.next.bin").exists():
-                    first = first or log.stat().st_size
-                    if log.stat().st_size > steps * 300:
-                        break
-                time.sleep(0.002)
+    more = settings({"/time/steps": 1000000, "/output/checkpoint_every": 1, "/passes/time": True})
+
+    def sizes(name: str, log_is_longer_than: int) -> tuple[int, int]:
+        folder = tmp_path / name
+        log = folder / "checkpoint.log"
+        with started(program, "run", BLOCK, "--out", folder, *more) as process:
+            wait_until(lambda: (folder / "checkpoint.next.bin").exists() and log.stat().st_size > log_is_longer_than, process, 100)
             process.kill()
             process.communicate()
         # one of the two may have been half written when it was killed
-        sizes[steps] = (log.stat().st_size, max(file.stat().st_size for file in folder.glob("checkpoint*.bin")))
-    assert sizes[400][0] > 3 * sizes[40][0]  # what is written before the first step is part of the first
-    assert abs(sizes[400][1] - sizes[40][1]) < 200, sizes
+        return log.stat().st_size, max(file.stat().st_size for file in folder.glob("checkpoint*.bin"))
+
+    first_log, first = sizes("short", 12000)
+    later_log, later = sizes("long", 9 * first_log)
+    assert first > 0 and later_log > 9 * first_log
+    assert abs(later - first) < 200, (first, later)

@@ -8,11 +8,11 @@ import os
 import resource
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import jsonschema
 import pytest
+from processes import started, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = str(ROOT / "configs/scenes/resting_block_1d.json")
@@ -302,15 +302,19 @@ def test_a_disk_that_a_frame_fills(program, tmp_path):
 
 
 def long_run(tmp_path) -> list:
-    return ["run", BLOCK, "--out", str(tmp_path / "out"), "--set", "/time/steps=1000000"]
+    """With a frame of every step, by which a test sees how far it is."""
+    return ["run", BLOCK, "--out", str(tmp_path / "out"), "--set", "/time/steps=1000000", "--set", "/output/frames_every=1",
+            "--set", "/passes/time=false"]
+
+
+def frame(tmp_path, step: int) -> Path:
+    return tmp_path / f"out/frames.part/step_{step:06}.ply"
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_run_leaves_no_record(program, tmp_path, sent):
-    with subprocess.Popen([program, *long_run(tmp_path)], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as run:
-        while not (tmp_path / "out").exists() and run.poll() is None:
-            time.sleep(0.01)
-        time.sleep(0.3)
+    with started(program, *long_run(tmp_path)) as run:
+        wait_until(frame(tmp_path, 1).exists, run)
         run.send_signal(sent)
         out, err = run.communicate(timeout=30)
     assert run.returncode == 75, err

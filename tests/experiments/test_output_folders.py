@@ -4,44 +4,16 @@ import json
 import os
 import shutil
 import signal
-import subprocess
-import time
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from processes import started, wait_until
 
-from test_cli import BLOCK, bench, long_run, refused, sweep_spec, write
+from test_cli import BLOCK, bench, frame, long_run, refused, sweep_spec, write
 
 FRAMES = ["--set", "/output/frames_every=1", "--set", "/passes/time=false"]
 MATRICES = ["--set", "/output/matrices=true", "--set", "/passes/diagnose=true"]
 HANG = str(Path(BLOCK).with_name("hang.json"))
-
-
-def wait_for(path: Path, process: subprocess.Popen) -> None:
-    for _ in range(1000):
-        if path.exists():
-            return
-        assert process.poll() is None, process.communicate()
-        time.sleep(0.01)
-    raise AssertionError(f"{path} did not appear")
-
-
-def hears_hang_ups():
-    """Also where the tests themselves were started with nohup, which programs inherit."""
-    signal.signal(signal.SIGHUP, signal.SIG_DFL)
-
-
-@contextmanager
-def start(program: str, *arguments, **options):
-    """A process that never outlives the test."""
-    command = [program, *map(str, arguments)]
-    options.setdefault("preexec_fn", hears_hang_ups)
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
 
 
 def names(folder: Path) -> list[str]:
@@ -128,11 +100,8 @@ def test_another_plugin_of_the_same_name_is_another_run(program, build_folder, t
 def test_a_folder_has_one_writer(program, tmp_path, verb):
     out = tmp_path / "out"
     arguments = long_run(tmp_path) if verb == "run" else ["sweep", sweep_spec(tmp_path, [1000000]), "--out", out]
-    with start(program, *arguments) as first:
-        wait_for(out / "bench.lock" if verb == "run" else out, first)
-        while verb == "sweep" and not list(out.glob("*/bench.lock")):  # a sweep holds the folders of its runs
-            time.sleep(0.01)
-        time.sleep(0.2)
+    with started(program, *arguments) as first:
+        wait_until(lambda: list(out.glob("bench.lock" if verb == "run" else "*/bench.lock")), first)  # a sweep holds the folders of its runs
         second = bench(program, *arguments)
         assert second.returncode == 75 and f"in use by process {first.pid} on " in second.stderr and str(out) in second.stderr
         assert first.poll() is None and not list(out.rglob("run.json"))
@@ -147,11 +116,8 @@ def test_a_folder_has_one_writer(program, tmp_path, verb):
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupted_sweep_says_what_it_kept_and_goes_on(program, tmp_path, sent):
     out = tmp_path / "out"
-    with start(program, "sweep", sweep_spec(tmp_path, [1, 2, 1000000]), "--out", out) as sweep:
-        for _ in range(1000):
-            if len(list(out.glob("*/run.json"))) == 2 and list(out.glob("*1000000*/bench.lock")):
-                break
-            time.sleep(0.01)
+    with started(program, "sweep", sweep_spec(tmp_path, [1, 2, 1000000]), "--out", out) as sweep:
+        wait_until(lambda: len(list(out.glob("*/run.json"))) == 2 and list(out.glob("*1000000*/bench.lock")), sweep)
         sweep.send_signal(sent)
         _, err = sweep.communicate(timeout=30)
     assert sweep.returncode == 75, err
@@ -162,25 +128,23 @@ def test_an_interrupted_sweep_says_what_it_kept_and_goes_on(program, tmp_path, s
 
 
 def test_a_hang_up_ends_a_run_as_a_termination_does(program, tmp_path):
-    with start(program, *long_run(tmp_path)) as run:
-        wait_for(tmp_path / "out/bench.lock", run)
-        time.sleep(0.2)
+    with started(program, *long_run(tmp_path)) as run:
+        wait_until(frame(tmp_path, 1).exists, run)
         run.send_signal(signal.SIGHUP)
         _, err = run.communicate(timeout=30)
     assert run.returncode == 75 and "interrupted" in err and "--resume" in err
-    assert names(tmp_path / "out") == ["checkpoint.bin", "checkpoint.log"]
+    assert names(tmp_path / "out") == ["checkpoint.bin", "checkpoint.log", "frames.part", "trace.jsonl.part"]
 
 
 def test_under_nohup_a_hang_up_is_ignored(program, tmp_path):
     def nohup():
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
-    with start(program, *long_run(tmp_path), restore_signals=False, preexec_fn=nohup) as run:
-        wait_for(tmp_path / "out/bench.lock", run)
-        time.sleep(0.2)
+    with started(program, *long_run(tmp_path), restore_signals=False, preexec_fn=nohup) as run:
+        wait_until(frame(tmp_path, 1).exists, run)
         run.send_signal(signal.SIGHUP)
-        time.sleep(0.5)
-        assert run.poll() is None
+        there = len(names(tmp_path / "out/frames.part"))
+        wait_until(lambda: len(names(tmp_path / "out/frames.part")) > there + 2, run)  # it goes on
         run.send_signal(signal.SIGTERM)
         run.communicate(timeout=30)
     assert run.returncode == 75
@@ -211,9 +175,8 @@ def test_an_earlier_run_stays_whole_until_the_next_is_over(program, tmp_path):
     assert bench(program, *short).returncode == 0
     before = {p: p.read_bytes() for p in out.rglob("*") if p.is_file()}
     assert len(before) == 6
-    with start(program, *long_run(tmp_path), *FRAMES) as run:
-        wait_for(out / "frames.part", run)
-        time.sleep(0.2)
+    with started(program, *long_run(tmp_path)) as run:
+        wait_until(frame(tmp_path, 1).exists, run)
         run.terminate()
         run.communicate(timeout=30)
     assert run.returncode == 75
@@ -224,9 +187,8 @@ def test_an_earlier_run_stays_whole_until_the_next_is_over(program, tmp_path):
 
 def test_what_a_killed_run_left_goes_with_the_next(program, tmp_path):
     out = tmp_path / "out"
-    with start(program, *long_run(tmp_path), *FRAMES) as run:
-        wait_for(out / "frames.part", run)
-        time.sleep(0.3)
+    with started(program, *long_run(tmp_path)) as run:
+        wait_until(frame(tmp_path, 1).exists, run)
         run.kill()
         run.communicate()
     left = names(out)

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from processes import comes_to, new_checkpoints, started, wait_until
 from test_cli import bench, refused, write
 
 DRAPE = {
@@ -64,43 +65,15 @@ def result(folder: Path) -> dict:
     return without_times({**kept, "outcome": record["status"]["outcome"], "rows": rows, "files": left})
 
 
-def start(program: str, config: Path, folder: Path, *more: str) -> subprocess.Popen:
-    return subprocess.Popen([program, "run", config, "--out", folder, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                            text=True)
-
-
-def run_to_checkpoint(process: subprocess.Popen, folder: Path, n: int) -> bool:
-    """Waits for n new checkpoints; False when the run was over before."""
-    def state() -> list:
-        """Of the checkpoint that is replaced, and of the one that is written over."""
-        out = []
-        for name in ("checkpoint.bin", "checkpoint.next.bin"):
-            try:
-                found = (folder / name).stat()
-                out.append((found.st_ino, found.st_mtime_ns))
-            except FileNotFoundError:
-                out.append(None)
-        return out
-
-    last, end = state(), time.monotonic() + 300
-    while n > 0 and time.monotonic() < end:
-        if process.poll() is not None:
-            return False
-        now = state()
-        n, last = (n - 1, now) if now != last and now[0] else (n, last)
-        time.sleep(0.0005)
-    return process.poll() is None
-
-
 def kill_until_done(program: str, config: Path, folder: Path, more: list[str], seed: int) -> int:
     """Kills at random moments behind new checkpoints and resumes until the run is over. Returns how often it was killed."""
     rng = random.Random(seed)
     for kills in range(100):
-        process = start(program, config, folder, *more, *(["--resume"] if kills > 0 else []))
-        if run_to_checkpoint(process, folder, rng.randint(1, 2)):
-            time.sleep(rng.uniform(0, 0.05))
-            process.kill()
-        _, told = process.communicate(timeout=300)
+        with started(program, "run", config, "--out", folder, *more, *(["--resume"] if kills > 0 else [])) as process:
+            if comes_to(new_checkpoints(folder, rng.randint(1, 2)), process, 300):
+                time.sleep(rng.uniform(0, 0.05))  # a random moment is what it is about
+                process.kill()
+            _, told = process.communicate(timeout=300)
         if process.returncode == 0:
             return kills
         assert process.returncode == -signal.SIGKILL, (process.returncode, told)
@@ -140,10 +113,10 @@ def test_a_run_that_is_killed_at_random_ends_as_one_that_is_not(program, config,
 def killed(program: str, config: Path, folder: Path, how=signal.SIGKILL) -> subprocess.CompletedProcess:
     """Stopped in its second pass; a signal that comes when the run is over, on a busy machine, is sent to another one."""
     for _ in range(3):
-        process = start(program, config, folder)
-        assert run_to_checkpoint(process, folder, 7), "over before it could be stopped"
-        process.send_signal(how)
-        out, told = process.communicate(timeout=300)
+        with started(program, "run", config, "--out", folder) as process:
+            comes_to(new_checkpoints(folder, 7), process, 300)
+            process.send_signal(how)
+            out, told = process.communicate(timeout=300)
         if (folder / "trace.jsonl.part").exists():
             return subprocess.CompletedProcess(process.args, process.returncode, out, told)
         shutil.rmtree(folder)
@@ -213,12 +186,9 @@ def test_a_sweep_goes_on_inside_a_case(program, config, tmp_path):
     spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "formulations", "base": str(config),
                                            "axes": [{"pointer": "/formulation", "values": ["log", "cubic"]}]})
     out = tmp_path / "out"
-    process = subprocess.Popen([program, "sweep", spec, "--out", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    end = time.monotonic() + 300
-    while not list(out.glob("*/checkpoint.bin")) and process.poll() is None and time.monotonic() < end:
-        time.sleep(0.001)
-    process.kill()
-    process.communicate()
+    with started(program, "sweep", spec, "--out", out) as process:
+        wait_until(lambda: list(out.glob("*/checkpoint.bin")), process, 300)
+        process.kill()
     assert len(list(out.glob("*/checkpoint.bin"))) == 1
     done = bench(program, "sweep", spec, "--out", out, "--resume")
     assert done.returncode == 0, done.stderr
@@ -253,10 +223,9 @@ def test_a_record_that_time_ended_gives_way(program, config, tmp_path):
 @pytest.mark.parametrize("spoil", ["gone", "another byte"])
 def test_a_frame_that_is_not_as_it_was_is_refused_and_the_others_stay(program, config, tmp_path, spoil):
     out, more = tmp_path / "out", settings({"/output/frames_every": 1, "/passes/time": False})
-    process = start(program, config, out, *more)
-    assert run_to_checkpoint(process, out, 2)
-    process.kill()
-    process.communicate()
+    with started(program, "run", config, "--out", out, *more) as process:
+        wait_until(new_checkpoints(out, 2), process, 300)
+        process.kill()
     frames = sorted((out / "frames.part").iterdir())
     assert len(frames) >= 3
     victim, kept = out / "frames.part/step_000000.ply", tmp_path / "kept.ply"

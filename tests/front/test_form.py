@@ -23,6 +23,22 @@ def test_ruff_finds_nothing(words):
     assert done.returncode == 0, done.stdout + done.stderr + "\n./bench format writes the form"
 
 
+def test_tests_and_examples_have_no_faults_either():
+    """Names that do not exist, imports that nothing uses: also in a test that is skipped here."""
+    done = subprocess.run([sys.executable, "-m", "ruff", "check", "--isolated", "--no-cache", "--select", "F,E9", "tests", "examples"],
+                          cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_test_waits_for_a_state_and_not_for_a_time():
+    """On a busy machine no time is long enough: tests/processes.py waits. The others sleep because time is their subject."""
+    sleepers = {str(path.relative_to(ROOT / "tests")) for path in (ROOT / "tests").rglob("*.py") if "sleep(" in path.read_text()}
+    assert sleepers == {"processes.py", "front/test_form.py",
+                        "experiments/test_resume.py", "sweeps/test_random_kills.py",  # kills at random moments
+                        "engines/test_engines_of_others.py",  # an engine that hangs
+                        "ablation/test_ablation.py"}  # a shard that is under way while another fails
+
+
 def test_no_function_is_longer_than_a_screen():
     long = []
     for path in ANALYSIS.rglob("*.py"):

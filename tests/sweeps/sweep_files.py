@@ -3,8 +3,6 @@
 import json
 import subprocess
 import sys
-import time
-from contextlib import contextmanager
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -63,21 +61,3 @@ def results(out: Path) -> dict[str, dict]:
 def left_over(out: Path) -> list[str]:
     """What no finished sweep leaves."""
     return sorted(path.name for path in out.rglob("*") if ".tmp." in path.name or path.suffix == ".part" or path.name.startswith("checkpoint"))
-
-
-@contextmanager
-def started(program: str, *words, **options):
-    """A process that never outlives the test."""
-    with subprocess.Popen([program, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
-def wait_until(holds, process: subprocess.Popen, seconds: float = 60) -> None:
-    end = time.monotonic() + seconds
-    while not holds():
-        assert process.poll() is None, process.communicate()
-        assert time.monotonic() < end, "it did not come so far"
-        time.sleep(0.002)

@@ -8,7 +8,8 @@ import random
 import signal
 import time
 
-from sweep_files import bench, left_over, records, results, started, write_sweep
+from processes import started
+from sweep_files import bench, left_over, records, results, write_sweep
 
 KILLS = int(os.environ.get("SWEEP_KILLS", "6"))
 LEAST_S, MOST_S = 0.03, 0.35  # from the start of a sweep to its kill

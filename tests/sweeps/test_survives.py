@@ -8,7 +8,8 @@ import time
 from pathlib import Path
 
 import pytest
-from sweep_files import SHAPES, STEPS, bench, left_over, records, refused, results, started, verb, wait_until, write_sweep
+from processes import started, wait_for, wait_until
+from sweep_files import SHAPES, STEPS, bench, left_over, records, refused, results, verb, write_sweep
 
 LONG = {"/time/steps": 600, "/output/checkpoint_every": 20}
 
@@ -40,10 +41,7 @@ def test_a_sweep_that_is_stopped_goes_on_to_the_same_records(program, tmp_path, 
         assert f"records kept in {out}" in told and not locks(out)
     assert list(out.glob("*/checkpoint.bin")) and len(records(out)) < 3
     if jobs == 2:  # without their parent the runs keep a checkpoint and end
-        end = time.monotonic() + 30
-        while locks(out) and time.monotonic() < end:
-            time.sleep(0.01)
-        assert not locks(out)
+        wait_for(lambda: not locks(out))
     done = bench(program, "sweep", file, "--out", out, "--jobs", jobs)
     assert done.returncode == 0, done.stderr
     found = results(out)

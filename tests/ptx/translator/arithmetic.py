@@ -46,7 +46,7 @@ class Arithmetic(Operands):
         out, _ = self.carry(rest)
         function = "add_carry" if sign == "+" else "sub_borrow"
         before = "carry" if with_carry else "0u"
-        return f"{{ uint32_t next; " + self.set(args[0], f"{function}<{u}>({a}, {b}, {before}, next)", u) + (" carry = next; }" if out else " }")
+        return "{ uint32_t next; " + self.set(args[0], f"{function}<{u}>({a}, {b}, {before}, next)", u) + (" carry = next; }" if out else " }")
 
     def op_add(self, rest, args):
         return self.sum(rest, args, "+", False)
@@ -103,7 +103,7 @@ class Arithmetic(Operands):
             return self.set(args[0], f"({u})({text} + {c})", u)
         out, _ = self.carry(rest)
         before = "carry" if with_carry else "0u"
-        return f"{{ uint32_t next; " + self.set(args[0], f"add_carry<{u}>({text}, {c}, {before}, next)", u) + (" carry = next; }" if out else " }")
+        return "{ uint32_t next; " + self.set(args[0], f"add_carry<{u}>({text}, {c}, {before}, next)", u) + (" carry = next; }" if out else " }")
 
     def op_fma(self, rest, args):
         type_name = c_type(rest[-1])
