@@ -55,6 +55,9 @@ class Part {
   /// What the ranges of its keys cannot tell. The mesh has been checked. Complaints are at "/material/KEY".
   virtual void check(const BodySpec&, bool /*planar*/, const Complaints&) const {}
 
+  /// What the mesh lacks for a key of this part to mean anything, as "the body has no triangle"; empty: nothing.
+  virtual std::string_view lacks(const TriangleMesh&, std::string_view key) const = 0;
+
   // --- what a mesh brings, of deformable and of rigid bodies
   /// Primitives of the scene so far and of the mesh, of which this part says what they take.
   virtual std::vector<MemoryItem> memory(const Scene&, const TriangleMesh&) const { return {}; }

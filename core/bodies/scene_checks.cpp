@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/bodies/part.hpp"
 #include "core/mesh/bounds.hpp"
@@ -16,12 +18,31 @@ std::string allowed_coordinates() {
   return fmt::format("finite coordinates between -{0:g} and {0:g} m", max_coordinate);
 }
 
+/// Keys of a part that the mesh has nothing for. What switches elements off may stand.
+void check_subject(const Complaints& complain, const BodySpec& spec, const Part& part) {
+  Settings<Material> keys("");
+  part.add_keys(keys);
+  const ParameterList list = keys.rows();
+  const Material usual;
+  for (const Parameter& row : list.rows) {
+    const std::string_view lacks = part.lacks(spec.mesh, row.name);
+    if (lacks.empty()) continue;
+    const nlohmann::json value = keys.write_one(row.name, spec.material);
+    const bool as_usual = value == to_json(row.fallback) || value == keys.write_one(row.name, usual);
+    if (as_usual || value == 0 || value == "none") continue;
+    complain("/material/" + row.name, value.dump(), fmt::format("nothing: {}", lacks));
+  }
+}
+
 void check_material(const Complaints& complain, const BodySpec& spec, bool planar) {
   settings_of<Material>().check_numbers(
       spec.material, [&complain](const std::string& name, double value, const std::string& allowed) {
         complain.number("/material/" + name, value, false, allowed);
       });
-  for (const PartEntry& entry : part_entries()) entry.part.check(spec, planar, complain);
+  for (const PartEntry& entry : part_entries()) {
+    check_subject(complain, spec, entry.part);
+    entry.part.check(spec, planar, complain);
+  }
   const std::optional<StrainLimitSpec>& limit = spec.material.limit;
   if (!limit) return;
   complain.number("/limit/onset", limit->onset, limit->onset >= 0, "a number >= 0");

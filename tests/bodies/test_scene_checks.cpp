@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "core/mesh/solid_generators.hpp"
 #include "tests/bodies/bodies.hpp"
 
 namespace bb::scene_checks_test {
@@ -35,6 +37,61 @@ TEST(scene_checks, refuse_free_vertices_without_mass) {
 
   expect_complaint(found, "body \"light\": found 12 free vertices without mass, the first is 0");
   expect_complaint(found, "body \"loose\": found 1 free vertices without mass, the first is 12");
+}
+
+/// What is said of a material of a body with this mesh and nothing else wrong.
+std::string said_of(const TriangleMesh& mesh, const std::function<void(Material&)>& change) {
+  BodySpec body = cloth("body");
+  body.mesh = mesh;
+  if (!mesh.segments.empty()) body.material.line_density = 0.1;
+  change(body.material);
+  return complaint({body});
+}
+
+TEST(scene_checks, refuse_a_key_of_elements_that_the_body_cannot_have) {
+  const TriangleMesh sheet = grid_mesh(2, 2, 1, 1), rod = rod_mesh(3, Vec3d(0, 0, 0), Vec3d(1, 0, 0));
+  const TriangleMesh block = solid_box_mesh({1, 1, 1}, Vec3d(1, 1, 1));
+  struct Case {
+    const char *key, *lacks;
+    std::function<void(Material&)> change;
+    std::vector<TriangleMesh> refused, allowed;
+  };
+  const Case cases[] = {
+      {"youngs_N_per_m", "no triangle", [](Material& m) { m.youngs = 7; }, {rod, block}, {sheet}},
+      {"density_kg_per_m2", "no triangle", [](Material& m) { m.density = 7; }, {rod, block}, {sheet}},
+      {"bending_J", "no triangle", [](Material& m) { m.bending = 7; }, {rod, block}, {sheet}},
+      {"cloth_tension_N_per_m", "no face", [](Material& m) { m.cloth_tension = 7; }, {rod, block}, {sheet}},
+      {"solid_youngs_Pa", "no tetrahedron", [](Material& m) { m.solid_youngs = 7; }, {rod, sheet}, {block}},
+      {"rod_bending_N_m2",
+       "no two lone edges",
+       [](Material& m) { m.rod_bending = 7; },
+       {sheet, block},
+       {rod}},
+      {"line_density_kg_per_m",
+       "no lone edge",
+       [](Material& m) { m.line_density = 7; },
+       {sheet, block},
+       {rod}},
+      {"rod_stretching_N", "no lone edge", [](Material& m) { m.rod_stretching = 7; }, {sheet, block}, {rod}},
+  };
+  for (const Case& c : cases) {
+    for (const TriangleMesh& mesh : c.refused) {
+      const std::string found = said_of(mesh, c.change);
+      expect_complaint(found, std::string("body \"body\"/material/") + c.key);
+      expect_complaint(found, c.lacks);
+    }
+    for (const TriangleMesh& mesh : c.allowed) EXPECT_EQ(said_of(mesh, c.change), "") << c.key;
+  }
+}
+
+TEST(scene_checks, allow_what_switches_off_elements_that_the_body_cannot_have) {
+  const TriangleMesh rod = rod_mesh(3, Vec3d(0, 0, 0), Vec3d(1, 0, 0));
+  EXPECT_EQ(said_of(rod,
+                    [](Material& m) {
+                      m.model = m.solid_model = "none";
+                      m.density = m.solid_density = 0;
+                    }),
+            "");
 }
 
 TEST(scene_checks, refuse_a_name_used_twice) {

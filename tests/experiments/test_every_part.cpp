@@ -23,21 +23,27 @@ std::vector<Parameter> keys_of(const Part& part) {
   return keys.rows().rows;
 }
 
-/// All other parts are off; of this one, every number that is 0 by default is 1, and so is every mass, whosever it is.
-json material_of(const PartEntry& entry) {
+TriangleMesh mesh_of(const MeshGenerator& made) { return made.make(to_map(made.parameters, json::object())); }
+
+/// All other parts are off; of this one, every number that is 0 by default is 1, and so is every mass, whosever it is; but for
+/// what the mesh has nothing for.
+json material_of(const PartEntry& entry, const TriangleMesh& mesh) {
   json out = json::object();
   if (entry.name != "membrane") out["model"] = "none";
   for (const PartEntry& each : part_entries()) {
     for (const Parameter& key : keys_of(each.part)) {
       const bool own = each.name == entry.name || key.rule.unit.starts_with("kg");
-      if (own && to_json(key.fallback) == 0.0) out[key.name] = 1.0;
+      if (!own || !each.part.lacks(mesh, key.name).empty()) continue;
+      if (to_json(key.fallback) == 0.0) out[key.name] = 1.0;
     }
   }
   return out;
 }
 
-json body_of(const PartEntry& entry, const std::string& generator) {
-  return {{"name", "body"}, {"mesh", {{"generator", generator}}}, {"material", material_of(entry)}};
+json body_of(const PartEntry& entry, const MeshGenerator& made) {
+  return {{"name", "body"},
+          {"mesh", {{"generator", made.name}}},
+          {"material", material_of(entry, mesh_of(made))}};
 }
 
 RunConfig config_of(const json& bodies) {
@@ -48,13 +54,12 @@ RunConfig config_of(const json& bodies) {
 }
 
 /// A scene of one body that has elements of this part only, or nothing where no generator makes one.
-std::optional<Scene> scene_of(const PartEntry& entry, std::string& generator) {
+std::optional<Scene> scene_of(const PartEntry& entry, json& body) {
   for (const MeshGenerator& made : mesh_generators()) {
-    const json bodies = json::array({body_of(entry, made.name)});
+    body = body_of(entry, made);
     try {
-      Scene scene = build_scene(config_of(bodies));
+      Scene scene = build_scene(config_of(json::array({body})));
       if (entry.part.size(scene) == 0) continue;
-      generator = made.name;
       return scene;
     } catch (const ConfigError&) {
       continue;  // nothing of that mesh has a mass
@@ -65,17 +70,17 @@ std::optional<Scene> scene_of(const PartEntry& entry, std::string& generator) {
 
 struct PartScene {
   const PartEntry& entry;
-  std::string generator;
+  json body;
   Scene scene;
 };
 
 std::vector<PartScene> part_scenes() {
   std::vector<PartScene> out;
   for (const PartEntry& entry : part_entries()) {
-    std::string generator;
-    std::optional<Scene> scene = scene_of(entry, generator);
+    json body;
+    std::optional<Scene> scene = scene_of(entry, body);
     EXPECT_TRUE(scene) << entry.name << ": no generator makes a body of it";
-    if (scene) out.push_back({entry, generator, std::move(*scene)});
+    if (scene) out.push_back({entry, body, std::move(*scene)});
   }
   return out;
 }
@@ -101,7 +106,7 @@ TEST(EveryPart, refuses_numbers_out_of_range_of_a_config_and_of_a_scene_in_the_s
   for (const PartScene& part : part_scenes()) {
     for (const Parameter& key : keys_of(part.entry.part)) {
       if (key.rule.kind != Kind::number) continue;
-      json bodies = json::array({body_of(part.entry, part.generator)});
+      json bodies = json::array({part.body});
       bodies[0]["material"][key.name] = key.rule.low - 1;
       const std::string allowed = allowed_text(key.rule);
       try {
@@ -130,7 +135,7 @@ TEST(EveryPart, makes_a_body_of_itself_alone) {
 
 TEST(EveryPart, has_no_elements_of_a_body_all_of_whose_vertices_are_held) {
   for (const PartScene& part : part_scenes()) {
-    json held = body_of(part.entry, part.generator), free = held;
+    json held = part.body, free = held;
     held["name"] = "held", held["pins"] = {{{"all", true}}};
     const Scene scene = build_scene(config_of(json::array({held, free})));
     EXPECT_EQ(part.entry.part.size(scene), part.entry.part.size(part.scene)) << part.entry.name;
@@ -195,7 +200,7 @@ TEST(EveryPart, has_an_energy_whose_derivatives_are_its_differences) {
 }
 
 bool has_surface(const Part& part, const MeshGenerator& made) {
-  const TriangleMesh mesh = made.make(to_map(made.parameters, json::object()));
+  const TriangleMesh mesh = mesh_of(made);
   BodySurface surface;
   surface.enclosed.assign(static_cast<std::size_t>(mesh.n_vertices()), 0);
   part.add_surface(mesh, surface);
@@ -215,7 +220,7 @@ TEST(EveryPart, brings_a_surface_that_the_audit_judges) {
   for (const PartEntry& entry : part_entries()) {
     for (const MeshGenerator& made : mesh_generators()) {
       if (!has_surface(entry.part, made)) continue;
-      const json body = body_of(entry, made.name);
+      const json body = body_of(entry, made);
       EXPECT_GT(crossings_at_start(build_scene(config_of(json::array({body, sheet})))), 0) << made.name;
       EXPECT_EQ(crossings_at_start(build_scene(config_of(json::array({body})))), 0) << made.name;
       judged.insert(entry.name);
@@ -229,6 +234,7 @@ TEST(EveryPart, brings_a_surface_that_the_audit_judges) {
 class Plain final : public Part {
  public:
   void add_keys(Settings<Material>&) const override {}
+  std::string_view lacks(const TriangleMesh&, std::string_view) const override { return {}; }
   void add_elements(const BodySpec&, BodyElements&) const override {}
   std::size_t size(const Scene& scene) const override { return scene.bodies.size(); }
   std::string_view elements() const override { return "plain things"; }

@@ -167,13 +167,6 @@ class ClothSprings final : public Part {
       refuse_all(shear,
                  fmt::format("0 with a face of {} corners; at most {} otherwise", corners, most_corners));
     }
-    if (spec.mesh.triangles.empty()) {
-      refuse_all({{"cloth_tension_N_per_m", m.cloth_tension},
-                  {"cloth_tension_exponential_N_per_m", m.cloth_tension_growing},
-                  {"cloth_compression_N_per_m", m.cloth_compression},
-                  {"cloth_compression_exponential_N_per_m", m.cloth_compression_growing}},
-                 "0: the body has no face");
-    }
     if (m.cloth_exponent != Material().cloth_exponent && m.cloth_tension_growing == 0 &&
         m.cloth_compression_growing == 0 && m.cloth_shear_growing == 0) {
       refuse("cloth_exponent", m.cloth_exponent, "nothing without an exponential stiffness of cloth springs");
@@ -184,6 +177,9 @@ class ClothSprings final : public Part {
     if (m.cloth_creep > 0 && !m.has_sides() && !m.has_diagonals()) {
       refuse("cloth_creep_per_s", m.cloth_creep, "0 without a cloth spring");
     }
+  }
+  std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
+    return mesh.triangles.empty() ? "the body has no face" : "";
   }
 
   void add_elements(const BodySpec& spec, BodyElements& to) const override {

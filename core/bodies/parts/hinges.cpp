@@ -50,6 +50,9 @@ class Hinges final : public Part {
                "0 without bending_J or bending_exponential_J");
     }
   }
+  std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
+    return mesh.triangles.empty() ? "the body has no triangle" : "";
+  }
 
   void add_elements(const BodySpec& spec, BodyElements& to) const override {
     const Material& m = spec.material;

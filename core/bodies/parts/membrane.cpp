@@ -249,10 +249,11 @@ class Membrane final : public Part {
     complain.model("/material/model", m.model, membrane_models<double>().names());
     check_warp_axis(complain, m, planar);
     check_rest(complain, spec);
-    if (m.lumping != Lumping::barycentric && spec.mesh.triangles.empty()) {
-      complain("/material/lumping", give(m.lumping).get<std::string>(), "nothing: the body has no triangle");
-    }
     complain.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");  // under either name
+  }
+
+  std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
+    return mesh.triangles.empty() ? "the body has no triangle" : "";
   }
 
   std::vector<MemoryItem> memory(const Scene& scene, const TriangleMesh& mesh) const override {

@@ -84,6 +84,9 @@ class Rods final : public Part {
   std::string_view keys_doc() const override {
     return "A rod resists bending by one angle a vertex, the same in all directions, and no twist.";
   }
+  std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
+    return mesh.segments.size() < 2 ? "the body has no two lone edges" : "";
+  }
 
   void add_elements(const BodySpec& spec, BodyElements& to) const override {
     if (!spec.material.rods_bend()) return;

@@ -38,6 +38,11 @@ class Springs final : public Part {
             "springs_N_per_m.",
             &Material::rod_stretching);
   }
+  std::string_view lacks(const TriangleMesh& mesh, std::string_view key) const override {
+    if (key != "springs_N_per_m") return mesh.segments.empty() ? "the body has no lone edge" : "";
+    const bool no_edge = mesh.segments.empty() && mesh.triangles.empty() && mesh.tetrahedra.empty();
+    return no_edge ? "the body has no edge" : "";
+  }
 
   std::vector<MemoryItem> memory(const Scene&, const TriangleMesh& mesh) const override {
     return {segment_memory(static_cast<double>(mesh.segments.size()))};

@@ -77,6 +77,9 @@ class Tetrahedra final : public Part {
                            model->poisson_above, m.solid_model));
     }
   }
+  std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
+    return mesh.tetrahedra.empty() ? "the body has no tetrahedron" : "";
+  }
 
   std::vector<MemoryItem> memory(const Scene& scene, const TriangleMesh& mesh) const override {
     return {tetrahedron_memory(static_cast<double>(size(scene) + mesh.tetrahedra.size()))};
