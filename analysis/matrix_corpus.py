@@ -147,13 +147,22 @@ def solve_text(solve: dict) -> str:
     return str(solve["iterations"]) if solve["iterations"] else "ok"
 
 
+def solver_name(solve: dict) -> str:
+    """As the table names it: pcg by its preconditioner, a direct solver by itself, another one by both."""
+    if solve["solver"] == "pcg":
+        return solve["preconditioner"]
+    return (
+        solve["solver"]
+        if solve["preconditioner"] == "none"
+        else f"{solve['solver']} {solve['preconditioner']}"
+    )
+
+
 def table(matrices: list[dict]) -> str:
     rows = []
     for one in matrices:
         tier2 = {e["scaling"]: cond_text(e) for e in one["estimates"] if e["tier"] == 2}
-        solves = {
-            s["solver"] if s["solver"] != "pcg" else s["preconditioner"]: solve_text(s) for s in one["solves"]
-        }
+        solves = {solver_name(s): solve_text(s) for s in one["solves"]}
         cause, _, why = one["cause"].partition(": ")
         rows.append(
             [

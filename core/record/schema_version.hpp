@@ -7,7 +7,7 @@ namespace bb {
 /// MODEL.REVISION.ADDITION. The first number counts fields that are gone, and readers refuse another one; the second
 /// fields that mean something else (changed_in_run, changed_in_trace) or hold more words; the third those that were added.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.7.0";
+inline constexpr const char* run_schema_version = "3.8.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 /// A field whose values are not compared with those of records before `since`.
@@ -18,6 +18,7 @@ struct ChangedMeaning {
 };
 
 inline constexpr ChangedMeaning changed_in_run[] = {
+    {"labels.preconditioner", "3.8.0", "none of pcg_resident, whatever it had"},
     {"comparability.verdict", "3.5.0",
      "comparable: the smallest gap of the run, over all its pairs, within a factor max_ratio of the "
      "reference's"},

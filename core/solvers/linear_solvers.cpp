@@ -39,10 +39,18 @@ std::vector<std::string> linear_solver_choices() {
   return names;
 }
 
+const Parameter* preconditioner_parameter(const LinearSolverEntry& entry) {
+  for (const Parameter& one : entry.parameters) {
+    if (one.name.ends_with("preconditioner")) return &one;
+  }
+  return nullptr;
+}
+
 std::string preconditioner_of(const LinearOptions& options) {
   const LinearSolverEntry& entry = linear_solvers().require(options.name, "/linear_solver/name");
-  if (!find_named(entry.parameters, "preconditioner")) return "none";
-  return text(own_parameters(entry.parameters, options.parameters, "/linear_solver"), "preconditioner");
+  const Parameter* const named = preconditioner_parameter(entry);
+  if (!named) return "none";
+  return text(own_parameters(entry.parameters, options.parameters, "/linear_solver"), named->name);
 }
 
 std::string missing_for(std::string_view solver) {

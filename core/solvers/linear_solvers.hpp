@@ -35,6 +35,8 @@ inline constexpr std::string_view linear_solver_auto = "auto";
 /// The names of the registry, and linear_solver_auto.
 std::vector<std::string> linear_solver_choices();
 
+/// The parameter that names the preconditioner of a solver; null: it has none.
+const Parameter* preconditioner_parameter(const LinearSolverEntry& entry);
 /// The preconditioner of a solver that has one, "none" for the others.
 std::string preconditioner_of(const LinearOptions& options);
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/linear/preconditioner.hpp"
 #include "core/parameters/parameter.hpp"
 #include "core/solvers/linear_solvers.hpp"
 
@@ -23,7 +22,8 @@ ReplayedSolve solve(const LinearSolverEntry& entry, const std::string& precondit
                     const StoredSystem& stored, const ReplayOptions& options) {
   LinearOptions how;
   how.name = entry.name;
-  if (has(entry.parameters, "preconditioner")) how.parameters["preconditioner"] = preconditioner;
+  if (const Parameter* const named = preconditioner_parameter(entry))
+    how.parameters[named->name] = preconditioner;
   if (has(entry.parameters, "forcing")) how.parameters["forcing"] = std::string("fixed");
   if (has(entry.parameters, "tol_rel")) how.parameters["tol_rel"] = options.tol_rel;
   if (has(entry.parameters, "max_iterations")) how.parameters["max_iterations"] = options.max_iterations;
@@ -118,11 +118,12 @@ Replay replay(const StoredSystem& stored, const ReplayOptions& options) {
   Replay out;
   for (const LinearSolverEntry& entry : linear_solvers()) {
     if (!missing_for(entry.name).empty()) continue;
-    if (!has(entry.parameters, "preconditioner")) {
+    const Parameter* const named = preconditioner_parameter(entry);
+    if (!named) {
       out.solves.push_back(solve(entry, "none", stored, options));
       continue;
     }
-    for (const std::string& preconditioner : preconditioners().names()) {
+    for (const std::string& preconditioner : named->rule.words()) {
       out.solves.push_back(solve(entry, preconditioner, stored, options));
     }
   }

@@ -125,8 +125,7 @@ LinearModel read_linear_model(const std::string& file) {
   check_value(given, object(model_list), file + "#", violations);
   for (std::size_t i = 0; violations.empty() && i < given["costs"].size(); ++i) {
     const LinearCost cost = cost_of(given["costs"][i]);
-    const bool reads_one =
-        find_named(linear_solvers().require(cost.solver, file).parameters, "preconditioner");
+    const bool reads_one = preconditioner_parameter(linear_solvers().require(cost.solver, file));
     if (reads_one != cost.preconditioner.empty()) continue;
     violations.push_back({fmt::format("{}#/costs/{}/preconditioner", file, i),
                           reads_one ? "nothing" : "\"" + cost.preconditioner + "\"",
@@ -145,8 +144,9 @@ void decide_linear_solver(RunConfig& config) {
   const LinearWork work = work_of(config);
   const LinearCost& chosen = model.costs[cheapest(model.costs, work)];
   config.linear_solver.name = chosen.solver;
-  if (!chosen.preconditioner.empty())
-    config.linear_solver.parameters["preconditioner"] = chosen.preconditioner;
+  const LinearSolverEntry& entry = linear_solvers().require(chosen.solver, "/linear_solver/name");
+  if (const Parameter* const named = preconditioner_parameter(entry))
+    config.linear_solver.parameters[named->name] = chosen.preconditioner;
   config.linear_solver_reason = fmt::format(
       "by auto: a solve is expected to take {} ({}); {:.0f} unknowns, {:.3g} entries, of a Cholesky "
       "factor {:.3g}, {:.3g} operations",

@@ -4,7 +4,6 @@
 
 #include "core/linear/condition.hpp"
 #include "core/linear/linear_solver.hpp"
-#include "core/linear/preconditioner.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/validity/block.hpp"
 
@@ -38,15 +37,16 @@ double eigenvalue(int k, double shift) {
 
 std::vector<LinearOptions> all_solvers() {
   std::vector<LinearOptions> out;
-  for (const std::string& name : linear_solvers().names()) {
-    if (!missing_for(name).empty()) continue;
-    LinearOptions options{name, {{"forcing", std::string("fixed")}, {"tol_rel", 1e-12}}};
-    if (preconditioner_of(options) == "none" && name != "pcg") {
+  for (const LinearSolverEntry& entry : linear_solvers()) {
+    if (!missing_for(entry.name).empty()) continue;
+    LinearOptions options{entry.name, {{"forcing", std::string("fixed")}, {"tol_rel", 1e-12}}};
+    const Parameter* const named = preconditioner_parameter(entry);
+    if (!named) {
       out.push_back(options);
       continue;
     }
-    for (const std::string& preconditioner : preconditioners().names()) {
-      options.parameters["preconditioner"] = preconditioner;
+    for (const std::string& preconditioner : named->rule.words()) {
+      options.parameters[named->name] = preconditioner;
       out.push_back(options);
     }
   }

@@ -95,6 +95,20 @@ TEST_F(LinearChoiceTest, TheModelOfThisProcessorChoosesByTheSizeOfTheScene) {
   EXPECT_NE(large.linear_solver.reason.find("one.json"), std::string::npos);
 }
 
+TEST_F(LinearChoiceTest, APreconditionerIsGivenToItsSolverUnderTheNameThatItHasThere) {
+  json model = model_of(collect_machine().cpu_model);
+  model["costs"][1]["solver"] = "pcg_resident";
+  model["costs"][1]["preconditioner"] = "schwarz";
+  write(model);
+  const Plan large = planned(40);
+  EXPECT_EQ(large.linear.name, "pcg_resident");
+  EXPECT_EQ(text(large.linear.parameters, "resident_preconditioner"), "schwarz");
+  EXPECT_EQ(preconditioner_of(large.linear), "schwarz");
+  EXPECT_EQ(preconditioner_of({"pcg_resident", {}}), "block_jacobi");
+  EXPECT_EQ(preconditioner_of({"pcg", {}}), "block_jacobi");
+  EXPECT_EQ(preconditioner_of({"cholmod", {}}), "none");
+}
+
 TEST_F(LinearChoiceTest, WithoutAModelOfThisProcessorItSaysForWhichThereAreSome) {
   write(model_of("another processor"));
   try {

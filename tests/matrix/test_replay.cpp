@@ -18,10 +18,11 @@ namespace {
 
 TEST(Replay, EverySolverPreconditionerAndEstimatorHasALine) {
   const Replay r = replay(chain(30, 2.1), {});
-  std::set<std::string> solvers, conditioners;
+  std::set<std::string> solvers, conditioners, resident;
   for (const ReplayedSolve& row : r.solves) {
     solvers.insert(row.solver);
     if (row.solver == "pcg") conditioners.insert(row.preconditioner);
+    if (row.solver == "pcg_resident") resident.insert(row.preconditioner);
     EXPECT_EQ(row.report.status, LinearStatus::ok) << row.solver << " " << row.preconditioner;
     EXPECT_LE(row.report.residual_true, 1e-8);
     if (row.report.iterative) {
@@ -33,6 +34,7 @@ TEST(Replay, EverySolverPreconditionerAndEstimatorHasALine) {
   EXPECT_GE(usable, 4U);
   EXPECT_EQ(solvers.size(), usable);
   EXPECT_EQ(conditioners.size(), preconditioners().names().size());
+  EXPECT_EQ(resident, (std::set<std::string>{"block_jacobi", "schwarz"}));
   ASSERT_EQ(r.estimates.size(), 15u);  // tiers 0 to 4, three scalings
   const double pi = std::acos(-1.0), exact = (2.1 + 2 * std::cos(pi / 31)) / (2.1 - 2 * std::cos(pi / 31));
   for (const ReplayedEstimate& row : r.estimates) {
