@@ -135,6 +135,15 @@ bool ExactPolygon<Pair>::proves_passage(const Point& direction, const TimeSpan& 
   }
 }
 
+// The height over the plane is a polynomial of the degree dim in time: it has no more zeros than that, or is zero.
+template <class Pair>
+bool ExactPolygon<Pair>::stays_in_plane() const {
+  for (int k = 0; k <= dim; ++k) {
+    if (plane_side(TimeSpan::one / 4 * k) != 0) return false;
+  }
+  return true;
+}
+
 template class ExactPolygon<VertexTriangle>;
 template class ExactPolygon<EdgeEdge>;
 template class ExactPolygon<VertexEdge2d>;

@@ -26,6 +26,12 @@ class ExactPolygon {
   /// the two ends.
   bool proves_passage(const Point& direction, const TimeSpan& span) const;
 
+  /// Whether the origin is in the polygon's plane (2D: line) at all times, so that it never passes through it.
+  bool stays_in_plane() const;
+
+  /// Whether the origin is in the closed polygon at that time: the primitives meet.
+  bool meets_at(std::int64_t t) const { return !any_separates({t, t}); }
+
  private:
   /// 2^50 (1 - t) begin + 2^50 t end, a positive multiple of the corner.
   Integers corner(int k, std::int64_t t) const;

@@ -14,6 +14,8 @@ namespace {
 constexpr int max_pair_spans = 20000;
 // The same for spans tried by integers, which cost some tens of microseconds each.
 constexpr int max_exact_spans = 2000;
+// A pair that is split more often than this may be in lasting contact.
+constexpr int many_spans = 64, many_exact_spans = 4;
 // A span in which nothing moves by more than this part of the pair's size is left to the integers: the
 // allowance of the floating certificate is a few 2^-50 of it.
 constexpr double rounding = 0x1p-50;
@@ -30,16 +32,18 @@ class Bisection {
   Bisection(const PairMotion<Pair>& motion, const MovingPolygon<Pair>& polygon, double tolerance)
       : motion_(motion), polygon_(polygon), speed_(polygon.motion()), tolerance_(tolerance) {}
 
-  Verdict run() {
+  Verdict run(Effort& effort) {
     TimeSpan stack[64];
     int top = 0;
     stack[top++] = TimeSpan{};
     bool doubt = false;
-    int exact_spans = 0;
-    for (int spans = 0; top > 0; ++spans) {
+    auto& [spans, exact_spans] = effort;
+    for (; top > 0; ++spans) {
       if (spans == max_pair_spans || exact_spans == max_exact_spans) return Verdict::unproven;
       const TimeSpan span = stack[--top];
       if (polygon_.any_separates(span)) continue;
+      const bool many = spans >= many_spans || exact_spans >= many_exact_spans;
+      if (many && stays_in_plane() && exact().meets_at(span.middle())) return Verdict::unproven;
       const double moved = speed_ * span.length();
       const bool last = span.end - span.begin == 1 || moved <= rounding * polygon_.size();
       const bool always_exact = last || moved <= tolerance_;
@@ -61,6 +65,11 @@ class Bisection {
     if (!exact_) exact_.emplace(motion_);
     return *exact_;
   }
+  /// Of such a pair no passage can be proven, so a time at which it meets settles the verdict.
+  bool stays_in_plane() {
+    if (!in_plane_) in_plane_ = exact().stays_in_plane();
+    return *in_plane_;
+  }
   /// The span itself is tried too: widening may reach a turn of the pair.
   bool passes(const TimeSpan& span, bool always_exact) {
     const auto normal = polygon_.normal(span.middle());
@@ -75,19 +84,21 @@ class Bisection {
   const MovingPolygon<Pair>& polygon_;
   double speed_, tolerance_;
   std::optional<ExactPolygon<Pair>> exact_;
+  std::optional<bool> in_plane_;
 };
 
 }  // namespace
 
 template <class Pair>
-Verdict judge(const PairMotion<Pair>& motion, double tolerance) {
+Verdict judge(const PairMotion<Pair>& motion, double tolerance, Effort* effort) {
   const MovingPolygon<Pair> polygon(motion);
   if (polygon.axis_separates({}) || polygon.any_separates({})) return Verdict::certified;
-  return Bisection<Pair>(motion, polygon, tolerance).run();
+  Effort own;
+  return Bisection<Pair>(motion, polygon, tolerance).run(effort ? *effort : own);
 }
 
-template Verdict judge<VertexTriangle>(const PairMotion<VertexTriangle>&, double);
-template Verdict judge<EdgeEdge>(const PairMotion<EdgeEdge>&, double);
-template Verdict judge<VertexEdge2d>(const PairMotion<VertexEdge2d>&, double);
+template Verdict judge<VertexTriangle>(const PairMotion<VertexTriangle>&, double, Effort*);
+template Verdict judge<EdgeEdge>(const PairMotion<EdgeEdge>&, double, Effort*);
+template Verdict judge<VertexEdge2d>(const PairMotion<VertexEdge2d>&, double, Effort*);
 
 }  // namespace bb::audit

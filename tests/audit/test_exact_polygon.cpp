@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace bb::audit::exact_polygon_test {
@@ -138,6 +139,57 @@ TEST(ExactPolygon, ProvesWhatItsPolynomialsProve) {
     EXPECT_GT(tally.proven, 60);
     EXPECT_GT(tally.not_proven, 500);
   }
+}
+
+template <class Pair>
+void compare_planes(int n_motions) {
+  std::mt19937 random(17);
+  int flat = 0;
+  for (int i = 0; i < n_motions; ++i) {
+    PairMotion<Pair> m = random_motion<Pair>(random);
+    if (i % 3 == 0) {  // on the vertex 1 all the time
+      m.x0[0] = m.x0[1];
+      m.x1[0] = m.x1[1];
+      if (Pair::n_corners == 4) std::swap(m.x0[1], m.x0[2]), std::swap(m.x1[1], m.x1[2]);
+    }
+    bool expected = true;
+    for (Long t = 0; t <= 16; ++t) expected = expected && plane_height(m, t) == 0;
+    EXPECT_EQ(ExactPolygon<Pair>(m).stays_in_plane(), expected) << i;
+    flat += expected;
+  }
+  EXPECT_GE(flat, n_motions / 3);
+  EXPECT_LT(flat, n_motions / 2);
+}
+
+TEST(ExactPolygon, KnowsWhatStaysInOnePlane) {
+  compare_planes<VertexTriangle>(600);
+  compare_planes<EdgeEdge>(600);
+  compare_planes<VertexEdge2d>(600);
+}
+
+/// A vertex and a triangle in the plane z = 0: it is in the closed triangle where no two sides see it on two sides.
+TEST(ExactPolygon, MeetsWhereTheVertexIsInTheClosedTriangle) {
+  std::mt19937 random(23);
+  int meets = 0, apart = 0, on_the_border = 0;
+  for (int i = 0; i < 600; ++i) {
+    PairMotion<VertexTriangle> m = random_motion<VertexTriangle>(random);
+    for (std::size_t k = 0; k < 4; ++k) m.x0[k][2] = m.x1[k][2] = 0;
+    const ExactPolygon<VertexTriangle> exact(m);
+    EXPECT_TRUE(exact.stays_in_plane());
+    for (int t = 0; t <= eighths; ++t) {
+      const Long3 a = corner_at(m, 0, 2 * t), b = corner_at(m, 1, 2 * t), c = corner_at(m, 2, 2 * t);
+      const Long sides[3] = {cross(a, b)[2], cross(b, c)[2], cross(c, a)[2]};
+      if (sides[0] + sides[1] + sides[2] == 0) continue;  // the triangle has no area
+      const auto [low, high] = std::minmax_element(std::begin(sides), std::end(sides));
+      const bool expected = *low >= 0 || *high <= 0;
+      EXPECT_EQ(exact.meets_at(TimeSpan::one / eighths * t), expected) << i << " " << t;
+      ++(expected ? meets : apart);
+      on_the_border += expected && *low * *high == 0;
+    }
+  }
+  EXPECT_GT(meets, 500);
+  EXPECT_GT(apart, 500);
+  EXPECT_GT(on_the_border, 20);
 }
 
 /// The same motion further away and in other units: 2^-40 of it, and 2^20 units off.

@@ -69,6 +69,51 @@ TEST(PairVerdict, touching_is_neither_certified_nor_a_passage) {
   EXPECT_EQ(vertex_over_triangle({0, 0, 1}, {0, 0, -1}), Verdict::unproven);     // through a corner
 }
 
+struct Judged {
+  Verdict verdict;
+  Effort effort;
+};
+template <class Pair>
+Judged judged(const PairMotion<Pair>& motion) {
+  Effort effort;
+  const Verdict verdict = judge(motion, tolerance, &effort);
+  return {verdict, effort};
+}
+
+/// As two sheets that lie in each other: a vertex on a corner, on a side and in the middle of a triangle that turns and is
+/// stretched, and edges that cross or lie on one line. A pair is not split until the cap.
+TEST(PairVerdict, a_pair_that_touches_all_the_time_is_settled_after_few_spans) {
+  const Vec3d a1(1, 2, 3), b1(4, 2.5, 3.5), c1(1.25, 5, 2);
+  const auto at = [](const Vec3d& a, const Vec3d& b, const Vec3d& c, double u, double v) {
+    return Vec3d(a + u * (b - a) + v * (c - a));
+  };
+  const auto seldom = [](const Judged& found) {
+    EXPECT_EQ(found.verdict, Verdict::unproven);
+    EXPECT_LE(found.effort.exact_spans, 10);
+    EXPECT_LE(found.effort.spans, 200);
+    EXPECT_GT(found.effort.spans, 0);
+  };
+  for (const auto& [u, v] : {std::pair(0.0, 0.0), {0.5, 0.0}, {0.25, 0.5}}) {
+    seldom(judged<VertexTriangle>({{at(A, B, C, u, v), A, B, C}, {at(a1, b1, c1, u, v), a1, b1, c1}}));
+    const Vec3d off0(4, 4, 0), off1 = at(a1, b1, c1, 1, 1);
+    seldom(judged<EdgeEdge>({{at(A, B, C, u, 0), off0, A, B}, {at(a1, b1, c1, u, 0), off1, a1, b1}}));
+  }
+  seldom(judged<EdgeEdge>({{A, B, A, B}, {a1, b1, a1, b1}}));
+  seldom(judged<VertexTriangle>({{Vec3d(0.5, 0.5, 0), A, B, C}, {Vec3d(1, 1, 0), A, B, C}}));
+  const Vec2d p(0.5, 0), l(0, 0), r(1, 0);
+  seldom(judged<VertexEdge2d>({{p, l, r}, {Vec2d(1.5, 2.5), Vec2d(1, 2), Vec2d(2, 3)}}));
+}
+
+/// In one plane and yet apart: it is split until it is certified. It meets the triangle for a part of the time: it is not.
+TEST(PairVerdict, a_pair_in_one_plane_is_certified_where_it_stays_apart) {
+  const double out = 2 + 1e-7;
+  EXPECT_EQ(vertex_triangle({Vec3d(out, out, 0), A, B, C}, {Vec3d(out - 1, out + 1, 0), A, B, C}),
+            Verdict::certified);
+  const Judged slides = judged<VertexTriangle>({{Vec3d(-1, 1, 0), A, B, C}, {Vec3d(6, 1.5, 0), A, B, C}});
+  EXPECT_EQ(slides.verdict, Verdict::unproven);
+  EXPECT_LE(slides.effort.exact_spans, 10);
+}
+
 TEST(PairVerdict, edge_through_edge_is_a_violation) {
   const Vec3d a(-1, 0, 0), b(1, 0, 0);
   const auto upright = [](double y, double z) {
