@@ -116,6 +116,18 @@ void StagedFile::commit() {
   sync_folder(folder_of(path_));
 }
 
+bool StagedFile::commit_as_first() {
+  if (::link(temp_.c_str(), path_.c_str()) != 0) {
+    if (errno == EEXIST) return false;
+    commit();  // of a file system without links
+    return true;
+  }
+  ::unlink(temp_.c_str());
+  temp_.clear();
+  sync_folder(folder_of(path_));
+  return true;
+}
+
 void write_atomically(const fs::path& path, const std::string& text) { StagedFile(path, text).commit(); }
 
 void move_into_place(const fs::path& from, const fs::path& to) {

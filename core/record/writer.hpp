@@ -45,6 +45,8 @@ class StagedFile {
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
   void commit();
+  /// The same where no file has that name; false: there is one, which stays. Of several processes one succeeds.
+  bool commit_as_first();
 
  private:
   std::filesystem::path path_, temp_;

@@ -97,25 +97,40 @@ BuildValidity summary_of(const std::vector<BlockCheck>& checks, const std::strin
   return out;
 }
 
+namespace {
+
+/// Whether there is a report of this build, which is read.
+bool read_stored(const BuildKey& build, StoredBlock& out) {
+  const auto stored = read_report(out.file, build, out.report);
+  if (!stored) return false;
+  out.validity = *stored;
+  out.kept = true;
+  return true;
+}
+
+}  // namespace
+
 StoredBlock block_of_this_build(const std::filesystem::path& folder, const std::vector<PluginFile>& plugins,
                                 const std::function<std::vector<BlockCheck>()>& compute) {
   const BuildKey build = this_build(plugins);
   StoredBlock out;
   out.file = folder / (build.sha256.substr(0, 16) + ".json");
-  if (const auto stored = read_report(out.file, build, out.report)) {
-    out.validity = *stored;
-    out.kept = true;
-    return out;
-  }
+  if (read_stored(build, out)) return out;
   const std::vector<BlockCheck> checks = compute();
-  out.report = report_text(build, checks);
-  out.validity = summary_of(checks, out.report);
+  const std::string made = report_text(build, checks);
   try {
-    write_atomically(out.file, out.report);
+    StagedFile staged(out.file, made);
+    // Another process may have been first: its report stays, since records name it.
+    if (!staged.commit_as_first()) {
+      if (read_stored(build, out)) return out;
+      staged.commit();
+    }
     out.kept = true;
   } catch (const RecordError&) {
     out.kept = false;
   }
+  out.report = made;
+  out.validity = summary_of(checks, made);
   return out;
 }
 

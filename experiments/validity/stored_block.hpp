@@ -24,7 +24,8 @@ std::string report_text(const BuildKey& build, const std::vector<BlockCheck>& ch
 BuildValidity summary_of(const std::vector<BlockCheck>& checks, const std::string& report);
 
 /// Of this build: read from `folder`/<key>.json, else computed and written there; an unreadable or foreign file is
-/// replaced. Where `folder` cannot be written the block is computed all the same, and `kept` is false.
+/// replaced. Of several processes that compute it at once all have the report of the first. Where `folder` cannot be
+/// written the block is computed all the same, and `kept` is false.
 /// Errors: none.   Cost: milliseconds, the first time of a build that of `compute`, which tests replace.
 struct StoredBlock {
   BuildValidity validity;

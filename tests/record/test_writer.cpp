@@ -88,6 +88,24 @@ TEST_F(Writer, ReplacesAnOldRecordAsAWhole) {
   EXPECT_EQ(entries(), 1u);
 }
 
+TEST_F(Writer, OfTwoThatWantToBeTheFirstOneIs) {
+  const fs::path file = folder_ / "one.json";
+  {
+    StagedFile first(file, "[1]"), second(folder_ / "two.json", "[2]");
+    EXPECT_TRUE(first.commit_as_first());
+    EXPECT_TRUE(second.commit_as_first());
+  }
+  {
+    StagedFile late(file, "[3]");
+    EXPECT_FALSE(late.commit_as_first());
+    EXPECT_EQ(read("one.json"), json({1}));
+  }
+  EXPECT_EQ(entries(), 2u);
+  StagedFile(file, "[4]").commit();
+  EXPECT_EQ(read("one.json"), json({4}));
+  EXPECT_EQ(read("two.json"), json({2}));
+}
+
 TEST_F(Writer, NonFiniteNumbersAreNullWithAReason) {
   RunRecord record = test::sample_record();
   record.steps[0].alpha_ccd_min = std::numeric_limits<double>::infinity();

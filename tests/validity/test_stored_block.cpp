@@ -75,6 +75,22 @@ TEST_F(StoredBlocks, a_report_that_is_damaged_or_of_another_build_is_made_anew) 
   }
 }
 
+TEST_F(StoredBlocks, of_two_processes_that_compute_it_at_once_both_have_the_report_of_the_first) {
+  std::vector<BlockCheck> checks = compute_block();
+  StoredBlock first;
+  const StoredBlock second = block_of_this_build(folder_, {}, [&] {
+    first = block_of_this_build(folder_, {}, [&] { return checks; });
+    checks[0].detail = "of the second";
+    return checks;
+  });
+  EXPECT_TRUE(first.kept && second.kept);
+  EXPECT_EQ(second.report, first.report);
+  EXPECT_EQ(second.validity.report_sha256, first.validity.report_sha256);
+  EXPECT_EQ(text_of(first.file), first.report);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1)
+      << "nothing is left beside it";
+}
+
 TEST(StoredBlock, a_report_without_a_check_is_not_valid) { EXPECT_FALSE(summary_of({}, "").valid); }
 
 TEST_F(StoredBlocks, where_nothing_can_be_written_the_block_is_computed_all_the_same) {
