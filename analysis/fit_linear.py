@@ -83,6 +83,11 @@ def measurements(records: Records) -> pd.DataFrame:
                 print(f"{label}, {run['series']}: {run['outcome']}, left out", file=sys.stderr)
                 continue
             preconditioner = "" if run["preconditioner"] == "none" else run["preconditioner"]
+            if run["linear_solver"] == "pcg_resident" and not preconditioner:
+                raise RecordError(
+                    f"{label}, {run['series']}: found a record of {run['schema_version']}, which does not say"
+                    " the preconditioner of pcg_resident; allowed: 3.8.0 or later (run it again)"
+                )
             rows.append(
                 {
                     "scene": label,

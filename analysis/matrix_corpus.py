@@ -24,7 +24,10 @@ from .spec_file import read_spec
 from .text_table import markdown as table_lines
 
 MOST_BYTES = 8 << 20
-SOLVERS = ["cholmod", "lagged_cholesky", "none", "jacobi", "block_jacobi", "ic0", "schwarz", "mas"]
+DIRECT = ["cholmod", "lagged_cholesky"]
+PCG = ["none", "jacobi", "block_jacobi", "ic0", "schwarz", "mas"]
+RESIDENT = ["pcg_resident block_jacobi", "pcg_resident schwarz"]
+SOLVERS = DIRECT + PCG + RESIDENT
 HEAD = """# Hard systems as data
 
 Linear systems A x = b of Newton's method that are hard for different reasons, from small runs of this program. `NAME.mtx` is the matrix (Matrix
@@ -175,7 +178,7 @@ def table(matrices: list[dict]) -> str:
             ]
         )
     head = ["system", "cause", "rows", "entries", "cond", "Jacobi", "block Jacobi"]
-    head += [f"pcg {s}" if s not in SOLVERS[:2] else s for s in SOLVERS]
+    head += [f"pcg {s}" if s in PCG else s for s in SOLVERS]
     return "\n".join(table_lines(head, rows))
 
 

@@ -14,7 +14,6 @@ from .records import Run
 # Field that has changed its meaning -> families of numbers that are made of it (measure.py, shares.py);
 # class I and II look at one record alone.
 FAMILIES: dict[str, tuple[str, ...]] = {
-    "labels.preconditioner": (),
     "comparability.verdict": (),
     "comparability.max_ratio": (),
     "audit.obstacle_queries": (),

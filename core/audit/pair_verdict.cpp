@@ -14,8 +14,9 @@ namespace {
 constexpr int max_pair_spans = 20000;
 // The same for spans tried by integers, which cost some tens of microseconds each.
 constexpr int max_exact_spans = 2000;
-// A pair that is split more often than this may be in lasting contact.
-constexpr int many_spans = 64, many_exact_spans = 4;
+// A pair that costs more than this, in spans, may be in lasting contact. It is looked at again whenever the cost has
+// doubled, which keeps the looks at a pair that is not to a part of it.
+constexpr int first_look = 64, spans_per_exact_span = 16;
 // A span in which nothing moves by more than this part of the pair's size is left to the integers: the
 // allowance of the floating certificate is a few 2^-50 of it.
 constexpr double rounding = 0x1p-50;
@@ -39,11 +40,10 @@ class Bisection {
     bool doubt = false;
     auto& [spans, exact_spans] = effort;
     for (; top > 0; ++spans) {
-      if (spans == max_pair_spans || exact_spans == max_exact_spans) return Verdict::unproven;
+      if (spans >= max_pair_spans || exact_spans >= max_exact_spans) return Verdict::unproven;
       const TimeSpan span = stack[--top];
       if (polygon_.any_separates(span)) continue;
-      const bool many = spans >= many_spans || exact_spans >= many_exact_spans;
-      if (many && stays_in_plane() && exact().meets_at(span.middle())) return Verdict::unproven;
+      if (touches_for_long(spans + spans_per_exact_span * exact_spans, span)) return Verdict::unproven;
       const double moved = speed_ * span.length();
       const bool last = span.end - span.begin == 1 || moved <= rounding * polygon_.size();
       const bool always_exact = last || moved <= tolerance_;
@@ -65,13 +65,16 @@ class Bisection {
     if (!exact_) exact_.emplace(motion_);
     return *exact_;
   }
-  /// Of such a pair no passage can be proven, so a time at which it meets settles the verdict.
-  bool stays_in_plane() {
+  /// Of a pair that stays in one plane no passage can be proven, so a time at which it meets settles the verdict.
+  bool touches_for_long(int cost, const TimeSpan& span) {
+    if (cost < next_look_) return false;
+    next_look_ = 2 * cost;
     if (!in_plane_) in_plane_ = exact().stays_in_plane();
-    return *in_plane_;
+    return *in_plane_ && exact().meets_at(span.middle());
   }
   /// The span itself is tried too: widening may reach a turn of the pair.
   bool passes(const TimeSpan& span, bool always_exact) {
+    if (in_plane_.value_or(false)) return false;
     const auto normal = polygon_.normal(span.middle());
     for (const TimeSpan& s : {span, widened(span)}) {
       if ((always_exact || polygon_.seems_to_pass(normal, s)) && exact().proves_passage(normal, s))
@@ -85,16 +88,19 @@ class Bisection {
   double speed_, tolerance_;
   std::optional<ExactPolygon<Pair>> exact_;
   std::optional<bool> in_plane_;
+  int next_look_ = first_look;
 };
 
 }  // namespace
 
 template <class Pair>
 Verdict judge(const PairMotion<Pair>& motion, double tolerance, Effort* effort) {
+  Effort own;
+  Effort& spent = effort ? *effort : own;
+  spent = {};
   const MovingPolygon<Pair> polygon(motion);
   if (polygon.axis_separates({}) || polygon.any_separates({})) return Verdict::certified;
-  Effort own;
-  return Bisection<Pair>(motion, polygon, tolerance).run(effort ? *effort : own);
+  return Bisection<Pair>(motion, polygon, tolerance).run(spent);
 }
 
 template Verdict judge<VertexTriangle>(const PairMotion<VertexTriangle>&, double, Effort*);

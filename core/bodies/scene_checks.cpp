@@ -18,20 +18,26 @@ std::string allowed_coordinates() {
   return fmt::format("finite coordinates between -{0:g} and {0:g} m", max_coordinate);
 }
 
-/// Keys of a part that the mesh has nothing for. What switches elements off may stand.
-void check_subject(const Complaints& complain, const BodySpec& spec, const Part& part) {
+/// Keys of a part that the mesh has nothing for; returns whether there are any. What switches elements off may stand, and
+/// what follows from another key is not said of it too.
+bool refuse_without_subject(const Complaints& complain, const BodySpec& spec, const Part& part) {
   Settings<Material> keys("");
   part.add_keys(keys);
   const ParameterList list = keys.rows();
   const Material usual;
-  for (const Parameter& row : list.rows) {
-    const std::string_view lacks = part.lacks(spec.mesh, row.name);
-    if (lacks.empty()) continue;
-    const nlohmann::json value = keys.write_one(row.name, spec.material);
-    const bool as_usual = value == to_json(row.fallback) || value == keys.write_one(row.name, usual);
-    if (as_usual || value == 0 || value == "none") continue;
-    complain("/material/" + row.name, value.dump(), fmt::format("nothing: {}", lacks));
+  const std::size_t before = complain.out.size();
+  for (const bool computed : {false, true}) {
+    if (complain.out.size() > before) return true;
+    for (const Parameter& row : list.rows) {
+      const std::string_view lacks = part.lacks(spec.mesh, row.name);
+      if (lacks.empty() || row.rule.computed.empty() == computed) continue;
+      const nlohmann::json value = keys.write_one(row.name, spec.material);
+      const bool as_usual = value == to_json(row.fallback) || value == keys.write_one(row.name, usual);
+      if (as_usual || value.is_null() || value == 0 || value == "none") continue;
+      complain("/material/" + row.name, value.dump(), fmt::format("nothing: {}", lacks));
+    }
   }
+  return complain.out.size() > before;
 }
 
 void check_material(const Complaints& complain, const BodySpec& spec, bool planar) {
@@ -40,8 +46,7 @@ void check_material(const Complaints& complain, const BodySpec& spec, bool plana
         complain.number("/material/" + name, value, false, allowed);
       });
   for (const PartEntry& entry : part_entries()) {
-    check_subject(complain, spec, entry.part);
-    entry.part.check(spec, planar, complain);
+    if (!refuse_without_subject(complain, spec, entry.part)) entry.part.check(spec, planar, complain);
   }
   const std::optional<StrainLimitSpec>& limit = spec.material.limit;
   if (!limit) return;

@@ -48,7 +48,8 @@ struct Labels {
   BB_FIELD(std::string, integrator, "time integrator");
   BB_FIELD(std::string, step_solver, "order of events in a step");
   BB_FIELD(std::string, linear_solver, "of the Newton step");
-  BB_FIELD(std::string, preconditioner, "of a solver by conjugate gradients; none for others");
+  BB_FIELD(std::string, preconditioner,
+           "of a solver by conjugate gradients; none for others, and of pcg_resident before 3.8.0");
   BB_FIELD(std::string, precision, "of the solver");
   BB_FIELD(double, d_hat_m, "width of the contact barrier") = 0;
   BB_FIELD(double, dt_s, "time step") = 0;

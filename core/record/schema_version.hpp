@@ -18,7 +18,6 @@ struct ChangedMeaning {
 };
 
 inline constexpr ChangedMeaning changed_in_run[] = {
-    {"labels.preconditioner", "3.8.0", "none of pcg_resident, whatever it had"},
     {"comparability.verdict", "3.5.0",
      "comparable: the smallest gap of the run, over all its pairs, within a factor max_ratio of the "
      "reference's"},

@@ -5,7 +5,6 @@
 
 #include "core/linear/block_system.hpp"
 #include "core/linear/cholmod_factor.hpp"
-#include "core/linear/preconditioner.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/microbenchmarks/cloth_matrix.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
@@ -72,7 +71,9 @@ void solve(benchmark::State& state, const std::string& name, const std::string& 
   const ReducedSystem& system = cloth.assemble(*s, cloth.contacts_a);
   LinearOptions options;
   options.name = name;
-  options.parameters = {{"preconditioner", preconditioner}, {"forcing", "fixed"}, {"tol_rel", 1e-6}};
+  options.parameters = {{"forcing", "fixed"}, {"tol_rel", 1e-6}};
+  if (const Parameter* const named = preconditioner_parameter(linear_solvers().require(name, "solver")))
+    options.parameters[named->name] = preconditioner;
   const auto solver = make_linear_solver(options);
   const VecXd b = VecXd::LinSpaced(system.lower.rows(), -1, 1);
   VecXd x;
@@ -100,16 +101,16 @@ void register_linear() {
   register_sizes("linear/cholmod_refactorize", cholmod_refactorize);
   for (const LinearSolverEntry& solver : linear_solvers()) {
     if (!missing_for(solver.name).empty()) continue;
-    const bool iterative = solver.name == "pcg";
-    for (const std::string& label : preconditioners().names()) {
+    const Parameter* const named = preconditioner_parameter(solver);
+    const std::vector<std::string> labels = named ? named->rule.words() : std::vector<std::string>{""};
+    for (const std::string& label : labels) {
       const std::string& name = solver.name;
-      add("linear/solve/" + name + (iterative ? "/" + label : ""),
+      add("linear/solve/" + name + (named ? "/" + label : ""),
           [name, label](benchmark::State& state) { solve(state, name, label); })
           ->ArgName("side")
           ->Arg(16)
           ->Arg(107)
           ->Unit(benchmark::kMillisecond);
-      if (!iterative) break;
     }
   }
 }

@@ -125,12 +125,14 @@ LinearModel read_linear_model(const std::string& file) {
   check_value(given, object(model_list), file + "#", violations);
   for (std::size_t i = 0; violations.empty() && i < given["costs"].size(); ++i) {
     const LinearCost cost = cost_of(given["costs"][i]);
-    const bool reads_one = preconditioner_parameter(linear_solvers().require(cost.solver, file));
-    if (reads_one != cost.preconditioner.empty()) continue;
-    violations.push_back({fmt::format("{}#/costs/{}/preconditioner", file, i),
-                          reads_one ? "nothing" : "\"" + cost.preconditioner + "\"",
-                          reads_one ? "a preconditioner, which " + cost.solver + " has"
-                                    : "nothing: " + cost.solver + " has none"});
+    const Parameter* const named = preconditioner_parameter(linear_solvers().require(cost.solver, file));
+    const std::vector<std::string> its = named ? named->rule.words() : std::vector<std::string>{""};
+    if (std::find(its.begin(), its.end(), cost.preconditioner) != its.end()) continue;
+    violations.push_back(
+        {fmt::format("{}#/costs/{}/preconditioner", file, i),
+         cost.preconditioner.empty() ? "nothing" : "\"" + cost.preconditioner + "\"",
+         named ? "a preconditioner that " + cost.solver + " has: " + fmt::format("{}", fmt::join(its, ", "))
+               : "nothing: " + cost.solver + " has none"});
   }
   if (!violations.empty()) throw ConfigError(std::move(violations));
   LinearModel model{file, given["machine"]["cpu_model"].get<std::string>(), {}};

@@ -104,6 +104,19 @@ TEST(PairVerdict, a_pair_that_touches_all_the_time_is_settled_after_few_spans) {
   seldom(judged<VertexEdge2d>({{p, l, r}, {Vec2d(1.5, 2.5), Vec2d(1, 2), Vec2d(2, 3)}}));
 }
 
+/// Two parallel rods that turn in one plane: they are apart, and are not looked at in integers for every span.
+TEST(PairVerdict, a_pair_in_one_plane_that_stays_apart_is_split_as_any_other) {
+  const auto rods = [](double gap, double lift) {
+    return PairMotion<EdgeEdge>{{Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, gap, lift), Vec3d(1, gap, 0)},
+                                {Vec3d(0, 0, 0), Vec3d(0, 1, 0), Vec3d(-gap, 0, lift), Vec3d(-gap, 1, 0)}};
+  };
+  const Judged flat = judged(rods(1e-3, 0)), lifted = judged(rods(1e-3, 1e-7));
+  EXPECT_EQ(flat.verdict, Verdict::certified);
+  EXPECT_EQ(lifted.verdict, Verdict::certified);
+  EXPECT_GT(flat.effort.spans, 64);
+  EXPECT_EQ(flat.effort.exact_spans, 0);
+}
+
 /// In one plane and yet apart: it is split until it is certified. It meets the triangle for a part of the time: it is not.
 TEST(PairVerdict, a_pair_in_one_plane_is_certified_where_it_stays_apart) {
   const double out = 2 + 1e-7;

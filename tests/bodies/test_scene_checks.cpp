@@ -1,6 +1,7 @@
 // Scenes that cannot be run are refused, all violations at once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -82,6 +83,28 @@ TEST(scene_checks, refuse_a_key_of_elements_that_the_body_cannot_have) {
     }
     for (const TriangleMesh& mesh : c.allowed) EXPECT_EQ(said_of(mesh, c.change), "") << c.key;
   }
+}
+
+TEST(scene_checks, say_once_what_a_body_has_nothing_for) {
+  const TriangleMesh rod = rod_mesh(3, Vec3d(0, 0, 0), Vec3d(1, 0, 0));
+  const auto lines_of = [&](const std::function<void(Material&)>& change) {
+    const std::string found = said_of(rod, change);
+    return std::count(found.begin(), found.end(), '\n') + !found.ends_with('\n');
+  };
+  const auto shrunk = [](Material& m) {
+    m.shrink_warp = 0.9;
+    m.warp_axis = Vec3d::UnitX();  // as a config settles it
+  };
+  EXPECT_EQ(lines_of(shrunk), 1) << said_of(rod, shrunk);
+  const auto thick = [](Material& m) {
+    m.youngs = 7;
+    m.thickness = 1e-3;
+  };
+  EXPECT_EQ(lines_of(thick), 2) << said_of(rod, thick);  // youngs_Pa and thickness_m
+  const auto alone = [](Material& m) { m.warp_axis = Vec3d::UnitX(); };
+  EXPECT_EQ(lines_of(alone), 1) << said_of(rod, alone);
+  const auto creeps = [](Material& m) { m.membrane_creep = 1; };
+  EXPECT_EQ(lines_of(creeps), 1) << said_of(rod, creeps);
 }
 
 TEST(scene_checks, allow_what_switches_off_elements_that_the_body_cannot_have) {

@@ -146,6 +146,12 @@ TEST_F(LinearChoiceTest, AModelThatCannotBeReadIsNamedWithPlaceValueAndWhatIsAll
   with["costs"][0]["preconditioner"] = "ic0";
   EXPECT_NE(refusal(with).find("/costs/0/preconditioner: found \"ic0\"; allowed: nothing"),
             std::string::npos);
+  json foreign = good;
+  foreign["costs"][1]["solver"] = "pcg_resident";
+  EXPECT_NE(refusal(foreign).find("/costs/1/preconditioner: found \"ic0\"; allowed: a preconditioner that "
+                                  "pcg_resident has: block_jacobi, schwarz"),
+            std::string::npos)
+      << refusal(foreign);
   none["costs"] = json::array();
   EXPECT_NE(refusal(none).find("#/costs"), std::string::npos);
   missing["costs"][0]["seconds_each"].erase("entry");

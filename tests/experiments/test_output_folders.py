@@ -101,7 +101,8 @@ def test_a_folder_has_one_writer(program, tmp_path, verb):
     out = tmp_path / "out"
     arguments = long_run(tmp_path) if verb == "run" else ["sweep", sweep_spec(tmp_path, [1000000]), "--out", out]
     with started(program, *arguments) as first:
-        wait_until(lambda: list(out.glob("bench.lock" if verb == "run" else "*/bench.lock")), first)  # a sweep holds the folders of its runs
+        place = "bench.lock" if verb == "run" else "*/bench.lock"  # a sweep holds the folders of its runs
+        wait_until(lambda: any(f"process {first.pid} on " in lock.read_text() for lock in out.glob(place)), first)
         second = bench(program, *arguments)
         assert second.returncode == 75 and f"in use by process {first.pid} on " in second.stderr and str(out) in second.stderr
         assert first.poll() is None and not list(out.rglob("run.json"))

@@ -117,6 +117,7 @@ def killed(program: str, config: Path, folder: Path, how=signal.SIGKILL) -> subp
             comes_to(new_checkpoints(folder, 7), process, 300)
             process.send_signal(how)
             out, told = process.communicate(timeout=300)
+        assert process.returncode in (0, 75, -signal.SIGKILL), told
         if (folder / "trace.jsonl.part").exists():
             return subprocess.CompletedProcess(process.args, process.returncode, out, told)
         shutil.rmtree(folder)

@@ -32,7 +32,8 @@ def test_tests_and_examples_have_no_faults_either():
 
 def test_a_test_waits_for_a_state_and_not_for_a_time():
     """On a busy machine no time is long enough: tests/processes.py waits. The others sleep because time is their subject."""
-    sleepers = {str(path.relative_to(ROOT / "tests")) for path in (ROOT / "tests").rglob("*.py") if "sleep(" in path.read_text()}
+    waits = re.compile(r"sleep\(|\.wait\([\d.]|select\.select\(|TimeoutExpired")
+    sleepers = {str(path.relative_to(ROOT / "tests")) for path in (ROOT / "tests").rglob("*.py") if waits.search(path.read_text())}
     assert sleepers == {"processes.py", "front/test_form.py",
                         "experiments/test_resume.py", "sweeps/test_random_kills.py",  # kills at random moments
                         "engines/test_engines_of_others.py",  # an engine that hangs

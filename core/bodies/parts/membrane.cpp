@@ -85,9 +85,7 @@ void check_rest(const Complaints& complain, const BodySpec& spec) {
     if (key.value > 0 && std::isfinite(key.value)) continue;
     refuse("shrink_schedule", key.value, "factors > 0");
   }
-  if (m.shrinks() && spec.mesh.triangles.empty()) {
-    refuse(shrink, factor, "1: the body has no triangle");
-  } else if (m.shrinks() && m.springs > 0) {
+  if (m.shrinks() && m.springs > 0) {
     refuse(shrink, factor, "1 with springs_N_per_m, whose lengths are those of the mesh");
   } else if (m.shrinks() && m.model == "none" && !m.has_sides() && !m.has_diagonals()) {
     refuse(shrink, factor, "1 without a membrane model and without springs of cloth: nothing shrinks");
@@ -95,8 +93,8 @@ void check_rest(const Complaints& complain, const BodySpec& spec) {
   if (m.membrane_yield > 0 && m.membrane_creep == 0) {
     refuse("membrane_yield", m.membrane_yield, "0 without membrane_creep_per_s: nothing yields");
   }
-  if (m.membrane_creep > 0 && (m.model == "none" || spec.mesh.triangles.empty())) {
-    refuse("membrane_creep_per_s", m.membrane_creep, "0 without a membrane model and triangles");
+  if (m.membrane_creep > 0 && m.model == "none") {
+    refuse("membrane_creep_per_s", m.membrane_creep, "0 without a membrane model");
   }
 }
 
