@@ -25,8 +25,9 @@ struct Effort {
 ///                  down to rounding, so that gaps smaller than the tolerance are certified
 /// @param effort    null: not asked for
 /// Errors: none; input must be finite. Cost: about 0.1 us where an axis separates, 1 us where the pair is
-/// near, 0.1 ms where it touches all the time. Source: the inclusion idea of Snyder et al. 1993 and Wang et al. 2021; here the boxes in (u, v) are
-/// replaced by a direction, which is exact in (u, v) since the polygon of differences is convex.
+/// near, 0.1 ms where it touches all the time. Source: the inclusion idea of Snyder et al. 1993 and Wang et al.
+/// 2021; here the boxes in (u, v) are replaced by a direction, which is exact in (u, v) since the polygon of
+/// differences is convex.
 template <class Pair>
 Verdict judge(const PairMotion<Pair>& motion, double tolerance, Effort* effort = nullptr);
 
