@@ -46,6 +46,15 @@ const Parameter* preconditioner_parameter(const LinearSolverEntry& entry) {
   return nullptr;
 }
 
+std::vector<std::string> preconditioner_choices(const LinearSolverEntry& entry) {
+  const Parameter* const named = preconditioner_parameter(entry);
+  return named ? named->rule.words() : std::vector<std::string>{"none"};
+}
+
+void set_preconditioner(const LinearSolverEntry& entry, const std::string& choice, ParameterMap& parameters) {
+  if (const Parameter* const named = preconditioner_parameter(entry)) parameters[named->name] = choice;
+}
+
 std::string preconditioner_of(const LinearOptions& options) {
   const LinearSolverEntry& entry = linear_solvers().require(options.name, "/linear_solver/name");
   const Parameter* const named = preconditioner_parameter(entry);

@@ -37,6 +37,10 @@ std::vector<std::string> linear_solver_choices();
 
 /// The parameter that names the preconditioner of a solver; null: it has none.
 const Parameter* preconditioner_parameter(const LinearSolverEntry& entry);
+/// What it may name; "none" alone for a solver that has no such parameter.
+std::vector<std::string> preconditioner_choices(const LinearSolverEntry& entry);
+/// Puts one of these into parameters of the solver; nothing for a solver that has no such parameter.
+void set_preconditioner(const LinearSolverEntry& entry, const std::string& choice, ParameterMap& parameters);
 /// The preconditioner of a solver that has one, "none" for the others.
 std::string preconditioner_of(const LinearOptions& options);
 

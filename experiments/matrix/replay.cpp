@@ -22,8 +22,7 @@ ReplayedSolve solve(const LinearSolverEntry& entry, const std::string& precondit
                     const StoredSystem& stored, const ReplayOptions& options) {
   LinearOptions how;
   how.name = entry.name;
-  if (const Parameter* const named = preconditioner_parameter(entry))
-    how.parameters[named->name] = preconditioner;
+  set_preconditioner(entry, preconditioner, how.parameters);
   if (has(entry.parameters, "forcing")) how.parameters["forcing"] = std::string("fixed");
   if (has(entry.parameters, "tol_rel")) how.parameters["tol_rel"] = options.tol_rel;
   if (has(entry.parameters, "max_iterations")) how.parameters["max_iterations"] = options.max_iterations;
@@ -118,12 +117,7 @@ Replay replay(const StoredSystem& stored, const ReplayOptions& options) {
   Replay out;
   for (const LinearSolverEntry& entry : linear_solvers()) {
     if (!missing_for(entry.name).empty()) continue;
-    const Parameter* const named = preconditioner_parameter(entry);
-    if (!named) {
-      out.solves.push_back(solve(entry, "none", stored, options));
-      continue;
-    }
-    for (const std::string& preconditioner : named->rule.words()) {
+    for (const std::string& preconditioner : preconditioner_choices(entry)) {
       out.solves.push_back(solve(entry, preconditioner, stored, options));
     }
   }

@@ -72,8 +72,7 @@ void solve(benchmark::State& state, const std::string& name, const std::string& 
   LinearOptions options;
   options.name = name;
   options.parameters = {{"forcing", "fixed"}, {"tol_rel", 1e-6}};
-  if (const Parameter* const named = preconditioner_parameter(linear_solvers().require(name, "solver")))
-    options.parameters[named->name] = preconditioner;
+  set_preconditioner(linear_solvers().require(name, "solver"), preconditioner, options.parameters);
   const auto solver = make_linear_solver(options);
   const VecXd b = VecXd::LinSpaced(system.lower.rows(), -1, 1);
   VecXd x;
@@ -101,11 +100,9 @@ void register_linear() {
   register_sizes("linear/cholmod_refactorize", cholmod_refactorize);
   for (const LinearSolverEntry& solver : linear_solvers()) {
     if (!missing_for(solver.name).empty()) continue;
-    const Parameter* const named = preconditioner_parameter(solver);
-    const std::vector<std::string> labels = named ? named->rule.words() : std::vector<std::string>{""};
-    for (const std::string& label : labels) {
+    for (const std::string& label : preconditioner_choices(solver)) {
       const std::string& name = solver.name;
-      add("linear/solve/" + name + (named ? "/" + label : ""),
+      add("linear/solve/" + name + (preconditioner_parameter(solver) ? "/" + label : ""),
           [name, label](benchmark::State& state) { solve(state, name, label); })
           ->ArgName("side")
           ->Arg(16)

@@ -147,8 +147,7 @@ void decide_linear_solver(RunConfig& config) {
   const LinearCost& chosen = model.costs[cheapest(model.costs, work)];
   config.linear_solver.name = chosen.solver;
   const LinearSolverEntry& entry = linear_solvers().require(chosen.solver, "/linear_solver/name");
-  if (const Parameter* const named = preconditioner_parameter(entry))
-    config.linear_solver.parameters[named->name] = chosen.preconditioner;
+  set_preconditioner(entry, chosen.preconditioner, config.linear_solver.parameters);
   config.linear_solver_reason = fmt::format(
       "by auto: a solve is expected to take {} ({}); {:.0f} unknowns, {:.3g} entries, of a Cholesky "
       "factor {:.3g}, {:.3g} operations",

@@ -40,13 +40,8 @@ std::vector<LinearOptions> all_solvers() {
   for (const LinearSolverEntry& entry : linear_solvers()) {
     if (!missing_for(entry.name).empty()) continue;
     LinearOptions options{entry.name, {{"forcing", std::string("fixed")}, {"tol_rel", 1e-12}}};
-    const Parameter* const named = preconditioner_parameter(entry);
-    if (!named) {
-      out.push_back(options);
-      continue;
-    }
-    for (const std::string& preconditioner : named->rule.words()) {
-      options.parameters[named->name] = preconditioner;
+    for (const std::string& preconditioner : preconditioner_choices(entry)) {
+      set_preconditioner(entry, preconditioner, options.parameters);
       out.push_back(options);
     }
   }
