@@ -1,17 +1,19 @@
 """What a formula has to be before it is a barrier: defined, positive, pushing, convex on (0, d_hat),
-without a jump of value or force at d_hat, and at 0 what it declares. Limits are exact (sympy); signs are
-looked for on a grid in 40 digits and poles of rational parts by exact roots.
+without a jump of value or force at d_hat, and at 0 what it declares. Limits are exact (sympy), and poles of
+rational parts by exact roots. Signs are looked for on a grid in 40 digits and proven between its points
+(signs.py).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 import mpmath
 import sympy as sp
 
+from . import signs
 from .grammar import FormulaError
 from .symbolic import HIGHEST, Terms, U
 
@@ -23,11 +25,12 @@ UNITS = ("d_hat^2", "d_hat", "1")
 
 class Ends(NamedTuple):
     """Limits: at 0 those of b, b', b'' for d_hat = 1 (inf where there is none), and at d_hat the number of
-    continuous derivatives.
+    continuous derivatives; and what is not known between the two.
     """
 
     at_zero: tuple[float, float, float]
     smoothness: int
+    unproven: tuple[str, ...] = ()  # where the sign of b, b' or b'' is neither proven nor refuted
 
     @property
     def kind(self) -> str:
@@ -36,7 +39,7 @@ class Ends(NamedTuple):
 
 
 def grid() -> list[mpmath.mpf]:
-    """u in (0, 1), dense towards both ends; what lies between two of them is not looked at."""
+    """u in (0, 1), dense towards both ends."""
     ends = [mpmath.mpf(10) ** (mpmath.mpf(-k) / 20) for k in range(14, 181)]  # to 1e-9
     inner = [mpmath.mpf(k) / 1000 for k in range(1, 1000)]
     return sorted({*ends, *(1 - x for x in ends), *inner})
@@ -46,10 +49,10 @@ def check(terms: Terms, declared: str | None) -> Ends:
     """declared: "infinite", "finite", or None: not said. Errors: FormulaError with the place, as d/d_hat."""
     with mpmath.workdps(DIGITS):
         _check_poles(terms.plain[0])
-        _check_signs(terms.plain)
+        unproven = _check_signs(terms)
     smoothness = _smoothness(terms.plain)
     at_zero = tuple(_limit(term, 0, "+", NAMES[i]) for i, term in enumerate(terms.plain))
-    ends = Ends(at_zero, smoothness)
+    ends = Ends(at_zero, smoothness, unproven)
     if math.isinf(at_zero[0]) and not all(math.isinf(x) for x in at_zero):
         raise FormulaError(f"b, b', b'' -> {at_zero} at d = 0", "all three infinite, or b finite")
     if declared is not None and declared != ends.kind:
@@ -94,30 +97,58 @@ def _first(good: mpmath.mpf, bad: mpmath.mpf, is_bad: Callable) -> mpmath.mpf:
     return bad
 
 
-def _check_signs(plain: tuple) -> None:
-    """From d_hat down, so that the place is the first one that closing bodies meet."""
-    needs = (
-        ("b <= 0", "b > 0 in (0, d_hat)", lambda x: x > 0),
-        ("b' >= 0", "b' < 0 in (0, d_hat): the force pushes apart", lambda x: x < 0),
-        ("b'' < 0", "b'' >= 0 in (0, d_hat): a force that never falls as the gap closes", lambda x: x >= 0),
-    )
+class Sign(NamedTuple):
+    """What one of b, b', b'' must be: of a number, and of bounds of it."""
+
+    found: str
+    allowed: str
+    good: Callable
+    proven: Callable
+
+
+SIGNS = (
+    Sign("b <= 0", "b > 0 in (0, d_hat)", lambda x: x > 0, lambda y: y.a > 0),
+    Sign("b' >= 0", "b' < 0 in (0, d_hat): the force pushes apart", lambda x: x < 0, lambda y: y.b < 0),
+    Sign(
+        "b'' < 0",
+        "b'' >= 0 in (0, d_hat): a force that never falls as the gap closes",
+        lambda x: x >= 0,
+        lambda y: y.a >= 0,
+    ),
+)
+
+
+def _check_signs(terms: Terms) -> tuple[str, ...]:
+    """From d_hat down, so that the place is the first one that closing bodies meet: on the grid, then between
+    its points. What could not be proven there, in words.
+    """
+    values = [sp.lambdify(U, term, "mpmath") for term in terms.plain]
+
+    def fails(i: int, u: mpmath.mpf) -> bool:
+        y = values[i](u)
+        return abs(mpmath.im(y)) > 0 or not mpmath.isfinite(y) or not SIGNS[i].good(mpmath.re(y))
+
     points = grid()[::-1]
-    for term, (found, allowed, good) in zip(plain, needs, strict=True):
-        value = sp.lambdify(U, term, "mpmath")
+    for i in range(len(SIGNS)):
+        bad = next((k for k, u in enumerate(points) if fails(i, u)), None)
+        if bad is not None:
+            above = points[bad - 1] if bad > 0 else points[bad]
+            _refuse_sign(i, values[i], _first(above, points[bad], lambda u, i=i: fails(i, u)))
+    bad, unknown = signs.refute_or_prove(terms.plain, terms.precise, [one.proven for one in SIGNS], fails)
+    if bad is not None:
+        i, u = bad
+        above = min((x for x in points if x > u), default=u)
+        _refuse_sign(i, values[i], _first(above, u, lambda u: fails(i, u)))
+    return tuple(
+        f"{NAMES[one.term]} for d/d_hat from {_number(one.low)} to {_number(one.high)}" for one in unknown
+    )
 
-        def fails(u: mpmath.mpf, value: Callable = value, good: Callable = good) -> bool:
-            y = value(u)
-            return abs(mpmath.im(y)) > 0 or not mpmath.isfinite(y) or not good(mpmath.re(y))
 
-        before = None
-        for u in points:
-            if fails(u):
-                y = value(u)
-                if mpmath.isfinite(y) and abs(mpmath.im(y)) > 0:
-                    found, allowed = f"no real {found.split()[0]}", "a formula that is real in (0, d_hat)"
-                at = u if before is None else _first(before, u, fails)
-                raise FormulaError(f"{found} at d = {_number(at)} d_hat", allowed)
-            before = u
+def _refuse_sign(i: int, value: Callable, u: mpmath.mpf) -> NoReturn:
+    y, found, allowed = value(u), SIGNS[i].found, SIGNS[i].allowed
+    if mpmath.isfinite(y) and abs(mpmath.im(y)) > 0:
+        found, allowed = f"no real {NAMES[i]}", "a formula that is real in (0, d_hat)"
+    raise FormulaError(f"{found} at d = {_number(u)} d_hat", allowed)
 
 
 def _number(x: mpmath.mpf) -> str:

@@ -79,6 +79,7 @@ def _made(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
         "b_at_zero": "infinity" if ends.kind == checks.INFINITE else f"{ends.at_zero[0]:.6g} d_hat^2",
         "capacity": None if ends.kind == checks.INFINITE else f"{-ends.at_zero[1]:.6g} kappa d_hat",
         "smoothness_at_d_hat": ends.smoothness,
+        "unproven": list(ends.unproven),
         "terms": {name: str(x) for name, x in zip(checks.NAMES, terms.precise, strict=True)},
     }
     return cache.make(key, words, text, about, lambda library: {"error_rel": accuracy.check(library, terms)})

@@ -1,11 +1,12 @@
-"""Reads a formula by a whitelist: numbers, the symbols of what it stands for, pi, + - * / ^, and the
-functions named here. Nothing of the text is ever evaluated. Imports no library beside the standard one, so
-that a formula of the cache costs none.
+"""Reads a formula by a whitelist: decimal numbers, the symbols of what it stands for, pi, + - * / ^ (or **),
+and the functions named here. Nothing of the text is ever evaluated. Imports no library beside the standard
+one, so that a formula of the cache costs none.
 """
 
 from __future__ import annotations
 
 import ast
+import re
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ SAME = {"ln": "log"}
 MOST_CHARACTERS = 400
 MOST_EXPONENT = 32
 LARGEST, SMALLEST = 1e12, 1e-12
+DECIMAL = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "^"}
 BASE = ("kg", "m", "s")
 
@@ -38,7 +40,7 @@ class Quantity(NamedTuple):
     def words(self) -> str:
         """All that its formulas may be made of."""
         names = ", ".join([*self.symbols, "pi"])
-        return f"{names}, numbers, + - * / ^ ( ) and the functions ln, {', '.join(FUNCTIONS)}"
+        return f"{names}, decimal numbers, + - * / ^ (or **) ( ) and the functions ln, {', '.join(FUNCTIONS)}"
 
 
 SHAPE = Quantity(
@@ -90,7 +92,7 @@ def read(text: str, quantity: Quantity = SHAPE) -> Formula:
     """
     if not text.strip() or len(text) > MOST_CHARACTERS:
         raise FormulaError(f"{len(text)} characters", f"1 to {MOST_CHARACTERS}")
-    strange = next((i for i, c in enumerate(text) if not (c.isascii() and c.isprintable())), None)
+    strange = next((i for i, c in enumerate(text) if not (c.isascii() and c.isprintable()) or c == "#"), None)
     if strange is not None:
         raise FormulaError(f"{text[strange]!r} at character {strange + 1}", quantity.words)
     source, places = _as_python(text)
@@ -101,7 +103,7 @@ def read(text: str, quantity: Quantity = SHAPE) -> Formula:
         raise FormulaError(
             f"{text!r}, which breaks off at character {at + 1}", f"a formula of {quantity.words}"
         ) from None
-    found = _Reader(text, places, quantity).unit(tree)
+    found = _Reader(source, places, quantity).unit(tree)
     if found.power != quantity.unit:
         raise FormulaError(f"the unit {_unit_text(found.power)}", quantity.unit_text)
     return Formula(ast.unparse(_Renamed().visit(tree)).replace(" ** ", "^"), tree)
@@ -140,8 +142,8 @@ class _Renamed(ast.NodeTransformer):
 class _Reader:
     """Judges every node of the tree, and gives its unit."""
 
-    def __init__(self, text: str, places: list[int], quantity: Quantity):
-        self.text, self.places, self.quantity = text, places, quantity
+    def __init__(self, source: str, places: list[int], quantity: Quantity):
+        self.source, self.places, self.quantity = source, places, quantity
 
     def refuse(self, node: ast.expr, found: str, allowed: str) -> FormulaError:
         return FormulaError(f"{found} at character {self.places[node.col_offset] + 1}", allowed)
@@ -168,6 +170,9 @@ class _Reader:
         value = node.value
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self.refuse(node, repr(value)[:40], self.quantity.words)
+        spelling = self.source[node.col_offset : node.end_col_offset]
+        if not DECIMAL.fullmatch(spelling):
+            raise self.refuse(node, f"the number {spelling[:40]}", "decimal numbers, such as 16, 0.5 or 1e-3")
         if value != 0 and not SMALLEST <= value <= LARGEST:
             raise self.refuse(node, f"the number {repr(value)[:40]}", f"0, or {SMALLEST:g} to {LARGEST:g}")
         return Unit(NO_UNIT, Fraction(repr(value)))

@@ -71,6 +71,14 @@ def _potential_line(about: dict) -> str:
     )
 
 
+def signs_of(unproven: list[str]) -> str:
+    """How b > 0, b' < 0 and b'' >= 0 are known."""
+    if not unproven:
+        return "b > 0, b' < 0, b'' >= 0 are proven for d/d_hat from 1e-15 to 1 - 1e-15 (interval arithmetic)"
+    more = f", and in {len(unproven) - 3} more ranges" if len(unproven) > 3 else ""
+    return f"not proven, only sampled, for {'; '.join(unproven[:3])}{more}"
+
+
 def card(about: dict) -> str:
     """What there is to say of a formula, a line each."""
     terms, error = about["terms"], about["error_rel"]
@@ -81,6 +89,7 @@ def card(about: dict) -> str:
         f"at d = 0    {about['at_zero']}: b -> {about['b_at_zero']}",
         f"carries     {'any load' if about['capacity'] is None else 'at most ' + about['capacity']}",
         f"at d_hat    {about['smoothness_at_d_hat']} continuous derivatives",
+        f"signs       {signs_of(about['unproven'])}",
         "with u = d/d_hat, e = 1 - u, l = -ln u:",
         *(
             f"  {name:<4}= {unit}({terms[name].replace('**', '^')})   relative error {error[name]:.1e}"

@@ -49,6 +49,64 @@ def test_refused_where_it_fails(text, found, place):
         assert float(error.value.found.split("d = ")[1].split()[0]) == pytest.approx(place, rel=2e-5)
 
 
+CUBIC = "d_hat^2*(1 - d/d_hat)^3"
+
+
+def spike(term, place, width):
+    """A cubic, less a spike between two points of the grid."""
+    return f"{CUBIC} - d_hat^2*{term}*exp(-(({place} - d/d_hat)*{width})^2)"
+
+
+@pytest.mark.parametrize("text, found, low, high", [
+    (spike("2*(1 - d/d_hat)^3", 0.50037, 100000), "b <= 0", 0.5003, 0.5004),
+    (spike("0.001*(1 - d/d_hat)^3", 0.50037, 100000), "b' >= 0", 0.5003, 0.5005),
+    (spike("1e-8*(1 - d/d_hat)^3", 0.50037, 100000), "b'' < 0", 0.5003, 0.5004),
+    (spike("1e-12*(1 - d/d_hat)^3", 0.000123, 10000000), "b'' < 0", 0.000122, 0.000124),
+])
+def test_a_spike_between_two_points_of_the_grid_is_found(text, found, low, high):
+    with pytest.raises(FormulaError) as error:
+        judged(text)
+    assert error.value.found.startswith(f"{found} at d = ")
+    assert low < float(error.value.found.split("d = ")[1].split()[0]) < high
+
+
+@pytest.mark.parametrize("text", [
+    "-(d - d_hat)^2*log(d/d_hat)", CUBIC, "(d_hat - d)^3/d", "d_hat^2*(cosh(1 - d/d_hat) - 1)", "d_hat^2*(1 - d/d_hat)^3*(1 + atan(1 - d/d_hat))",
+    "d_hat^2*(1 - d/d_hat)^3*(2 - tanh(d/d_hat))", "d_hat^2*(d_hat/d - 1 - log(d_hat/d))", "d_hat^2*(1 - d/d_hat)^6*(2 + exp(-((d/d_hat - 0.7)*3)^2)/10)",
+])
+def test_signs_are_proven_between_the_points(text):
+    assert judged(text).unproven == ()
+
+
+def test_what_is_not_proven_is_said():
+    """b'' = e (e - 1/2)^2 touches 0, and no interval around that place proves that it does not cross it."""
+    (left,) = judged("d_hat^2*((1 - d/d_hat)^3/24 - (1 - d/d_hat)^4/12 + (1 - d/d_hat)^5/20)").unproven
+    assert left == "b'' for d/d_hat from 0.5 to 0.5"
+
+
+def test_bounds_hold_the_values():
+    """Of every function of the grammar, at seeded places."""
+    import random
+
+    import mpmath
+    import sympy as sp
+
+    from analysis.formula import signs
+    from analysis.formula.grammar import FUNCTIONS
+
+    seeded = random.Random(7)
+    assert len(FUNCTIONS) == 10
+    for name in FUNCTIONS:
+        term = getattr(sp, name)(sp.Rational(1, 3) * symbolic.U + sp.pi / 7)
+        bounds, value = signs._bounds_of(term, term), sp.lambdify(symbolic.U, term, "mpmath")
+        with mpmath.workdps(40):
+            for _ in range(50):
+                low, high = sorted(mpmath.mpf(seeded.random()) for _ in range(2))
+                inside = [low, high, low + (high - low) * mpmath.mpf(seeded.random())]
+                found = list(bounds(low, high))
+                assert len(found) == 3 and all(b.a <= value(u) <= b.b for b in found for u in inside), name
+
+
 def test_a_formula_that_does_not_do_what_it_declares():
     with pytest.raises(FormulaError, match='"infinite" of a formula with b -> 1 d_hat'):
         judged("(d_hat - d)^2", "infinite")

@@ -44,6 +44,13 @@ def test_the_one_spelling_is_read_as_itself():
     ("d_hat^2*9^31^31", "the number 31^31"),
     ("d_hat^2*99^30", "the number 99^30"),
     ("d_hat^2*1e300", "the number 1e+300"),
+    ("d_hat^2*0x10", "the number 0x10 at character 9"),
+    ("d_hat^2*0b1", "the number 0b1 at character 9"),
+    ("d_hat^2*1_000", "the number 1_000 at character 9"),
+    ("d_hat^2 # a comment", "'#' at character 9"),
+    ("# d_hat^2", "'#' at character 1"),
+    ("d_hat^2*'#'", "'#' at character 10"),
+    ("d_hat^2//2", '"d_hat ** 2 // 2"'),
     ("d_hat^2/(1 - 1)", "a division by 0 at character 10"),
     ("d*d\n", None),
     ("d*\td", "'\\t' at character 3"),
@@ -60,6 +67,17 @@ def test_nothing_but_the_whitelist(text, found):
     with pytest.raises(FormulaError) as error:
         read(text)
     assert found in error.value.found and error.value.allowed
+
+
+@pytest.mark.parametrize("number", ["16", "16.", ".5", "0.5", "1e-3", "1E3", "1.5e+2"])
+def test_numbers_are_decimal(number):
+    assert read(f"d_hat^2*{number}").text == read(f"d_hat**2*{float(number)!r}" if float(number) != 16 or "." in number else "d_hat**2*16").text
+
+
+def test_what_is_allowed_names_both_spellings_of_a_power():
+    with pytest.raises(FormulaError) as error:
+        read("d_hat^2*x")
+    assert "^ (or **)" in error.value.allowed and "decimal numbers" in error.value.allowed
 
 
 @pytest.mark.parametrize("text, found", [
