@@ -3,7 +3,6 @@ ignored."""
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -13,6 +12,7 @@ import pandas as pd
 
 from . import fields
 from .record_file import RecordError, other_meanings, read_record, read_trace
+from .run_rows import run_row
 from .sweeps.cases import has_list, records_below
 
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
@@ -27,35 +27,6 @@ class Records:
     trace: pd.DataFrame  # one row a Newton iteration, `n` counts them over the run
     cond: pd.DataFrame  # one row a condition estimate
     unreadable: list[str] = field(default_factory=list)  # records left out: "path: reason"
-
-
-def _series(labels: dict) -> str:
-    """What a line of a figure is called: the case of its sweep, or the formulation."""
-    note = labels.get("note") or ""
-    case = note.split(": ", 1)[1] if ": " in note else note
-    return case or labels["formulation"]
-
-
-def _swept(text: str):
-    """The value of a swept pointer, which the record keeps as JSON text; what is no number or word stays
-    text.
-    """
-    try:
-        value = json.loads(text)
-    except ValueError:
-        return text
-    return text if isinstance(value, (dict, list)) else value
-
-
-def run_row(record: dict, run: str = "") -> dict:
-    """A row of `runs`: the fields of the record, a column for every pointer that its sweep varies
-    (`/time/dt_s`), and where it belongs.
-    """
-    row = fields.row("runs", record)
-    row |= {"run": run, "folder": Path(run).name, "series": _series(record["labels"])}
-    row |= {pointer: _swept(text) for pointer, text in (row.get("swept") or {}).items()}
-    row["group"] = row["sweep_id"] or row["scene"]
-    return row
 
 
 def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:

@@ -21,13 +21,13 @@ from .errors import UserError, tells
 from .frames import Frame, frame_of, frame_paths, points_of_bodies, read_scene, scene_at, without_bodies
 from .frames_out.obstacle_mesh import obstacle_mesh
 from .frames_out.sequence import finer_frame
-from .front.arguments import parser_of
+from .front.arguments import color_argument, parser_of
 from .obstacle_rays import primitive_gaps
 from .picture import Surfaces, camera_of, picture
 from .picture_file import MEANS, picture_file
 from .record_file import read_record
-from .records import run_row
 from .rod_tubes import tubes
+from .run_rows import run_row
 from .whole_file import write_whole_bytes
 
 MOST_TIMES = 4  # 4^4 = 256 triangles for one
@@ -224,9 +224,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser = parser_of("render")
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
     parser.add_argument("--step", type=int, help="a step with a frame, -1: the start (default: the last)")
-    parser.add_argument(
-        "--color", choices=["body", *COLORINGS], default="body", help="what colours mean (default: body)"
-    )
+    color_argument(parser, ["body", *COLORINGS], "body", "what colors mean")
     parser.add_argument("--out", type=Path, help=f"{MEANS} (default: RUN/step_NNNNNN_COLOR.png)")
     parser.add_argument(
         "--view",

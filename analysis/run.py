@@ -18,7 +18,7 @@ from .frames import Frame, frame_paths, frames_of
 from .gate.matrices import read_matrix
 from .json_file import read_object
 from .record_file import bound_file, named_files, read_record, read_trace
-from .records import run_row
+from .run_rows import run_row
 
 
 @dataclass(frozen=True)

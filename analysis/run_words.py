@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import textwrap
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from .record_file import other_meanings
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 HOLLOW = (
     r"hollow markers: the run failed, is not valid, or a quantile (5, 50 or 95 % of the load) of"
@@ -62,7 +64,7 @@ def end_word(row: pd.Series) -> str:
     if row.get("convergence") != "not_asked":
         return ""
     median = row["end_error_tolerances_median"]
-    size = "not measured" if pd.isna(median) else f"{median:.2g} tolerances"
+    size = "not measured" if median is None or median != median else f"{median:.2g} tolerances"
     return f"not asked to converge, residual {size}"
 
 

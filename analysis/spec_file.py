@@ -8,13 +8,15 @@ from __future__ import annotations
 import math
 from functools import cache
 from pathlib import Path
-
-from jsonschema import Draft202012Validator, validators
-from jsonschema.exceptions import ValidationError
+from typing import TYPE_CHECKING
 
 from . import fields
 from .errors import UserError
 from .json_file import read_object
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator
+    from jsonschema.exceptions import ValidationError
 
 
 def _is_integer(_, value) -> bool:
@@ -27,17 +29,16 @@ def _is_number(_, value) -> bool:
     return _is_integer(_, value) or isinstance(value, float) and math.isfinite(value)
 
 
-_Validator = validators.extend(
-    Draft202012Validator,
-    type_checker=Draft202012Validator.TYPE_CHECKER.redefine("integer", _is_integer).redefine(
-        "number", _is_number
-    ),
-)
-
-
 @cache
 def _validator(kind: str) -> Draft202012Validator:
-    return _Validator(fields.schema(kind))
+    from jsonschema import (  # takes as long as all else that a verb begins with
+        Draft202012Validator,
+        validators,
+    )
+
+    types = Draft202012Validator.TYPE_CHECKER
+    types = types.redefine("integer", _is_integer).redefine("number", _is_number)
+    return validators.extend(Draft202012Validator, type_checker=types)(fields.schema(kind))
 
 
 def _order(error: ValidationError) -> tuple:

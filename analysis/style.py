@@ -7,19 +7,22 @@ import logging
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-import pandas as pd  # noqa: E402
 from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 
 from . import pgfplots  # noqa: E402
 from .captions import caption  # noqa: E402
 from .run_words import hollow_rule, name_of, verdict_word  # noqa: E402
 from .ticks import make_readable  # noqa: E402
+
+if TYPE_CHECKING:  # stills and pages take looks from here, and start without pandas
+    import pandas as pd
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict

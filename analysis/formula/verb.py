@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 
 from ..errors import UserError, tells
@@ -22,11 +23,9 @@ In a config: "stiffness_policy": {{"name": "formula", "formula": "m/h^2 + k"}}. 
 """
 
 
-@tells("formula")
-def main(argv: list[str]) -> int:
-    """0: a barrier; 2: none."""
+def parse(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("formula", DOC)
-    parser.add_argument("formula", metavar="TEXT")
+    parser.formula_argument("formula", "TEXT")
     parser.add_argument("--at-zero", choices=("infinite", "finite"), help="what it is meant to do as d -> 0")
     parser.add_argument("--policy", action="store_true", help="the formula is a stiffness, kappa in N/m")
     parser.add_argument("--json", action="store_true", help="the answer as JSON")
@@ -34,6 +33,13 @@ def main(argv: list[str]) -> int:
     args = parser.parse_args(argv)
     if args.policy and args.at_zero:
         raise UserError("--at-zero is of shapes, not of --policy")
+    return args
+
+
+@tells("formula")
+def main(argv: list[str]) -> int:
+    """0: a barrier; 2: none."""
+    args = parse(argv)
     try:
         made = compiled_policy(args.formula) if args.policy else compiled(args.formula, args.at_zero)
     except FormulaError as error:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..obstacle_rays import triangle_distances
 from ..rasterizer import corner_normals, smoothed_corners, unit
@@ -106,6 +105,8 @@ def closest_triangles(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarr
     distance, m. A triangle that is closer than the closest corner has its middle within that distance and
     the largest circle round a middle: those alone are measured.   Cost: memory of CHUNK points.
     """
+    from scipy.spatial import cKDTree  # half a second, which stills of frames as they are do not need
+
     middles = corners.mean(axis=1)
     reach = np.linalg.norm(corners - middles[:, None], axis=2).max()
     tree, of_corners = cKDTree(middles), cKDTree(corners.reshape(-1, 3))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import re
 import textwrap
+from collections.abc import Iterable
 from typing import NoReturn
 
 from ..errors import UserError
@@ -15,8 +17,25 @@ WIDTH = 110
 class Parser(argparse.ArgumentParser):
     """A wrong argument is an error of the user like any other: `tells` says it."""
 
+    takes_formula = False
+
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message} (./{self.prog} --help says what there is)")
+
+    def formula_argument(self, name: str, metavar: str) -> None:
+        """A positional argument that may begin with a minus. All options of such a parser are -h or begin
+        with two minus signs.
+        """
+        self.takes_formula = True
+        self.add_argument(name, metavar=metavar, type=str.strip)
+
+    def parse_known_args(self, args: list[str] | None = None, namespace: argparse.Namespace | None = None):
+        """argparse takes a word for an option by its first letter: a formula gets a space before it, which
+        its type takes off again.
+        """
+        if self.takes_formula and args is not None:
+            args = [f" {word}" if re.match(r"-(?!-|h$|$)", word) else word for word in args]
+        return super().parse_known_args(args, namespace)
 
 
 def parser_of(name: str, doc: str | None = None, *examples: str) -> Parser:
@@ -31,6 +50,15 @@ def parser_of(name: str, doc: str | None = None, *examples: str) -> Parser:
         description=f"{about}\n\n{doc.strip()}" if doc else about,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="\n".join([f"example{'s' * (len(shown) > 1)}:", *(f"  {one}" for one in shown)]),
+    )
+
+
+def color_argument(parser: argparse.ArgumentParser, choices: Iterable[str], default: str, words: str) -> None:
+    """--color; --colour is taken too."""
+    choices = list(choices)
+    parser.add_argument("--color", choices=choices, default=default, help=f"{words} (default: {default})")
+    parser.add_argument(
+        "--colour", dest="color", choices=choices, default=argparse.SUPPRESS, help=argparse.SUPPRESS
     )
 
 

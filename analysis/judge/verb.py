@@ -17,7 +17,6 @@ from ..front.arguments import parser_of
 from ..whole_file import check_can_be_written, write_whole
 from .about import About, about_of, with_cells
 from .ask import audited, subject_of
-from .page import page_of
 from .physics import Physics, finite_or_none
 from .readers import read_trajectory
 from .trajectory import MOST_METRES, Trajectory, checked, with_parts
@@ -224,7 +223,9 @@ def main(argv: list[str]) -> int:
     text = json.dumps(record, indent=1, allow_nan=False)
     json_file, page_file = (options.out / name for name in FILES)
     write_whole(json_file, text + "\n")
+    print(said(record), flush=True)
+    from .page import page_of  # draws: what was found is said before a second goes by with loading that
+
     write_whole(page_file, page_of(record))
-    print(said(record))
     print(page_file, file=sys.stderr)
     return CLEAN if record["verdict"] == "clean" else NOT_CLEAN

@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..front.arguments import parser_of
+from ..front.arguments import color_argument, parser_of
 from ..whole_file import write_whole
 from .film import Film, Source, filmed, kept, opened
 from .page import page, page_bytes
@@ -121,18 +122,11 @@ def _megabytes_asked(text: str) -> float:
 _megabytes_asked.__name__ = "number of MB above 0"
 
 
-@tells("play")
-def main(arguments: list[str]) -> int:
+def parse(arguments: list[str]) -> argparse.Namespace:
     parser = parser_of("play", "Frames are written by runs with --set /output/frames_every=1.")
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUN", help="folder of run.json; one or two")
     parser.add_argument("--out", type=Path, help="the HTML file (default: play.html in the folder of RUN)")
-    parser.add_argument(
-        "--colour",
-        "--color",
-        choices=COLOURS,
-        default="gap",
-        help="what colours mean at first; the page can change it (default: gap)",
-    )
+    color_argument(parser, COLOURS, "gap", "what colors mean at first; the page can change it")
     parser.add_argument(
         "--every",
         type=_count,
@@ -149,6 +143,12 @@ def main(arguments: list[str]) -> int:
     args = parser.parse_args(arguments)
     if len(args.runs) > 2:
         raise UserError(f"found {len(args.runs)} runs; allowed: one, or two side by side")
+    return args
+
+
+@tells("play")
+def main(arguments: list[str]) -> int:
+    args = parse(arguments)
     out = args.out or default_out(args.runs)
-    print("\n".join(play(args.runs, out, args.colour, args.every, args.limit_mb)))
+    print("\n".join(play(args.runs, out, args.color, args.every, args.limit_mb)))
     return 0

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..errors import UserError
 from ..record_file import RecordError, leaves, named_files, read_record, read_trace
-from ..records import run_row
+from ..run_rows import run_row
 from ..sweeps.cases import read_cases, sighted, split_records
 
 PARALLEL_FROM = 200  # records, from which on reading them is shared by the cores

@@ -33,7 +33,7 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
         "score", DOC, "./bench score cubic_dynamic_lagged", "./bench score build/plugin/inverse_shape.so"
     )
-    parser.add_argument("what", metavar="WHAT")
+    parser.formula_argument("what", "WHAT")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder (default: results/runs/score/LABEL)")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="runs at a time (default 2)")
     args = parser.parse_args(argv)

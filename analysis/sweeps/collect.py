@@ -21,7 +21,7 @@ import pandas as pd
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..record_file import RecordError, read_record
-from ..records import run_row
+from ..run_rows import run_row
 from ..whole_file import write_whole, write_whole_bytes
 from . import dictionary
 from .cases import has_list, read_cases, records_below

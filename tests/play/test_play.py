@@ -88,7 +88,7 @@ def test_a_scale_is_one_for_both_runs_and_says_when_values_lie_above(log_run, cu
 
 def test_a_page_holds_all_it_shows_and_no_address(library, log_run, cubic_run, tmp_path, capsys):
     out = tmp_path / "both.html"
-    assert verb.main([str(log_run), str(cubic_run), "--out", str(out), "--colour", "stretch"]) == 0
+    assert verb.main([str(log_run), str(cubic_run), "--out", str(out), "--color", "stretch"]) == 0
     said = capsys.readouterr().out
     assert f"{out} ({out.stat().st_size / 1e6:.1f} MB): 6 frames of" in said and "log (ok)" in said and "cubic (ok)" in said
     text = out.read_text()

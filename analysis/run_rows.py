@@ -1,0 +1,37 @@
+"""A record as a row of the table `runs`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from . import fields
+
+
+def _series(labels: dict) -> str:
+    """What a line of a figure is called: the case of its sweep, or the formulation."""
+    note = labels.get("note") or ""
+    case = note.split(": ", 1)[1] if ": " in note else note
+    return case or labels["formulation"]
+
+
+def _swept(text: str):
+    """The value of a swept pointer, which the record keeps as JSON text; what is no number or word stays
+    text.
+    """
+    try:
+        value = json.loads(text)
+    except ValueError:
+        return text
+    return text if isinstance(value, (dict, list)) else value
+
+
+def run_row(record: dict, run: str = "") -> dict:
+    """A row of `runs`: the fields of the record, a column for every pointer that its sweep varies
+    (`/time/dt_s`), and where it belongs.
+    """
+    row = fields.row("runs", record)
+    row |= {"run": run, "folder": Path(run).name, "series": _series(record["labels"])}
+    row |= {pointer: _swept(text) for pointer, text in (row.get("swept") or {}).items()}
+    row["group"] = row["sweep_id"] or row["scene"]
+    return row

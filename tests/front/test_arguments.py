@@ -1,0 +1,48 @@
+"""Words of the command line that begin with a minus and are no options."""
+
+import pytest
+
+from analysis.errors import UserError
+from analysis import render
+from analysis.formula import verb as formula
+from analysis.play import verb as play
+from analysis.score import verb as score
+
+COMPACT = ["-(d-d_hat)^2*log(d/d_hat)", "-d_hat^2*log(d/d_hat)", "-log(d/d_hat)*(d-d_hat)^2", "(d_hat-d)^3/d"]
+
+
+@pytest.mark.parametrize("text", COMPACT)
+@pytest.mark.parametrize("words", [lambda text: [text], lambda text: ["--", text]])
+def test_a_formula_may_begin_with_a_minus(text, words):
+    assert formula.parse(words(text)).formula == text
+    assert score._arguments(words(text)).what == text
+
+
+def test_options_stand_before_a_formula_and_behind_it():
+    for words in (["--json", COMPACT[0]], [COMPACT[0], "--json"]):
+        given = formula.parse(words)
+        assert given.json and given.formula == COMPACT[0]
+    assert str(score._arguments([COMPACT[1], "--jobs", "1", "--out", "a b"]).out) == "a b"
+
+
+def test_what_is_no_option_and_no_formula_is_refused():
+    for words, said in ((["--jsn", "d"], "unrecognized arguments: --jsn"), ([], "required: TEXT"), (["-d", "-h_hat"], "unrecognized arguments")):
+        with pytest.raises(UserError, match=said):
+            formula.parse(words)
+
+
+@pytest.mark.parametrize("word", ["-h", "--help"])
+def test_help_stays_help(word, capsys):
+    with pytest.raises(SystemExit):
+        formula.parse([word])
+    assert "usage: bench formula" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("parse", [render.parse, play.parse])
+def test_color_has_one_spelling_in_help_and_two_on_the_command_line(parse, capsys):
+    assert {parse(["run", word, "stretch"]).color for word in ("--color", "--colour")} == {"stretch"}
+    assert parse(["run"]).color in ("body", "gap")
+    with pytest.raises(SystemExit):
+        parse(["--help"])
+    said = capsys.readouterr().out
+    assert "--color" in said and "--colour" not in said

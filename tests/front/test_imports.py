@@ -1,0 +1,27 @@
+"""A verb begins with what it needs: libraries that take seconds to load are loaded by what uses them."""
+
+import subprocess
+import sys
+
+import pytest
+
+from analysis.places import ROOT
+
+TABLES, DRAWING, SHAPES = ("pandas",), ("matplotlib.pyplot",), ("scipy", "jsonschema")
+UNUSED = {
+    "front.door": ("numpy", *TABLES, *DRAWING, *SHAPES),
+    "judge.verb": (*TABLES, *DRAWING, "jsonschema"),
+    "render": (*TABLES, *SHAPES, "meshio"),
+    "stills": (*TABLES, *SHAPES, "meshio"),
+    "play.verb": (*TABLES, *SHAPES, "meshio"),
+    "catalogue.scenes": (*TABLES, *DRAWING, "jsonschema"),
+    "formula.verb": ("numpy", "sympy"),
+}
+
+
+@pytest.mark.parametrize("module, unused", UNUSED.items())
+def test_a_verb_does_not_load_what_it_does_not_need_at_its_start(module, unused):
+    asked = f"import sys; sys.path.insert(0, {str(ROOT)!r}); import analysis.{module}; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True).stdout.split()
+    assert f"analysis.{module}" in loaded
+    assert not [name for name in unused if name in loaded]
