@@ -1,16 +1,26 @@
-"""Effects of levels that exclusions bind. Where a level may not stand with all that the first level of its
-factor may stand with, its coefficient leans on the other factors having no interactions in the part that it
-cannot reach. Beside it stands the direct effect: of the runs that both levels may have alone, with the fitted
-effects of the other factors taken off.
+"""Whether a main effect rests on an interaction: its direct effect, in the runs that its level and the first
+one may both have, of which those with some level of another factor are left out. It has to agree with the
+fitted one whatever one or two such levels are left out. Of ratios the fitted effects of the other factors
+are taken off. Of shares nothing is: the fitted effect of a level that fails with one shape alone would make
+a difference where every run gets through.
+
+Where exclusions bind a level, so that it may not stand with all that the first one may stand with, its
+coefficient leans on the other factors having no interactions in the part that it cannot reach: there the
+direct effect has to agree with nothing left out, too.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
 
 import numpy as np
 
 from .factors import Factorial
 
-Contexts = dict[tuple[int, int], set[tuple[int, ...]]]
+Part = tuple[int, int]  # factor, level
+Contexts = dict[Part, set[tuple[int, ...]]]
+MOST_LEFT_OUT = 2  # levels at a time
 
 
 def contexts(factorial: Factorial) -> Contexts:
@@ -26,21 +36,36 @@ def is_bound(allowed: Contexts, part: tuple[int, int]) -> bool:
     return allowed[part] != allowed[part[0], 0]
 
 
+def left_out(factorial: Factorial, factor: int, bound: bool) -> Iterator[tuple[Part, ...]]:
+    """What the direct effect of a level of a factor is asked without: nothing where exclusions bind it, each
+    level of another factor that is not its first, and each two of them."""
+    others = [(f, k) for f, n in enumerate(factorial.sizes) for k in range(1, n) if f != factor]
+    for n in range(0 if bound else 1, MOST_LEFT_OUT + 1):
+        yield from combinations(others, n)
+
+
 def direct(
     allowed: Contexts,
-    part: tuple[int, int],
+    part: Part,
     levels: list[tuple[int, ...]],
     y: list[float],
-    others: dict[tuple[int, int], float],
+    others: dict[Part, float] | None,
+    out: tuple[Part, ...] = (),
 ) -> float | None:
-    """Mean of the level less mean of the first one, of the runs of one scene that both may have. others:
-    (factor, level) -> fitted effect. None where either has no run, or an effect that is needed has no value.
+    """Mean of the level less mean of the first one, of the runs of one scene that both may have and that have
+    no level of `out`. others: (factor, level) -> fitted effect, which is taken off; None: nothing is. None
+    where either has no run, or an effect that is needed has no value.
     """
     f, level = part
     both = allowed[part] & allowed[f, 0]
     arms: dict[int, list[float]] = {0: [], level: []}
     for one, value in zip(levels, y, strict=True):
+        if any(one[g] == k for g, k in out):
+            continue
         if one[f] in arms and one[:f] + one[f + 1 :] in both:
+            if others is None:
+                arms[one[f]].append(value)
+                continue
             taken = [others.get((g, k)) for g, k in enumerate(one) if g != f and k]
             if None in taken:
                 return None

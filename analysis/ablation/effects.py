@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 
 from ..claims.estimate import sign_test, student
-from .bound import Contexts, contexts, direct, is_bound
+from .bound import Contexts, Part, contexts, direct, is_bound, left_out
 from .factors import Factorial
 from .flips import sign_flip
 from .table import METRICS, Table, got_through, levels_of
@@ -40,8 +40,8 @@ class Term:
 @dataclass(frozen=True)
 class Effect:
     """scenes: name -> logarithm of a ratio, or difference of shares. p: of the sign-flip test of their mean.
-    holm: p times Holm's factor among the effects of its number; None below LEAST_SCENES scenes. direct: of a
-    level that exclusions bind, which has to agree (bound.py).
+    holm: p times Holm's factor among the effects of its number; None below LEAST_SCENES scenes. direct: of
+    the runs without the levels `without`, the first that does not agree; None where all agree (bound.py).
     """
 
     metric: str
@@ -53,21 +53,20 @@ class Effect:
     p: float | None = None
     holm: float | None = None
     direct: Effect | None = None
+    without: tuple[Part, ...] = ()
 
     @property
     def passes(self) -> bool:
         """The test, whatever the direct effect says."""
         return self.holm is not None and self.holm < LEVEL
 
-    @property
-    def agrees(self) -> bool:
-        """The direct effect has its sign, and p < LEVEL by itself."""
-        one = self.direct
-        return one is None or (one.p is not None and one.p < LEVEL and one.mean * self.mean > 0)
+    def same(self, one: Effect) -> bool:
+        """Whether another has its sign, and p < LEVEL by itself."""
+        return one.p is not None and one.p < LEVEL and one.mean * self.mean > 0
 
     @property
     def decided(self) -> bool:
-        return self.passes and self.agrees
+        return self.passes and self.direct is None
 
     @property
     def signs(self) -> tuple[int, int]:
@@ -164,27 +163,36 @@ def _of(factorial: Factorial, table: Table, metric: str, wanted: list[Term]) -> 
 
 
 def _beside(factorial: Factorial, table: Table, allowed: Contexts, effect: Effect) -> Effect:
-    """With its direct effect, where exclusions bind its level."""
-    part = effect.term.parts[0]
-    if not is_bound(allowed, part):
-        return effect
-    mains, found = main_terms(factorial), {}
+    """With the first direct effect that does not agree. Without some levels fewer scenes tell it: fewer than
+    LEAST_SCENES say nothing, but where nothing is left out, and exclusions bind the level, they do not agree.
+    """
+    part, mains = effect.term.parts[0], main_terms(factorial)
+    scenes = {}
     for scene in effect.scenes:
         pairs = values_of(table, scene, effect.metric)
         levels, y = [levels_of(factorial, row) for row, _ in pairs], [value for _, value in pairs]
         others = {term.parts[0]: value for term, value in fitted(levels, y, mains, mains).items()}
-        value = direct(allowed, part, levels, y, others)
-        if value is not None:
-            found[scene] = value
-    return replace(effect, direct=over_scenes(effect.metric, effect.term, found))
+        scenes[scene] = levels, y, None if effect.metric in SHARES else others
+    for out in left_out(factorial, part[0], is_bound(allowed, part)):
+        found = {scene: direct(allowed, part, *of, out) for scene, of in scenes.items()}
+        told = {scene: value for scene, value in found.items() if value is not None}
+        one = over_scenes(effect.metric, effect.term, told)
+        if not effect.same(one) and (one.p is not None or not out):
+            return replace(effect, direct=one, without=out)
+    return effect
+
+
+def main_effects(factorial: Factorial, table: Table, metric: str) -> list[Effect]:
+    """In the order of the factors; of those that pass the test, what takes them back beside them."""
+    mains, allowed = with_holm(_of(factorial, table, metric, main_terms(factorial))), contexts(factorial)
+    return [_beside(factorial, table, allowed, effect) if effect.passes else effect for effect in mains]
 
 
 def study(factorial: Factorial, table: Table) -> Study:
     """Every number's main effects, and its interactions pair of factors by pair."""
-    out, allowed = Study(), contexts(factorial)
+    out = Study()
     for metric in (*METRICS, *SHARES):
-        mains = with_holm(_of(factorial, table, metric, main_terms(factorial)))
-        out.main[metric] = [_beside(factorial, table, allowed, effect) for effect in mains]
+        out.main[metric] = main_effects(factorial, table, metric)
         pairs = [
             effect
             for a, b in combinations(range(len(factorial.factors)), 2)

@@ -11,6 +11,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from .. import style
 from ..whole_file import write_whole
+from .construction import by_construction
 from .effects import LEAST_SCENES, SHARES, Study
 from .factors import Factorial
 from .report import SLICE, name_of
@@ -22,11 +23,12 @@ TITLES = {
     "bj_p95": "cond, block Jacobi",
     "gap": "smallest gap",
 }
-DECIDED, OPEN = "#0072B2", "#999999"
+DECIDED, MADE, OPEN = "#0072B2", "#111111", "#999999"
 CAPTION = (
     "Ablation, {runs} runs in {scenes} scenes {slice}. Left four panels: effect of each level against the"
     " first of its factor, mean and 95% interval over scenes; filled and blue: decided (sign-flip test over"
-    " scenes, p < 0.05 after Holm); hollow: not decided, or taken back. Right: largest mean of an"
+    " scenes, p < 0.05 after Holm, and in agreement without any one or two levels of other factors); filled"
+    " and black: by construction; hollow: not decided, or taken back. Right: largest mean of an"
     " interaction of two levels of each pair of factors on Newton iterations, as a factor up or down, of"
     " those that at least {least} scenes tell; a dot where one is decided; white where none is told."
     "{untold}\n"
@@ -45,7 +47,8 @@ def _panel(axis, factorial: Factorial, study: Study, metric: str) -> None:
         if effect.mean is None:
             continue
         value = (lambda v: v) if metric in SHARES else math.exp
-        color = DECIDED if effect.decided else OPEN
+        made = effect.decided and by_construction(factorial, effect)
+        color = MADE if made else DECIDED if effect.decided else OPEN
         if effect.low is not None:
             axis.plot([value(effect.low), value(effect.high)], [k, k], color=color, linewidth=0.9)
         face = color if effect.decided else "white"

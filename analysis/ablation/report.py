@@ -6,6 +6,7 @@ import math
 from collections import Counter
 
 from ..text_table import markdown
+from .construction import by_construction
 from .design import drawn, seldom
 from .effects import LEAST_SCENES, LEVEL, SHARES, Effect, Study, Term
 from .factors import Factorial
@@ -42,17 +43,32 @@ def value_of(effect: Effect) -> str:
     return f"{one(effect.mean)} [{one(effect.low)}, {one(effect.high)}]"
 
 
-def verdict_of(effect: Effect) -> str:
-    if effect.passes and not effect.agrees:
-        return f"taken back: {value_of(effect.direct)} directly"
-    if not effect.decided:
-        return "not decided" if len(effect.scenes) >= LEAST_SCENES else f"{len(effect.scenes)} scenes"
-    return "**decided**"
+def _without(factorial: Factorial, effect: Effect) -> str:
+    """What took an effect back."""
+    names = " and ".join(f"`{factorial.factors[f].labels[level]}`" for f, level in effect.without)
+    value = value_of(effect.direct)
+    return f"without {names} {value}" if names else f"{value} directly"
+
+
+def verdict_of(factorial: Factorial, effect: Effect) -> str:
+    if effect.decided:
+        why = by_construction(factorial, effect)
+        return f"by construction: {why}" if why else "**decided**"
+    if effect.passes:
+        return f"taken back: {_without(factorial, effect)}"
+    return "not decided" if len(effect.scenes) >= LEAST_SCENES else f"{len(effect.scenes)} scenes"
 
 
 def _largest(effects: list[Effect], n: int | None = None) -> list[Effect]:
     """Those that are decided, the largest first."""
     return sorted((e for e in effects if e.decided), key=lambda e: -abs(e.mean))[:n]
+
+
+def _told(factorial: Factorial, effects: list[Effect]) -> tuple[list[Effect], list[Effect]]:
+    """Those that are decided, the largest first: what the runs decided, and what the program did before."""
+    found = _largest(effects)
+    made = [e for e in found if by_construction(factorial, e)]
+    return [e for e in found if e not in made], made
 
 
 def _named(factorial: Factorial, effects: list[Effect]) -> str:
@@ -65,11 +81,15 @@ def _named(factorial: Factorial, effects: list[Effect]) -> str:
 
 def _of_number(factorial: Factorial, effects: list[Effect], words: str) -> str:
     """What is decided of a number, what is not, and what has too few scenes to be tested."""
-    found = _largest(effects)
+    found, made = _told(factorial, effects)
     said = f"{words[0].upper()}{words[1:]}: {len(found)} of {len(effects)} main effects are decided"
     said += f": {_named(factorial, found)}." if found else "."
+    if made:
+        said += f" By construction, so no finding: {_named(factorial, made)}."
+    if back := [e for e in effects if e.passes and not e.decided]:
+        named = (f"`{name_of(factorial, e.term)}` ({_without(factorial, e)})" for e in back)
+        said += f" Taken back: {', '.join(named)}."
     for open_, what in (
-        ([e for e in effects if e.passes and not e.agrees], "Taken back"),
         ([e for e in effects if not e.passes and e.p is not None], "Not decided"),
         ([e for e in effects if e.p is None], f"Not tested, with fewer than {LEAST_SCENES} scenes"),
     ):
@@ -87,8 +107,10 @@ def lead(factorial: Factorial, table: Table) -> str:
         " with the common success; ratios are of the former alone, shares of all runs. An effect is that of a"
         " level against the first level of its factor, the other factors equal: the mean over scenes with its"
         f" 95% interval. It is decided when the sign-flip test of that mean has p < {LEVEL:g} after Holm."
-        " Where exclusions bind a level, its effect in the runs that both levels may have has to agree (same"
-        f" sign, p < {LEVEL:g} by itself); otherwise it is taken back: it is not told from an interaction."
+        " It is taken back where it may rest on an interaction: without the runs that have one or two levels"
+        f" of other factors it has to agree (same sign, p < {LEVEL:g} by itself), and where exclusions bind a"
+        " level in the runs that both levels may have. What is taken back is not told from an interaction, or"
+        " has too few runs left to tell. What a definition makes is named as made by construction."
         " What is not decided is not shown to be absent; its interval, in a table below, says what it may be."
     )
 
@@ -115,7 +137,7 @@ def _main_table(factorial: Factorial, study: Study, metric: str) -> list[str]:
                 value_of(effect),
                 f"{up} up, {down} down, p {effect.sign_p:.2g}",
                 "" if effect.holm is None else f"{effect.holm:.2g}",
-                verdict_of(effect),
+                verdict_of(factorial, effect),
             ]
         )
     kind = "difference" if metric in SHARES else "ratio"
@@ -211,6 +233,11 @@ def page(factorial: Factorial, table: Table, study: Study) -> str:
         ),
         "",
         lead(factorial, table),
+        "",
+        (
+            "Claims and gap map measure the shapes under other conditions: [One quantity, several studies]"
+            "(../docs/results.md#one-quantity-several-studies)."
+        ),
         "",
         *(f"{k}. {sentence}" for k, sentence in enumerate(sentences(factorial, table, study), 1)),
         "",

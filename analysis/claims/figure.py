@@ -47,16 +47,6 @@ def _dots(j: Judged) -> list[float]:
     return [] if j.rule == "outcomes" else [value for _, value, *_ in j.per_scene]
 
 
-def confirmed_main(a: Answer) -> Judged | None:
-    """The number of the same part over scenes that no rule was tuned on; None where there is none, or where
-    no scene decides.
-    """
-    if a.main.proof:
-        return None
-    same = [j for j in a.confirmed_parts if j.says == a.main.says and j.value is not None]
-    return same[0] if a.confirmed is not None and same else None
-
-
 def _number(axis, j: Judged, y: float, color: str, marker: str) -> None:
     """A number with its interval at the height y, its scenes a little below."""
     dots = _dots(j)
@@ -76,7 +66,7 @@ def _number(axis, j: Judged, y: float, color: str, marker: str) -> None:
 
 
 def _row(axis, k: int, a: Answer) -> dict:
-    j, again = a.main, confirmed_main(a)
+    j, again = a.main, a.confirmed_main
     first = k if again is None else k - 0.2
     _number(axis, j, first, COLORS[a.verdict.verdict], "D" if j.proof else "o")
     text = f"{interval(j)}, asked {j.threshold}"

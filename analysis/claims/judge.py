@@ -13,6 +13,7 @@ from .metrics import METRICS
 from .parts import check
 from .proofs import PROOFS, Eval
 from .registry import State
+from .rests import rests_on
 from .slices import rows_of, slice_of
 from .table import Runs, Table, used_metrics
 from .verdict import Judged, together, undecided
@@ -35,6 +36,8 @@ class Answer:
     state: State = State()  # of its confirmation
     confirmed: Judged | None = None  # over scenes that no rule was tuned on
     confirmed_parts: list[Judged] = field(default_factory=list)
+    rests: dict[str, str] = field(default_factory=dict)  # what a part says -> the one demand that decides it
+    confirmed_rests: dict[str, str] = field(default_factory=dict)
 
     @property
     def proven(self) -> bool:
@@ -57,8 +60,18 @@ class Answer:
 
     @property
     def main(self) -> Judged | None:
-        """The number of the figure: that of the first part."""
+        """The number of the first part."""
         return next((j for j in self.parts if not j.beside and j.value is not None), None)
+
+    @property
+    def confirmed_main(self) -> Judged | None:
+        """That of the same part over scenes that no rule was tuned on; None where there is none, or where no
+        scene decides.
+        """
+        if self.main is None or self.main.proof or self.confirmed is None:
+            return None
+        same = [j for j in self.confirmed_parts if j.says == self.main.says and j.value is not None]
+        return same[0] if same else None
 
 
 def _stale(runs: Runs, sweep: Sweep) -> str:
@@ -126,6 +139,17 @@ def judge_part(part: dict, table: Table, asker: Eval) -> Judged:
     return judged
 
 
+def _rests(parts: list[dict], judged: list[Judged], table: Table) -> dict[str, str]:
+    """Of the parts that one demand decides alone."""
+    found = {}
+    for part, j in zip(parts, judged):
+        if part.get("rule") == "outcomes":
+            runs = rows_of(part, table.sweeps[part["sweep"]], read_sweep(part["sweep"]))
+            if text := rests_on(part, runs, j):
+                found[j.says] = text
+    return found
+
+
 def judge(claim: Claim, table: Table, asker: Eval, entries: dict | None = None) -> Answer:
     """The exploratory verdict, and the confirmed one where its registration is verified. entries: those of
     the registry.
@@ -135,9 +159,10 @@ def judge(claim: Claim, table: Table, asker: Eval, entries: dict | None = None) 
         return Answer(claim, undecided("; ".join(lines)), [], state)
     parts = [judge_part(part, table, asker) for part in claim.parts]
     answer = Answer(claim, together(parts, claim.waits_for), parts, state)
+    answer.rests = _rests(list(claim.parts), parts, table)
     if state.verified:
-        answer.confirmed_parts = [
-            judge_part(part, table, asker) for part in registry.as_confirmation(claim).parts
-        ]
+        again = registry.as_confirmation(claim).parts
+        answer.confirmed_parts = [judge_part(part, table, asker) for part in again]
+        answer.confirmed_rests = _rests(list(again), answer.confirmed_parts, table)
         answer.confirmed = together(answer.confirmed_parts)
     return answer

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import textwrap
 
+from ..stated.sources import measured_elsewhere
 from ..text_table import markdown as table_lines
 from . import frontiers, verdict_code
-from .entry import read_sweep
+from .entry import Claim, read_sweep
 from .judge import Answer
 from .metrics import METRICS
 from .table import Table
@@ -14,6 +15,7 @@ from .verdict import IN_PART, ONLY_IF, OPEN, Judged
 
 WIDTH = 140
 MANY = 4  # parts: of more a table says how many hold
+SEVERAL = "../docs/results.md#one-quantity-several-studies"
 BY_SMALLEST = "; compared by smallest gaps"
 
 
@@ -34,15 +36,26 @@ def interval(j: Judged) -> str:
     return f"{number(j.value)} [{number(j.lower)}, {number(j.upper)}]"
 
 
-def sentence(j: Judged, brief: bool = False) -> str:
+def counts_of(groups: tuple[int, ...], parts: list[Judged]) -> str:
+    """How many parts hold and do not. Where several ask of one number, so many numbers there are too: two
+    thresholds of one number are one measurement.
+    """
+    deciding = [j for j in parts if not j.beside]
+    numbers = {(j.measures, j.sweep, j.slice, j.value, j.lower, j.upper) for j in deciding}
+    of = (
+        f"of {sum(groups)} questions on {len(numbers)} numbers"
+        if len(numbers) < len(deciding) == sum(groups)
+        else f"of {sum(groups)} parts"
+    )
+    return f"{of}: {groups[0]} upheld, {groups[1]} refuted, {groups[2]} not decided"
+
+
+def sentence(j: Judged, brief: bool = False, parts: list[Judged] = ()) -> str:
     """The verdict with its condition or its parts, or with what is missing. brief: of many parts how many
     hold, for a cell of a table.
     """
     if brief and j.verdict == IN_PART and sum(j.groups) > MANY:
-        return (
-            f"{IN_PART} (of {sum(j.groups)} parts: {j.groups[0]} upheld, {j.groups[1]} refuted,"
-            f" {j.groups[2]} not decided)"
-        )
+        return f"{IN_PART} ({counts_of(j.groups, list(parts))})"
     if j.verdict == ONLY_IF:
         return f"{ONLY_IF}: {j.condition}"
     if j.verdict == IN_PART:
@@ -50,9 +63,10 @@ def sentence(j: Judged, brief: bool = False) -> str:
     return f"{OPEN}: {j.missing}" if j.verdict == OPEN and j.missing else j.verdict
 
 
-def _part(j: Judged) -> list[str]:
+def _part(j: Judged, rests: dict[str, str]) -> list[str]:
     kind = "closed form" if j.proof else f"`{j.sweep}`"
     verdict = f"{sentence(j)}{' (beside, decides nothing)' if j.beside else ''}"
+    verdict += f" ({rests[j.says]})" if j.says in rests else ""
     lines = [
         f"- {j.says}: **{verdict}**. {j.measures}{' (depends on the machine)' if j.machine else ''}:"
         f" {interval(j)}, asked: {j.threshold or '-'};"
@@ -81,7 +95,17 @@ def _part(j: Judged) -> list[str]:
 def confirmed_word(a: Answer) -> str:
     if a.proven:
         return "closed form"
-    return sentence(a.confirmed, brief=True) if a.confirmed else a.state.word
+    if not a.confirmed:
+        return a.state.word
+    return sentence(a.confirmed, brief=True, parts=a.confirmed_parts) + _resting(
+        a.confirmed_rests, a.confirmed_parts
+    )
+
+
+def _resting(rests: dict[str, str], parts: list[Judged]) -> str:
+    """Beside a verdict: which of its deciding parts one demand decides alone."""
+    named = [f"{j.says} {rests[j.says]}" for j in parts if not j.beside and j.says in rests]
+    return f" ({'; '.join(named)})" if named else ""
 
 
 def _confirmation(a: Answer) -> list[str]:
@@ -90,8 +114,19 @@ def _confirmation(a: Answer) -> list[str]:
         return []
     lines = [f"Confirmed: **{confirmed_word(a)}** ({a.state.why}).", ""]
     for j in a.confirmed_parts:
-        lines += _part(j)
+        lines += _part(j, a.confirmed_rests)
     return lines + [""] if a.confirmed_parts else lines
+
+
+def _elsewhere(claim: Claim) -> list[str]:
+    """Where other studies measure what a part compares: verdicts may differ with the conditions."""
+    if not any(measured_elsewhere(part) for part in claim.parts):
+        return []
+    return [
+        "Gap map and ablation measure the same under other conditions, and decide some of it otherwise: the"
+        f" numbers stand side by side in [One quantity, several studies]({SEVERAL}).",
+        "",
+    ]
 
 
 def _claim(a: Answer, table: Table) -> list[str]:
@@ -112,10 +147,10 @@ def _claim(a: Answer, table: Table) -> list[str]:
     if a.why_exploratory:
         lines += [f"The verdict is {a.why_exploratory}.", ""]
     for j in a.parts:
-        lines += _part(j)
+        lines += _part(j, a.rests)
     if a.parts:
         lines.append("")
-    lines += _confirmation(a) + frontiers.lines(claim, table)
+    lines += _elsewhere(claim) + _confirmation(a) + frontiers.lines(claim, table)
     if claim.note:
         lines += [claim.note, ""]
     for change in claim.rule_changes:
@@ -192,7 +227,7 @@ that is not asked to converge has a residual, in tolerances of a step that is.
 def _short(a: Answer) -> str:
     if a.verdict.verdict == OPEN and a.claim.waits_for:
         return f"{OPEN}: waits for {a.claim.waits_for}"
-    return sentence(a.verdict, brief=True)
+    return sentence(a.verdict, brief=True, parts=a.parts) + _resting(a.rests, a.parts)
 
 
 def main_number(j: Judged) -> str:
@@ -205,15 +240,16 @@ VERDICT_COLUMNS = (
     "kind",
     "exploratory verdict (or closed form)",
     "confirmed",
-    "number of its first part",
+    "number of its first part (of the confirmed scenes where there are any)",
 )
 
 
 def verdict_table(answers: list[Answer]) -> list[str]:
     rows = []
     for a in answers:
-        j = a.main
+        j = a.confirmed_main or a.main
         number_of = f"{main_number(j)}{f' ({j.slice})' if j.slice else ''}" if j else "-"
+        number_of += f"; {j.scenes} confirmed scenes" if j and a.confirmed_main else ""
         rows.append([a.claim.id, a.claim.sentence, a.claim.kind, _short(a), confirmed_word(a), number_of])
     return table_lines(VERDICT_COLUMNS, rows)
 
@@ -257,7 +293,7 @@ def text(answers: list[Answer]) -> str:
     for a in answers:
         j = a.main
         lines += textwrap.wrap(
-            f"{a.claim.id:4} {sentence(a.verdict, brief=True)}; confirmed: {confirmed_word(a)}"
+            f"{a.claim.id:4} {_short(a)}; confirmed: {confirmed_word(a)}"
             + (f"  [{main_number(j)}]" if j else ""),
             WIDTH,
             subsequent_indent="     ",

@@ -47,6 +47,7 @@ KINDS = {
     "friction_slope": Kind(friction_slope.figure, "sweep"),
     "gap_map": Kind(studies.gap_maps, "study"),
     "gap_ridge": Kind(gap_ridge.figure, "sweep"),
+    "gap_size": Kind(studies.gap_sizes, "study"),
     "gaps": Kind(runs.gaps, "sweep"),
     "heat_map": Kind(heat_map.figure, "sweep", heat_map.OPTIONS),
     "iterations": Kind(runs.iterations, "sweep"),

@@ -13,6 +13,7 @@ from ..errors import UserError
 from ..gap_map import entry as gap_map
 from ..gap_map import figure as gap_figure
 from ..gap_map import kept as gap_kept
+from ..gap_map import size_figure
 from ..gap_map.judge import counts
 from ..gap_map.spec import read_spec as read_gap_map
 from ..json_file import read_object
@@ -154,6 +155,14 @@ def gap_maps(found, drawing: Drawing) -> list[Path]:
         f" {found.about['unknowns'][1]} unknowns; limit {', '.join(found.limits)}",
     )
     return drawing.state(gap_figure.draw_all(found, drawing.stem.parent, drawing.width_in), facts)
+
+
+def gap_sizes(found, drawing: Drawing) -> list[Path]:
+    if not size_figure.drawn_sizes(found):
+        raise drawing.nothing(
+            "no place of the map has a run of the log and one of the cubic that got through"
+        )
+    return size_figure.draw(found, drawing.stem, drawing.width_in, drawing.title)
 
 
 def work_precisions(table: dict, drawing: Drawing) -> list[Path]:

@@ -240,9 +240,9 @@ def main(argv: list[str]) -> int:
     if args.plan:
         beyond = cannot_reach(spec)
         return show_plan(spec, collect(spec, beyond, args.runs, kept_rows(kept, spec))[0], beyond)
-    alone = (
-        args.no_run and kept.is_file() and not args.runs.is_dir()
-    )  # the page from the kept numbers, without the program
+    # The page from the kept numbers, without the program; figures of an earlier such call are no records.
+    made = [path.name for path in args.runs.iterdir()] if args.runs.is_dir() else ["figures"]
+    alone = args.no_run and kept.is_file() and made == ["figures"]
     write_page(
         read_for(kept, spec) if alone else make_map(args, spec, kept),
         results,

@@ -14,7 +14,9 @@ import pandas as pd
 from .. import style
 from ..program import evaluated
 from ..ticks import log_ticks
-from .judge import FAR, MADE, Pair, counts, extent, pairs, scatter, steps
+from . import size_figure
+from .compare import Lines, lines
+from .judge import FAR, MADE, Pair, counts, extent, pairs, scatter
 from .rows import NOT_RUN
 from .spec import LIMITS, REFERENCE
 from .table import Map
@@ -29,14 +31,15 @@ COLUMN_IN = 2.45  # of one limit mode, on the page of the study
 TITLES = {"on": "limit on", "contact": "limit the same in every run", "off": "no strain limit"}
 SHOWN = (
     "What a run takes against the gap that its contacts reach: the load-weighted median of d/d_hat at step"
-    " ends, deeper to the right. A marker is a target theta ({gaps}), geometric mean over {n} scenes"
-    " ({scenes}), their resolutions averaged, of those whose whole path was run; thin lines: each scene."
-    " Markers of the same number along two lines carry the same loads. Hollow: a run of some scene or"
-    " resolution reached no gap, and the mean is of the others. A line ends at the gap of its last target:"
-    " nothing was reached to the right of it. All numbers are over those of the log at its first target in"
-    " the same place. Dotted, in the first row, where the limit does not follow theta: the area law, C rho(u)"
-    " but not below 1, with one C in a panel, from the deepest point of the log. cond: 95th percentile over"
-    " iterations in contact; PCG: median of block-Jacobi PCG to 1e-6 on one right-hand side. {modes}"
+    " ends, deeper to the right. A marker is a target theta ({gaps}), geometric mean over scenes ({scenes}),"
+    " their resolutions averaged. All markers of a column are of the same places (a scene at a resolution):"
+    " those in which every shape drawn here got through at every target of its line, {places}; lines end"
+    " where less than half of the places would be left, or at the last target that a shape can reach. Thin"
+    " lines: each place alone, as far as it was reached. Markers of the same number along two lines carry the"
+    " same loads. All numbers are over those of the log at its first target in the same place. Dotted, in the"
+    " first row, where the limit does not follow theta: the area law, C rho(u) but not below 1, with one C in"
+    " a panel, from the deepest point of the log. cond: 95th percentile over iterations in contact; PCG:"
+    " median of block-Jacobi PCG to 1e-6 on one right-hand side. {modes}"
 )
 LAW = (
     "The area law against what was measured. A point is a run beside that of the log in the same scene,"
@@ -69,16 +72,16 @@ def _rho(found: Map, shape: str, gaps: list[float]) -> list[float]:
     ]
 
 
-def _law(axis, found: Map, limit: str, shapes: list[str], metric: str, over) -> None:
+def _law(axis, found: Map, drawn: Lines) -> None:
     """One constant, from the deepest point of the log; every shape over the gaps that it reaches."""
-    log = steps(found.rows, limit, REFERENCE, metric, over)
+    log = drawn.of.get(REFERENCE)
     if not log:
         return
     deep = min(log, key=lambda p: p.gap)
     scale = deep.value / _rho(found, REFERENCE, [deep.gap])[0]
-    for shape in shapes:
-        reached = [p.gap for p in steps(found.rows, limit, shape, metric, over)]
-        if len(reached) > 1:
+    for shape, steps in drawn.of.items():
+        if len(steps) > 1:
+            reached = [p.gap for p in steps]
             gaps = list(np.geomspace(min(reached), max(reached), 40))
             axis.plot(
                 gaps,
@@ -90,24 +93,22 @@ def _law(axis, found: Map, limit: str, shapes: list[str], metric: str, over) -> 
             )
 
 
-def _series(axis, found: Map, limit: str, shape: str, metric: str, over) -> list[dict]:
-    points, look = steps(found.rows, limit, shape, metric, over), style.look(shape)
+def _series(axis, drawn: Lines, shape: str) -> None:
+    look, points = style.look(shape), drawn.of[shape]
+    for pairs_ in drawn.thin[shape].values():
+        axis.plot([g for g, _ in pairs_], [v for _, v in pairs_], color=look.color, linewidth=0.4, alpha=0.35)
     axis.plot(
-        [p.gap for p in points], [p.value for p in points], color=look.color, linestyle=look.dash, label=shape
+        [p.gap for p in points],
+        [p.value for p in points],
+        color=look.color,
+        linestyle=look.dash,
+        marker=look.marker,
+        markeredgewidth=0.8,
+        label=shape,
     )
-    for scene in dict.fromkeys(s for p in points for s in p.scenes):
-        mine = [p.scenes[scene] for p in points if scene in p.scenes]
-        axis.plot([g for g, _ in mine], [v for _, v in mine], color=look.color, linewidth=0.4, alpha=0.35)
-    for p in points:
-        axis.plot(
-            [p.gap],
-            [p.value],
-            color=look.color,
-            marker=look.marker,
-            markerfacecolor=look.color if p.whole else "white",
-            markeredgewidth=0.8,
-            linestyle="none",
-        )
+
+
+def _numbers(drawn: Lines, limit: str, metric: str) -> list[dict]:
     return [
         {
             "limit": limit,
@@ -116,9 +117,10 @@ def _series(axis, found: Map, limit: str, shape: str, metric: str, over) -> list
             "theta": p.theta,
             "gap": p.gap,
             "value": p.value,
-            "scenes": len(p.scenes),
-            "whole": p.whole,
+            "places": len(drawn.whole),
+            "places_run": len(drawn.run),
         }
+        for shape, points in drawn.of.items()
         for p in points
     ]
 
@@ -157,33 +159,34 @@ def _panel(axis, found: Map, limit: str, shapes: list[str], metric: str) -> list
     """
     axis.set(xscale="log", yscale="log")
     over = _over(found, limit, metric)
-    numbers = [row for shape in shapes for row in _series(axis, found, limit, shape, metric, over)]
+    drawn = lines(found.rows, limit, shapes, metric, over)
+    for shape in shapes:
+        _series(axis, drawn, shape)
     if metric == METRICS[0][0]:
         axis.set_title(TITLES[limit], fontsize=8)
         if limit != "on":
-            _law(axis, found, limit, shapes, metric, over)
+            _law(axis, found, drawn)
     axis.axhline(1, color="#666666", linewidth=0.5, gid=style.REFERENCE)
     _fit_y(axis)
-    return numbers
+    return _numbers(drawn, limit, metric)
 
 
 def _legend(fig, axis) -> None:
-    """Shapes with their markers, and the law."""
+    """Shapes, and the law."""
     handles, labels = axis.get_legend_handles_labels()
-    for handle, label in zip(handles, labels):
-        handle.set_marker(style.look(label).marker)
     handles.append(plt.Line2D([], [], color="#444444", linestyle=":", linewidth=1.0))
     fig.legend(handles, [*labels, "area law"], loc="outside lower center", ncols=6, frameon=False)
 
 
-def _shown(found: Map) -> str:
+def _shown(found: Map, numbers: list[dict]) -> str:
     scenes = found.about["scenes"]
     modes = " ".join(
         f"{TITLES[m][0].upper()}{TITLES[m][1:]}: {LIMITS[m]}." for m in found.limits if LIMITS[m] != TITLES[m]
     )
-    return SHOWN.format(
-        n=len(scenes), scenes=", ".join(scenes), gaps=", ".join(f"{g:g}" for g in found.gaps), modes=modes
-    )
+    of = {n["limit"]: (n["places"], n["places_run"]) for n in numbers}
+    places = "; ".join(f"{n} of {run} ({TITLES[limit]})" for limit, (n, run) in of.items())
+    gaps = ", ".join(f"{g:g}" for g in found.gaps)
+    return SHOWN.format(scenes=", ".join(scenes), gaps=gaps, modes=modes, places=places or "none")
 
 
 def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None = None) -> list[Path]:
@@ -202,13 +205,14 @@ def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None =
         for axis, limit in zip(axes[k], limits):
             numbers += _panel(axis, found, limit, shapes, metric)
         axes[k, 0].set_ylabel(f"{title}\nover the log's at first")
-    low = min([n["gap"] for n in numbers] or [1e-3]) / 1.3
+    gaps = [gap for line in (one for axis in axes.flat for one in axis.lines) for gap in line.get_xdata()]
+    low = min([gap for gap in gaps if 0 < gap < 1] or [1e-3]) / 1.3
     axes[0, 0].set_xlim(1.0, low)
     for axis in axes[-1]:
         log_ticks(axis.xaxis, low, 1.0, 7 if len(limits) < 3 else 5)
         axis.set_xlabel(r"reached gap / $\hat d$ (deeper to the right)")
     _legend(fig, axes[0, 0])
-    return style.save(fig, stem, pd.DataFrame(numbers), f"{_shown(found)} {_part(found)}".strip())
+    return style.save(fig, stem, pd.DataFrame(numbers), f"{_shown(found, numbers)} {_part(found)}".strip())
 
 
 def law_sentence(found: list[Pair], what: str) -> str:
@@ -271,8 +275,9 @@ def _law_numbers(of: list) -> pd.DataFrame:
 
 
 def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
-    of = [p for p in pairs(found.rows) if p.row["shape"] in shapes]
-    scaled = [p for p in pairs(found.rows, raw=False) if p.row["shape"] in shapes]
+    """The points are of `shapes`; what the caption says of the law is of all shapes, as on the page."""
+    every = pairs(found.rows)
+    of = [p for p in every if p.row["shape"] in shapes]
     forms = (
         ("law", lambda p: p.predicted, lambda p: p.by_contact),
         ("law with its floor", lambda p: p.floored, lambda p: p.by_log),
@@ -301,7 +306,11 @@ def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     handles, labels = axes[0].get_legend_handles_labels()
     handles.append(plt.Line2D([], [], color="#444444", marker="o", markerfacecolor="none", linestyle="none"))
     fig.legend(handles, [*labels, "not made by contact"], loc="outside lower center", ncols=4, frameon=False)
-    sentence = f"{law_sentence(of, 'Raw')} {law_sentence(scaled, 'Block Jacobi')}"
+    scaled = pairs(found.rows, raw=False)
+    sentence = (
+        f"Of all shapes, those of the other figure too. {law_sentence(every, 'Raw')}"
+        f" {law_sentence(scaled, 'Block Jacobi')}"
+    )
     return style.save(
         fig,
         stem,
@@ -311,8 +320,8 @@ def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
 
 
 def draw_all(found: Map, folder: Path, width_in: float | None = None) -> list[Path]:
-    """gap_map and gap_law, and each with _more where there are more shapes than one figure holds; all their
-    files. width_in: as in draw_map. Asks `eval` for rho.
+    """gap_map and gap_law, each with _more where there are more shapes than one figure holds, and gap_size;
+    all their files. width_in: as in draw_map. Asks `eval` for rho.
     """
     folder.mkdir(parents=True, exist_ok=True)
     rest = [s for s in found.shapes if s not in found.main]
@@ -320,4 +329,5 @@ def draw_all(found: Map, folder: Path, width_in: float | None = None) -> list[Pa
     if rest:
         paths += draw_map(found, [REFERENCE, *rest], folder / "gap_map_more", width_in)
         paths += draw_law(found, rest, folder / "gap_law_more")
-    return paths + draw_law(found, list(found.main), folder / "gap_law")
+    paths += draw_law(found, list(found.main), folder / "gap_law")
+    return paths + (size_figure.draw(found, folder / "gap_size") if size_figure.drawn_sizes(found) else [])

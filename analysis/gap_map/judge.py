@@ -1,5 +1,5 @@
-"""What the rows of a gap map say: shapes beside the log at equal reached gap, who reaches which gap, and the
-area law against what was measured.
+"""What the rows of a gap map say of single runs and of the log's pairs: who fails, who reaches which gap, and
+the area law against what was measured. Shapes beside each other: compare.py.
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..matching.front import Point, reached, value_at
+from ..matching.front import reached
+from .compare import path, runs_of
 from .rows import CANNOT, NO_CONTACT, NOT_RUN
 from .spec import REFERENCE
 
@@ -17,164 +18,6 @@ MADE = 3.0  # contact makes the largest eigenvalue where cond is at least this m
 FAR = 2.0  # a measured ratio farther than this factor from the predicted one is an exception
 STIFF_AT_FIRST_TOUCH = ("quadratic", "two_stage")  # b'' does not vanish at d_hat
 LOADS = 1.25  # two runs whose loads differ by more do not carry the same load
-
-
-def places(rows: list[dict], limit: str) -> list[tuple[str, str]]:
-    return list(dict.fromkeys((r["scene"], r["resolution"]) for r in rows if r["limit"] == limit))
-
-
-def paths(rows: list[dict], limit: str, shape: str, metric: str) -> dict[tuple[str, str], list[Point]]:
-    """Of a shape in every place. theta is the parameter: a smaller target means a softer contact. A run that
-    failed breaks the path.
-    """
-    found: dict[tuple[str, str], list[Point]] = {place: [] for place in places(rows, limit)}
-    for r in rows:
-        if r["limit"] == limit and r["shape"] == shape:
-            whole = r["outcome"] == "ok"
-            found[r["scene"], r["resolution"]].append(
-                Point(r["theta"], r["gap"], r[metric]) if whole else Point(r["theta"], None, None)
-            )
-    return found
-
-
-@dataclass(frozen=True)
-class Ratio:
-    """Geometric mean over scenes of a metric over that of the log, the smallest and the largest scene, and
-    how many scenes have both of how many.
-    """
-
-    value: float
-    low: float
-    high: float
-    n: int
-    of: int
-
-
-def ratio_at(rows: list[dict], limit: str, shape: str, metric: str, gap: float) -> Ratio | None:
-    """At equal reached gap, each along its own path over theta; resolutions of one scene are averaged first.
-    None where no scene has both.
-    """
-    by_scene: dict[str, list[float]] = {}
-    of_shape, of_log = (paths(rows, limit, s, metric) for s in (shape, REFERENCE))
-    for place in of_shape:
-        by_scene.setdefault(place[0], [])
-        mine, log = value_at(of_shape[place], gap), value_at(of_log[place], gap)
-        if mine is not None and log is not None:
-            by_scene[place[0]].append(math.log(mine / log))
-    return _over_scenes(by_scene)
-
-
-def _over_scenes(by_scene: dict[str, list[float]]) -> Ratio | None:
-    means = [float(np.mean(logs)) for logs in by_scene.values() if logs]
-    return (
-        Ratio(math.exp(np.mean(means)), math.exp(min(means)), math.exp(max(means)), len(means), len(by_scene))
-        if means
-        else None
-    )
-
-
-def at_theta(rows: list[dict], limit: str, shape: str, metric: str, theta: float) -> Ratio | None:
-    """At equal target, so under the same loads, each at the gap that it reaches; a place counts where both
-    runs ended well.
-    """
-    by_scene: dict[str, list[float]] = {}
-    both = [paths(rows, limit, s, metric) for s in (shape, REFERENCE)]
-    for place in both[0]:
-        by_scene.setdefault(place[0], [])
-        values = [next((p.value for p in of[place] if p.scale == theta), None) for of in both]
-        if all(values):
-            by_scene[place[0]].append(math.log(values[0] / values[1]))
-    return _over_scenes(by_scene)
-
-
-@dataclass(frozen=True)
-class Step:
-    """One target of a shape: geometric means over scenes of the gap that was reached and of a number, and
-    each scene's own.
-    """
-
-    theta: float
-    gap: float
-    value: float
-    scenes: dict[str, tuple[float, float]]
-    whole: bool  # every run there is reached a gap
-
-
-def steps(rows: list[dict], limit: str, shape: str, metric: str, over) -> list[Step]:
-    """Target by target, falling; over(row) is what the metric is divided by, None where that is not known.
-    Only places whose whole path was run count, so that every target is of the same ones, and of these only
-    runs that ended well.
-    """
-    found, scenes = [], list(dict.fromkeys(p[0] for p in places(rows, limit)))
-    of_shape = [r for r in rows if r["limit"] == limit and r["shape"] == shape]
-    part = {(r["scene"], r["resolution"]) for r in of_shape if r["outcome"] == NOT_RUN}
-    there = [r for r in of_shape if (r["scene"], r["resolution"]) not in part]
-    mine = [r for r in there if r["outcome"] == "ok" and r["gap"] and r[metric] and over(r)]
-    for theta in sorted({r["theta"] for r in mine}, reverse=True):
-        of = {}
-        for scene in scenes:
-            good = [r for r in mine if r["theta"] == theta and r["scene"] == scene]
-            if good:
-                of[scene] = (_mean([r["gap"] for r in good]), _mean([r[metric] / over(r) for r in good]))
-        whole = all(r["outcome"] == "ok" for r in there if r["theta"] == theta)
-        found.append(
-            Step(theta, _mean([g for g, _ in of.values()]), _mean([v for _, v in of.values()]), of, whole)
-        )
-    return found
-
-
-def _mean(values: list[float]) -> float:
-    return math.exp(float(np.mean(np.log(values))))
-
-
-def deepest(rows: list[dict], limit: str, shape: str) -> dict[tuple[str, str], float]:
-    """place -> smallest gap that some run of the shape reached there; places where none did are left out."""
-    found = {}
-    for place in places(rows, limit):
-        gaps = [
-            r["gap"]
-            for r in rows
-            if (r["scene"], r["resolution"]) == place
-            and r["limit"] == limit
-            and r["shape"] == shape
-            and r["outcome"] == "ok"
-            and r["gap"]
-        ]
-        if gaps:
-            found[place] = min(gaps)
-    return found
-
-
-def at_target(
-    rows: list[dict], limit: str, theta: float, shapes: list[str]
-) -> tuple[dict[str, float], list[tuple[str, str]], list[str]]:
-    """Gaps at one target: shape -> median over the places that every shape with any has, these places, and
-    the shapes that reached a gap at none or share no place.
-    """
-    found: dict[str, dict[tuple[str, str], float]] = {shape: {} for shape in shapes}
-    for r in rows:
-        if (
-            r["limit"] == limit
-            and r["theta"] == theta
-            and r["shape"] in found
-            and r["outcome"] == "ok"
-            and r["gap"]
-        ):
-            found[r["shape"]][r["scene"], r["resolution"]] = r["gap"]
-    some = {shape: of for shape, of in found.items() if of}
-    shared = [place for place in places(rows, limit) if some and all(place in of for of in some.values())]
-    medians = (
-        {shape: float(np.median([of[place] for place in shared])) for shape, of in some.items()}
-        if shared
-        else {}
-    )
-    return medians, shared, [shape for shape in shapes if shape not in medians]
-
-
-def end_of(rows: list[dict], limit: str, shape: str) -> tuple[float, int] | None:
-    """Median over places of the smallest gap that the shape reached, and of how many places."""
-    found = list(deepest(rows, limit, shape).values())
-    return (float(np.median(found)), len(found)) if found else None
 
 
 def failures(rows: list[dict]) -> dict[tuple[str, str, float], dict[str, int]]:
@@ -194,7 +37,7 @@ def unreached(rows: list[dict], targets: list[float]) -> list[tuple[str, str, fl
     found = []
     for limit in dict.fromkeys(r["limit"] for r in rows):
         for shape in dict.fromkeys(r["shape"] for r in rows if r["limit"] == limit):
-            ranges = [reached(path) for path in paths(rows, limit, shape, "gap").values()]
+            ranges = [reached(path(of, "gap")) for of in runs_of(rows, limit, shape).values()]
             found += [
                 (limit, shape, target)
                 for target in targets
@@ -317,6 +160,20 @@ def exceptions(found: list[Pair]) -> list[Pair]:
         (p for p in found if p.by_log and abs(p.floor_error) > math.log(FAR)),
         key=lambda p: -abs(p.floor_error),
     )
+
+
+def made_by_contact(rows: list[dict], limit: str) -> tuple[int, int]:
+    """In how many runs of the log contact makes the largest eigenvalue at step ends, and of how many."""
+    logs = [
+        r["cond_end"] / r["nc_end"]
+        for r in rows
+        if r["limit"] == limit
+        and r["shape"] == REFERENCE
+        and r["outcome"] == "ok"
+        and r["cond_end"]
+        and r["nc_end"]
+    ]
+    return sum(ratio >= MADE for ratio in logs), len(logs)
 
 
 def counts(rows: list[dict]) -> dict[str, int]:

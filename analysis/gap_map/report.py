@@ -3,66 +3,54 @@
 from __future__ import annotations
 
 from ..text_table import markdown as table_lines
+from . import size_page
+from .compare import METRICS, Beside, Common, at_gap, at_theta, deepest, gaps_at, middles
 from .figure import TITLES, law_sentence
-from .judge import (
-    FAR,
-    MADE,
-    Ratio,
-    at_target,
-    at_theta,
-    counts,
-    deepest,
-    end_of,
-    exceptions,
-    extent,
-    failures,
-    pairs,
-    ratio_at,
-    reason,
-    unreached,
-)
+from .judge import FAR, MADE, counts, exceptions, extent, failures, made_by_contact, pairs, reason, unreached
 from .rows import CANNOT, NO_CONTACT, NOT_RUN, UNKNOWN
 from .spec import LIMITS, REFERENCE
 from .table import Map
 
-METRICS = (("cond_p95", "raw"), ("bj_p95", "block Jacobi"), ("pcg", "PCG"), ("newton", "Newton"))
+NAMES = {"cond_p95": "raw", "bj_p95": "block Jacobi", "pcg": "PCG", "newton": "Newton"}
 MOST = 40  # exceptions that the page lists one by one; all are in the table of gap_law.csv
-
-
-def _share(r: Ratio | None) -> str:
-    return "nobody" if r is None else f"{r.value:.3g} [{r.low:.3g}, {r.high:.3g}] {r.n}/{r.of}"
 
 
 def _others(found: Map) -> list[str]:
     return [s for s in found.shapes if s != REFERENCE]
 
 
-def _table(found: Map, limit: str, head: str, ratio) -> list[str]:
+def _left_out(cut: Common) -> str:
+    return ", ".join(f"`{shape}` ({n} of {of})" for shape, (n, of) in cut.left_out.items())
+
+
+def _table(found: Map, limit: str, head: str, beside) -> list[str]:
+    """A row a shape; the rows of one target are of the same places, which the first column names."""
     rows = []
     for gap in found.gaps:
-        for shape in _others(found):
-            ratios = [ratio(found.rows, limit, shape, metric, gap) for metric, _ in METRICS]
-            if any(ratios):
-                rows.append([f"{gap:g}", f"`{shape}`", *map(_share, ratios)])
-    return table_lines([head, "shape", *(f"{title} over the log's" for _, title in METRICS)], rows)
+        here: Beside = beside(found.rows, limit, gap, _others(found))
+        for shape, ratios in here.ratios.items():
+            rows.append([f"{gap:g}", f"`{shape}`", *(str(ratios[m]) for m in METRICS), here.cut.words])
+        if here.cut.left_out:
+            rows.append([f"{gap:g}", f"not compared: {_left_out(here.cut)}", *[""] * (len(METRICS) + 1)])
+    columns = [f"{NAMES[metric]} over the log's" for metric in METRICS]
+    return table_lines([head, "shape", *columns, "all of these in"], rows)
 
 
 def _ends(found: Map) -> list[str]:
+    """Who reaches which gap, by limit: every column is of the places that all its shapes share."""
+    cuts = {limit: deepest(found.rows, limit, found.shapes) for limit in found.limits}
+    of = {limit: middles(cut) for limit, cut in cuts.items()}
     rows = []
     for shape in found.shapes:
         cells = []
         for limit in found.limits:
-            places, end = deepest(found.rows, limit, shape), end_of(found.rows, limit, shape)
-            cells.append(
-                "no run reached a gap"
-                if end is None
-                else (
-                    f"{end[0]:.3g} ({min(places.values()):.3g} to {max(places.values()):.3g},"
-                    f" {end[1]} places)"
-                )
-            )
+            gaps = cuts[limit].of.get(shape, {}).values()
+            n, tried = cuts[limit].left_out.get(shape, (0, 0))
+            apart = f"in {n} of {tried} places: not compared" if tried else "no run"
+            cells.append(f"{of[limit][shape]:.3g} ({min(gaps):.3g} to {max(gaps):.3g})" if gaps else apart)
         rows.append([f"`{shape}`", *cells])
-    return table_lines(["shape", *(TITLES[m] for m in found.limits)], rows)
+    heads = [f"{TITLES[limit]}: {cut.words}" for limit, cut in cuts.items()]
+    return table_lines(["shape", *heads], rows)
 
 
 def _failed(found: Map) -> list[str]:
@@ -92,46 +80,45 @@ def _never(found: Map) -> list[str]:
     ]
 
 
-def _words(of: dict[str, Ratio]) -> str:
-    return ", ".join(
-        f"`{s}` {r.value:.2g} [{r.low:.2g}, {r.high:.2g}]"
-        for s, r in sorted(of.items(), key=lambda item: item[1].value)
-    )
-
-
 def _rests(found: Map, limit: str) -> str:
     """Where contact rests at the smallest target, over the places that all shapes named there reached."""
     theta = min(found.gaps)
-    gaps, shared, without = at_target(found.rows, limit, theta, found.shapes)
+    cut = gaps_at(found.rows, limit, theta, found.shapes)
     asked = f"Asked for {theta:g} d_hat at the largest load, with {TITLES[limit]}, "
-    if not gaps:
+    if not cut.of:
         return f"{asked}there is no place where every shape that reached a gap has one."
     named = ", ".join(
-        f"{gap:.2g} (`{shape}`)" for shape, gap in sorted(gaps.items(), key=lambda item: item[1])
+        f"{gap:.3g} (`{s}`)" for s, gap in sorted(middles(cut).items(), key=lambda item: item[1])
     )
     text = (
-        f"{asked}the contact that bears the median load rests at {named} (median of the {len(shared)} scenes"
-        " and resolutions that all of these reached)"
+        f"{asked}the contact that bears the median load rests at {named} (median of the {cut.words} that all"
+        " of these reached)"
     )
+    without = [shape for shape in found.shapes if shape not in cut.of]
     return text + (
-        f"; without a gap there: {', '.join(f'`{shape}`' for shape in without)}." if without else "."
+        f"; without a gap in half of the places or more: {', '.join(f'`{shape}`' for shape in without)}."
+        if without
+        else "."
     )
+
+
+def _ranked(beside: Beside, metric: str) -> list[tuple[str, str]]:
+    ranked = sorted(beside.ratios.items(), key=lambda item: item[1][metric].value)
+    return [(f"`{shape}`", str(ratios[metric])) for shape, ratios in ranked]
 
 
 def _same_loads(found: Map, limit: str) -> str:
-    """Raw condition numbers over the log's at the largest and the smallest theta, of the shapes that have one
-    in half of the scenes.
+    """Raw condition numbers over the log's at the largest and the smallest theta, ranked where all shapes
+    are of the same places.
     """
     parts = []
     for theta in (max(found.gaps), min(found.gaps)):
-        of = {
-            s: r
-            for s in _others(found)
-            if (r := at_theta(found.rows, limit, s, "cond_p95", theta)) is not None and 2 * r.n >= r.of
-        }
+        here = at_theta(found.rows, limit, theta, _others(found))
+        ranked = ", ".join(" ".join(pair) for pair in _ranked(here, "cond_p95"))
         parts.append(
-            f"at theta {theta:g} "
-            + (_words(of) if of else "no shape got through beside it in half of the scenes")
+            f"at theta {theta:g} (the {here.cut.words} in which all of these got through) {ranked}"
+            if ranked
+            else f"at theta {theta:g} no place is left in which the shapes that got through share"
         )
     return (
         f"With {TITLES[limit]} and under the same loads, raw condition numbers over the log's are"
@@ -140,37 +127,45 @@ def _same_loads(found: Map, limit: str) -> str:
 
 
 def _in_iterations(found: Map) -> str:
-    """How far a shape moves each number in each limit mode, and how often contact makes the log's largest
-    eigenvalue.
+    """How far a shape moves each number at the smallest target in each limit mode: the smallest and the
+    largest of the means, with their names.
     """
-    spans = []
+    theta, spans = min(found.gaps), []
     for limit in found.limits:
-        of = [
-            [
-                r.value
-                for s in _others(found)
-                for gap in found.gaps
-                if (r := at_theta(found.rows, limit, s, metric, gap)) is not None and 2 * r.n >= r.of
-            ]
-            for metric, _ in METRICS[:3]
-        ]
-        made = [p for p in pairs(found.rows) if p.row["limit"] == limit]
-        spans.append(
-            f"{TITLES[limit]}: "
-            + ", ".join(f"{title} {min(v):.2g} to {max(v):.2g}" for (_, title), v in zip(METRICS, of) if v)
-            + ", and contact makes the log's largest eigenvalue at step ends in"
-            f" {sum(p.by_log for p in made)} of {len(made)} pairs"
-        )
+        here = at_theta(found.rows, limit, theta, _others(found))
+        if not here.ratios:
+            continue
+        ends = []
+        for metric in METRICS:
+            ranked = _ranked(here, metric)
+            first, last = ranked[0], ranked[-1]
+            ends.append(f"{NAMES[metric]} {first[1]} ({first[0]}) to {last[1]} ({last[0]})")
+        left = f"; not compared: {_left_out(here.cut)}" if here.cut.left_out else ""
+        spans.append(f"{TITLES[limit]} ({here.cut.words}{left}): {', '.join(ends)}")
     return (
-        "What of this arrives in iterations, as ratios to the log's, smallest to largest over all shapes"
-        f" and targets: {'; '.join(spans)}."
+        f"What of this arrives in iterations at theta {theta:g}: over the log's, the smallest and the largest"
+        f" of the shapes' means over scenes (single scenes lie farther out): {'; '.join(spans)}."
+    )
+
+
+def _made(found: Map) -> str:
+    """How often contact is what makes a condition number."""
+    parts = [
+        f"{made} of {n} ({TITLES[limit]})"
+        for limit in found.limits
+        for made, n in [made_by_contact(found.rows, limit)]
+    ]
+    return (
+        f"Contact makes the log's largest eigenvalue at step ends (cond at least {MADE:g} times that without"
+        f" contact) in {', '.join(parts)} of its runs."
     )
 
 
 def sentences(found: Map) -> list[str]:
-    """What a reader keeps: three sentences, each computed from the rows."""
+    """What a reader keeps, each sentence computed from the rows."""
     off = "off" if "off" in found.limits else found.limits[-1]
-    return [_same_loads(found, off), _rests(found, off), _in_iterations(found)]
+    first = [_same_loads(found, off), _rests(found, off), _in_iterations(found), _made(found)]
+    return [*first, *size_page.sentences(found)]
 
 
 def _law(found: Map) -> list[str]:
@@ -240,9 +235,17 @@ def _head(found: Map) -> list[str]:
             f"Made by `{about['command']}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the"
             " load-weighted median of d/d_hat at converged step ends; theta, the target, is where the"
             " largest load of the pilot would rest. Raw and block Jacobi are 95th percentiles of cond over"
-            " iterations in contact. A number is a geometric mean over scenes, [smallest, largest scene],"
-            " scenes that have both of all."
+            " iterations in contact. A number is a geometric mean over scenes, the resolutions of a scene"
+            " averaged first, with its 95% interval (Student's t over scenes). A place is a scene at a"
+            " resolution. Rows that stand together are of the same places: those in which every shape of"
+            " them, and the log, got through; a shape that did so in half of its places or fewer is named and"
+            " not compared."
         ),
+        "",
+    ]
+    lines += [
+        "Claims and ablation measure some of these ratios under other conditions: [One quantity, several"
+        " studies](../docs/results.md#one-quantity-several-studies).",
         "",
     ]
     if len(builds := {source["build"] for source in about["sources"]}) > 1:
@@ -292,9 +295,9 @@ def markdown(found: Map) -> str:
     lines = _head(found)
     lines += ["## What a reader keeps", "", *(f"{k}. {s}" for k, s in enumerate(sentences(found), 1)), ""]
     lines += ["![the gap map](../docs/gap_map.png)", ""]
-    for title, head, ratio in (
+    for title, head, beside in (
         ("Under the same loads", "theta", at_theta),
-        ("At equal reached gap", "reached gap", ratio_at),
+        ("At equal reached gap", "reached gap", at_gap),
     ):
         lines += [f"## {title}", ""]
         for limit in found.limits:
@@ -303,13 +306,15 @@ def markdown(found: Map) -> str:
                 "",
                 f"{LIMITS[limit][0].upper()}{LIMITS[limit][1:]}.",
                 "",
-                *_table(found, limit, head, ratio),
+                *_table(found, limit, head, beside),
                 "",
             ]
+    lines += size_page.section(found)
     lines += [
         "## Who reaches which gap",
         "",
-        "Smallest reached gap: median over scenes and resolutions (smallest to largest).",
+        "Smallest reached gap: median over the places that all shapes of a column share (smallest to"
+        " largest).",
         "",
         *_ends(found),
         "",

@@ -1,94 +1,158 @@
-"""The log beside the cubic over theta, with the strain limit off and on: from the parts of a claim and
-results/claims.json to a sentence of README.
+"""The log beside the cubic over theta, without a strain limit and with one: the first results of README, from
+results/claims.json and results/gap_map.json. Each is the number of the strongest evidence there is.
 """
 
 from __future__ import annotations
 
 import textwrap
-from dataclasses import replace
+from dataclasses import dataclass
 
+from ..claims import table as claims_table
 from ..claims.entry import read_claim, read_sweep
-from ..claims.judge import judge_part, missing
-from ..claims.proofs import Eval
+from ..claims.judge import missing
 from ..claims.slices import rows_of
-from ..claims.table import FILE, Table
-from ..claims.table import read as read_claims
+from ..claims.table import Table
 from ..errors import UserError
+from ..gap_map import size_page
+from ..gap_map import table as map_table
+from ..gap_map.table import Map
+from ..places import ROOT
+from ..stated.number import OFF, SAME, Number, strongest
+from ..stated.sources import confirmation, of_claim, of_map
 
-CLAIM, SWEEP = "H1", "contact_slices"
-LIMITS = ("off", "log")
+CLAIM = "H1"
+METRIC, PAIR = "cond_p95", ("log", "cubic")
+AXIS = {OFF: "off", SAME: "log"}  # limit -> its word in the parts of the claim
+LIKE_METRICS = (METRIC, "pcg", "newton")
+LIKE = (0.1, 0.01, 0.001)  # targets of the comparison in which contact and limiter have one form
+MAP = ROOT / "results" / "gap_map.json"
 
 
-def _parts() -> list[dict]:
-    """The parts of the claim that ask at one theta and strain limit by how much the log is above the
-    cubic."""
-    return [part for part in read_claim(CLAIM).parts if part.get("sweep") == SWEEP and "above" in part]
+@dataclass(frozen=True)
+class Headline:
+    """What a page states: `number`, which is the strongest of `candidates`; in how many of the runs that it
+    is of the other shape did not get through."""
+
+    number: Number
+    candidates: tuple[Number, ...]
+    failed: int = 0
+    of: int = 0
 
 
-def gather(table: Table | None = None) -> dict:
-    """unknowns: smallest to largest scene, in words. limits: strain limit -> of every theta, the largest
-    first, the claim's ratio of the 95th percentiles of cond, log over cubic, over how many scenes, and in how
-    many runs of all the cubic did not end `ok`. Raises UserError without runs of today's sweep.
+def _slice_parts(parts) -> list[dict]:
+    """Those that ask at one theta and strain limit by how much the log is above the cubic."""
+    return [part for part in parts if {"theta", "limit", "above"} <= set(part)]
+
+
+def _failures(table: Table, part: dict) -> tuple[int, int]:
+    runs = rows_of(part, table.sweeps[part["sweep"]], read_sweep(part["sweep"]))
+    mine = [row["outcome"] for row in runs.rows if row["case"] == part["over"]]
+    return sum(word != "ok" for word in mine), len(mine)
+
+
+def _headline(table: Table, parts: dict[bool, list[dict]], numbers: list[Number], theta: float, limit: str):
+    mine = [n for n in numbers if n.conditions == (theta, limit)]
+    number = strongest(mine, f"{METRIC} of {' over '.join(PAIR)} at theta {theta:g}, {limit}")
+    part = next(p for p in parts[number.confirmed] if (p["theta"], p["limit"]) == (theta, AXIS[limit]))
+    return Headline(number, tuple(mine), *_failures(table, part))
+
+
+def gather(table: Table | None = None, found: Map | None = None) -> dict:
+    """slices: limit -> headlines, the largest theta first. like: one row a theta of LIKE, metric -> number.
+    size: sentences. Errors: UserError without runs of today's sweep.
     """
-    table, parts = table or read_claims(FILE), _parts()
-    if lines := missing(replace(read_claim(CLAIM), parts=tuple(parts)), table):
-        raise UserError(f"{FILE}: {lines[0]}")
-    found: dict[str, list[dict]] = {limit: [] for limit in LIMITS}
-    for part in sorted(parts, key=lambda part: -part["theta"]):
-        judged = judge_part(part, table, Eval(None, {}))
-        if judged.value is None:
-            raise UserError(f"{FILE}: {SWEEP}: {part['says']}: no pair of runs counts")
-        cubics = [
-            row["outcome"]
-            for row in rows_of(part, table.sweeps[SWEEP], read_sweep(SWEEP)).rows
-            if row["case"] == part["over"]
-        ]
-        found[part["limit"]].append(
-            {
-                "theta": part["theta"],
-                "ratio": judged.value,
-                "scenes": judged.scenes,
-                "failed": sum(word != "ok" for word in cubics),
-                "of": len(cubics),
-            }
-        )
-    return {"unknowns": table.sweeps[SWEEP].about["unknowns"], "limits": found}
+    table = table or claims_table.read(claims_table.FILE)
+    claim = read_claim(CLAIM)
+    if lines := missing(claim, table):
+        raise UserError(f"{claims_table.FILE}: {lines[0]}")
+    parts = {False: _slice_parts(claim.parts), True: _slice_parts(confirmation(claim, table))}
+    sweeps = {part["sweep"] for of in parts.values() for part in of}
+    numbers = [n for n in of_claim(claim, table) if n.metric == METRIC and n.sweep in sweeps]
+    thetas = sorted({part["theta"] for part in parts[False]}, reverse=True)
+    slices = {limit: [_headline(table, parts, numbers, theta, limit) for theta in thetas] for limit in AXIS}
+    found = found or map_table.read(MAP)
+    like = [
+        {n.metric: n for n in of_map(found, PAIR[1], "on", theta) if n.metric in LIKE_METRICS}
+        for theta in LIKE
+    ]
+    if not all(like):
+        raise UserError(f"{MAP}: no place in which both got through with a limit of their own form")
+    return {"slices": slices, "like": like, "size": size_page.sentences(found)}
 
 
-def _times(ratio: float) -> str:
-    """Two digits, without a power of ten."""
-    return f"{float(f'{ratio:.2g}'):g}"
+def headlines(gathered: dict) -> list[Headline]:
+    """Every number of these results with what it was chosen from."""
+    of_claims = [headline for of in gathered["slices"].values() for headline in of]
+    return of_claims + [Headline(n, (n,)) for row in gathered["like"] for n in row.values()]
 
 
 def _listed(values: list[str]) -> str:
     return f"{', '.join(values[:-1])} and {values[-1]}" if len(values) > 1 else values[0]
 
 
-def sentence(found: dict, width: int) -> list[str]:
-    """What theta and the strain limit do to the ratio of condition numbers, as item 4 of the results."""
-    off, on = (found["limits"][limit] for limit in LIMITS)
-    scenes, thetas = [row["scenes"] for row in off + on], _listed([f"{row['theta']:g}" for row in off])
-    without, limited = (_listed([_times(row["ratio"]) for row in rows]) for rows in (off, on))
-    failed = [
-        f"{row['failed']} of {row['of']} runs at theta {row['theta']:g}" for row in off if row["failed"]
+def _thetas(values: list[float]) -> str:
+    return _listed([f"{value:g}" for value in values])
+
+
+def _evidence(of: list[Headline]) -> str:
+    """Which scenes, and whether a rule was tuned on them."""
+    first = of[0].number
+    low, high = (f(k for h in of for k in h.number.unknowns) for f in (min, max))
+    scenes = sorted({h.number.scenes for h in of})
+    count = f"{scenes[0]}" if len(scenes) == 1 else f"{scenes[0]} to {scenes[-1]}"
+    kind = "confirmed: scenes that no rule was tuned on" if first.confirmed else "exploratory"
+    return f"{count} scenes of {low} to {high} unknowns, {kind}"
+
+
+def _without(of: list[Headline]) -> str:
+    failed, runs = sum(h.failed for h in of), sum(h.of for h in of)
+    through = (
+        f"the cubic got through all {runs} runs"
+        if not failed
+        else f"the cubic, whose force has a largest value, did not get through {failed} of {runs} runs"
+    )
+    return (
+        "Forces are made equal at the gap theta d_hat under the largest load, so that a smaller theta lets"
+        " contacts come closer. Without a strain limit the 95th percentile of the logarithm's condition"
+        " numbers over a run (cond: how hard a linear system is) is, at theta"
+        f" {_thetas([h.number.theta for h in of])}, {_listed([str(h.number) for h in of])} times the cubic's"
+        f" (mean over scenes with its 95% interval; {_evidence(of)}; {through})."
+    )
+
+
+def _with_one(of: list[Headline], like: list[dict[str, Number]]) -> str:
+    def row(metric: str) -> str:
+        return _listed([str(numbers[metric]) for numbers in like])
+
+    first = like[0][METRIC]
+    places = _listed([numbers[METRIC].places for numbers in like])
+    return (
+        "With a strain limit there are two questions. What contact alone changes, with the same logarithmic"
+        f" limiter in every run: at theta {_thetas([h.number.theta for h in of])} cond is"
+        f" {_listed([str(h.number) for h in of])} times the cubic's ({_evidence(of)}). What changes when"
+        " contact and limiter both have the form that is compared, logarithm throughout or cubic throughout:"
+        f" at theta {_thetas([numbers[METRIC].theta for numbers in like])} cond is {row(METRIC)} times the"
+        f" cubic's, PCG takes {row('pcg')} and Newton {row('newton')} times the iterations ({first.study},"
+        f" exploratory; in the {places} in which both got through)."
+    )
+
+
+def sentences(found: dict, width: int) -> list[str]:
+    """The numbered results."""
+    texts = [
+        _without(found["slices"][OFF]),
+        _with_one(found["slices"][SAME], found["like"]),
+        *found["size"],
     ]
-    text = (
-        "4. Result 2 is one slice. Forces are made equal at the gap theta d_hat under the largest load, so"
-        f" that a smaller theta lets contacts come closer. At theta {thetas} the 95th percentile of the"
-        f" logarithm's condition numbers over a run is {without} times the cubic's without a strain limit,"
-        f" and {limited} times with one (geometric means over those {min(scenes)} to {max(scenes)} scenes, of"
-        f" {found['unknowns']} unknowns, in which both get through)"
-    )
-    text += (
-        ". Without a limit the cubic, whose force has a largest value, does not get through in"
-        f" {_listed(failed)}"
-        if failed
-        else ""
-    )
-    return textwrap.wrap(
-        f"{text} ([all slices](results/CLAIMS.md)).",
-        width,
-        subsequent_indent="   ",
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    return [
+        line
+        for k, text in enumerate(texts, 1)
+        for line in textwrap.wrap(
+            f"{k}. {text}", width, subsequent_indent="   ", break_long_words=False, break_on_hyphens=False
+        )
+    ]
+
+
+def count(found: dict) -> int:
+    """How many results these are: the next one has the number after."""
+    return len(AXIS) + len(found["size"])

@@ -8,10 +8,11 @@ import re
 import textwrap
 
 from ..errors import UserError
+from ..stated.several import table_lines as several_lines
 from ..text_table import markdown as table_lines
+from . import slices
 from .cost import table
 from .map import lines
-from .slices import sentence
 
 WIDTH = 140
 # series of demo_drape -> what the table calls it
@@ -188,31 +189,37 @@ def drape_sentences(numbers: dict) -> list[str]:
         f" iteration in {numbers['about']['long']['every']}, layers that still move at the end): of the time"
         " steps that end in contact, the log's last condition number is smaller by more than 1%"
         f" {' and '.join(_step_ends(numbers, sphere) for sphere in ('formula', 'mesh'))}. Single iterations"
-        " reach further (result 2)."
+        f" reach further (result {_first(numbers) + 1})."
     )
     return textwrap.wrap(text, WIDTH)
 
 
+def _first(numbers: dict) -> int:
+    """Number of the first result of the demo: those of stronger evidence stand before it."""
+    return slices.count(numbers["slices"]) + 1
+
+
 def result_sentences(numbers: dict) -> list[str]:
-    """The three results of the first screen."""
+    """What the demo shows."""
     sentences = (_free_of_crossings(numbers), _log_against_cubic(numbers), _refreshed(numbers))
     return [
         line
-        for k, text in enumerate(sentences, 1)
+        for k, text in enumerate(sentences, _first(numbers))
         for line in textwrap.wrap(f"{k}. {text}", WIDTH, subsequent_indent="   ")
     ]
 
 
 PARTS = {
-    "README.md": ("result", "slices"),
-    "docs/results.md": ("demo", "drape", "gap_map"),
+    "README.md": ("slices", "result"),
+    "docs/results.md": ("demo", "drape", "gap_map", "several"),
     "docs/jobs/cluster.md": ("cost",),
 }  # page -> its generated parts
 TEMPLATES = {
     "demo": demo_table,
     "result": result_sentences,
     "drape": drape_sentences,
-    "slices": lambda numbers: sentence(numbers["slices"], WIDTH),
+    "slices": lambda numbers: slices.sentences(numbers["slices"], WIDTH),
+    "several": lambda numbers: several_lines(numbers["several"]),
     "gap_map": lambda numbers: lines(numbers["gap_map"], WIDTH),
     "cost": lambda numbers: table(numbers["cost"]),
 }

@@ -10,29 +10,43 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ..ablation import table as ablation_table
+from ..ablation.factors import read_factorial
+from ..claims import table as claims_table
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
+from ..gap_map import table as map_table
 from ..places import ROOT
 from ..program import built_program
+from ..stated import several
+from ..stated.check import faults as disagreements
 from ..whole_file import write_whole
 from . import figures
 from .cost import gather as gather_cost
 from .map import gather as gather_map
 from .numbers import FILE, RUNS, gather, read, write
+from .slices import MAP
 from .slices import gather as gather_slices
 from .snippets import faults
 from .templates import PARTS, filled, lacking
 
 PAGES = tuple(PARTS)
+ABLATION = ROOT / "configs" / "ablation" / "default.json"
 # Pages whose snippets are checked and which have no generated numbers.
 MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
-    """The numbers of the demo, those of the claims' slices, the sentences of the gap map, and what studies
-    take. Errors: UserError where one is missing.
+    """The numbers of the demo, those of the claims' slices, the sentences of the gap map, what several
+    studies say of one quantity, and what studies take. Errors: UserError where one is missing.
     """
-    return read() | {"slices": gather_slices(), "gap_map": gather_map(), "cost": gather_cost()}
+    claims, found = claims_table.read(claims_table.FILE), map_table.read(MAP)
+    studies = {
+        "slices": gather_slices(claims, found),
+        "gap_map": gather_map(),
+        "several": several.gather(claims, found, read_factorial(ABLATION), ablation_table.read()),
+    }
+    return read() | studies | {"cost": gather_cost()}
 
 
 def pages_with_snippets(root: Path) -> list[str]:
@@ -90,7 +104,10 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     what.add_argument(
         "--check",
         action="store_true",
-        help="run or parse every snippet, and compare the pages with the kept numbers",
+        help=(
+            "run or parse every snippet, compare the pages with the kept numbers, and look for two statements"
+            " on one thing that disagree"
+        ),
     )
     parser.add_argument(
         "--runs",
@@ -118,9 +135,11 @@ def main(argv: list[str]) -> int:
         print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
         return 0
     built_program()
+    numbers = kept()
     found = (
         [fault for page in pages_with_snippets(ROOT) for fault in faults((ROOT / page).read_text(), page)]
-        + stale(ROOT, kept())
+        + stale(ROOT, numbers)
+        + disagreements(ROOT, numbers["several"])
         + figures.absent(ROOT / "docs")
     )
     print(

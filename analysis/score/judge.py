@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 from statistics import median
 
-from ..gap_map.judge import Ratio, ratio_at
+from ..gap_map.compare import Ratio, at_gap
 from .candidate import RIVALS
 
 SAME = 1.10  # a ratio of means within this factor is no difference
@@ -91,13 +91,8 @@ def at_equal_gap(rows: list[dict], label: str) -> list[tuple[str, float, Ratio]]
     """metric, gap over d_hat, candidate over log, each along its own path over theta: geometric mean over
     the scenes in which both come down to that gap.
     """
-    found = []
-    for metric in COSTS:
-        for gap in GAPS:
-            ratio = ratio_at(rows, "off", label, metric, gap)
-            if ratio is not None:
-                found.append((metric, gap, ratio))
-    return found
+    ratios = {gap: at_gap(rows, "off", gap, [label]).ratios.get(label, {}) for gap in GAPS}
+    return [(metric, gap, of[metric]) for metric in COSTS for gap, of in ratios.items() if metric in of]
 
 
 def row_times(rows: list[dict]) -> dict[str, tuple[float, int]]:

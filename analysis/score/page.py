@@ -69,15 +69,14 @@ def _equal(rows: list[dict], label: str) -> str:
         [
             METRICS[metric],
             f"{gap:g}",
-            f"{ratio.value:.2f}",
-            f"{ratio.low:.2f} to {ratio.high:.2f}",
-            f"{ratio.n} of {ratio.of}",
+            str(ratio),
+            f"{ratio.scenes}",
         ]
         for metric, gap, ratio in at_equal_gap(rows, label)
     ]
     return table(
         "Candidate over log at equal reached gap",
-        ["", "gap/d_hat", "ratio", "scenes from, to", "scenes"],
+        ["", "gap/d_hat", "ratio [95% over scenes]", "scenes"],
         body,
     )
 

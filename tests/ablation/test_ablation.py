@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.ablation import bound, effects, factors, report, runs, table
+from analysis.ablation import bound, construction, effects, factors, report, runs, table
 from analysis.ablation.design import drawn, seldom
 from analysis.errors import UserError
 
@@ -100,13 +100,46 @@ def test_a_scene_with_too_few_runs_has_no_value(small):
     every = made(small, lambda k, v: (10 + k) * 3.0 ** v[1])
     few = [row for row in every.rows if row["scene"] != "one"] + [row for row in every.rows if row["scene"] == "one"][-17:]
     y = effect(effects.study(small, table.Table(small.digest, every.about, few)).main["newton"], small, "y")
-    assert set(y.scenes) == set(SCENES) - {"one"} and y.p is None and not y.decided and report.verdict_of(y) == "9 scenes"
+    assert set(y.scenes) == set(SCENES) - {"one"} and y.p is None and not y.decided and report.verdict_of(small, y) == "9 scenes"
 
 
 def test_failures_are_counted_in_the_share_and_in_no_ratio(small):
-    found = effects.study(small, made(small, lambda k, v: 1000.0 if v[0] == 1 and v[1] else 10.0 + k, lambda v: not (v[0] == 1 and v[1])))
+    """b fails with three of five precisions, so that it fails whichever two of them are left out."""
+    fails = lambda v: v[0] == 1 and v[2] in (1, 2, 3)
+    found = effects.study(small, made(small, lambda k, v: 1000.0 if fails(v) else 10.0 + k, lambda v: not fails(v)))
     share = effect(found.main["ok"], small, "b")
-    assert share.mean < -0.2 and share.decided and all(abs(e.mean) < 1e-9 and not e.decided for e in found.main["newton"])
+    assert share.mean < -0.4 and share.decided and all(abs(e.mean) < 1e-9 and not e.decided for e in found.main["newton"])
+
+
+def test_a_main_effect_that_is_one_interaction_is_taken_back(small):
+    """b fails with y alone, where it always fails: without y every run of it gets through, as of a."""
+    found = effects.study(small, made(small, lambda k, v: 10.0 + k, lambda v: v[:2] != (1, 1))).main["ok"]
+    b = effect(found, small, "b")
+    assert b.mean < -0.2 and b.passes and not b.decided
+    assert b.without == ((1, 1),) and b.direct.mean == 0.0
+    assert report.verdict_of(small, b) == "taken back: without `y` +0.00 [+0.00, +0.00]"
+
+
+def test_two_levels_left_out_take_back_what_one_does_not(small):
+    """b fails with y or with float: each alone leaves failures, without both there is none."""
+    found = effects.study(small, made(small, lambda k, v: 10.0 + k, lambda v: not (v[0] == 1 and (v[1] == 1 or v[2] == 1)))).main["ok"]
+    b = effect(found, small, "b")
+    assert b.passes and not b.decided and set(b.without) == {(1, 1), (2, 1)} and b.direct.mean == 0.0
+
+
+def test_what_a_definition_makes_is_no_finding():
+    """Every reason is of a level and a number that the shipped study has."""
+    whole = factors.read_factorial(DEFAULT)
+    labels = {(f, level): factor.labels[level] for f, factor in enumerate(whole.factors) for level in range(len(factor.labels))}
+    part = {label: part for part, label in labels.items()}
+    for (metric, label), why in construction.REASONS.items():
+        assert metric in (*table.METRICS, *effects.SHARES)
+        made_so = effects.Effect(metric, effects.Term((part[label],)), {}, -0.5, -0.6, -0.4, 0.001, 0.002)
+        assert made_so.decided and report.verdict_of(whole, made_so) == f"by construction: {why}"
+        said = report._of_number(whole, [made_so], "iterations")
+        assert said.startswith("Iterations: 0 of 1 main effects are decided. By construction, so no finding:")
+    other = effects.Effect("gap", effects.Term((part["newmark"],)), {}, -0.5, -0.6, -0.4, 0.001, 0.002)
+    assert report.verdict_of(whole, other) == "**decided**"
 
 
 def test_an_effect_that_exclusions_make_of_an_interaction_is_taken_back(small):
@@ -115,9 +148,10 @@ def test_an_effect_that_exclusions_make_of_an_interaction_is_taken_back(small):
     """
     found = effects.study(small, made(small, lambda k, v: (10.0 + k) * 9.0 ** (v[:2] == (1, 1)) * (1 + 0.001 * k * (-1) ** k) ** v[2])).main["newton"]
     c, y = (effect(found, small, name) for name in ("c", "y"))
-    assert c.mean > 0.4 and c.passes and not c.agrees and not c.decided and abs(c.direct.mean) < 1e-9
-    assert report.verdict_of(c).startswith("taken back: 1 [") and y.direct is not None and y.decided
-    assert "Taken back: `c`. Not decided: `float`" in report._of_number(small, found, "iterations")
+    assert c.mean > 0.4 and c.passes and not c.decided and c.without == () and abs(c.direct.mean) < 1e-9
+    assert report.verdict_of(small, c).startswith("taken back: 1 [") and report.verdict_of(small, c).endswith("] directly")
+    assert y.passes and not y.decided and y.without == ((0, 1),)  # y costs more with b alone
+    assert "`c` (1 [1, 1] directly)" in report._of_number(small, found, "iterations")
 
 
 def test_what_is_bound_is_what_the_exclusions_name(small):

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import re
@@ -10,11 +11,15 @@ import pytest
 
 from analysis.errors import UserError
 from analysis.readme import verb as readme
-from analysis.claims.entry import read_sweep
+from analysis.claims.entry import read_claim, read_sweep
 from analysis.claims.inputs import inputs_of
 from analysis.claims.table import Runs, Table
+from analysis.gap_map.rows import COLUMNS
+from analysis.gap_map.table import Map
 from analysis.readme import map as gap_map
 from analysis.readme import numbers, slices, snippets, templates
+from analysis.stated import sources
+from analysis.stated.number import OFF, OWN, SAME, Number
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -36,43 +41,98 @@ def kept(**changed):
     return {"schema": numbers.NAME, "about": about, "runs": runs}
 
 
-def of_slices(**changed) -> Table:
-    """Runs in which the log's condition number is 2/theta^(1/2) times the cubic's without a limit, and 1.5 times with one; but in block."""
-    sweep, rows = read_sweep(slices.SWEEP), []
+def rows_of(name: str, ratios, **changed) -> Runs:
+    """A run of every case of a sweep of slices. ratios: theta, whether there is a limit -> the log's condition number over the cubic's."""
+    sweep, rows = read_sweep(name), []
     for note, (scene, level, case, seed) in sweep.cases.items():
         of = sweep.more[note]
-        ratio = (1.5 if of["enabled"] else 2 / math.sqrt(of["theta"])) if case == "log" else 1.0
+        ratio = ratios(of["theta"], of["enabled"]) if case == "log" else 1.0
         row = {"scene": scene, "level": level, "case": case, "seed": seed, "outcome": "ok", "comparability": "not_comparable", "gap_rel": 0.1, "run": note, "pair": "", "gaps": {},
-               "cond_p95": 100.0 * ratio, **of}
+               "cond_p95": 100.0 * ratio, "cond_bj_p95": 50.0, "pcg_probe": 10.0, **of}
         if scene == "block" and of["theta"] < 0.1 and not of["enabled"] and case == "cubic":
             row |= {"outcome": "stall_overload"}
         rows.append(row | changed)
-    return Table({slices.SWEEP: Runs({"sha256": sweep.sha256, "inputs_sha256": inputs_of(sweep), "unknowns": "9 to 576"}, rows, len(rows))})
+    return Runs({"sha256": sweep.sha256, "inputs_sha256": inputs_of(sweep), "unknowns": "108 to 600" if name.startswith("shells") else "9 to 576"}, rows, len(rows))
+
+
+@pytest.fixture
+def alone(monkeypatch):
+    """The slices of the claim without its other parts, whose sweeps would be needed too."""
+    whole = read_claim(slices.CLAIM)
+    part = replace(whole, parts=tuple(p for p in whole.parts if p.get("sweep") == "contact_slices"))
+    monkeypatch.setattr(slices, "read_claim", lambda _: part)
+    return part
+
+
+def of_slices(**changed) -> Table:
+    """Tuned on: the log's condition number is 2/theta^(1/2) times the cubic's without a limit, and 1.5 times with one; but in block."""
+    return Table({"contact_slices": rows_of("contact_slices", lambda theta, limited: 1.5 if limited else 2 / math.sqrt(theta), **changed)})
+
+
+def the_map() -> Map:
+    """Two places of two scenes, in which the log takes 4 times the cubic's cond, 1.2 times its PCG and 1.5 times its Newton iterations with limits of their own forms."""
+    every = []
+    for scene in ("a", "b"):
+        for theta in slices.LIKE:
+            for shape, factor in (("log", 1.0), ("cubic", 0.0)):
+                row = dict.fromkeys(COLUMNS) | {"scene": scene, "resolution": "1", "shape": shape, "limit": "on", "theta": theta, "outcome": "ok", "gap": theta, "unknowns": 100}
+                every.append(row | {"cond_p95": 4.0**factor, "bj_p95": 3.0**factor, "pcg": 1.2**factor, "newton": 1.5**factor})
+    return Map({"shapes": {s: [s, "gap"] for s in ("log", "cubic")}, "main": ["log", "cubic"], "gaps": list(slices.LIKE), "limits": ["on"]}, every)
+
+
+def gathered() -> dict:
+    number = Number("cond_p95", "log", "cubic", 0.5, OFF, "H1", True, 10, (108, 600), 1.5, 1.1, 2.0, True, "", "shells_slices")
+    like = [{m: replace(number, metric=m, theta=theta, limit=OWN, study="gap map", confirmed=False, sweep="", places="2 places of 2 scenes") for m in slices.LIKE_METRICS} for theta in slices.LIKE]
+    return {"slices": {limit: [slices.Headline(replace(number, limit=limit, theta=theta), (), 0, 30) for theta in (0.5, 0.1)] for limit in slices.AXIS}, "like": like, "size": ["Sizes."]}
 
 
 def everything():
-    return kept() | {"slices": slices.gather(of_slices()), "gap_map": ["With no limit raw 0.01.", "Of 4 cells 3 are decided."], "cost": [{"study": "claims", "command": "./bench claims", "runs": 3, "core_s": 7200.0}]}
+    return kept() | {"slices": gathered(), "gap_map": ["With no limit raw 0.01.", "Of 4 cells 3 are decided."], "several": [gathered()["slices"][OFF][0].number],
+                     "cost": [{"study": "claims", "command": "./bench claims", "runs": 3, "core_s": 7200.0}]}
 
 
-def test_slices_are_those_of_theta_and_limit():
-    found = slices.gather(of_slices())
-    off, on = (found["limits"][limit] for limit in ("off", "log"))
-    assert [row["theta"] for row in off] == [0.5, 0.1, 0.01, 0.001]
-    assert [row["ratio"] for row in off] == pytest.approx([2 / math.sqrt(t) for t in (0.5, 0.1, 0.01, 0.001)])
-    assert [row["ratio"] for row in on] == pytest.approx([1.5] * 4)
-    assert [(row["scenes"], row["failed"], row["of"]) for row in off] == [(7, 0, 21), (7, 0, 21), (6, 3, 21), (6, 3, 21)]
-    text = " ".join(" ".join(slices.sentence(found, 140)).split())
-    assert "is 2.8, 6.3, 20 and 63 times the cubic's without a strain limit, and 1.5, 1.5, 1.5 and 1.5 times with one" in text
-    assert "6 to 7 scenes, of 9 to 576 unknowns" in text and "does not get through in 3 of 21 runs at theta 0.01 and 3 of 21 runs at theta 0.001" in text
+def test_slices_are_those_of_theta_and_limit(alone):
+    found = slices.gather(of_slices(), the_map())
+    off, on = (found["slices"][limit] for limit in (OFF, SAME))
+    assert [h.number.theta for h in off] == [0.5, 0.1, 0.01, 0.001] and not any(h.number.confirmed for h in off)
+    assert [h.number.value for h in off] == pytest.approx([2 / math.sqrt(t) for t in (0.5, 0.1, 0.01, 0.001)])
+    assert [h.number.value for h in on] == pytest.approx([1.5] * 4)
+    assert [(h.number.scenes, h.failed, h.of) for h in off] == [(7, 0, 21), (7, 0, 21), (6, 3, 21), (6, 3, 21)]
+    text = " ".join(" ".join(slices.sentences(found, 140)).split())
+    assert text.startswith("1. Forces are made equal") and "2.83 [2.83, 2.83], 6.32 [6.32, 6.32], 20 [20, 20] and 63.2 [63.2, 63.2] times the cubic's" in text
+    assert "6 to 7 scenes of 9 to 576 unknowns, exploratory; the cubic, whose force has a largest value, did not get through 6 of 84 runs" in text
+    assert "2. With a strain limit there are two questions." in text and "cond is 4 [4, 4], 4 [4, 4] and 4 [4, 4] times the cubic's, PCG takes 1.2 [1.2, 1.2]" in text
+    assert "(gap map, exploratory; in the 2 places of 2 scenes, 2 places of 2 scenes and 2 places of 2 scenes in which both got through)" in text
 
 
-def test_slices_without_runs_are_no_sentence():
+def test_a_headline_is_of_the_confirmed_scenes_where_there_are_any(alone):
+    both = of_slices()
+    both.sweeps["shells_slices"] = rows_of("shells_slices", lambda theta, limited: 1.2 if limited else 1.3)
+    both.sweeps["shells_slices"].about["first_started_utc"] = "2026-11-24T14:10:51.333Z"
+    slices.confirmation, before = (lambda claim, _: [{**part, "sweep": "shells_slices"} for part in claim.parts]), slices.confirmation
+    sources.confirmation, kept_ = slices.confirmation, sources.confirmation
+    try:
+        found = slices.gather(both, the_map())
+    finally:
+        slices.confirmation, sources.confirmation = before, kept_
+    for limit, value in ((OFF, 1.3), (SAME, 1.2)):
+        assert [h.number.value for h in found["slices"][limit]] == pytest.approx([value] * 4)
+        assert all(h.number.confirmed and h.number.scenes == 10 and (h.failed, h.of) == (0, 30) and len(h.candidates) == 2 for h in found["slices"][limit])
+    text = " ".join(" ".join(slices.sentences(found, 140)).split())
+    assert "10 scenes of 108 to 600 unknowns, confirmed: scenes that no rule was tuned on; the cubic got through all 120 runs" in text and "2.83" not in text
+
+
+def test_slices_without_runs_are_no_sentence(alone):
     of_another_sweep, too_few = of_slices(), of_slices()
-    of_another_sweep.sweeps[slices.SWEEP].about["sha256"] = "0" * 64
-    too_few.sweeps[slices.SWEEP].rows.pop()
-    for table, why in ((Table(), "504 of 504 records"), (of_slices(outcome="newton_stall"), "no pair of runs counts"), (of_another_sweep, "are of another"), (too_few, "1 of 504 records")):
+    of_another_sweep.sweeps["contact_slices"].about["sha256"] = "0" * 64
+    too_few.sweeps["contact_slices"].rows.pop()
+    for table, why in ((Table(), "504 of 504 records"), (of_another_sweep, "are of another"), (too_few, "1 of 504 records")):
         with pytest.raises(UserError, match=f"contact_slices.*{why}|{why}.*contact_slices"):
-            slices.gather(table)
+            slices.gather(table, the_map())
+    with pytest.raises(UserError, match="cond_p95 of log over cubic at theta 0.5, no strain limit: no number of it is there"):
+        slices.gather(of_slices(outcome="newton_stall"), the_map())
+    with pytest.raises(UserError, match="no place in which both got through"):
+        slices.gather(of_slices(), Map(the_map().about, [row | {"outcome": "newton_stall"} for row in the_map().rows]))
 
 
 def test_the_table_has_every_run_and_names_its_processors():
@@ -86,7 +146,7 @@ def test_the_table_has_every_run_and_names_its_processors():
 
 
 def said(numbers_):
-    return " ".join(" ".join(templates.result_sentences(numbers_)).split())
+    return " ".join(" ".join(templates.result_sentences(everything() | numbers_)).split())
 
 
 def test_the_sentences_say_what_the_numbers_say():
@@ -102,22 +162,22 @@ def test_the_sentences_say_what_the_numbers_say():
 
 
 def test_the_drape_is_judged_by_steps_that_end_in_contact_with_both():
-    text = " ".join(templates.drape_sentences(kept()))
+    text = " ".join(templates.drape_sentences(everything()))
     assert "in 1 of 2 with the sphere as a formula (0.5 to 3 times the cubic's)" in text and "in 0 of 2 with the sphere as a mesh (1 to 1 times" in text
     never = kept()
     for one in never["runs"]:
         one["cond_steps"] = {}
     with pytest.raises(UserError, match="no time step ends in contact"):
-        templates.drape_sentences(never)
+        templates.drape_sentences(everything() | never)
 
 
 def test_only_generated_parts_change_and_an_unknown_one_is_refused(tmp_path):
     page = "before\n<!-- numbers: result -->\nold\n<!-- /numbers -->\nafter <!-- numbers -->\n"
-    made = templates.filled(page, kept(), "a.md")
-    assert made.startswith("before\n<!-- numbers: result -->\n1. In all") and made.endswith("<!-- /numbers -->\nafter <!-- numbers -->\n") and "old" not in made
-    assert templates.filled(made, kept(), "a.md") == made
+    made = templates.filled(page, everything(), "a.md")
+    assert made.startswith("before\n<!-- numbers: result -->\n4. In all") and made.endswith("<!-- /numbers -->\nafter <!-- numbers -->\n") and "old" not in made
+    assert templates.filled(made, everything(), "a.md") == made
     with pytest.raises(UserError, match="a.md: .*other.*allowed: demo, result, drape, slices"):
-        templates.filled(page.replace("result", "other"), kept(), "a.md")
+        templates.filled(page.replace("result", "other"), everything(), "a.md")
 
 
 def test_kept_numbers_come_back_as_they_were(tmp_path):
@@ -150,7 +210,7 @@ def test_a_page_that_lost_its_marks_is_no_page_that_is_right(tmp_path):
     lost = [page for page in ("README.md", "docs/results.md") for _ in templates.PARTS[page]]
     assert [line.partition(":")[0] for line in found] == [*lost, "docs/jobs/cluster.md"]
     assert "no <!-- numbers: demo -->" in found[len(templates.PARTS["README.md"])] and "its numbers are not" in found[-1]
-    with pytest.raises(UserError, match="README.md: no <!-- numbers: result -->"):
+    with pytest.raises(UserError, match="README.md: no <!-- numbers: slices -->"):
         readme.write_pages(tmp_path, everything())
 
 
@@ -158,7 +218,7 @@ def test_a_sentence_on_no_run_is_none():
     none = kept()
     none["runs"] = [one | {"step_solver": "article_literal"} for one in none["runs"]]
     with pytest.raises(UserError, match="no run with the step solver line_search"):
-        templates.result_sentences(none)
+        templates.result_sentences(everything() | none)
 
 
 @pytest.mark.parametrize("fence", ["bash", "console", "c++", "py", "jsonc x=1"])
@@ -260,7 +320,7 @@ def test_the_pages_have_the_numbers_that_are_kept(kept_numbers):
 
 def test_the_gap_map_says_how_much_of_it_is_there(kept_numbers, tmp_path):
     found = kept_numbers["gap_map"]
-    assert len(found) == 4 and found[0].startswith("With no strain limit") and " cells " in found[3] and " unknowns" in found[3]
+    assert len(found) == 6 and found[0].startswith("With no strain limit") and " cells " in found[5] and " unknowns" in found[5]
     assert all(len(line) <= 100 for line in gap_map.lines(found, 100)) and gap_map.lines(["one"], 100) == ["- one"]
     with pytest.raises(UserError, match="gap-map --quick"):
         gap_map.gather(tmp_path / "none.json")
@@ -270,4 +330,4 @@ def test_the_page_says_how_long_and_how_often_the_longer_drape_was_looked_at(tmp
     (tmp_path / "demo_long").mkdir()
     (tmp_path / "demo_long/sweep.json").write_text(json.dumps({"set": {"/time/duration_s": 0.25, "/diagnose/every": 7}}))
     assert numbers._long(tmp_path) == {"duration_s": 0.25, "every": 7}
-    assert "drape over a sphere for 0.25 s" in " ".join(templates.result_sentences(kept())) and "of one iteration in 7" in " ".join(templates.drape_sentences(kept()))
+    assert "drape over a sphere for 0.25 s" in " ".join(templates.result_sentences(everything())) and "of one iteration in 7" in " ".join(templates.drape_sentences(everything()))

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from barrierbench_analysis.gap_map import judge, plan, report, rows
+from barrierbench_analysis.gap_map import compare, judge, plan, report, rows, size, size_page
 from barrierbench_analysis.gap_map.spec import Cell
 from barrierbench_analysis.gap_map.table import Map
 
@@ -51,21 +51,67 @@ def test_an_estimate_without_a_number_is_no_condition_number(status, largest, un
     assert alone["cond_p95"] is None and alone["cond_end"] is None and alone["unknown"] == 1
 
 
+def page_of(rows_of, shapes=("log", "cubic"), gaps=(0.5, 0.01)) -> Map:
+    return Map({"shapes": {s: [s, "gap"] for s in shapes}, "main": list(shapes), "gaps": list(gaps), "limits": ["off"]}, rows_of)
+
+
+def in_places(shape, places, theta=0.1, **more):
+    return [made(shape, theta, 0.1, scene, resolution, **more) for scene, resolution in places]
+
+
+def test_series_are_cut_to_the_places_that_all_share():
+    """b has 1 and 2, c has 2 and 3: 2 alone is compared."""
+    cut = compare.common({"b": {"1": 1.0, "2": 2.0, "3": None}, "c": {"1": None, "2": 4.0, "3": 5.0}})
+    assert cut.places == ("2",) and cut.of == {"b": {"2": 2.0}, "c": {"2": 4.0}} and cut.left_out == {}
+
+
+def test_a_series_with_half_of_its_places_is_named_and_leaves_the_others_theirs():
+    cut = compare.common({"b": dict.fromkeys("1234", 1.0), "c": {"1": 1.0, "2": 1.0, "3": None, "4": None}, "d": {"1": None}})
+    assert cut.places == tuple("1234") and list(cut.of) == ["b"] and cut.left_out == {"c": (2, 4), "d": (0, 1)}
+    alone = compare.common({"c": {"1": 1.0, "2": None}})
+    assert alone.places == ("1",) and alone.left_out == {}  # there is no other to leave a place to
+    none = compare.common({})
+    assert none.of == {} and none.places == () and compare.common({"b": {"1": 1.0}, "c": {"2": 1.0}}).of == {}
+
+
+def test_shapes_are_ranked_on_places_that_all_of_them_have():
+    """In place b, where the exponential fails, every shape is ten times as good: on its own places the cubic would
+    stand before the exponential, which is better wherever both got through."""
+    a, b, c = ("a", "1"), ("b", "1"), ("c", "1")
+    every = in_places("log", (a, b, c), cond_p95=100.0) + in_places("cubic", (a, c), cond_p95=50.0) + in_places("cubic", (b,), cond_p95=0.5)
+    every += in_places("exponential", (a, c), cond_p95=40.0) + in_places("exponential", (b,), outcome="stall_overload")
+    here = compare.at_theta(every, "off", 0.1, ["cubic", "exponential"])
+    assert here.cut.places == (a, c) and here.cut.words == "2 places of 2 scenes"
+    assert {s: r["cond_p95"].value for s, r in here.ratios.items()} == {"cubic": pytest.approx(0.5), "exponential": pytest.approx(0.4)}
+    alone = compare.at_theta(every, "off", 0.1, ["cubic"]).ratios["cubic"]["cond_p95"]
+    assert alone.value < 0.2 and alone.scenes == 3
+    said = report.sentences(page_of(every, ("log", "cubic", "exponential"), (0.1,)))[0]
+    assert "(the 2 places of 2 scenes in which all of these got through) `exponential` 0.4 [0.4, 0.4], `cubic` 0.5 [0.5, 0.5]" in said
+
+
+def test_rows_of_a_table_that_stand_together_are_of_the_same_places():
+    every = in_places("log", [("a", "1"), ("b", "1"), ("c", "1")]) + in_places("cubic", [("a", "1"), ("b", "1"), ("c", "1")])
+    every += in_places("quadratic", [("a", "1"), ("b", "1")]) + in_places("quadratic", [("c", "1")], outcome="newton_stall")
+    every += in_places("two_stage", [("a", "1")]) + in_places("two_stage", [("b", "1"), ("c", "1")], outcome="newton_stall")
+    lines = report._table(page_of(every, ("log", "cubic", "quadratic", "two_stage"), (0.1,)), "off", "theta", compare.at_theta)
+    rows_of = [line for line in lines if line.startswith("| 0.1 ")]
+    assert [row.split(" | ")[-1] for row in rows_of[:2]] == ["2 places of 2 scenes |"] * 2
+    assert rows_of[2].startswith("| 0.1 | not compared: `two_stage` (1 of 3)") and len(rows_of) == 3
+
+
 def test_where_contact_rests_is_said_of_one_target_and_of_shared_places():
     """cubic reached more at 0.01 in a place that the log did not, and its softest gap is at another target."""
-    every = [made("log", 0.01, 0.02, "a"), made("log", 0.01, None, "b", outcome="newton_stall"), made("log", 0.5, 0.001, "a"),
-             made("cubic", 0.01, 0.3, "a"), made("cubic", 0.01, 0.1, "b"), made("two_stage", 0.01, None, "a", outcome="newton_stall"), made("two_stage", 0.5, 0.2, "a")]
-    gaps, shared, without = judge.at_target(every, "off", 0.01, ["log", "cubic", "two_stage"])
-    assert gaps == {"log": 0.02, "cubic": 0.3} and shared == [("a", "1")] and without == ["two_stage"]
-    page = Map({"shapes": {s: [s, "gap"] for s in ("log", "cubic", "two_stage")}, "gaps": [0.5, 0.01], "limits": ["off"]}, every)
-    said = report.sentences(page)[1]
-    assert said.endswith("rests at 0.02 (`log`), 0.3 (`cubic`) (median of the 1 scenes and resolutions that all of these reached); without a gap there: `two_stage`.")
+    every = [made("log", 0.01, 0.02, "a"), made("log", 0.01, 0.02, "c"), made("log", 0.01, None, "b", outcome="newton_stall"), made("log", 0.5, 0.001, "a"),
+             made("cubic", 0.01, 0.3, "a"), made("cubic", 0.01, 0.3, "c"), made("cubic", 0.01, 0.1, "b"), made("two_stage", 0.01, None, "a", outcome="newton_stall"), made("two_stage", 0.5, 0.2, "a")]
+    cut = compare.gaps_at(every, "off", 0.01, ["log", "cubic", "two_stage"])
+    assert compare.middles(cut) == {"log": 0.02, "cubic": 0.3} and cut.places == (("a", "1"), ("c", "1")) and cut.left_out == {"two_stage": (0, 1)}
+    said = report.sentences(page_of(every, ("log", "cubic", "two_stage")))[1]
+    assert said.endswith("rests at 0.02 (`log`), 0.3 (`cubic`) (median of the 2 places of 2 scenes that all of these reached); without a gap in half of the places or more: `two_stage`.")
 
 
 def test_where_nothing_rests_is_said():
-    about = {"shapes": {s: [s, "gap"] for s in ("log", "cubic")}, "gaps": [0.5, 0.01], "limits": ["off"]}
     for rows_of in ([made("log", 0.5, 0.4), made("cubic", 0.5, 0.4)], [made("log", 0.01, 0.02, "a"), made("cubic", 0.01, 0.02, "b")]):
-        assert report.sentences(Map(about, rows_of))[1].endswith("there is no place where every shape that reached a gap has one.")
+        assert report.sentences(page_of(rows_of))[1].endswith("there is no place where every shape that reached a gap has one.")
 
 
 def test_a_ratio_averages_resolutions_before_scenes():
@@ -74,37 +120,76 @@ def test_a_ratio_averages_resolutions_before_scenes():
         for resolution in resolutions:
             for shape in ("log", "cubic"):
                 all_rows += [made(shape, theta, gap, scene, resolution, cond_p95=100.0 * (factor if shape == "cubic" else 1.0)) for theta, gap in ((0.5, 0.5), (0.1, 0.1))]
-    for found in (judge.ratio_at(all_rows, "off", "cubic", "cond_p95", 0.3), judge.at_theta(all_rows, "off", "cubic", "cond_p95", 0.1)):
-        assert found.value == pytest.approx(4.0) and (found.low, found.high) == (pytest.approx(2.0), pytest.approx(8.0)) and (found.n, found.of) == (2, 2)
+    for here in (compare.at_gap(all_rows, "off", 0.3, ["cubic"]), compare.at_theta(all_rows, "off", 0.1, ["cubic"])):
+        found = here.ratios["cubic"]["cond_p95"]
+        assert found.value == pytest.approx(4.0) and found.scenes == 2
+        # Student's t with one degree of freedom: 12.706 times the standard error ln 2 of the mean of ln 2 and ln 8
+        assert (math.log(found.upper / 4), math.log(4 / found.lower)) == pytest.approx([12.7062 * math.log(2)] * 2, rel=1e-4)
+    with pytest.raises(ValueError, match="no place"):
+        compare.over_scenes({})
 
 
 def test_nothing_is_filled_in_where_a_gap_was_not_reached():
     all_rows = [made("log", 0.5, 0.5), made("log", 0.01, 0.01), made("cubic", 0.5, 0.6), made("cubic", 0.01, 0.3)]
-    assert judge.ratio_at(all_rows, "off", "cubic", "cond_p95", 0.4) is not None
-    assert judge.ratio_at(all_rows, "off", "cubic", "cond_p95", 0.1) is None and judge.ratio_at(all_rows, "off", "cubic", "cond_p95", 0.55) is None
+
+    def at(rows_of, gap):
+        return compare.at_gap(rows_of, "off", gap, ["cubic"]).ratios
+
+    assert at(all_rows, 0.4) and not at(all_rows, 0.1) and not at(all_rows, 0.55)
     assert judge.unreached(all_rows, [0.5, 0.1, 0.01]) == [("off", "cubic", 0.1), ("off", "cubic", 0.01)]
-    assert judge.deepest(all_rows, "off", "cubic") == {("s", "1"): 0.3}
+    assert compare.deepest(all_rows, "off", ["cubic"]).of == {"cubic": {("s", "1"): 0.3}}
     broken = all_rows[:2] + [made("cubic", 0.5, 0.6), made("cubic", 0.1, 0.5, outcome="stall_overload"), made("cubic", 0.01, 0.3)]
-    assert judge.ratio_at(broken, "off", "cubic", "cond_p95", 0.4) is None  # not across a run that failed
-    assert judge.at_theta(broken, "off", "cubic", "cond_p95", 0.1) is None
+    assert not at(broken, 0.4)  # not across a run that failed
+    assert not compare.at_theta(broken, "off", 0.1, ["cubic"]).ratios
     assert judge.failures(broken) == {("cubic", "off", 0.1): {"stall_overload": 1}}
     assert judge.failures([*broken, made("log", 0.25, None, "s", outcome="not run")]) == judge.failures(broken)  # no failure
 
 
-def test_the_steps_of_a_line_leave_failed_scenes_out_and_say_so():
-    all_rows = [made("log", 0.5, 0.4, scene, pcg=p) for scene, p in (("a", 20.0), ("b", 80.0))] + [made("log", 0.1, 0.1, "a", pcg=40.0), made("log", 0.1, None, "b", outcome="newton_stall")]
-    first = {"a": 20.0, "b": 80.0}
-    shallow, deep = judge.steps(all_rows, "off", "log", "pcg", lambda r: first[r["scene"]])
-    assert (shallow.theta, shallow.gap, shallow.value, len(shallow.scenes)) == (0.5, pytest.approx(0.4), pytest.approx(1.0), 2)
-    assert (deep.gap, deep.value, list(deep.scenes), deep.whole) == (pytest.approx(0.1), pytest.approx(2.0), ["a"], False)
-    assert shallow.whole
+def test_every_step_of_every_line_is_of_the_same_places():
+    """Place c is lost at the second target: with it the first step would be of other places than the second. At the
+    third only one of three is left, so lines end; what a shape cannot reach ends its own line alone."""
+    all_rows = [made("log", theta, theta, scene, pcg=p) for theta in (0.5, 0.1, 0.01) for scene, p in (("a", 20.0), ("b", 80.0), ("c", 40.0))]
+    all_rows += [made("cubic", 0.5, 0.6, scene, pcg=10.0) for scene in "abc"] + [made("cubic", 0.1, 0.3, scene, pcg=10.0) for scene in "ab"]
+    all_rows += [made("cubic", 0.1, None, "c", outcome="newton_stall"), made("cubic", 0.01, 0.2, "a", pcg=10.0)]
+    all_rows += [made("cubic", 0.01, None, scene, outcome="newton_stall") for scene in "bc"]
+    all_rows += [made("cubic_of_square", 0.5, 0.7, scene, pcg=10.0) for scene in "abc"] + [made("cubic_of_square", theta, None, s, outcome="cannot reach") for theta in (0.1, 0.01) for s in "abc"]
+    found = compare.lines(all_rows, "off", ["log", "cubic", "cubic_of_square"], "pcg", lambda r: 1.0)
+    assert [p[0] for p in found.whole] == ["a", "b"] and [p[0] for p in found.run] == ["a", "b", "c"]
+    assert [(s.theta, s.value) for s in found.of["log"]] == [(0.5, pytest.approx(40.0)), (0.1, pytest.approx(40.0))]
+    assert [s.theta for s in found.of["cubic"]] == [0.5, 0.1] and [s.theta for s in found.of["cubic_of_square"]] == [0.5]
+    assert len(found.thin["cubic"]["a", "1"]) == 3 and len(found.thin["cubic"]["c", "1"]) == 1
 
 
 def test_a_line_is_of_places_whose_whole_path_was_run():
     whole = [made("log", theta, theta, "a", pcg=20.0) for theta in (0.5, 0.1)]
     part = [made("log", 0.5, 0.5, "b", pcg=80.0), made("log", 0.1, None, "b", outcome="not run")]
-    assert [list(s.scenes) for s in judge.steps([*whole, *part], "off", "log", "pcg", lambda r: 1.0)] == [["a"], ["a"]]
-    assert [list(s.scenes) for s in judge.steps([*whole, part[0], made("log", 0.1, 0.1, "b", pcg=80.0)], "off", "log", "pcg", lambda r: 1.0)] == [["a", "b"], ["a", "b"]]
+    assert [p[0] for p in compare.lines([*whole, *part], "off", ["log"], "pcg", lambda r: 1.0).whole] == ["a"]
+    assert [p[0] for p in compare.lines([*whole, part[0], made("log", 0.1, 0.1, "b", pcg=80.0)], "off", ["log"], "pcg", lambda r: 1.0).whole] == ["a", "b"]
+
+
+def by_sizes():
+    """The log's cond is 8 times the cubic's at 100 unknowns and twice at 2000, in a; b was run coarse alone; c fails."""
+    found = []
+    for scene, resolution, unknowns, ratio in (("a", "1", 100, 8.0), ("a", "2", 2000, 2.0), ("b", "1", 100, 32.0)):
+        found += [made(shape, 0.01, 0.1, scene, resolution, unknowns=unknowns, cond_p95=100.0 * (ratio if shape == "log" else 1.0)) for shape in ("log", "cubic")]
+    return found + [made("log", 0.01, 0.1, "c"), made("cubic", 0.01, None, "c", outcome="stall_overload", unknowns=100)]
+
+
+def test_sizes_are_compared_in_the_same_scenes():
+    sizes = size.by_size(by_sizes())
+    assert [(s.scene, s.unknowns, s.ratios and s.ratios["cond_p95"]) for s in sizes] == [("a", 100, 8.0), ("a", 2000, 2.0), ("b", 100, 32.0), ("c", 100, None)]
+    both = size.halves(sizes, 0.01)
+    assert both.scenes == ("a",) and [r.value for r in both.ratios["cond_p95"]] == pytest.approx([8.0, 2.0])
+    assert both.unknowns == ((100, 100), (2000, 2000)) and size.halves(sizes, 0.1) is None
+    assert sizes[-1].failed == "cubic: stall_overload"
+    [said] = size_page.sentences(page_of(by_sizes()))
+    assert "with 100 to 100 unknowns and with 2000 to 2000 unknowns of the same scenes, at theta 0.01 (1 scenes) raw cond 8 and 2" in said
+    assert size_page.sentences(page_of(by_sizes()[:2])) == [] and "c 1 at theta 0.01 (cubic: stall_overload)" in "\n".join(size_page.section(page_of(by_sizes())))
+
+
+def test_how_often_contact_makes_the_largest_eigenvalue_counts_each_run_once():
+    every = [made("log", cond_end=10.0, nc_end=1.0), made("log", 0.5, cond_end=1.5, nc_end=1.0), made("cubic"), made("quadratic")]
+    assert judge.made_by_contact(every, "off") == (1, 2)
 
 
 def test_the_law_is_the_ratio_of_rho_and_its_floor_what_is_left_without_contact():

@@ -209,3 +209,16 @@ def test_a_plan_runs_nothing(real, capsys):
     folder, words = real
     assert entry.main([*words, "--plan"]) == 0
     assert re.search(r"all +: 5 runs, 5 there", capsys.readouterr().out)
+
+
+def test_the_page_is_made_of_the_kept_numbers_a_second_time_too(real, undrawn, tmp_path, monkeypatch):
+    """Figures of the first call lie in the folder of the records, and are none: nothing is collected anew."""
+    monkeypatch.setattr(entry, "make_map", None)
+    folder, words = real
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/gap_map.json").write_text((folder / "out/gap_map.json").read_text())
+    mine = [words[0], "--no-run", "--runs", str(tmp_path / "runs"), "--results", str(tmp_path / "out")]
+    for _ in range(2):
+        assert entry.main(mine) == 0 and (tmp_path / "out/GAP_MAP.md").read_text() == (folder / "out/GAP_MAP.md").read_text()
+        (tmp_path / "runs/figures").mkdir(parents=True, exist_ok=True)
+    assert table.read(tmp_path / "out/gap_map.json").rows == table.read(folder / "out/gap_map.json").rows

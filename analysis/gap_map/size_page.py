@@ -1,0 +1,67 @@
+"""What the page says of the log beside the cubic against the number of unknowns."""
+
+from __future__ import annotations
+
+from ..text_table import markdown as table_lines
+from .compare import METRICS
+from .size import BORDER, LIMIT, SHAPE, Halves, by_size, halves
+from .table import Map
+
+NAMES = {"cond_p95": "raw cond", "bj_p95": "block Jacobi", "pcg": "PCG", "newton": "Newton"}
+TOLD = (0.01, 0.001)  # targets of the sentence: where the two barriers differ
+
+
+def _both(found: Map) -> dict[float, Halves]:
+    sizes = by_size(found.rows)
+    return {theta: both for theta in found.gaps if (both := halves(sizes, theta)) is not None}
+
+
+def _span(both: Halves, side: int) -> str:
+    low, high = both.unknowns[side]
+    return f"{low} to {high} unknowns"
+
+
+def sentences(found: Map) -> list[str]:
+    """What falls with size and what grows; nothing where no scene was run on both sides of the border."""
+    told = [(theta, both) for theta, both in _both(found).items() if theta in TOLD]
+    if not told:
+        return []
+    parts = []
+    for theta, both in told:
+        ends = (f"{NAMES[m]} {small} and {large}" for m, (small, large) in both.ratios.items())
+        parts.append(f"at theta {theta:g} ({len(both.scenes)} scenes) {', '.join(ends)}")
+    first = told[0][1]
+    return [
+        "The difference between the two barriers falls with the size of a system, and in Newton iterations"
+        f" it does not: without a strain limit the log's numbers over the {SHAPE}'s are, with"
+        f" {_span(first, 0)} and with {_span(first, 1)} of the same scenes, {'; '.join(parts)}. No finer"
+        " mesh was run."
+    ]
+
+
+def section(found: Map) -> list[str]:
+    both = _both(found)
+    if not both:
+        return []
+    rows = [
+        [f"{theta:g}", side, _span(of, k), str(len(of.scenes)), *(str(of.ratios[m][k]) for m in METRICS)]
+        for theta, of in both.items()
+        for k, side in enumerate((f"below {BORDER}", f"{BORDER} and more"))
+    ]
+    failed = [
+        f"{size.scene} {size.resolution} at theta {size.theta:g} ({size.failed})"
+        for size in by_size(found.rows)
+        if size.failed
+    ]
+    lines = [
+        f"## The log over the {SHAPE}, by size",
+        "",
+        f"Limit {LIMIT}, the same loads. Both rows of a target are of the same scenes, the second with finer"
+        " meshes. Left out, since one of the two did not get through: " + (", ".join(failed) or "none") + ".",
+        "",
+        "![the log over the cubic against unknowns](../docs/gap_size.png)",
+        "",
+        *table_lines(["theta", "unknowns", "of", "scenes", *(NAMES[m] for m in METRICS)], rows),
+        "",
+    ]
+    return lines

@@ -1,0 +1,41 @@
+"""The log over the cubic against unknowns: from the kept rows, to the same bytes, with the caption of the page."""
+
+from analysis.figures import spec
+from analysis.figures.drawing import Drawing
+from analysis.gap_map import size, size_figure, table
+from analysis.places import ROOT
+
+KEPT = ROOT / "results" / "gap_map.json"
+
+
+def drawn(folder, title=size_figure.TITLE):
+    folder.mkdir()
+    return {path.suffix: path.read_bytes() for path in size_figure.draw(table.read(KEPT), folder / "gap_size", title=title)}
+
+
+def test_it_is_rebuilt_to_the_same_bytes_whoever_asks(tmp_path):
+    """By the page of the map, and by ./bench figure."""
+    page, of = drawn(tmp_path / "page"), spec.read_spec(ROOT / "configs/figures/gap_size.json")
+    (tmp_path / "figure").mkdir()
+    drawing = Drawing(of.name, of.title, tmp_path / "figure/gap_size", of.width_in, of.options)
+    figure = {path.suffix: path.read_bytes() for path in of.kind.draw(table.read(KEPT), drawing)}
+    assert figure == page and set(page) >= {".png", ".pdf", ".csv", ".txt"}
+    assert (ROOT / "docs/gap_size.txt").read_bytes() == page[".txt"]
+
+
+def test_its_numbers_are_ratios_of_kept_rows(tmp_path):
+    lines = drawn(tmp_path / "page")[".csv"].decode().splitlines()
+    rows = {(r["shape"], r["scene"], r["resolution"], r["theta"]): r for r in table.read(KEPT).rows if r["limit"] == size.LIMIT}
+    heads = lines[0].split(",")
+    assert len(lines) > 90
+    for line in lines[1:]:
+        at = dict(zip(heads, line.split(",")))
+        log, cubic = (rows[shape, at["scene"], at["resolution"], float(at["theta"])] for shape in ("log", "cubic"))
+        assert int(at["unknowns"]) == log["unknowns"] == cubic["unknowns"]
+        for metric in size_figure.METRICS:
+            assert abs(float(at[metric]) * cubic[metric] / log[metric] - 1) < 1e-5
+
+
+def test_its_caption_names_what_did_not_get_through():
+    caption = " ".join((ROOT / "docs/gap_size.txt").read_text().split())
+    assert "pile 6 at theta 0.01 (cubic: stall_overload)" in caption and "N: 96 pairs of runs in 26 places." in caption

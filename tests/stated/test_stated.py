@@ -1,0 +1,138 @@
+"""Numbers with an identity: the strongest is the headline, and two statements on one thing that disagree are found."""
+
+from dataclasses import replace
+
+import pytest
+
+from analysis.errors import UserError
+from analysis.places import ROOT
+from analysis.readme import slices, verb
+from analysis.stated import check, pages, several
+from analysis.stated.number import OFF, OWN, SAME, Number, strongest
+
+ONE = Number("cond_p95", "log", "cubic", 0.01, OFF, "H1", False, 5, (9, 576), 7.3, 3.95, 13.5, True, "", "contact_slices")
+CONFIRMED = replace(ONE, confirmed=True, scenes=10, unknowns=(108, 600), value=1.95, lower=1.10, upper=3.47, sweep="shells_slices")
+
+
+@pytest.fixture(scope="module")
+def kept() -> dict:
+    return verb.kept()
+
+
+def test_confirmed_stands_before_exploratory_and_larger_before_smaller():
+    assert strongest([ONE, CONFIRMED], "x") is CONFIRMED
+    assert strongest([replace(ONE, scenes=50), CONFIRMED], "x") is CONFIRMED  # however many scenes
+    more = replace(ONE, scenes=7)
+    assert strongest([more, ONE], "x") is more
+    finer = replace(ONE, unknowns=(9, 5000))
+    assert strongest([ONE, finer], "x") is finer
+    with pytest.raises(UserError, match="no number"):
+        strongest([], "cond at theta 0.01")
+    with pytest.raises(UserError, match="several quantities or conditions"):
+        strongest([ONE, replace(CONFIRMED, theta=0.1)], "x")
+
+
+def test_every_headline_is_of_the_strongest_evidence(kept):
+    """README states each with its interval; among the candidates are confirmed and exploratory ones, or the rule has had nothing to choose."""
+    page = " ".join((ROOT / "README.md").read_text().split())
+    found = slices.headlines(kept["slices"])
+    assert len(found) == 8 + 9
+    for headline in found:
+        assert headline.number == strongest(headline.candidates, "headline") and str(headline.number) in page
+        assert headline.number.lower is not None
+    chosen = [h for h in found if len(h.candidates) > 1]
+    assert len(chosen) == 8 and all(h.number.confirmed and not all(c.confirmed for c in h.candidates) for h in chosen)
+
+
+def test_no_other_number_of_the_same_conditions_is_stronger(kept):
+    """Not only of the claim that the headline is from: of all studies, where every run counts."""
+    for headline in slices.headlines(kept["slices"]):
+        mine = headline.number
+        rivals = [n for n in kept["several"] if (n.quantity, n.conditions) == (mine.quantity, mine.conditions) and "comparable" not in n.places]
+        assert rivals and not [n for n in rivals if n.confirmed and not mine.confirmed]
+
+
+def test_the_table_of_verdicts_has_the_confirmed_number():
+    """docs/results.md: where scenes confirmed a claim, or refuted it, its number is theirs."""
+    rows = [cells for _, heads, cells in pages._tables((ROOT / "docs/results.md").read_text()) if heads[0] == "claim"]
+    judged = [cells for cells in rows if cells[4] not in ("-", "closed form")]
+    assert len(judged) > 15
+    assert [cells[0] for cells in judged if pages.NUMBER.search(cells[5]) and not cells[5].endswith("confirmed scenes")] == []
+
+
+def test_pages_hold_no_two_statements_that_disagree(kept):
+    found = pages.statements(ROOT)
+    assert len(found) > 1000 and {one.page.partition(",")[0] for one in found} == set(pages.READERS)
+    assert check.faults(ROOT, kept["several"]) == []
+
+
+LAW = (
+    "Raw: the law, contact making both: {} of 1868 pairs, ln(measured/predicted) +0.11 in the mean with standard deviation 0.53 (a factor {});"
+    " the law with its floor, contact making the log's: 187 of 1868 pairs, ln(measured/predicted) +0.03 in the mean with standard deviation 0.24 (a factor 1.27);"
+)
+
+
+def test_a_caption_with_another_scatter_than_its_page_is_told():
+    page, caption = (list(pages._law(LAW.format(n, factor), name)) for n, factor, name in ((92, 1.70, "page.md"), (32, 2.33, "caption.txt")))
+    assert check.contradictions([*page, *page]) == []
+    [told] = check.contradictions([*page, *caption])
+    assert "the law, contact making both (Raw)" in told and "a factor 1.7) in page.md" in told and "a factor 2.33) in caption.txt" in told
+
+
+def claim(sweep: str, number: str, scenes: str, verdict: str = "holds", measures: str = "95th percentile of cond over a run, raw: log / cubic") -> str:
+    return (
+        f"- above: **{verdict}**. {measures}: {number}, asked: above 1; 21 pairs count; `{sweep}`.\n"
+        f"  Slice: theta 0.1, limit off. Samples: 2 scenes; one start at each place.\n  By scene (least and largest of its levels): {scenes}.\n"
+    )
+
+
+def test_parts_of_claims_are_read_with_slice_scenes_and_evidence():
+    text = "## H1: holds\n\n" + claim("a", "1.2 [0.9, 1.6]", "ball 1 (1 to 1 at 3, n = 3); big-box 2 (1 to 3 at 3, n = 3)") + "\nConfirmed: **holds**\n\n" + claim("b", "1.3 [1, 1.7]", "bar 1 (1 to 1 at 3, n = 3)", "not decided: x")
+    first, second = pages._claims(text, "c.md")
+    assert (first.page, first.quantity, first.number, first.verdict) == ("c.md, H1, exploratory", "95th percentile of cond over a run, raw: log / cubic", "1.2 [0.9, 1.6]", "holds")
+    assert first.conditions == "theta 0.1, limit off; ball, big-box; 21 pairs count; `a`" and second.page == "c.md, H1, confirmed" and second.verdict == "not decided"
+    again = list(pages._claims(text.replace("1.2 [0.9", "1.25 [0.9"), "c.md"))
+    [told] = check.contradictions([first, second, *again])
+    assert "1.2 [0.9, 1.6], holds in c.md, H1, exploratory; 1.25" in told
+    other_scenes = list(pages._claims(text.replace("ball 1 (", "sack 1 (").replace("1.2 [0.9", "1.25 [0.9"), "c.md"))
+    assert check.contradictions([first, *other_scenes]) == []
+
+
+def test_a_page_in_which_nothing_is_read_is_no_page_without_faults(tmp_path):
+    for page in pages.READERS:
+        (tmp_path / page).parent.mkdir(exist_ok=True)
+        (tmp_path / page).write_text((ROOT / page).read_text())
+    assert len(pages.statements(tmp_path)) == len(pages.statements(ROOT))
+    (tmp_path / "results/GAP_MAP.md").write_text("# Gap map\n\nwritten otherwise\n")
+    with pytest.raises(UserError, match="results/GAP_MAP.md: no statement is found of the kind map"):
+        pages.statements(tmp_path)
+
+
+def root_with(tmp_path, several_page: str, claims: str, ablation: str):
+    (tmp_path / "docs").mkdir(), (tmp_path / "results").mkdir()
+    for name, text in (("docs/results.md", several_page), ("results/CLAIMS.md", claims), ("results/ABLATION.md", ablation)):
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def test_what_one_study_decides_and_another_leaves_open_has_to_lead_to_both(tmp_path):
+    """The two-stage activation: K16 leaves it open, the ablation decides it after block Jacobi."""
+    k16 = Number("bj_p95", "log", "two_stage", 0.1, SAME, "K16", True, 9, (108, 600), 0.995, 0.919, 1.08, False, "", "shells_shapes")
+    effect = replace(k16, limit=OFF, study="ablation", confirmed=False, value=0.78, lower=0.636, upper=0.958, decided=True, sweep="")
+    assert several.apart([k16, effect]) == {("bj_p95", "two_stage"): {0, -1}} and several.apart([k16, k16]) == {}
+    link = "[x](../docs/results.md#one-quantity-several-studies)"
+    root = root_with(tmp_path, "\n".join(several.table_lines([k16, effect])), f"\n## K15: a\n{link}\n## K16: not decided\n\n## K17: b\n{link}\n", link)
+    [told] = check.unreconciled(root, [k16, effect])
+    assert told.startswith("results/CLAIMS.md, K16: bj_p95 of the log over two_stage is decided differently") and "#one-quantity" in told
+    (root / "results/CLAIMS.md").write_text(f"\n## K16: not decided\n{link}\n")
+    assert check.unreconciled(root, [k16, effect]) == []
+    (root / "docs/results.md").write_text("no table")
+    assert check.unreconciled(root, [k16, effect]) == ["docs/results.md#one-quantity-several-studies: no row on two_stage, of which studies decide bj_p95 differently"]
+
+
+def test_the_table_has_a_number_of_claims_once_and_the_confirmed_one():
+    lines = several.table_lines([ONE, CONFIRMED, replace(CONFIRMED, study="K3"), replace(ONE, study="gap map", sweep="", places="22 places of 6 scenes", decided=False), replace(ONE, limit=OWN)])
+    rows = [line for line in lines if line.startswith("| `cubic`")]
+    assert rows[0].startswith("| `cubic` | H1, K3, confirmed | theta 0.01, no strain limit | 10, 108 to 600 | **1.95 [1.1, 3.47]** | - ")
+    assert len(rows) == 3 and "gap map, exploratory" in rows[1] and "| 7.3 [3.95, 13.5] |" in rows[1] and OWN in rows[2]
+    assert several.shapes_of_table("\n".join(lines)) == {"cubic"}
