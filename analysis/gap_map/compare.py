@@ -69,6 +69,11 @@ class Ratio:
     upper: float | None
     scenes: int
 
+    def turned(self) -> Ratio:
+        """The same the other way round: what stands below goes above."""
+        ends = (None, None) if self.lower is None else (1 / self.upper, 1 / self.lower)
+        return Ratio(1 / self.value, *ends, self.scenes)
+
     def __str__(self) -> str:
         ends = "" if self.lower is None else f" [{self.lower:.3g}, {self.upper:.3g}]"
         return f"{self.value:.3g}{ends}"

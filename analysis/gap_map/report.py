@@ -309,7 +309,7 @@ def markdown(found: Map) -> str:
                 *_table(found, limit, head, beside),
                 "",
             ]
-    lines += size_page.section(found)
+    lines += size_page.pair_section(found) + size_page.section(found)
     lines += [
         "## Who reaches which gap",
         "",

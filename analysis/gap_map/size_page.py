@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..text_table import markdown as table_lines
-from .compare import METRICS
+from .compare import METRICS, at_theta
 from .size import BORDER, LIMIT, SHAPE, Halves, by_size, halves
 from .table import Map
 
@@ -39,6 +39,29 @@ def sentences(found: Map) -> list[str]:
     ]
 
 
+def pair_section(found: Map) -> list[str]:
+    """The two alone, in every place in which both got through, at every target and limit."""
+    rows = []
+    for limit in found.limits:
+        for theta in found.gaps:
+            here = at_theta(found.rows, limit, theta, [SHAPE])
+            if SHAPE in here.ratios:
+                numbers = (str(here.ratios[SHAPE][m].turned()) for m in METRICS)
+                rows.append([limit, f"{theta:g}", *numbers, here.cut.words])
+    if not rows:
+        return []
+    heads = ["limit", "theta", *(f"{NAMES[m]}, log over {SHAPE}" for m in METRICS), "of"]
+    return [
+        f"## The log over the {SHAPE}, of the two alone",
+        "",
+        "Under the same loads, in every place in which both got through, whatever other shapes did there."
+        " Rows are of different places: a row compares the two shapes, not one target with another.",
+        "",
+        *table_lines(heads, rows),
+        "",
+    ]
+
+
 def section(found: Map) -> list[str]:
     both = _both(found)
     if not both:
@@ -53,6 +76,7 @@ def section(found: Map) -> list[str]:
         for size in by_size(found.rows)
         if size.failed
     ]
+    heads = [f"{NAMES[m]}, log over {SHAPE}" for m in METRICS]
     lines = [
         f"## The log over the {SHAPE}, by size",
         "",
@@ -61,7 +85,7 @@ def section(found: Map) -> list[str]:
         "",
         "![the log over the cubic against unknowns](../docs/gap_size.png)",
         "",
-        *table_lines(["theta", "unknowns", "of", "scenes", *(NAMES[m] for m in METRICS)], rows),
+        *table_lines(["theta", "unknowns", "of", "scenes", *heads], rows),
         "",
     ]
     return lines

@@ -111,12 +111,21 @@ def _without(of: list[Headline]) -> str:
         if not failed
         else f"the cubic, whose force has a largest value, did not get through {failed} of {runs} runs"
     )
+    alike = [
+        f"{h.number.alike} of {h.number.scenes} at theta {h.number.theta:g}"
+        for h in of
+        if 2 * h.number.alike > h.number.scenes
+    ]
     return (
         "Forces are made equal at the gap theta d_hat under the largest load, so that a smaller theta lets"
         " contacts come closer. Without a strain limit the 95th percentile of the logarithm's condition"
         " numbers over a run (cond: how hard a linear system is) is, at theta"
         f" {_thetas([h.number.theta for h in of])}, {_listed([str(h.number) for h in of])} times the cubic's"
         f" (mean over scenes with its 95% interval; {_evidence(of)}; {through})."
+    ) + (
+        f" The two differ by less than 2% in most scenes ({_listed(alike)}): there contact hardly changes it."
+        if alike
+        else ""
     )
 
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
+from ..errors import UserError
 from .number import Number
-from .pages import Statement, statements
+from .pages import NUMBER, Statement, statements
 from .several import apart, shapes_of_table
 
 SEVERAL = "#one-quantity-several-studies"
+PROSE = ("README.md", "docs/results.md")  # pages that take numbers from the pages of results/
 PAGES = {"ablation": "results/ABLATION.md", "gap map": "results/GAP_MAP.md"}  # study -> page; claims have one
 
 
@@ -57,6 +60,38 @@ def unreconciled(root: Path, numbers: Iterable[Number]) -> list[str]:
     return list(dict.fromkeys(faults))
 
 
+def _values(text: str) -> tuple[str, ...]:
+    """`1.95 [1.1, 3.47]` as its three numbers."""
+    return tuple(re.findall(r"[+-]?[\d.]+(?:e[+-]\d+)?|inf", text))
+
+
+def _same(stated: tuple[str, ...], known: tuple[float, ...]) -> bool:
+    """Whether a page states these numbers, in the digits that it has."""
+    return all(float(a) == float(f"{b:.{digits(a)}g}") for a, b in zip(stated, known))
+
+
+def digits(number: str) -> int:
+    """Significant digits, two at least: a page may leave out a last zero."""
+    return max(2, len(number.lstrip("+-").partition("e")[0].replace(".", "").lstrip("0")))
+
+
+def unfounded(root: Path, found: Iterable[Statement], numbers: Iterable[Number]) -> list[str]:
+    """One line for every number with an interval in PROSE that no study has: as it stands, or turned."""
+    known = [tuple(map(float, _values(one.number))) for one in found if NUMBER.fullmatch(one.number)]
+    known += [(n.value, n.lower, n.upper) for n in numbers if n.lower is not None]
+    known += [(1 / v, 1 / upper, 1 / lower) for v, lower, upper in known if min(v, lower, upper) > 0]
+    lines = []
+    for page in PROSE:
+        stated = list(dict.fromkeys(NUMBER.findall(" ".join((root / page).read_text().split()))))
+        if not stated:
+            raise UserError(f"{page}: no number with an interval is found")
+        for text in stated:
+            if not any(_same(_values(text), one) for one in known):
+                lines.append(f"{page}: {text}: no page of results/ has this number")
+    return lines
+
+
 def faults(root: Path, numbers: Iterable[Number]) -> list[str]:
     """All of it. Errors: UserError for a page in which nothing is read."""
-    return contradictions(statements(root)) + unreconciled(root, numbers)
+    found, numbers = statements(root), list(numbers)
+    return contradictions(found) + unreconciled(root, numbers) + unfounded(root, found, numbers)

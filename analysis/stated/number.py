@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ..errors import UserError
 
+ALIKE = 1.02
 OWN, SAME, OFF = "limit of the shape's own form", "the same log limit in every run", "no strain limit"
 
 
@@ -29,6 +30,7 @@ class Number:
     decided: bool  # by the rule of its study
     places: str = ""  # which runs it is of, where a study has several choices
     sweep: str = ""  # of claims
+    alike: int = 0  # scenes in which both numbers are within ALIKE of each other, of claims
 
     @property
     def quantity(self) -> tuple[str, str, str]:

@@ -15,10 +15,10 @@ from ..claims.judge import judge_part, missing
 from ..claims.proofs import Eval
 from ..claims.table import Table
 from ..claims.verdict import Judged
-from ..gap_map.compare import METRICS, Ratio, at_theta
+from ..gap_map.compare import METRICS, at_theta
 from ..gap_map.spec import REFERENCE
 from ..gap_map.table import Map
-from .number import OFF, OWN, SAME, Number
+from .number import ALIKE, OFF, OWN, SAME, Number
 
 # Metric of a part -> the name that it has here, and cases of sweeps -> the shape of contact and limit.
 OF_CLAIMS = {"cond_p95": "cond_p95", "cond_bj_p95": "bj_p95", "pcg_probe": "pcg", "newton": "newton"}
@@ -64,6 +64,7 @@ def _of_part(claim: Claim, part: dict, judged: Judged, table: Table, confirmed: 
         not few and not judged.lower <= 1 <= judged.upper,
         "; ".join(filter(None, [which, f"scenes {', '.join(scenes)}" if scenes else ""])),
         part["sweep"],
+        sum(1 / ALIKE < value < ALIKE for _, value, *_ in judged.per_scene),
     )
 
 
@@ -94,12 +95,6 @@ def of_claims(table: Table) -> list[Number]:
     return [number for name in ids() for number in of_claim(read_claim(name), table)]
 
 
-def over_log(ratio: Ratio) -> tuple[float, float | None, float | None]:
-    """Turned: the log's over the shape's."""
-    ends = (None, None) if ratio.lower is None else (1 / ratio.upper, 1 / ratio.lower)
-    return 1 / ratio.value, *ends
-
-
 def of_map(found: Map, shape: str, limit: str, theta: float) -> list[Number]:
     """Of the two alone: every place in which both got through."""
     here = at_theta(found.rows, limit, theta, [shape])
@@ -112,9 +107,8 @@ def of_map(found: Map, shape: str, limit: str, theta: float) -> list[Number]:
     ]
     numbers = []
     for metric in METRICS:
-        ratio = here.ratios[shape][metric]
-        value, lower, upper = over_log(ratio)
-        decided = lower is not None and not lower <= 1 <= upper
+        ratio = here.ratios[shape][metric].turned()
+        decided = ratio.lower is not None and not ratio.lower <= 1 <= ratio.upper
         numbers.append(
             Number(
                 metric,
@@ -126,9 +120,9 @@ def of_map(found: Map, shape: str, limit: str, theta: float) -> list[Number]:
                 False,
                 ratio.scenes,
                 (min(sizes), max(sizes)),
-                value,
-                lower,
-                upper,
+                ratio.value,
+                ratio.lower,
+                ratio.upper,
                 decided,
                 here.cut.words,
             )

@@ -122,6 +122,13 @@ def test_a_headline_is_of_the_confirmed_scenes_where_there_are_any(alone):
     assert "10 scenes of 108 to 600 unknowns, confirmed: scenes that no rule was tuned on; the cubic got through all 120 runs" in text and "2.83" not in text
 
 
+def test_where_most_scenes_are_alike_it_is_said(alone):
+    """A mean near 1 over scenes that contact does not reach says nothing of the barriers."""
+    runs = rows_of("contact_slices", lambda theta, limited: 1.01 if theta == 0.5 else 3.0)
+    text = " ".join(" ".join(slices.sentences(slices.gather(Table({"contact_slices": runs}), the_map()), 140)).split())
+    assert "The two differ by less than 2% in most scenes (7 of 7 at theta 0.5): there contact hardly changes it." in text
+
+
 def test_slices_without_runs_are_no_sentence(alone):
     of_another_sweep, too_few = of_slices(), of_slices()
     of_another_sweep.sweeps["contact_slices"].about["sha256"] = "0" * 64

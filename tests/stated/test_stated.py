@@ -136,3 +136,20 @@ def test_the_table_has_a_number_of_claims_once_and_the_confirmed_one():
     assert rows[0].startswith("| `cubic` | H1, K3, confirmed | theta 0.01, no strain limit | 10, 108 to 600 | **1.95 [1.1, 3.47]** | - ")
     assert len(rows) == 3 and "gap map, exploratory" in rows[1] and "| 7.3 [3.95, 13.5] |" in rows[1] and OWN in rows[2]
     assert several.shapes_of_table("\n".join(lines)) == {"cubic"}
+
+
+def test_a_number_of_the_first_page_that_no_study_has_is_told(tmp_path):
+    known = [pages.Statement("results/x.md", "q", "c", "1.95 [1.1, 3.47]"), pages.Statement("results/x.md", "q", "d", "0.5 [0.25, 0.8]")]
+    root = root_with(tmp_path, "Turned it is 2 [1.25, 4], in few digits 1.9 [1.1, 3.5].", "", "")
+    (root / "README.md").write_text("It is 1.95 [1.1,\n3.47], and once it was 7.3 [3.95, 13.5].")
+    [told] = check.unfounded(root, known, [])
+    assert told == "README.md: 7.3 [3.95, 13.5]: no page of results/ has this number"
+    assert check.unfounded(root, known, [ONE]) == []
+    (root / "docs/results.md").write_text("no number")
+    with pytest.raises(UserError, match="docs/results.md: no number with an interval"):
+        check.unfounded(root, known, [ONE])
+
+
+@pytest.mark.parametrize("number, digits", [("1.95", 3), ("1.1", 2), ("0.0114", 3), ("2", 2), ("1.53e+07", 3), ("-0.02", 2)])
+def test_a_page_may_state_fewer_digits(number, digits):
+    assert check.digits(number) == digits
