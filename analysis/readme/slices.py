@@ -17,7 +17,7 @@ from ..gap_map import size_page
 from ..gap_map import table as map_table
 from ..gap_map.table import Map
 from ..places import ROOT
-from ..stated.number import OFF, SAME, Number, strongest
+from ..stated.number import OFF, OWN, SAME, Number, strongest
 from ..stated.sources import confirmation, of_claim, of_map
 
 CLAIM = "H1"
@@ -58,8 +58,9 @@ def _headline(table: Table, parts: dict[bool, list[dict]], numbers: list[Number]
 
 
 def gather(table: Table | None = None, found: Map | None = None) -> dict:
-    """slices: limit -> headlines, the largest theta first. like: one row a theta of LIKE, metric -> number.
-    size: sentences. Errors: UserError without runs of today's sweep.
+    """slices: limit -> headlines, the largest theta first. like: one row a theta of LIKE, metric -> number;
+    confirmed: what confirmed scenes say of the same. size: sentences. Errors: UserError without runs of
+    today's sweep.
     """
     table = table or claims_table.read(claims_table.FILE)
     claim = read_claim(CLAIM)
@@ -67,7 +68,9 @@ def gather(table: Table | None = None, found: Map | None = None) -> dict:
         raise UserError(f"{claims_table.FILE}: {lines[0]}")
     parts = {False: _slice_parts(claim.parts), True: _slice_parts(confirmation(claim, table))}
     sweeps = {part["sweep"] for of in parts.values() for part in of}
-    numbers = [n for n in of_claim(claim, table) if n.metric == METRIC and n.sweep in sweeps]
+    every = [n for n in of_claim(claim, table) if n.metric == METRIC]
+    numbers = [n for n in every if n.sweep in sweeps]
+    confirmed = [n for n in every if n.confirmed and n.limit == OWN]
     thetas = sorted({part["theta"] for part in parts[False]}, reverse=True)
     slices = {limit: [_headline(table, parts, numbers, theta, limit) for theta in thetas] for limit in AXIS}
     found = found or map_table.read(MAP)
@@ -77,7 +80,7 @@ def gather(table: Table | None = None, found: Map | None = None) -> dict:
     ]
     if not all(like):
         raise UserError(f"{MAP}: no place in which both got through with a limit of their own form")
-    return {"slices": slices, "like": like, "size": size_page.sentences(found)}
+    return {"slices": slices, "like": like, "confirmed": confirmed, "size": size_page.sentences(found)}
 
 
 def headlines(gathered: dict) -> list[Headline]:
@@ -129,7 +132,13 @@ def _without(of: list[Headline]) -> str:
     )
 
 
-def _with_one(of: list[Headline], like: list[dict[str, Number]]) -> str:
+def _confirmed(numbers: list[Number]) -> str:
+    """Beside exploratory numbers what confirmed scenes say of the same quantity, where they do."""
+    named = [f"{n} at theta {n.theta:g} over {n.scenes} scenes ({n.places or 'all runs'})" for n in numbers]
+    return f"; confirmed scenes have cond {_listed(named)}" if named else ""
+
+
+def _with_one(of: list[Headline], like: list[dict[str, Number]], confirmed: list[Number]) -> str:
     def row(metric: str) -> str:
         return _listed([str(numbers[metric]) for numbers in like])
 
@@ -142,7 +151,7 @@ def _with_one(of: list[Headline], like: list[dict[str, Number]]) -> str:
         " contact and limiter both have the form that is compared, logarithm throughout or cubic throughout:"
         f" at theta {_thetas([numbers[METRIC].theta for numbers in like])} cond is {row(METRIC)} times the"
         f" cubic's, PCG takes {row('pcg')} and Newton {row('newton')} times the iterations ({first.study},"
-        f" exploratory; in the {places} in which both got through)."
+        f" exploratory; in the {places} in which both got through{_confirmed(confirmed)})."
     )
 
 
@@ -150,7 +159,7 @@ def sentences(found: dict, width: int) -> list[str]:
     """The numbered results."""
     texts = [
         _without(found["slices"][OFF]),
-        _with_one(found["slices"][SAME], found["like"]),
+        _with_one(found["slices"][SAME], found["like"], found["confirmed"]),
         *found["size"],
     ]
     return [

@@ -83,7 +83,7 @@ def the_map() -> Map:
 def gathered() -> dict:
     number = Number("cond_p95", "log", "cubic", 0.5, OFF, "H1", True, 10, (108, 600), 1.5, 1.1, 2.0, True, "", "shells_slices")
     like = [{m: replace(number, metric=m, theta=theta, limit=OWN, study="gap map", confirmed=False, sweep="", places="2 places of 2 scenes") for m in slices.LIKE_METRICS} for theta in slices.LIKE]
-    return {"slices": {limit: [slices.Headline(replace(number, limit=limit, theta=theta), (), 0, 30) for theta in (0.5, 0.1)] for limit in slices.AXIS}, "like": like, "size": ["Sizes."]}
+    return {"slices": {limit: [slices.Headline(replace(number, limit=limit, theta=theta), (), 0, 30) for theta in (0.5, 0.1)] for limit in slices.AXIS}, "like": like, "confirmed": [], "size": ["Sizes."]}
 
 
 def everything():
