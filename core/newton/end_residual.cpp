@@ -9,7 +9,8 @@ Number EndResidual::measure(StepSystem& system, const StepFrame& frame) {
   NewtonSystem* seen = &system.on_host();
   if (system.is_on_host()) {
     if (!own_) own_ = std::make_unique<NewtonSystem>(scene_, method_, plan_);
-    Archive memory;  // of the terms, from step to step
+    own_->drop_caches();  // a factor of the step before would make another direction of a run that is resumed
+    Archive memory;       // of the terms, from step to step
     seen->keep(memory);
     Archive again(memory.bytes());
     own_->keep(again);
