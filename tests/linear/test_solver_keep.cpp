@@ -2,36 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "core/archive/archive.hpp"
-#include "core/linear/preconditioner.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "tests/linear/every_solver.hpp"
 #include "tests/linear/systems.hpp"
 
 namespace bb::solver_keep_test {
 namespace {
-
-struct Named {
-  std::string name;
-  LinearOptions options;
-};
-
-/// Every solver of the registry that runs without a card, with each of its preconditioners.
-std::vector<Named> solvers() {
-  std::vector<Named> out;
-  for (const std::string& name : linear_solvers().names()) {
-    if (name == "cudss") continue;
-    if (name == "pcg") {
-      for (const std::string& with : preconditioners().names())
-        out.push_back({name + " " + with, {name, {{"preconditioner", with}}}});
-    } else if (name == "pcg_resident") {
-      for (const char* with : {"block_jacobi", "schwarz"}) {
-        out.push_back({name + " " + with, {name, {{"resident_preconditioner", with}}}});
-      }
-    } else {
-      out.push_back({name, {name, {}}});
-    }
-  }
-  return out;
-}
 
 /// Values and couplings change from matrix to matrix, the pattern now and then and back again: the ties of a folded
 /// grid become stiff and soft, so that clusters of a later matrix would be others.
@@ -70,7 +45,7 @@ Solved solve(LinearSolver& solver, const ReducedSystem& system, unsigned seed) {
 TEST(SolverKeep, OneThatReadsGoesOnToTheBit) {
   const std::vector<ReducedSystem> systems = matrices();
   int lagging = 0;
-  for (const Named& one : solvers()) {
+  for (const NamedSolver& one : every_solver()) {
     for (std::size_t stop = 0; stop <= systems.size() - 1; ++stop) {
       SCOPED_TRACE(one.name + ", stopped before solve " + std::to_string(stop));
       const auto whole = make_linear_solver(one.options), resumed = make_linear_solver(one.options);
@@ -98,7 +73,7 @@ TEST(SolverKeep, OneThatReadsGoesOnToTheBit) {
 
 TEST(SolverKeep, AnArchiveOfTheSameMomentIsTheSame) {
   const std::vector<ReducedSystem> systems = matrices();
-  for (const Named& one : solvers()) {
+  for (const NamedSolver& one : every_solver()) {
     SCOPED_TRACE(one.name);
     const auto first = make_linear_solver(one.options), second = make_linear_solver(one.options);
     solve(*first, systems[1], 1);
