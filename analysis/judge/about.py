@@ -90,7 +90,7 @@ def with_cells(trajectory: Trajectory, path: Path | None) -> tuple[dict, Traject
 
 def _half_thickness(data: dict, path: Path, trajectory: Trajectory) -> np.ndarray | None:
     if "thickness_m" not in data:
-        return None
+        return trajectory.half_thickness_m
     said, n = data["thickness_m"], trajectory.topology.n_vertices
     by_body = said if isinstance(said, dict) else {}
     half = np.full(n, 0.0 if isinstance(said, dict) else said / 2)

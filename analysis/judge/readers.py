@@ -112,7 +112,18 @@ def of_run(folder: Path) -> Trajectory:
         ),
         obstacles,
         scene["planar"],
+        half_thickness_m=_half_thickness(record, topology),
     )
+
+
+def _half_thickness(record: dict, topology: Topology) -> np.ndarray | None:
+    """[n_vertices] m, the offsets of the bodies; None where all are 0. Obstacles that move have none."""
+    bodies = record["config"]["scene"].get("bodies", [])
+    offsets = {body["name"]: body.get("offset_m", 0.0) for body in bodies}
+    if not any(offsets.values()):
+        return None
+    of_body = np.array([offsets.get(name, 0.0) for name in topology.names])
+    return of_body[topology.body_of_vertices()]
 
 
 # --- any

@@ -44,6 +44,7 @@ class Trajectory:
     obstacles: list[dict] = field(default_factory=list)  # as barrierbench.subject/1 has them
     planar: bool = False
     notes: tuple[str, ...] = ()
+    half_thickness_m: np.ndarray | None = None  # [n_vertices], where the frames themselves say it
 
 
 def no_cells(n: int) -> np.ndarray:
