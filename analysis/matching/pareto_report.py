@@ -29,7 +29,8 @@ geometric mean over starts (the least to the largest of them); `(n/{starts})`: o
 sample, so their scatter is no interval. Cells of all scenes: geometric mean over scenes [95% interval by Student's t, scenes the samples]; `(n/{scenes})`:
 only n scenes have the number. Last column: mean over all gaps that both reach. Neither knows the error of the interpolation between stiffnesses: a
 ratio that swings from one gap to the next is a shape of the paths, to be read in the figure. Every failed run is listed, here and in the
-caption of its figure.
+caption of its figure. At equal load instead of equal gap, and over more scenes, claims, gap map and ablation set shapes side by side:
+[One quantity, several studies](../docs/results.md#one-quantity-several-studies).
 """
 
 

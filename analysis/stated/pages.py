@@ -106,6 +106,14 @@ def _pair(text: str, page: str) -> Iterator[Statement]:
                 yield Statement(page, f"{title}: {head}", conditions, cell)
 
 
+def _pareto(text: str, page: str) -> Iterator[Statement]:
+    """Ratios over all scenes at equal reached gap."""
+    for title, heads, cells in _tables(text):
+        for head, cell in zip(heads, cells):
+            if heads[0] == "number" and (found := NUMBER.match(cell)):
+                yield Statement(page, f"{title}: {cells[0]} of {cells[1]}", head, found["number"])
+
+
 def _ablation(text: str, page: str) -> Iterator[Statement]:
     """Main effects, with what is decided of them."""
     for title, heads, cells in _tables(text):
@@ -136,6 +144,7 @@ def _firsts(text: str, page: str) -> Iterator[Statement]:
 READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
     "results/CLAIMS.md": (_claims, _firsts, _verdicts),
     "results/GAP_MAP.md": (_map, _pair, _law),
+    "results/PARETO.md": (_pareto,),
     "results/ABLATION.md": (_ablation,),
     "docs/results.md": (_verdicts,),
     "docs/gap_law.txt": (_law,),

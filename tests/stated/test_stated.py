@@ -58,6 +58,12 @@ def test_where_a_headline_is_exploratory_a_confirmed_number_of_the_same_stands_b
     assert beside > 0
 
 
+def test_where_a_page_ranks_shapes_by_exploratory_numbers_it_says_so():
+    """docs/results.md: the sentences of the gap map, beside which confirmed numbers of log and cubic exist."""
+    before, _, _ = (ROOT / "docs/results.md").read_text().partition("<!-- numbers: gap_map -->")
+    assert before.rstrip().endswith("All of this is exploratory; of the log beside the cubic the confirmed numbers are the first results of README.md.")
+
+
 def test_the_table_of_verdicts_has_the_confirmed_number():
     """docs/results.md: where scenes confirmed a claim, or refuted it, its number is theirs."""
     rows = [cells for _, heads, cells in pages._tables((ROOT / "docs/results.md").read_text()) if heads[0] == "claim"]
