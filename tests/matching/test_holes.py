@@ -2,11 +2,9 @@
 fronts, on their page and figure, in claims at equal gap and in the gap map. All numbers have a closed form.
 """
 
-import math
-
 import pytest
 
-from analysis.gap_map import judge as gap_map
+from analysis.gap_map import compare as gap_map
 from analysis.matching import pareto
 from analysis.matching.fronts import Runs, at_gap, failures, over_shared, range_of, unreached
 from analysis.matching.pareto_figure import _means, failure_sentence
@@ -98,16 +96,16 @@ def test_the_gap_map_has_it_too():
     thetas = (0.5, 0.25, 0.1, 0.05, 0.01)
 
     def row(shape, theta, **edit):
-        place = {"scene": "a", "resolution": "n=8", "shape": shape, "limit": "off", "theta": theta, "outcome": "ok", "gap": theta, "cond_p95": (6 if shape == "cubic" else 2) / theta}
-        return place | edit
+        place = {"scene": "a", "resolution": "n=8", "shape": shape, "limit": "off", "theta": theta, "outcome": "ok", "gap": theta}
+        return place | dict.fromkeys(gap_map.METRICS, (6 if shape == "cubic" else 2) / theta) | edit
 
     for hole in thetas[1:-1]:
         rows = [row("log", theta) for theta in thetas]
         rows += [row("cubic", theta, **({"outcome": "newton_stall", "cond_p95": 1e-3} if theta == hole else {})) for theta in thetas]
         k = thetas.index(hole)
         for gap in (0.4, 0.26, 0.2, 0.11, 0.07, 0.03, 0.012):
-            ratio = gap_map.ratio_at(rows, "off", "cubic", "cond_p95", gap)
+            found = gap_map.at_gap(rows, "off", gap, ["cubic"]).ratios
             if thetas[k + 1] < gap < thetas[k - 1]:
-                assert ratio is None, (hole, gap)
-            elif ratio is not None:
-                assert ratio.value == pytest.approx(3) and not math.isnan(ratio.low)
+                assert not found, (hole, gap)
+            else:
+                assert [found["cubic"][metric].value for metric in gap_map.METRICS] == pytest.approx([3] * 4), (hole, gap)
