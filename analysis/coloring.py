@@ -60,18 +60,27 @@ def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
     return values[frame.triangles] if coloring.element == "vertex" else np.repeat(values[:, None], 3, axis=1)
 
 
-def _scale(values: np.ndarray, coloring: Coloring) -> Normalize:
-    top = coloring.top if coloring.top is not None else float(values.max(initial=0.0))
-    return Normalize(0, top if top > 0 else 1)
+def top_of(frame: Frame, color: str) -> float | None:
+    """End of the scale of the colours of a frame; None for bodies, which have none."""
+    if color == "body":
+        return None
+    coloring = COLORINGS[color]
+    if coloring.top is not None:
+        return coloring.top
+    return float(_values(frame, coloring).max(initial=0.0))
 
 
-def colors_of_corners(frame: Frame, color: str) -> tuple[np.ndarray, Normalize | None]:
-    """[m, 3, 3] colours of the corners, and the scale behind them (None for bodies)."""
+def colors_of_corners(
+    frame: Frame, color: str, top: float | None = None
+) -> tuple[np.ndarray, Normalize | None]:
+    """[m, 3, 3] colours of the corners, and the scale behind them (None for bodies). top: end of the scale,
+    where it is that of more frames than this.
+    """
     if color == "body":
         return np.repeat(palette(frame.of_triangles["body"])[:, None, :], 3, axis=1), None
     coloring = COLORINGS[color]
     values = _values(frame, coloring)
-    scale = _scale(values, coloring)
+    scale = Normalize(0, (top_of(frame, color) if top is None else top) or 1)
     return plt.get_cmap(coloring.colors)(scale(values))[..., :3], scale
 
 

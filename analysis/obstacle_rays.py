@@ -13,13 +13,20 @@ from .rasterizer import Camera
 
 @dataclass
 class Hits:
-    """Where the rays of all pixels meet one obstacle: arrays [height, width], points and normals [height,
-    width, 3].
+    """Where the rays of pixels meet one obstacle: whether a ray does, and of the n that do, row by row,
+    depth, point and normal.
     """
 
-    depth: np.ndarray  # as Camera.project's, -inf where the ray misses
-    points: np.ndarray  # m
-    normals: np.ndarray  # unit
+    mask: np.ndarray  # [height, width]
+    depth: np.ndarray  # [n] as Camera.project's
+    points: np.ndarray  # [n, 3] m
+    normals: np.ndarray  # [n, 3] unit
+
+    def depth_image(self) -> np.ndarray:
+        """[height, width], -inf where the ray misses."""
+        image = np.full(self.mask.shape, -np.inf)
+        image[self.mask] = self.depth
+        return image
 
 
 def _radial(obstacle: dict, v: np.ndarray) -> np.ndarray:
@@ -39,51 +46,62 @@ def signed_gap(obstacle: dict, x: np.ndarray) -> np.ndarray:
     return -gap if obstacle.get("inside") else gap
 
 
-def _round_times(obstacle: dict, origin: np.ndarray, way: np.ndarray) -> list[np.ndarray]:
-    """Both roots, nearer first; nan where the ray misses."""
-    o, d = _radial(obstacle, origin - np.array(obstacle["point_m"], float)), _radial(obstacle, way)
-    a, b, c = (d * d).sum(-1), (o * d).sum(-1), (o * o).sum(-1) - obstacle["radius_m"] ** 2
-    with np.errstate(invalid="ignore", divide="ignore"):
-        root = np.sqrt(b * b - a * c)
-        return [(-b - root) / a, (-b + root) / a]
+def _dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Of vectors [..., 3], or of one vector and many."""
+    if u.ndim == 1:
+        return v @ u
+    return u @ v if v.ndim == 1 else np.einsum("...c,...c->...", u, v)
 
 
-def hits(obstacle: dict, camera: Camera, width: int, height: int, center: np.ndarray, reach: float) -> Hits:
-    """The surface of an obstacle that a camera sees. A plane is shown as a square and a cylinder as a tube of
-    half length `reach` (m) round the point nearest `center`; a plane is seen from its allowed side alone, and
-    of an obstacle that bodies are inside of the far side is shown.
+def _times(obstacle: dict, origin: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Which rays [height, width] meet the unbounded obstacle, and when those do: of a round one twice, nearer
+    first.
     """
-    origin, way = camera.rays(width, height)
+    point = np.array(obstacle["point_m"], float)
+    if obstacle["kind"] == "plane":
+        axis = np.array(obstacle["axis"], float)
+        down = way @ axis
+        meets = np.broadcast_to(down < 0, way.shape[:2])
+        height = np.broadcast_to((point - origin) @ axis, way.shape[:2])
+        return meets, [height[meets] / down[meets]]
+    o, d = _radial(obstacle, origin - point), _radial(obstacle, way)
+    a, b, c = _dot(d, d), _dot(o, d), _dot(o, o) - obstacle["radius_m"] ** 2
+    inner = b * b - a * c
+    meets = (inner >= 0) & (a > 0)
+    a, b, root = np.broadcast_to(a, meets.shape)[meets], b[meets], np.sqrt(inner[meets])
+    return meets, [(-b - root) / a, (-b + root) / a]
+
+
+def hits(
+    obstacle: dict, camera: Camera, rays: tuple[np.ndarray, np.ndarray], center: np.ndarray, reach: float
+) -> Hits:
+    """The surface of an obstacle that a camera sees by its rays. A plane is shown as a square and a cylinder
+    as a tube of half length `reach` (m) round the point nearest `center`; a plane is seen from its allowed
+    side alone, and of an obstacle that bodies are inside of the far side is shown.
+    """
     point = np.array(obstacle["point_m"], float)
     axis = np.array(obstacle.get("axis", (0, 0, 1)), float)
-    if obstacle["kind"] == "plane":
-        with np.errstate(invalid="ignore", divide="ignore"):
-            times = [np.where(way @ axis < 0, ((point - origin) @ axis) / (way @ axis), np.nan)]
-    else:
-        times = _round_times(obstacle, origin, way)
-        times = times[1:] if obstacle.get("inside") else times
-    best = np.full(way.shape[:2], np.nan)
-    for t in reversed(times):
-        x = origin + np.where(np.isfinite(t), t, 0.0)[..., None] * way
-        shown = np.isfinite(t) & ((t > 0) | (not camera.perspective))
+    mask, times = _times(obstacle, *rays)
+    origin, way = rays[0] if rays[0].ndim == 1 else rays[0][mask], rays[1][mask]
+    best = np.full(len(way), np.nan)
+    for t in reversed(times[1:] if obstacle.get("inside") else times):
+        shown = (t > 0) | (not camera.perspective)
         if obstacle["kind"] != "sphere":
             middle = center if obstacle["kind"] == "plane" else point + axis * np.dot(center - point, axis)
-            off = x - middle
-            across = (
-                off - (off @ axis)[..., None] * axis
-                if obstacle["kind"] == "plane"
-                else (off @ axis)[..., None] * axis
-            )
-            shown &= (np.abs(across) <= reach).all(axis=-1)
+            off = origin + t[:, None] * way - middle
+            along = (off @ axis)[:, None] * axis
+            across = off - along if obstacle["kind"] == "plane" else along
+            for coordinate in across.T:
+                shown &= np.abs(coordinate) <= reach
         best = np.where(shown, t, best)
-    x = origin + np.where(np.isfinite(best), best, 0.0)[..., None] * way
-    normal = (
-        np.broadcast_to(axis, x.shape)
-        if obstacle["kind"] == "plane"
-        else _radial(obstacle, x - point) / obstacle["radius_m"]
-    )
-    depth = camera.depth(np.where(np.isfinite(best), best, 1.0))
-    return Hits(np.where(np.isfinite(best), depth, -np.inf), x, normal)
+    seen = np.isfinite(best)
+    mask = mask.copy()
+    mask[mask] = seen
+    best, way, origin = best[seen], way[seen], origin if origin.ndim == 1 else origin[seen]
+    x = origin + best[:, None] * way
+    if obstacle["kind"] == "plane":
+        return Hits(mask, camera.depth(best), x, np.broadcast_to(axis, x.shape))
+    return Hits(mask, camera.depth(best), x, _radial(obstacle, x - point) / obstacle["radius_m"])
 
 
 # --- how far a surface is from an obstacle

@@ -66,7 +66,8 @@ def _shadows(surfaces: Surfaces, center: np.ndarray, reach: float, pixels: int) 
 
     def others(camera: Camera, pixels: int) -> list[np.ndarray]:
         solid = [o for o in surfaces.obstacles if not o.get("inside")]
-        return [hits(o, camera, pixels, pixels, center, SHOWN * reach).depth for o in solid]
+        rays = camera.rays(pixels, pixels) if solid else ()
+        return [hits(o, camera, rays, center, SHOWN * reach).depth_image() for o in solid]
 
     of_map = min(MOST_PIXELS, 4 * pixels)
     return shadow_map(surfaces.points, surfaces.triangles, others, LIGHT, center, reach, of_map)
@@ -114,15 +115,17 @@ def _draw_obstacles(
     obstacle's.
     """
     height, width = buffer.owner.shape
+    rays = camera.rays(width, height) if surfaces.obstacles else ()
     for obstacle in surfaces.obstacles:
-        hit: Hits = hits(obstacle, camera, width, height, center, SHOWN * shadows.reach)
-        front = hit.depth > buffer.depth
-        x = hit.points[front]
+        hit: Hits = hits(obstacle, camera, rays, center, SHOWN * shadows.reach)
+        nearer = hit.depth > buffer.depth[hit.mask]
+        front = tuple(index[nearer] for index in np.nonzero(hit.mask))
+        x = hit.points[nearer]
         grey = np.broadcast_to(np.array(to_rgb(OBSTACLE_COLOR)), x.shape)
-        shaded = _shade(grey, x, hit.normals[front], camera, shadows)
+        shaded = _shade(grey, x, hit.normals[nearer], camera, shadows)
         plane = obstacle["kind"] == "plane"
         image[front] = _faded(shaded, x, center, shadows.reach) if plane else shaded
-        buffer.depth[front], buffer.owner[front] = hit.depth[front], -1
+        buffer.depth[front], buffer.owner[front] = hit.depth[nearer], -1
 
 
 def _fill_obstacles(image: np.ndarray, surfaces: Surfaces, camera: Camera) -> None:

@@ -97,9 +97,14 @@ def _say_other_meanings(root: Path, runs: list[dict]) -> None:
 
 
 def _unique_series(runs: pd.DataFrame) -> pd.Series:
-    """Two runs of a group never share a name."""
-    count = runs.groupby(["group", "series"]).cumcount()
-    return runs["series"].where(count == 0, runs["series"] + " #" + (count + 1).astype(str))
+    """Two runs of a group never share a name: that of their configs, where it differs, tells them apart; else
+    they are numbered.
+    """
+    name = runs["note"].fillna("").str.partition(": ")[0]
+    differ = name.groupby([runs["group"], runs["series"]]).transform("nunique") > 1
+    series = runs["series"].where(~differ, runs["series"] + " (" + name + ")")
+    count = runs.groupby([runs["group"], series]).cumcount()
+    return series.where(count == 0, series + " #" + (count + 1).astype(str))
 
 
 def condition_of(

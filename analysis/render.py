@@ -25,22 +25,31 @@ from .front.arguments import color_argument, parser_of
 from .obstacle_rays import primitive_gaps
 from .picture import Surfaces, camera_of, picture
 from .picture_file import MEANS, picture_file
+from .progress import say_where
 from .record_file import read_record
 from .rod_tubes import tubes
 from .run_rows import run_row
+from .titles import broken
 from .whole_file import write_whole_bytes
 
 MOST_TIMES = 4  # 4^4 = 256 triangles for one
+BAR_IN = 1.2  # inches beside a picture that a bar of colours takes
 THINNEST = 0.006  # radius of a rod for a metre of reach: thinner ones would have no pixels
 
 
 def _assemble(
-    frame: Frame, scene: dict, color: str, reach: float, radii: np.ndarray | None = None, times: int = 0
+    frame: Frame,
+    scene: dict,
+    color: str,
+    reach: float,
+    radii: np.ndarray | None = None,
+    times: int = 0,
+    top: float | None = None,
 ) -> tuple[Surfaces, Normalize | None]:
     """radii: [n] m of rods, at their vertices. times: how often the frame was subdivided; sides of its
-    triangles are drawn where it was not.
+    triangles are drawn where it was not. top: as colors_of_corners.
     """
-    colors, scale = colors_of_corners(frame, color)
+    colors, scale = colors_of_corners(frame, color, top)
     points, triangles, corners = [frame.vertices], [frame.triangles], [colors]
     if len(frame.edges):
         radii = np.maximum(0 if radii is None else radii, np.full(len(frame.vertices), THINNEST * reach))
@@ -101,7 +110,13 @@ def _round_obstacles(scene: dict) -> np.ndarray:
     return np.concatenate([np.zeros((0, 3)), *(obstacle_mesh(o, np.zeros(3), 0.0)[0] for o in spheres)])
 
 
-def _when(record: dict, step: int) -> str:
+def title_of(record: dict) -> str:
+    """What a run is called above its pictures: as tables call it, or by scene and formulation."""
+    labels = record["labels"]
+    return labels.get("note") or f"{labels['scene']}, {labels['formulation']}"
+
+
+def when(record: dict, step: int) -> str:
     if step < 0:
         return "start"
     return next(
@@ -132,43 +147,72 @@ def _points_drawn(frame: Frame, scene: dict, look: Look) -> np.ndarray:
     return points[used[used < len(points)]]
 
 
-def _drawn(record: dict, run: Path, step: int, look: Look) -> tuple[np.ndarray, Normalize | None]:
-    """[height, width, 3] pixels, and the scale of the colours."""
-    frame = frame_of(record, run, step)
-    scene = scene_at(read_scene(record, run), frame)
-    focus = np.concatenate([_points_drawn(frame, scene, look), _round_obstacles(scene)])
+@dataclass(frozen=True)
+class Shared:
+    """What the frames of a film have in common."""
+
+    focus: np.ndarray  # [n, 3] m: points that the picture has to hold
+    top: float | None  # end of the scale of the colours
+
+
+def focus_of(frame: Frame, scene: dict, look: Look) -> np.ndarray:
+    """[n, 3] m: the points of a frame that the picture has to hold."""
+    return np.concatenate([_points_drawn(frame, scene, look), _round_obstacles(scene)])
+
+
+def drawn(
+    frame: Frame, scene: dict, look: Look, radii: np.ndarray | None, shared: Shared | None = None
+) -> tuple[np.ndarray, Normalize | None]:
+    """[height, width, 3] pixels of a frame in its scene, and the scale of the colours. radii: as
+    _assemble.
+    """
+    focus = focus_of(frame, scene, look) if shared is None else shared.focus
     camera = camera_of(focus, scene["planar"], look.view, look.size)
     reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
-    if look.subdivide:
-        start = frame_of(record, run, min(frame_paths(record, run)))
-        frame = finer_frame(start, frame, len(scene["bodies"]), look.subdivide)
-    frame = without_bodies(frame, scene, look.hidden)
-    radii = _rod_radii(record, scene, frame)
-    surfaces, scale = _assemble(frame, scene, look.color, reach, radii, look.subdivide)
+    top = None if shared is None else shared.top
+    surfaces, scale = _assemble(frame, scene, look.color, reach, radii, look.subdivide, top)
     return picture(surfaces, camera, look.size, scene["planar"], camera.target, reach), scale
 
 
-def _save(path: Path, pixels: np.ndarray) -> None:
+def drawn_of_run(
+    record: dict, run: Path, step: int, look: Look, shared: Shared | None = None
+) -> tuple[np.ndarray, Normalize | None, Frame, dict]:
+    """As `drawn`, of the frame of a step, with that frame and its scene."""
+    whole = frame_of(record, run, step)
+    scene = scene_at(read_scene(record, run), whole)
+    frame = whole
+    if look.subdivide:
+        start = frame_of(record, run, min(frame_paths(record, run)))
+        frame = finer_frame(start, frame, len(scene["bodies"]), look.subdivide)
+        if shared is None:
+            shared = Shared(focus_of(whole, scene, look), None)
+    frame = without_bodies(frame, scene, look.hidden)
+    return *drawn(frame, scene, look, _rod_radii(record, scene, frame), shared), whole, scene
+
+
+def save_bare(path: Path, pixels: np.ndarray) -> None:
     """Errors: OSError. Whole or not there."""
     out = io.BytesIO()
     plt.imsave(out, pixels, format="png", metadata={"Software": None}, pil_kwargs={"optimize": True})
     write_whole_bytes(path, out.getvalue())
 
 
-def _save_annotated(path: Path, pixels: np.ndarray, title: str, annotate: Callable) -> None:
+def save_annotated(file, pixels: np.ndarray, title: str, annotate: Callable) -> None:
+    """A PNG, into a file by name or open. A title that is wider than the picture is broken."""
     height, width = pixels.shape[:2]
-    fig, axis = plt.subplots(
-        figsize=(style.WIDE_IN, style.WIDE_IN * height / width + 0.2), layout="constrained"
-    )
+    fig, axis = plt.subplots(figsize=(style.WIDE_IN, style.WIDE_IN * height / width), layout="constrained")
     axis.imshow(pixels, interpolation="antialiased")
     axis.set_axis_off()
-    axis.set_title(title)
     annotate(fig)
-    fig.savefig(path, metadata={"Software": None})
+    room = style.WIDE_IN - (BAR_IN if len(fig.axes) > 1 else 0.2)
+    text = broken(fig, title, room, plt.rcParams["axes.titlesize"])
+    fig.set_figheight(fig.get_figheight() + 0.2 + 0.15 * text.count("\n"))
+    axis.set_title(text)
+    fig.savefig(file, format="png", metadata={"Software": None})
     plt.close(fig)
 
 
-def _shown(look: Look) -> str:
+def shown(look: Look) -> str:
     """The sentence of the caption on what is seen."""
     colored = (
         "bodies in one colour each" if look.color == "body" else f"colour: {COLORINGS[look.color].label}"
@@ -205,27 +249,59 @@ def render(
         )
     name = f"{'start' if step < 0 else f'step_{step:06}'}_{look.color}.png"
     path = picture_file(out or run, name)
-    pixels, scale = _drawn(record, run, step, look)
-    frame = frame_of(record, run, step)
-    scene = scene_at(read_scene(record, run), frame)
-    title = title or f"{record['labels']['scene']}, {record['labels']['formulation']}"
-    what = f"{title}, {_when(record, step)}"
+    say_where(f"render: drawing {path.name}")
+    pixels, scale, frame, scene = drawn_of_run(record, run, step, look)
+    say_where("")
+    what = f"{title or title_of(record)}, {when(record, step)}"
     path.parent.mkdir(parents=True, exist_ok=True)
     if look.bare:
-        _save(path, pixels)
+        save_bare(path, pixels)
     else:
-        _save_annotated(path, pixels, what, lambda fig: annotate(fig, scene, frame, look.color, scale))
-    text = f"{what}. {_shown(look)} {_at_obstacles(frame, scene)}".rstrip()
+        save_annotated(path, pixels, what, lambda fig: annotate(fig, scene, frame, look.color, scale))
+    text = f"{what}. {shown(look)} {_at_obstacles(frame, scene)}".rstrip()
     path.with_suffix(".txt").write_text(caption(text, [run_row(record)]))
     return path
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
-    parser = parser_of("render")
-    parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
+    parser = parser_of(
+        "render",
+        "A config in the place of RUN: its start is drawn, nothing is run.",
+        "./bench render results/runs/drape --color gap --out drape.gif",
+        "./bench render configs/scenes/sheets_on_ball.json --out start.png",
+    )
+    parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json; or a config")
     parser.add_argument("--step", type=int, help="a step with a frame, -1: the start (default: the last)")
     color_argument(parser, ["body", *COLORINGS], "body", "what colors mean")
-    parser.add_argument("--out", type=Path, help=f"{MEANS} (default: RUN/step_NNNNNN_COLOR.png)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        help=f"{MEANS}; FILE.gif or FILE.mp4: all frames in motion (default: RUN/step_NNNNNN_COLOR.png;"
+        " NAME_start.png of a config NAME.json)",
+    )
+    parser.add_argument(
+        "--fps",
+        type=float,
+        metavar="N",
+        help="frames a second of a GIF or MP4 (default: for 5 s)",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="/POINTER=VALUE",
+        dest="overrides",
+        help="override of a config, e.g. /scene/n=8",
+    )
+    look_arguments(parser)
+    given = parser.parse_args(arguments)
+    if min(given.size) < 16 or max(given.size) > 8000:
+        raise UserError("--size: from 16 to 8000 pixels")
+    return given
+
+
+def look_arguments(parser: argparse.ArgumentParser) -> None:
+    """How a picture is drawn, beside its colours."""
     parser.add_argument(
         "--view",
         type=float,
@@ -255,16 +331,38 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn, such as a container"
     )
-    return parser.parse_args(arguments)
+
+
+def _is_film(out: Path | None) -> bool:
+    return out is not None and out.suffix.lower() in (".gif", ".mp4")
+
+
+def written(given: argparse.Namespace) -> Path:
+    """What was asked for. Errors: UserError, RecordError."""
+    look = Look(
+        given.color, tuple(given.view), tuple(given.size), given.subdivide, given.bare, tuple(given.hide)
+    )
+    is_config = given.run.is_file() and given.run.name != "run.json"
+    if given.fps is not None and not (_is_film(given.out) and 0 < given.fps <= 240):
+        raise UserError(
+            f"--fps: found {given.fps:g}; allowed: above 0, at most 240, for a GIF or MP4 (--out)"
+        )
+    if given.step is not None and (is_config or _is_film(given.out)):
+        raise UserError("--step: is of one still of a run, not of a config, GIF or MP4")
+    if given.overrides and not is_config:
+        raise UserError("--set: is of a config; a run is drawn as it was")
+    if is_config:
+        from .preview import preview  # these two draw with what is above
+
+        return preview(given.run, given.out, look, given.overrides)
+    if _is_film(given.out):
+        from .animation import animate
+
+        return animate(given.run, given.out, look, given.fps)
+    return render(given.run, given.step, given.out, look)
 
 
 @tells("render")
 def main(arguments: list[str]) -> int:
-    given = parse(arguments)
-    if min(given.size) < 16 or max(given.size) > 8000:
-        raise UserError("--size: from 16 to 8000 pixels")
-    look = Look(
-        given.color, tuple(given.view), tuple(given.size), given.subdivide, given.bare, tuple(given.hide)
-    )
-    print(render(given.run, given.step, given.out, look))
+    print(written(parse(arguments)))
     return 0

@@ -15,6 +15,13 @@ def _series(labels: dict) -> str:
     return case or labels["formulation"]
 
 
+def own_name(labels: dict) -> str:
+    """Of a run that is no case of a sweep: the name of its config (/name), or of its scene; records before
+    3.9.0 have none. Of a case: the sweep's.
+    """
+    return (labels.get("note") or "").partition(": ")[0]
+
+
 def _swept(text: str):
     """The value of a swept pointer, which the record keeps as JSON text; what is no number or word stays
     text.
@@ -33,5 +40,6 @@ def run_row(record: dict, run: str = "") -> dict:
     row = fields.row("runs", record)
     row |= {"run": run, "folder": Path(run).name, "series": _series(record["labels"])}
     row |= {pointer: _swept(text) for pointer, text in (row.get("swept") or {}).items()}
-    row["group"] = row["sweep_id"] or row["scene"]
+    name = own_name(record["labels"])
+    row["group"] = row["sweep_id"] or (name if name and row["scene"] == "bodies" else row["scene"])
     return row

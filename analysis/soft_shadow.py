@@ -7,8 +7,11 @@ it.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +25,17 @@ BIAS = 0.004  # metres for a metre of reach: what is in front by less is the sur
 SAMPLES, TURNS = 20, 5  # of a disc, and discs of neighbouring points
 STEEPEST = 4.0  # tangent of the steepest surface whose slope is taken into account
 GOLDEN_ANGLE = np.pi * (3 - np.sqrt(5))
+AT_ONCE = 32768  # points whose light is asked for together: what is known of them stays in the cache
+
+
+class Seen(NamedTuple):
+    """Points [n] by the light's camera: pixels, depth, and m of depth for a m across their surface."""
+
+    x: np.ndarray
+    y: np.ndarray
+    depth: np.ndarray
+    slope_x: np.ndarray
+    slope_y: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -37,37 +51,55 @@ class ShadowMap:
 
         Cost: up to 2 SAMPLES look-ups a point.
         """
+        share = np.empty(len(x))
+        span = AT_ONCE * TURNS
+        parts = [slice(at + k, at + span, TURNS) for at in range(0, len(x), span) for k in range(TURNS)]
+        discs = _discs()
+
+        def light(part: slice) -> None:  # neighbours look at different samples
+            share[part] = self._lit(x[part], normal[part], discs[part.start % TURNS])
+
+        with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as threads:  # numpy leaves the interpreter free
+            list(threads.map(light, parts))
+        return share
+
+    def _lit(self, x: np.ndarray, normal: np.ndarray, samples: np.ndarray) -> np.ndarray:
+        """samples: [SAMPLES, 2] of the disc that is looked at."""
         seen = self.camera.project(x)
         local = normal @ self.camera.axes().T
         away = np.where(np.abs(local[:, 2:]) < 1e-3, 1e-3, local[:, 2:])
         slope = np.clip(local[:, :2] / away, -STEEPEST, STEEPEST)  # m of depth for a m across the map
+        points = Seen(*seen.T.copy(), *slope.T.copy())
         widest = WIDEST * self.reach
-        over, count = np.zeros(len(x)), np.zeros(len(x))
-        turn = np.arange(len(x)) % TURNS  # neighbours look at different samples
-        for offset in np.moveaxis(_discs(), 1, 0):
-            gap, nearer = self._before(seen, slope, widest * offset[turn])
-            over += np.where(nearer, gap, 0)
+        over, count = np.zeros(len(x)), np.zeros(len(x), int)
+        for offset in samples:
+            gap, nearer = self._before(points, *(widest * offset))
+            over[nearer] += gap[nearer]
             count += nearer
         some = np.flatnonzero(count > 0)
         width = LIGHT_SIZE * over[some] / count[some]
         width = np.clip(width, SLIMMEST * self.reach, widest)
         dark = np.zeros(len(x))
-        for offset in np.moveaxis(_discs(), 1, 0):
-            dark[some] += self._before(seen[some], slope[some], width[:, None] * offset[turn[some]])[1]
+        points = Seen(*(field[some] for field in points))
+        sums = np.zeros(len(some), int)
+        for offset in samples:
+            sums += self._before(points, width * offset[0], width * offset[1])[1]
+        dark[some] = sums
         return 1 - dark / SAMPLES
 
-    def _before(self, seen, slope, offset) -> tuple[np.ndarray, np.ndarray]:
-        """[n] by how much (m) what the map has at an offset [n, 2] m is in front of the plane of the surface,
-        and whether it is something else than that.
+    def _before(self, seen: Seen, across, down) -> tuple[np.ndarray, np.ndarray]:
+        """[n] by how much (m) what the map has at an offset (m, of all or of each) is in front of the plane
+        of the surface, and whether it is something else than that.
         """
-        column, row = np.floor(seen[:, :2] + offset * self.camera.scale).astype(int).T
-        inside = (column >= 0) & (column < len(self.depth)) & (row >= 0) & (row < len(self.depth))
-        there = np.full(len(seen), -np.inf)
-        there[inside] = self.depth[row[inside], column[inside]]
-        gap = there - (seen[:, 2] + (slope * offset).sum(axis=1))
+        size = len(self.depth)
+        column = np.floor(seen.x + across * self.camera.scale).astype(np.int32)
+        row = np.floor(seen.y + down * self.camera.scale).astype(np.int32)
+        inside = (column >= 0) & (column < size) & (row >= 0) & (row < size)
+        there = np.where(inside, self.depth.ravel().take(row * size + column, mode="clip"), -np.inf)
+        gap = there - (seen.depth + (seen.slope_x * across + seen.slope_y * down))
         bias = BIAS * self.reach
         steep = max(bias, 0.6 / self.camera.scale)  # a point is within half a pixel of where the map was made
-        return gap, gap > bias + steep * np.abs(slope).sum(axis=1)
+        return gap, gap > bias + steep * (np.abs(seen.slope_x) + np.abs(seen.slope_y))
 
 
 def _discs() -> np.ndarray:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import tempfile
-import textwrap
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,13 +18,14 @@ from . import style
 from .errors import UserError, tells
 from .front.arguments import parser_of
 from .picture_file import MEANS, picture_file
+from .progress import counted
 from .record_file import read_record
 from .render import Look, render
+from .titles import broken
 
 MOST = 60  # runs in one picture
 COLUMNS = 5  # that are as wide as a page
-LINE_IN = 0.25  # inches of a line of a title
-CHARACTERS = 28  # of a line of a title
+SIZE, LINE_IN = 10, 0.25  # points of a title, inches of a line of it
 PIXELS = (360, 280)
 VIEW = (-60.0, 22.0)  # degrees, of a scene that has none of its own
 
@@ -39,18 +39,15 @@ class Still(NamedTuple):
 
 
 def label_of(record: dict) -> str:
-    """Its note, of a sweep without the sweep's name; else scene, step solver and formulation. Below it,
-    how it ended.
+    """What tables call it, of a sweep without the sweep's name; of an earlier record scene, step solver and
+    formulation. Below it, how it ended.
     """
     labels, status = record["labels"], record["status"]
-    name = labels["note"].partition(": ")[2] or labels["note"]
+    of_sweep = (record.get("ids") or {}).get("sweep_id")
+    name = (of_sweep and labels["note"].partition(": ")[2]) or labels["note"]
     name = name or f"{labels['scene']}, {labels['step_solver']} {labels['formulation']}"
     crossings = (record.get("audit") or {}).get("crossings") or 0
-    return f"{_broken(name)}\n{status['outcome']}" + (f"\n{crossings} crossings" if crossings else "")
-
-
-def _broken(text: str) -> str:
-    return "\n".join(textwrap.wrap(text, CHARACTERS))
+    return f"{name}\n{status['outcome']}" + (f"\n{crossings} crossings" if crossings else "")
 
 
 def sheet(stills: list[Still], out: Path, columns: int) -> Path:
@@ -60,18 +57,19 @@ def sheet(stills: list[Still], out: Path, columns: int) -> Path:
     out = picture_file(out, "stills.png")
     rows = math.ceil(len(stills) / columns)
     width = 2 * style.WIDE_IN / COLUMNS  # inches of one picture
-    lines = max(still.title.count("\n") for still in stills) + 1
-    size = (columns * width, rows * (width * PIXELS[1] / PIXELS[0] + lines * LINE_IN))
-    fig, axes = plt.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained")
+    fig, axes = plt.subplots(rows, columns, squeeze=False, layout="constrained")
+    titles = [broken(fig, still.title, 0.94 * width, SIZE) for still in stills]
+    lines = max(title.count("\n") for title in titles) + 1
+    fig.set_size_inches(columns * width, rows * (width * PIXELS[1] / PIXELS[0] + lines * LINE_IN))
     for axis in axes.flat:
         axis.set_axis_off()
     with tempfile.TemporaryDirectory() as scratch:
-        for axis, still in zip(axes.flat, stills, strict=False):
+        for axis, still, title in counted(zip(axes.flat, stills, titles), len(stills), "stills: run"):
             file = render(still.folder, out=Path(scratch) / "still.png", look=still.look)
             axis.imshow(image.imread(file))
-            axis.set_title(still.title, fontsize=10)
+            axis.set_title(title, fontsize=SIZE)
     out.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(out, dpi=130, metadata={"Software": None})
+    fig.savefig(out, dpi=130, bbox_inches="tight", pad_inches=0.05, metadata={"Software": None})
     plt.close(fig)
     return out
 

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
+import sys
+import textwrap
 from collections.abc import Sequence, Set
+
+LEAST_ROOM = 20  # characters of the last column, below which it is not broken
 
 
 def _check_rows(head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -25,6 +30,23 @@ def aligned(head: Sequence[str], rows: Sequence[Sequence[str]], right: Set[int] 
         ).rstrip()
         for row in cells
     ]
+
+
+def fitted(head: Sequence[str], rows: Sequence[Sequence[str]], right: Set[int] = frozenset()) -> list[str]:
+    """`aligned` for the standard output: where that is a terminal and too narrow, the last column, of texts,
+    is broken. Errors: as aligned.
+    """
+    lines = aligned(head, rows, right)
+    columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else max(map(len, lines))
+    last = max(len(row[-1]) for row in (head, *rows))
+    before = max(map(len, lines)) - last
+    if before + last <= columns or columns - before < LEAST_ROOM:
+        return lines
+    broken = []
+    for line in lines:
+        first, *others = textwrap.wrap(line[before:], columns - before) or [""]
+        broken += [(line[:before] + first).rstrip(), *(" " * before + other for other in others)]
+    return broken
 
 
 def markdown(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

@@ -18,7 +18,7 @@ from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..json_file import read_of_schema
 from ..places import ROOT
-from ..text_table import aligned
+from ..text_table import fitted
 from ..whole_file import write_whole
 from .checks import judge, no_crossing
 from .entry import Entry, entries
@@ -127,5 +127,5 @@ def main(argv: list[str]) -> int:
         lines += [
             [entry.name, row["formulation"], f"{row['passed']}/{row['seeds']}", row["failed"]] for row in rows
         ]
-    print("\n".join(aligned(["scene", "formulation", "passed", "what failed"], lines)))
+    print("\n".join(fitted(["scene", "formulation", "passed", "what failed"], lines)))
     return 0 if all(not line[3] for line in lines) else 1

@@ -7,11 +7,14 @@ Exit codes: 0, 1 a size is not the one that the scene states of its source, 2 ba
 from __future__ import annotations
 
 import argparse
+import os
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
-from ..text_table import aligned
+from ..progress import counted
+from ..text_table import fitted
 from .counts import counts_of
 from .entry import FULL, MINI, Entry, entries, write_config
 
@@ -44,11 +47,13 @@ def _cell(entry: Entry, size: str, build_large: bool) -> tuple[str, str]:
 
 def _print_table(asked: list[Entry], build_large: bool) -> int:
     rows, complaints = [], []
-    for entry in asked:
-        cells = [_cell(entry, size, build_large) for size in (MINI, FULL)]
-        rows.append([entry.name, *(text for text, _ in cells), entry.data["stresses"]])
-        complaints += [wrong for _, wrong in cells if wrong]
-    print("\n".join(aligned(["scene", "mini", "full", "what it stresses"], rows, {1, 2})))
+    asked_for = [(entry, size, build_large) for entry in asked for size in (MINI, FULL)]
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:  # each waits for a program of its own
+        cells = counted(pool.map(lambda words: _cell(*words), asked_for), len(asked_for), "scenes: built")
+        for entry, mini, full in zip(asked, cells, cells):
+            rows.append([entry.name, mini[0], full[0], entry.data["stresses"]])
+            complaints += [wrong for _, wrong in (mini, full) if wrong]
+    print("\n".join(fitted(["scene", "mini", "full", "what it stresses"], rows, {1, 2})))
     print("mini, full: vertices/faces of the whole scene; in brackets: stated, and built where it is named")
     for wrong in complaints:
         print(wrong)
@@ -77,7 +82,8 @@ def main(argv: list[str]) -> int:
     if args.full:
         raise UserError("--full: --write FILE is needed with it")
     if args.list:
-        print("\n".join(aligned(["scene", "title"], [[one.name, one.data["title"]] for one in asked])))
+        rows = [[one.name, one.data["title"]] for one in asked]
+        print("\n".join(fitted(["scene", "title"], rows)))
         return 0
     if len(args.names) == 1:
         _print_one(asked[0])

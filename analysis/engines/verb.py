@@ -11,7 +11,7 @@ from pathlib import Path
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..places import ROOT
-from ..text_table import aligned
+from ..text_table import fitted
 from ..whole_file import write_whole
 from . import environment, launch
 from .card import Card, names, read_card
@@ -74,7 +74,7 @@ def _list() -> int:
         card = read_card(name)
         there = environment.why_not(card) or "installed"
         rows.append([name, card.data["version"], ", ".join(card.data["variants"]), there])
-    print("\n".join(aligned(["engine", "version", "variants", ""], rows)))
+    print("\n".join(fitted(["engine", "version", "variants", ""], rows)))
     for name in names():
         promise = read_card(name).data["guarantee"]
         print(f"\n{name} promises: {promise['words']}\n  ({promise['citation']})")

@@ -21,7 +21,7 @@ from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..front.building import job_count
 from ..places import ROOT
-from ..text_table import aligned
+from ..text_table import fitted
 from . import sources
 from .drawing import Drawing
 from .spec import FOLDER, Spec, chosen, known, read_spec
@@ -77,7 +77,7 @@ def listed(folder: Path = FOLDER) -> str:
 
     specs = [read_spec(folder / f"{name}.json") for name in known(folder)]
     rows = [[spec.name, f"{spec.width_in:g}", of(spec.records), of(spec.quick), spec.title] for spec in specs]
-    return "\n".join(aligned(["figure", "inches", "drawn of", "with --quick", "shows"], rows, {1}))
+    return "\n".join(fitted(["figure", "inches", "drawn of", "with --quick", "shows"], rows, {1}))
 
 
 def draw(spec: Spec, quick: bool, place: Place, out: Path) -> list[Path]:

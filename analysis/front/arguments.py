@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import shutil
 import textwrap
 from collections.abc import Iterable
 from typing import NoReturn
@@ -11,7 +12,12 @@ from typing import NoReturn
 from ..errors import UserError
 from . import verbs
 
-WIDTH = 110
+WIDTH = 110  # of text where the terminal is wider, or there is none
+
+
+def text_width() -> int:
+    """Characters of a line of help."""
+    return min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
 
 
 class Parser(argparse.ArgumentParser):
@@ -38,16 +44,20 @@ class Parser(argparse.ArgumentParser):
         return super().parse_known_args(args, namespace)
 
 
+def _kept_lines(text: str) -> str:
+    return "\n".join(textwrap.fill(line, max(text_width(), 20)) for line in text.strip().splitlines())
+
+
 def parser_of(name: str, doc: str | None = None, *examples: str) -> Parser:
     """For the arguments of a verb: its help begins with that of its row, goes on with `doc`, which is printed
     as it is, and ends with the example of the row and more of them.
     """
     row = verbs.find(name)
-    about = textwrap.fill(f"{row.help[0].upper()}{row.help[1:]}.", WIDTH)
+    about = textwrap.fill(f"{row.help[0].upper()}{row.help[1:]}.", text_width())
     shown = (row.example, *examples)
     return Parser(
         prog=f"bench {name}",
-        description=f"{about}\n\n{doc.strip()}" if doc else about,
+        description=f"{about}\n\n{_kept_lines(doc)}" if doc else about,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="\n".join([f"example{'s' * (len(shown) > 1)}:", *(f"  {one}" for one in shown)]),
     )

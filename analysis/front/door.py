@@ -11,16 +11,17 @@ from typing import NoReturn
 from ..errors import TRY_AGAIN, UserError
 from ..program import RELEASE, become, built_program
 from . import verbs
+from .arguments import text_width
 from .table import HELP
 
-WIDTH = 116
+HELP_WORDS = ("help", *HELP)
 
 
 def usage_of(verb: verbs.Verb) -> list[str]:
     """What its row says."""
     return [
         f"  {verb.name} {verb.arguments}".rstrip(),
-        *textwrap.wrap(verb.help, WIDTH, initial_indent=6 * " ", subsequent_indent=6 * " "),
+        *textwrap.wrap(verb.help, text_width(), initial_indent=6 * " ", subsequent_indent=6 * " "),
         f"        {verb.example}",
     ]
 
@@ -34,11 +35,11 @@ def usage() -> str:
             if verb.group == group:
                 lines += usage_of(verb)
         lines.append("")
-    lines.append(
-        "./bench VERB --help says more; what runs the program is run after an incremental build, or by the"
-        " program that BARRIERBENCH_PROGRAM names."
+    more = (
+        "./bench VERB --help, or ./bench help VERB, says more; what runs the program is run after an"
+        " incremental build, or by the program that BARRIERBENCH_PROGRAM names."
     )
-    return "\n".join(lines)
+    return "\n".join([*lines, *textwrap.wrap(more, text_width())])
 
 
 def become_program(arguments: list[str]) -> NoReturn:
@@ -77,9 +78,16 @@ def run(verb: verbs.Verb, arguments: list[str]) -> int:
 def main(arguments: list[str]) -> int:
     """The exit code."""
     try:
-        if not arguments or arguments in (["help"], ["-h"], ["--help"]):
+        if not arguments or (len(arguments) == 1 and arguments[0] in HELP_WORDS):
             print(usage(), flush=True)
             return 0
+        if arguments == ["--version"]:
+            from .version import version
+
+            print(version(), flush=True)
+            return 0
+        if len(arguments) == 2 and arguments[0] in HELP_WORDS and verbs.find(arguments[1]):
+            arguments = [arguments[1], "--help"]
         verb = verbs.find(arguments[0])
         if verb and not verb.own_help and any(word in HELP for word in arguments[1:]):
             print("\n".join(["usage: ./bench VERB [ARGUMENTS]", "", *usage_of(verb)]), flush=True)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 from difflib import get_close_matches
+from functools import cache
 from pathlib import Path
 
 from ..errors import UserError
@@ -24,14 +25,33 @@ OF_LIMIT = (
 )  # what the policy of a limit may take from that of contact
 
 
+FORMULA = "formula:"
+
+
+@cache
+def _label_of_formula(name: str) -> str:
+    """Errors: UserError for a formula that is no barrier."""
+    from ..formula.compiled import compiled  # takes sympy
+    from ..formula.grammar import FormulaError
+
+    try:
+        return compiled(name.removeprefix(FORMULA)).about["label"]
+    except FormulaError as error:
+        raise UserError(f"{name!r}: {error}") from None
+
+
 def known() -> list[str]:
     return sorted(path.stem for path in PRESETS.glob("*.json"))
 
 
 def preset(name: str) -> dict:
-    """The section `formulation` of a preset, or of a file like those of configs/formulations, NAME.json: of a
-    shape or policy of a plugin, say. Errors: UserError with the nearest name.
+    """The section `formulation` of a preset, of a formula as a shape (formula:TEXT), or of a file like
+    those of configs/formulations, NAME.json: of a shape or policy of a plugin, say. Errors: UserError with
+    the nearest name, or with what is wrong with the formula.
     """
+    if name.startswith(FORMULA):
+        _label_of_formula(name)
+        return {"shape": name, "argument": "gap", "stiffness_policy": {"name": "fixed"}}
     if name.endswith(".json"):
         formulation = read_object(Path(name)).get("formulation")
         if (
@@ -53,7 +73,11 @@ def preset(name: str) -> dict:
 
 
 def label(name: str) -> str:
-    """What a formulation is called in tables: the preset, or the file without its folder and suffix."""
+    """What a formulation is called in tables: the preset, the file without its folder and suffix, or a short
+    word for the formula.
+    """
+    if name.startswith(FORMULA):
+        return _label_of_formula(name)
     return Path(name).stem if name.endswith(".json") else name
 
 
@@ -78,8 +102,9 @@ def settings(name: str, vary: str, d_hat_m: float | None = None, scale: float | 
     the config gives one.
     """
     chosen, reference = preset(name), preset(REFERENCE)
-    from_file = {**chosen, "name": label(name)} if name.endswith(".json") else name
-    found = {"/formulation": REFERENCE if vary == "limit" else from_file}
+    of_preset = name in known()
+    own = name if of_preset else {**chosen, "name": label(name)}
+    found = {"/formulation": REFERENCE if vary == "limit" else own}
     if d_hat_m is not None:
         found["/formulation/d_hat_m"] = d_hat_m
     found |= _limit(reference if vary == "contact" else chosen)

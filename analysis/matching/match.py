@@ -218,8 +218,8 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         default=list(DEFAULT),
         metavar="NAME",
         help=(
-            "presets of configs/formulations, or files like them, NAME.json (default: %(default)s); log"
-            " always runs"
+            "presets of configs/formulations, formulas as shapes, formula:TEXT, or files like the presets,"
+            " NAME.json, of a shape of a plugin, say (default: %(default)s); log always runs"
         ),
     )
     rule_arguments(parser)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 from ..places import ROOT
 from .gather import Entry, Folder
 from .tables import shown_path
 from .words import counted, listed
+
+OWN_FRICTION = re.compile(r"/scene/(bodies|obstacles)/\d+/friction")
 
 
 def _text(value) -> str:
@@ -37,8 +41,8 @@ class Said:
         source = [entry.settings if name.startswith("/") else entry.row for entry in self.entries]
         return _values([values.get(name) for values in source])
 
-    def has(self, name: str) -> bool:
-        return any(entry.row.get(name) for entry in self.entries)
+    def of_each(self, value: Callable[[Entry], object]) -> str:
+        return _values([value(entry) for entry in self.entries])
 
 
 def _scenes(entries: list[Entry]) -> str:
@@ -78,10 +82,40 @@ def _method(said: Said) -> list[str]:
     return text
 
 
+def _duration_s(entry: Entry) -> float | None:
+    """Simulated time that was asked for, in whichever form."""
+    given = entry.settings.get("/time/duration_s")
+    steps, dt = entry.settings.get("/time/steps"), entry.row.get("dt_s") or entry.settings.get("/time/dt_s")
+    return given if given is not None or not (steps and dt) else steps * dt
+
+
+def _friction(entry: Entry) -> str:
+    """Law and coefficients of the contacts of a run: of bodies and obstacles, and of the rest."""
+    settings = entry.settings
+    own = [
+        value for pointer, value in settings.items() if OWN_FRICTION.fullmatch(pointer) and value is not None
+    ]
+    rest = settings.get("/friction/mu") or 0.0
+    if not rest and not any(own):
+        return "none"
+    words = f"coefficient {rest:g}"
+    if own:
+        words += (
+            f", {listed([f'{value:g}' for value in sorted(set(own))])} of bodies or obstacles with their own"
+        )
+    return (
+        f"law {settings.get('/friction/law', 'not recorded')}, {words}, of two sides by the rule"
+        f" {settings.get('/friction/combine', 'not recorded')}, full above a sliding speed of"
+        f" {_text(settings.get('/friction/eps_v_m_per_s'))} m/s, solved"
+        f" {counted(settings.get('/friction/lag_iterations') or 1, 'time')} a step for its loads"
+    )
+
+
 def _solver(said: Said) -> list[str]:
     return [
         f"Time integrator {said.of('integrator')}, time step {said.of('dt_s')} s, duration"
-        f" {said.of('/time/duration_s')} s. Step solver {said.of('step_solver')} with at most"
+        f" {said.of_each(_duration_s)} s. Friction: {said.of_each(_friction)}.",
+        f"Step solver {said.of('step_solver')} with at most"
         f" {said.of('/step_solver/max_iterations')} iterations a step, to a Newton direction of"
         f" {said.of('/step_solver/tol_velocity_m_per_s')} m/s; Hessian {said.of('/contact/hessian_mode')};"
         f" precision {said.of('precision')}.",

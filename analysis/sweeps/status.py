@@ -16,7 +16,7 @@ from pathlib import Path
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..record_file import RecordError, read_record
-from ..text_table import aligned
+from ..text_table import fitted
 from .cases import OVER, RUNNING, STATES, UNREADABLE, WAITING, Case, Sighting, read_cases, sighted
 
 CLEAR = "\033[H\033[2J"
@@ -87,7 +87,7 @@ def text(folder: Path, cases: list[Case], outcomes: Outcomes, every: bool) -> tu
         if every or one.state not in (OVER, WAITING)
     ]
     if rows:
-        lines += aligned(["index", "state", "run", "detail"], rows, {0})
+        lines += fitted(["index", "state", "run", "detail"], rows, {0})
     return "\n".join(lines), states[OVER] == len(cases)
 
 

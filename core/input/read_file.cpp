@@ -30,6 +30,30 @@ void require_regular(const std::string& path, const struct stat& status, const I
   if (!S_ISREG(status.st_mode)) refuse(path, type_of(status.st_mode), kind);
 }
 
+const char* cause() { return std::strerror(errno); }
+
+[[noreturn]] void too_large(const std::string& path, const std::string& found, const InputKind& kind) {
+  throw ConfigError(path, found, fmt::format("{} of at most {} bytes", kind.what, kind.max_bytes));
+}
+
+/// All that comes from an open descriptor, which is expected to be `size` bytes.
+std::string read_all(int fd, std::uint64_t size, const std::string& path, const InputKind& kind) {
+  if (size > kind.max_bytes) too_large(path, fmt::format("{} bytes", size), kind);
+  std::string bytes(size, '\0');
+  std::size_t done = 0;
+  for (;;) {
+    if (done == bytes.size()) bytes.resize(done + 4096);  // files of /proc and pipes have no size
+    const ::ssize_t n = ::read(fd, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) refuse(path, cause(), kind);
+    if (n == 0) break;
+    done += static_cast<std::size_t>(n);
+    if (done > kind.max_bytes) too_large(path, fmt::format("more than {} bytes", kind.max_bytes), kind);
+  }
+  bytes.resize(done);
+  return bytes;
+}
+
 /// An open regular file.
 class RegularFile {
  public:
@@ -52,30 +76,9 @@ class RegularFile {
   RegularFile(const RegularFile&) = delete;
   RegularFile& operator=(const RegularFile&) = delete;
 
-  std::string read() const {
-    std::string bytes;
-    if (size_ > kind_.max_bytes) too_large(fmt::format("{} bytes", size_));
-    bytes.resize(size_);
-    std::size_t done = 0;
-    for (;;) {
-      if (done == bytes.size()) bytes.resize(done + 4096);  // files of /proc have no size
-      const ::ssize_t n = ::read(fd_, bytes.data() + done, bytes.size() - done);
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) refuse(path_, cause(), kind_);
-      if (n == 0) break;
-      done += static_cast<std::size_t>(n);
-      if (done > kind_.max_bytes) too_large(fmt::format("more than {} bytes", kind_.max_bytes));
-    }
-    bytes.resize(done);
-    return bytes;
-  }
+  std::string read() const { return read_all(fd_, size_, path_, kind_); }
 
  private:
-  static std::string cause() { return std::strerror(errno); }
-  [[noreturn]] void too_large(const std::string& found) const {
-    throw ConfigError(path_, found, fmt::format("{} of at most {} bytes", kind_.what, kind_.max_bytes));
-  }
-
   const std::string& path_;
   const InputKind& kind_;
   int fd_ = -1;
@@ -87,6 +90,10 @@ class RegularFile {
 void require_regular_file(const std::string& path, const InputKind& kind) { RegularFile(path, kind); }
 
 std::string read_input_file(const std::string& path, const InputKind& kind) {
+  if (path == "-" && kind.or_standard_input) {
+    static const std::string bytes = read_all(STDIN_FILENO, 0, "the standard input", kind);
+    return bytes;
+  }
   return RegularFile(path, kind).read();
 }
 

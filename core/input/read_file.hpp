@@ -11,9 +11,11 @@ namespace bb {
 struct InputKind {
   const char* what;
   std::uint64_t max_bytes;
+  bool or_standard_input = false;  // the path - is the standard input, which is read once and kept
 };
 
-inline constexpr InputKind config_file{"a config file", std::uint64_t{16} << 20};
+inline constexpr InputKind config_file{"a config file (- reads the standard input)", std::uint64_t{16} << 20,
+                                       true};
 inline constexpr InputKind sweep_file{"a sweep file", std::uint64_t{16} << 20};
 inline constexpr InputKind record_file{"a record", std::uint64_t{256} << 20};
 inline constexpr InputKind mesh_file{"a mesh file (.obj, .ply, .stl)", std::uint64_t{1} << 30};
@@ -27,7 +29,7 @@ inline constexpr InputKind plugin_file{"a shared library", std::uint64_t{256} <<
 /// device, socket): opening those can wait for ever. Opens nothing but a regular file.
 void require_regular_file(const std::string& path, const InputKind& kind);
 
-/// The bytes of a regular file. Errors: ConfigError as require_regular_file, and for a file larger than
+/// The bytes of a regular file, or of the standard input where the kind has it. Errors: ConfigError as require_regular_file, and for a file larger than
 /// kind.max_bytes, of which no more than that is read.
 std::string read_input_file(const std::string& path, const InputKind& kind);
 

@@ -53,7 +53,9 @@ struct Labels {
   BB_FIELD(std::string, precision, "of the solver");
   BB_FIELD(double, d_hat_m, "width of the contact barrier") = 0;
   BB_FIELD(double, dt_s, "time step") = 0;
-  BB_FIELD(std::string, note, "how a row of a table differs; empty: nothing");
+  BB_FIELD(std::string, note,
+           "what tables call the run: SWEEP: CASE, or NAME: FORMULATION of a run of no sweep (/name of its "
+           "config, or the scene), which had none before 3.9.0");
   BB_FIELD(TextMap, swept, "of a case of a sweep: pointer -> value as JSON text, of its axes");
   BB_RECORD_END;
 };

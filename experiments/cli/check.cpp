@@ -1,10 +1,18 @@
-// The verb check: parses, builds the scene and looks for intersections; runs nothing.
+// The verb check: parses, builds the scene and looks for intersections; says how large things are; runs nothing.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
 #include "core/math/error.hpp"
+#include "core/record/run_folder.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/artifacts.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
@@ -13,15 +21,86 @@
 namespace bb::cli {
 namespace {
 
+constexpr std::size_t most_bodies = 20;
+
+/// Edges of one body's surface and rods at the start, m.
+struct EdgeLengths {
+  double least = std::numeric_limits<double>::infinity(), largest = 0, sum = 0;
+  std::size_t n = 0;
+
+  void add(double length) {
+    least = std::min(least, length);
+    largest = std::max(largest, length);
+    sum += length;
+    ++n;
+  }
+  double mean() const { return sum / static_cast<double>(n); }
+};
+
+std::vector<EdgeLengths> edge_lengths(const Scene& scene) {
+  std::vector<EdgeLengths> of(scene.bodies.size());
+  for (const auto& [a, b] : scene.surface_edges) {
+    const auto body = static_cast<std::size_t>(scene.body[static_cast<std::size_t>(a)]);
+    if (body < of.size()) of[body].add((scene.x0.col(a) - scene.x0.col(b)).norm());
+  }
+  return of;
+}
+
+std::string edges_text(const EdgeLengths& edges, double d_hat, double offset) {
+  if (edges.n == 0) return "no edge on its surface";
+  std::string out =
+      fmt::format("{} edges of {:.3g} to {:.3g} m, mean {:.3g} m; d_hat {:.3g} m is {:.2g} of the mean edge",
+                  edges.n, edges.least, edges.largest, edges.mean(), d_hat, d_hat / edges.mean());
+  if (offset > 0) out += fmt::format(", offset {:.3g} m", offset);
+  if (d_hat + 2 * offset > edges.least) out += "; that is more than the shortest edge";
+  return out;
+}
+
+/// Box of all bodies at the start, and the edges of each.
+void print_sizes(const Scene& scene) {
+  const auto start = scene.x0.leftCols(scene.n_body_vertices());
+  if (start.cols() == 0) return;
+  const Vec3d low = start.rowwise().minCoeff(), high = start.rowwise().maxCoeff(), size = high - low;
+  fmt::print(
+      "  bounding box {:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) "
+      "m\n",
+      size.x(), size.y(), size.z(), low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+  const std::vector<EdgeLengths> edges = edge_lengths(scene);
+  for (std::size_t i = 0; i < std::min(most_bodies, scene.bodies.size()); ++i) {
+    const Body& body = scene.bodies[i];
+    const auto first = static_cast<std::size_t>(body.first_vertex);
+    fmt::print("  body {}: {} vertices, {}\n", body.name, body.n_vertices,
+               edges_text(edges[i], scene.d_hat[first], scene.offset[first]));
+  }
+  if (scene.bodies.size() > most_bodies)
+    fmt::print("  and {} more bodies\n", scene.bodies.size() - most_bodies);
+}
+
+/// The start as the files of a frame that a run leaves. Errors: ConfigError where there are frames already; RecordError.
+void write_start(const Scene& scene, const std::filesystem::path& folder) {
+  std::error_code unreachable;
+  if (std::filesystem::exists(folder / "frames", unreachable))
+    throw ConfigError("--start-frame", "\"" + (folder / "frames").string() + "\", which is there already",
+                      "a folder without frames");
+  ArtifactWriter writer(folder, scene);
+  writer.start();
+  writer.leave_unfinished();
+  std::error_code error;
+  std::filesystem::rename(folder / part_of("frames"), folder / "frames", error);
+  if (error) throw ConfigError("--start-frame", error.message(), "a folder that can be written");
+}
+
 int check(const RunVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
+  if (!verb.out.empty()) write_start(scene, verb.out);
   check_device_forms(config, scene);
   check_step_solver_forms(config, scene);
   if (const auto failure = start_failure(config, scene, {&interrupted()})) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
   fmt::print("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));
+  print_sizes(scene);
   return exit_ok;
 }
 
@@ -30,6 +109,10 @@ int check(const RunVerb& verb) {
 Action verb::check(CLI::App& app) {
   const auto verb = std::make_shared<RunVerb>();
   config_arguments(app, *verb);
+  app.add_option(
+      "--start-frame", verb->out,
+      "write the start as DIR/frames/start.ply and scene.json, also where something crosses; ./bench "
+      "render CONFIG draws it");
   return [verb](const CommonOptions&) { return cli::check(*verb); };
 }
 

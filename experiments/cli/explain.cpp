@@ -14,6 +14,7 @@
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/methods.hpp"
@@ -41,7 +42,8 @@ void print_method(const RunConfig& config) {
   const MethodUse use = method_use(config);
   fmt::print("method    {}: {}\n", use.title(), use.method.source);
   for (const std::string& pointer : use.overridden) fmt::print("  overridden: {}\n", pointer);
-  for (const auto& [subject, text] : use.method.differs) fmt::print("  differs, {}: {}\n", subject, text);
+  for (const auto& [subject, text] : use.method.differs)
+    print_wrapped(fmt::format("  differs, {}: {}", subject, text), 10);
 }
 
 /// Pointers of the method that stand as the method has them.
@@ -90,7 +92,7 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
   for (const auto& [pointer, value] : flat.items()) {
     const bool own = given.contains(nlohmann::json::json_pointer(pointer));
     const char from = by_method.contains(pointer) ? 'm' : own ? '*' : ' ';
-    fmt::print("  {} {:<52} {}\n", from, pointer, value.dump());
+    print_wrapped(fmt::format("  {} {:<52} {}", from, pointer, value.dump()), 8);
   }
 }
 
@@ -168,7 +170,7 @@ int explain(const RunVerb& verb, const ContactDemand& demand) {
   for (const bool needed : {true, false}) {
     fmt::print("{}\n", needed ? "runs" : "skipped");
     for (const auto& [name, item] : plan.items()) {
-      if (item->needed == needed) fmt::print("  {:<18} {}\n", name, item->reason);
+      if (item->needed == needed) print_wrapped(fmt::format("  {:<18} {}", name, item->reason), 21);
     }
   }
   print_collisions(scene);

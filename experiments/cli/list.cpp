@@ -14,6 +14,7 @@
 #include "core/parameters/registry.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/config/presets.hpp"
@@ -22,13 +23,16 @@
 namespace bb::cli {
 namespace {
 
+constexpr std::size_t doc_column = 25;
+
 /// One line a parameter: key, default with its unit, what is allowed, meaning.
 void print_parameters(const std::vector<Parameter>& parameters) {
   for (const Parameter& p : parameters) {
     const std::string fallback = to_text(p.fallback);
     const bool bare = fallback.empty() || p.rule.unit.empty() || p.rule.unit == "1";
-    fmt::print("    {:<20} {:<16} {:<46} {}\n", p.name, fallback + (bare ? "" : " " + p.rule.unit),
-               allowed_text(p.rule), p.doc);
+    print_wrapped(fmt::format("    {:<20} {:<16} {:<46} {}", p.name,
+                              fallback + (bare ? "" : " " + p.rule.unit), allowed_text(p.rule), p.doc),
+                  doc_column);
   }
 }
 
@@ -36,8 +40,9 @@ template <class Entries>
 void print_entries(const char* title, const Entries& entries) {
   fmt::print("{}\n", title);
   for (const auto& entry : entries) {
-    fmt::print("  {:<22} {}\n", entry.name, entry.doc);
-    if constexpr (requires { entry.guarantee; }) fmt::print("    guarantee: {}\n", entry.guarantee);
+    print_wrapped(fmt::format("  {:<22} {}", entry.name, entry.doc), doc_column);
+    if constexpr (requires { entry.guarantee; })
+      print_wrapped(fmt::format("    guarantee: {}", entry.guarantee), doc_column);
     if constexpr (requires { entry.parameters; }) print_parameters(entry.parameters);
   }
 }
@@ -48,20 +53,23 @@ void print_scenes() {
   fmt::print("scenes (/scene/name; below each: {})\n", parameter_columns);
   for (const ProceduralScene& scene : procedural_scenes()) {
     const SceneDefaults& d = scene.defaults;
-    fmt::print("  {:<22} {}\n", scene.name, scene.doc);
-    fmt::print("    defaults: /time/dt_s {:g} s, /time/steps {}, /formulation/d_hat_m {:g} m, {}\n", d.dt,
-               d.steps, d.d_hat,
-               d.limit ? fmt::format("/strain_limit/limit {:g}", *d.limit) : "no strain limit");
+    print_wrapped(fmt::format("  {:<22} {}", scene.name, scene.doc), doc_column);
+    print_wrapped(
+        fmt::format("    defaults: /time/dt_s {:g} s, /time/steps {}, /formulation/d_hat_m {:g} m, {}", d.dt,
+                    d.steps, d.d_hat,
+                    d.limit ? fmt::format("/strain_limit/limit {:g}", *d.limit) : "no strain limit"),
+        doc_column);
     print_parameters(scene.parameters);
   }
-  fmt::print("  {:<22} {}\n", "bodies",
-             "meshes, pins and obstacles given as JSON: examples/scenes/README.md");
+  print_wrapped(fmt::format("  {:<22} {}", "bodies",
+                            "meshes, pins and obstacles given as JSON: examples/scenes/README.md"),
+                doc_column);
 }
 
 void print_generators() {
   fmt::print("generators (/scene/bodies/N/mesh/generator; below each: {})\n", parameter_columns);
   for (const MeshGenerator& generator : mesh_generators()) {
-    fmt::print("  {:<22} {}\n", generator.name, generator.doc);
+    print_wrapped(fmt::format("  {:<22} {}", generator.name, generator.doc), doc_column);
     print_parameters(generator.parameters);
   }
 }
@@ -69,7 +77,7 @@ void print_generators() {
 void print_parts() {
   fmt::print("parts (/scene/bodies/N/material; below each: {})\n", parameter_columns);
   for (const PartEntry& entry : part_entries()) {
-    fmt::print("  {:<22} {}\n", entry.name, entry.doc);
+    print_wrapped(fmt::format("  {:<22} {}", entry.name, entry.doc), doc_column);
     Settings<Material> keys("");
     entry.part.add_keys(keys);
     print_parameters(keys.rows().rows);
@@ -79,17 +87,20 @@ void print_parts() {
 void print_methods() {
   fmt::print("methods (/method; below each: its settings, why, and what this program does otherwise)\n");
   for (const PublishedMethod& method : published_methods()) {
-    fmt::print("  {:<22} {} Source: {}.\n", method.name, method.doc, method.source);
+    print_wrapped(fmt::format("  {:<22} {} Source: {}.", method.name, method.doc, method.source), doc_column);
     for (const auto& [pointer, value] : method.set.items()) {
-      fmt::print("    {} = {}\n      {}\n", pointer, value.dump(), method.because.at(pointer));
+      print_wrapped(fmt::format("    {} = {}", pointer, value.dump()), 6);
+      print_wrapped(fmt::format("      {}", method.because.at(pointer)), 6);
     }
-    for (const auto& [subject, text] : method.differs) fmt::print("    differs, {}: {}\n", subject, text);
+    for (const auto& [subject, text] : method.differs)
+      print_wrapped(fmt::format("    differs, {}: {}", subject, text), 6);
   }
 }
 
 void print_verbs() {
   fmt::print("verbs (verb, group, what it is for)\n");
-  for (const Verb& verb : verbs()) fmt::print("  {:<22} {:<8} {}\n", verb.name, verb.group, verb.doc);
+  for (const Verb& verb : verbs())
+    print_wrapped(fmt::format("  {:<22} {:<8} {}", verb.name, verb.group, verb.doc), doc_column);
 }
 
 struct Section {

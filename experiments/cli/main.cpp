@@ -11,6 +11,7 @@
 #include "core/math/error.hpp"
 #include "core/parameters/registry.hpp"
 #include "core/record/provenance.hpp"
+#include "core/record/schema_version.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/memory.hpp"
 #include "experiments/cli/options.hpp"
@@ -102,6 +103,13 @@ void require_verb(const std::vector<std::string>& argv) {
   throw bb::unknown_name("bench", word, names);
 }
 
+/// `help VERB` is `VERB --help`, but for a word that is a file format too: `help sweep` is about sweep files.
+void settle_help(std::vector<std::string>& argv) {
+  if (argv.size() != 3 || argv[1] != "help" || argv[2] == "sweep") return;
+  const bool is_verb = bb::find_named(verbs(), argv[2]) != nullptr;
+  if (is_verb) argv = {argv[0], argv[2], "--help"};
+}
+
 /// What was given before the verb and after it.
 struct Given {
   CommonOptions common;
@@ -118,6 +126,14 @@ std::vector<std::pair<CLI::App*, Action>> declare_verbs(CLI::App& app, Given& gi
     common_arguments(*part, given.common, given.plugins_after);
   }
   return out;
+}
+
+/// What --version says.
+std::string version_text() {
+  const bb::Provenance made = bb::collect_provenance({}, 1);
+  return fmt::format("barrierbench {}, commit {}{}, {}, records {}", made.tool_version,
+                     made.git_commit.substr(0, 10), made.git_dirty ? " (files differed from it)" : "",
+                     made.compiler, bb::run_schema_version);
 }
 
 /// Help, or what is wrong with the command line.
@@ -144,9 +160,11 @@ int main(int argc, char** argv) {
   Given given;
   CommonOptions& common = given.common;
   common.argv.assign(argv, argv + argc);
+  settle_help(common.argv);
   CLI::App app{"barrierbench: contact barriers compared in one Newton + ACCD pipeline"};
   app.name("bench");
   app.require_subcommand(1);
+  app.set_version_flag("--version", version_text);
   common_arguments(app, common, given.plugins_before);
   const auto parts = declare_verbs(app, given);
 
@@ -154,7 +172,8 @@ int main(int argc, char** argv) {
     return code;
   }
   try {
-    app.parse(argc, argv);
+    app.parse(std::vector<std::string>(common.argv.rbegin(),
+                                       common.argv.rend() - 1));  // as CLI11 has it: last first
   } catch (const CLI::ParseError& error) {
     return answer_of_parser(app, error);
   }

@@ -23,7 +23,9 @@ void set_argument(CLI::App& app, std::vector<std::string>& set, const std::strin
 }
 
 void config_arguments(CLI::App& app, RunVerb& verb) {
-  app.add_option("config", verb.config, "a config file, e.g. configs/scenes/drape2d.json")->required();
+  app.add_option("config", verb.config,
+                 "a config file, e.g. configs/scenes/drape2d.json; - reads the standard input")
+      ->required();
   set_argument(app, verb.set, "override: /pointer=value, e.g. /time/dt_s=0.005");
 }
 

@@ -7,6 +7,8 @@
 #include <csignal>
 
 #include "experiments/cli/say.hpp"
+#include "experiments/cli/summary_table.hpp"
+#include "experiments/cli/terminal.hpp"
 
 namespace bb::cli {
 namespace {
@@ -16,18 +18,6 @@ std::atomic<bool> stop{false};
 void on_signal(int signal) {
   stop.store(true);
   std::signal(signal, SIG_DFL);  // asked twice: at once
-}
-
-std::string number_text(const Number& number, const char* format) {
-  return number.finite() ? fmt::format(fmt::runtime(format), number.value) : "-";
-}
-
-std::string cond_text(const RunRecord& record, const std::string& key) {
-  const auto found = record.summary.cond.find(key);
-  if (found == record.summary.cond.end() || !found->second.log10_cond.max.finite()) return "-";
-  const double largest = found->second.log10_cond.max.value;
-  if (largest >= 14) return ">1e14";  // the largest that is claimed, and what a singular matrix counts with
-  return fmt::format("{}1e{:.2f}", found->second.statuses.contains("lower_bound") ? ">" : "", largest);
 }
 
 }  // namespace
@@ -77,7 +67,9 @@ void ProgressLine::put(std::string text) {
   const std::lock_guard lock(mutex_);
   latest_ = std::move(text);
   if (mode_ != Mode::rewrite) return;
-  say("\r\033[K" + latest_);
+  const std::size_t columns = terminal_columns(STDERR_FILENO);
+  say("\r\033[K" +
+      shortened_to(latest_, columns > 1 ? columns - 1 : 0));  // a full line would move the cursor on
   dirty_ = true;
 }
 
@@ -107,23 +99,6 @@ void install_interrupt() {
   std::signal(sweep_died, [](int) { stop.store(true); });
   // under nohup a hang-up is ignored, and stays so
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-}
-
-std::string summary_header() {
-  return fmt::format("{:<44} {:<18} {:>6} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}", "run", "outcome",
-                     "steps", "newton", "cond max", "cond bj", "gap/d_hat", "stretch", "crossings", "time s");
-}
-
-std::string summary_row(const RunRecord& record) {
-  const Summary& s = record.summary;
-  const std::string name =
-      record.labels.note.empty() ? record.labels.scene + " " + record.labels.formulation : record.labels.note;
-  return fmt::format(
-      "{:<44} {:<18} {:>6} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}", name, to_string(record.status.outcome),
-      s.steps, s.newton_iterations, cond_text(record, "full/none"), cond_text(record, "full/block_jacobi"),
-      number_text(s.gap_min_rel.min, "{:.3g}"), number_text(s.max_stretch, "{:.4f}"),
-      record.audit.enabled ? fmt::format("{}", record.audit.crossings + record.audit.violations) : "-",
-      number_text(s.wall_s, "{:.2f}"));
 }
 
 }  // namespace bb::cli

@@ -53,8 +53,4 @@ constexpr int sweep_died = SIGUSR1;
 const std::atomic<bool>& interrupted();
 void install_interrupt();
 
-/// One table row about a finished run.
-std::string summary_row(const RunRecord& record);
-std::string summary_header();
-
 }  // namespace bb::cli

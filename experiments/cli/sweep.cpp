@@ -9,6 +9,7 @@
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
+#include "experiments/cli/summary_table.hpp"
 #include "experiments/cli/sweep_run.hpp"
 
 namespace bb::cli {

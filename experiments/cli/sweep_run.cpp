@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <thread>
 
@@ -12,7 +13,9 @@
 #include "core/record/provenance.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
+#include "experiments/cli/summary_table.hpp"
 #include "experiments/cli/sweep_jobs.hpp"
+#include "experiments/cli/terminal.hpp"
 
 namespace bb::cli {
 namespace {
@@ -33,6 +36,8 @@ class SweepRun {
   }
 
   SweepTally in_processes() {
+    ::setenv("BENCH_COLUMNS", fmt::format("{}", terminal_columns(STDOUT_FILENO)).c_str(),
+             1);  // of their tables
     auto next = sweep_.chosen.begin();
     bool stopping = false;
     do {

@@ -60,6 +60,7 @@ void require_scales(const json& document, const Reader& reader) {
 
 const ProceduralScene* begin_config(const json& document, const Reader& reader, RunConfig& config) {
   config.source = reader.source;
+  config.name = document.value("name", "");
   const ProceduralScene* scene = read_scene(child(document, "scene"), reader, config.scene);
   const SceneDefaults defaults = scene ? scene->defaults : SceneDefaults();
   config.time = {defaults.dt, defaults.steps};
@@ -128,7 +129,8 @@ RunConfig parse_config(const std::string& text, const std::string& source, const
 
 RunConfig load_config(const std::string& path, std::span<const std::string> overrides) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  return parse_config(read_input_file(path, config_file), path, folder.empty() ? "." : folder, overrides);
+  const std::string source = path == "-" ? "the standard input" : path;
+  return parse_config(read_input_file(path, config_file), source, folder.empty() ? "." : folder, overrides);
 }
 
 namespace {

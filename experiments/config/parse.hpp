@@ -13,7 +13,7 @@
 
 namespace bb {
 
-/// Reads a config file. "extends": PATH (relative to the file) is laid underneath, object by object; then
+/// Reads a config file; -: the standard input, whose relative paths start where the program was started. "extends": PATH (relative to the file) is laid underneath, object by object; then
 /// each override "/pointer=value" (value: JSON, or a bare word taken as a string) is set, in order. A
 /// formulation or a scene whose name changes on the way starts anew, but the formulation keeps its d_hat_m. A method lies
 /// underneath what stands beside its name (document.hpp).

@@ -71,7 +71,9 @@ namespace {
 void add_origin(Settings<RunConfig>& out) {
   out.add_row({"schema", required(word({"barrierbench.config/1"})), no_default, "Version of this format."},
               nullptr, [](const RunConfig&) { return "barrierbench.config/1"; });
-  out.add_row({"name", any_text(), no_default, "Free label; no part of the identity of a run."});
+  out.add_row(
+      {"name", any_text(), no_default,
+       "Free label, which progress lines, tables and figures show; no part of the identity of a run."});
   out.add_row({"doc", any_text(), no_default, "Free text; no part of the identity of a run."});
   out.add_row({"extends", any_text(), no_default,
                "Path of a config, relative to this file, that this one is laid over, object by object."});

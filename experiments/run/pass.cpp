@@ -99,7 +99,7 @@ void Pass::step() {
 
 void Pass::show(const StepReport& step) const {
   Progress progress;
-  progress.label = run_label(config_);
+  progress.label = options_.note;
   progress.pass = name_;
   progress.steps = config_.time.steps;
   progress.step = static_cast<int>(std::lround(step.t_s / config_.time.dt));

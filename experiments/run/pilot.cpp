@@ -92,7 +92,7 @@ Calibration pilot_stiffness(const RunConfig& pilot, const Scene& scene, const St
 void show(const RunConfig& config, const RunOptions& options, const StepReport& step, double start_s) {
   if (!options.progress) return;
   Progress progress;
-  progress.label = run_label(config);
+  progress.label = options.note;
   progress.pass = "pilot";
   progress.step = step.step + 1;
   progress.steps = config.time.steps;

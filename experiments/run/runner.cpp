@@ -200,6 +200,14 @@ std::string run_label(const RunConfig& config) {
                      config_id(config).substr(0, 8));
 }
 
+std::string own_note(const RunConfig& config) {
+  const std::string& lead = config.name.empty() ? config.scene.name : config.name;
+  const FormulationConfig& formulation = config.formulation;
+  if (!formulation.name.empty()) return fmt::format("{}: {}", lead, formulation.name);
+  return fmt::format("{}: {}, {} {}", lead, formulation.shape, formulation.stiffness_policy.name,
+                     config_id(config).substr(0, 8));
+}
+
 RunRecord identified(const RunConfig& config, const RunOptions& options) {
   RunRecord record;
   record.passes = {config.passes.time, config.passes.diagnose, config.passes.audit};
@@ -224,6 +232,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   RunConfig config = asked;
   decide_linear_solver(config);
   RunOptions options = given;
+  if (options.note.empty()) options.note = own_note(config);
   if (options.time_limit_s > 0) options.deadline_s = now_s() + options.time_limit_s;
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(thread_count(config)));

@@ -17,7 +17,7 @@ namespace bb {
 
 /// What a progress line shows.
 struct Progress {
-  std::string label;      // scene and formulation
+  std::string label;      // as own_note
   const char* pass = "";  // "pilot", "time" or "diagnose"
   int step = 0, steps = 0;
   double t_s = 0, t_end_s = 0;  // simulated
@@ -73,5 +73,9 @@ RunRecord run_config(const RunConfig& config, const RunOptions& options);
 
 /// scene-formulation-id8: the folder name of a run.
 std::string run_label(const RunConfig& config);
+
+/// What tables call a run that is no case of a sweep: "NAME: FORMULATION", of the config's name (without one, of the scene), and
+/// of the shape, the policy and the first digits of the config's id where the formulation is no preset.
+std::string own_note(const RunConfig& config);
 
 }  // namespace bb

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .meshes import has_arrays, with_files
 
 SCHEMA = "barrierbench.config/1"  # of a config; a dict may leave it out
 Config = Mapping[str, Any] | str | os.PathLike
@@ -79,15 +80,21 @@ def linear_solvers() -> list[Entry]:
     return _entries(_core.linear_solvers_json())
 
 
-def _given(config: Config, overrides: Sequence[str] | Mapping[str, Any]) -> tuple[str, str, str, list[str]]:
-    """Text, source, folder and overrides of a config, for _core."""
+def _given(
+    config: Config, overrides: Sequence[str] | Mapping[str, Any], out: str | None = None
+) -> tuple[str, str, str, list[str]]:
+    """Text, source, folder and overrides of a config, for _core. out: folder of the record, for meshes in arrays."""
     changes = (
         [f"{pointer}={json.dumps(value)}" for pointer, value in overrides.items()]
         if isinstance(overrides, Mapping)
         else list(overrides)
     )
     if isinstance(config, Mapping):
-        return json.dumps({"schema": SCHEMA, **config}), "config", os.getcwd(), changes
+        given = json.dumps({"schema": SCHEMA, **with_files(config)}), "config", os.getcwd(), changes
+        if not (out and has_arrays(config)):
+            return given
+        _core.build_scene(*given)  # what it refuses leaves nothing in the folder
+        return json.dumps({"schema": SCHEMA, **with_files(config, Path(out) / "inputs")}), *given[1:]
     if isinstance(config, str) and config.lstrip().startswith("{"):
         return config, "config", os.getcwd(), changes
     path = Path(config)

@@ -52,8 +52,8 @@ class Simulation:
         out: str | os.PathLike | None = None,
         on_iteration: Callable[[dict[str, Any]], None] | None = None,
     ):
-        given = _given(config, overrides)
         folder = "" if out is None else str(out)
+        given = _given(config, overrides, folder)
         self._run = _core.Run(*given, folder, sys.argv[:], _brought(given), True)
         self.on_iteration = on_iteration
         """Called after every Newton iteration with the fields of a line of the trace (`./bench help trace`)."""
@@ -169,6 +169,6 @@ def run(
     shows. resume: go on from the checkpoint of this very run. Ctrl-C leaves a checkpoint, as in the program.
     Errors: ConfigError; RecordError; what on_step raises, with a checkpoint left.
     """
-    given = _given(config, overrides)
+    given = _given(config, overrides, None if out is None else str(out))
     folder = _core.run_whole(*given, "" if out is None else str(out), sys.argv[:], _brought(given), on_step, resume)
     return json.loads((Path(folder) / "run.json").read_text())

@@ -75,6 +75,19 @@ def test_runs_stand_in_the_order_of_their_start_and_share_no_name(tmp_path):
     assert list(runs["series"]) == ["same", "same #2", "same #3"]
 
 
+def test_names_of_configs_tell_runs_apart_and_group_scenes_that_are_given_as_bodies(tmp_path):
+    notes = {"a": "my try: log", "b": "another: log", "c": "another: log", "d": "chain: log", "e": "block: log"}
+    for name, note in notes.items():
+        write_run(tmp_path / name, "log", 1.0, 0.1, note=note)
+        edit(tmp_path / name / "log", lambda record: record["ids"].pop("sweep_id"))
+    for name in "de":
+        edit(tmp_path / name / "log", lambda record: record["labels"].update(scene="bodies"))
+    runs = load(tmp_path).runs.set_index("run")
+    assert list(runs.loc[[f"{k}/log" for k in "abc"], "series"]) == ["log (my try)", "log (another)", "log (another) #2"]
+    assert list(runs.loc[["a/log", "d/log", "e/log"], "group"]) == ["drape2d", "chain", "block"]
+    assert list(runs.loc[["d/log", "e/log"], "series"]) == ["log", "log"]
+
+
 def test_conditions_are_of_one_run_scaling_and_stage_in_the_order_of_the_iterations(tmp_path):
     write_set(tmp_path)
 

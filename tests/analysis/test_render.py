@@ -111,16 +111,17 @@ def test_the_nearer_triangle_owns_the_pixel():
 def test_rays_meet_an_obstacle_on_its_surface_and_as_deep_as_its_points_are(obstacle, perspective):
     center = np.array([1.0, 2, 3.2])
     camera = Camera(center + np.array([3.0, -4, 2]), center, np.array([0.0, 0, 1]), 60.0, (50.0, 40.0), perspective)
-    seen = hits(obstacle, camera, 100, 80, center, 2.0)
-    hit = np.isfinite(seen.depth)
+    seen = hits(obstacle, camera, camera.rays(100, 80), center, 2.0)
+    hit = seen.mask
     assert 60 < hit.sum() < 8000
-    x = seen.points[hit]
+    x = seen.points
     np.testing.assert_allclose(signed_gap(obstacle, x), 0, atol=1e-12)
     pixel = camera.project(x)
     row, column = np.nonzero(hit)
     np.testing.assert_allclose(pixel[:, :2], np.stack([column + 0.5, row + 0.5], 1), atol=1e-6)
-    np.testing.assert_allclose(pixel[:, 2], seen.depth[hit], rtol=1e-9)
-    np.testing.assert_allclose(np.linalg.norm(seen.normals[hit], axis=1), 1)
+    np.testing.assert_allclose(pixel[:, 2], seen.depth, rtol=1e-9)
+    np.testing.assert_array_equal(seen.depth_image()[hit], seen.depth)
+    np.testing.assert_allclose(np.linalg.norm(seen.normals, axis=1), 1)
     behind = x - 1e-3 * (x - camera.eye) if perspective else x - 1e-3 * (center - camera.eye)  # nothing in front of it
     if obstacle["kind"] != "plane":
         assert (signed_gap(obstacle, behind) > 0).all()
@@ -131,7 +132,7 @@ def test_a_plane_is_not_seen_from_behind(perspective):
     camera = Camera(np.array([0.0, -4, 2]), np.zeros(3), np.array([0.0, 0, 1]), 60.0, (50.0, 40.0), perspective)
     for side, seen in ((1, True), (-1, False)):  # the wall y = -1 between the camera and the centre, and turned round
         wall = {"kind": "plane", "point_m": [0, -1, 0], "axis": [0, -side, 0]}
-        assert np.isfinite(hits(wall, camera, 100, 80, np.zeros(3), 2.0).depth).any() == seen
+        assert hits(wall, camera, camera.rays(100, 80), np.zeros(3), 2.0).mask.any() == seen
 
 
 def test_gaps_of_triangles_and_edges_agree_with_samples():
@@ -304,7 +305,7 @@ def test_the_path_that_is_said_is_the_file_that_is_written(run, tmp_path, capsys
 
 
 def test_another_ending_is_refused_before_anything_is_drawn(run, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(render, "_drawn", None)
+    monkeypatch.setattr(render, "drawn_of_run", None)
     assert render.main([str(run), "--out", str(tmp_path / "README.md")]) == 2
     assert f"bench render: --out {tmp_path / 'README.md'}: found the ending .md; allowed: a file that ends in .png" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

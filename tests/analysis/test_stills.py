@@ -7,12 +7,14 @@ import sys
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 
-from analysis import stills
+from analysis import render, stills
 from analysis.places import ROOT
 from tests.falling_cloth import CLOTH_ON_BALL
 
-SWEPT = {"labels": {"scene": "bodies", "step_solver": "penalty", "formulation": "log", "note": "baselines: main=1 drape penalty 1e3"},
+SET_TITLE = Axes.set_title
+SWEPT = {"ids": {"sweep_id": "baselines"}, "labels": {"scene": "bodies", "step_solver": "penalty", "formulation": "log", "note": "baselines: main=1 drape penalty 1e3"},
          "status": {"outcome": "penetration"}, "audit": {"crossings": 12}}
 
 
@@ -30,8 +32,9 @@ def runs(program, tmp_path_factory):
 
 def test_a_label_says_what_was_swept_and_how_it_ended():
     assert stills.label_of(SWEPT) == "main=1 drape penalty 1e3\npenetration\n12 crossings"
-    alone = {**SWEPT, "labels": {**SWEPT["labels"], "note": ""}, "status": {"outcome": "ok"}, "audit": None}
+    alone = {**SWEPT, "labels": {**SWEPT["labels"], "note": ""}, "ids": {}, "status": {"outcome": "ok"}, "audit": None}
     assert stills.label_of(alone) == "bodies, penalty log\nok"
+    assert stills.label_of({**alone, "labels": {**SWEPT["labels"], "note": "my try: log"}}) == "my try: log\nok"
 
 
 def test_every_run_is_in_the_picture(runs, tmp_path):
@@ -45,6 +48,21 @@ def test_every_run_is_in_the_picture(runs, tmp_path):
     left, right = pixels["both"][below:, :half], pixels["both"][below:, -half:]
     assert left.std() > 0.01 and right.std() > 0.01
     assert np.array_equal(left, pixels["same"][below:, :half]) and not np.array_equal(right, pixels["same"][below:, -half:])
+
+
+@pytest.mark.parametrize("note", ["W" * 60, "a label of many words that goes on and on until it is wider than any picture that it could stand above " * 3])
+@pytest.mark.parametrize("columns", [1, 2])
+def test_no_title_is_cut_off(runs, tmp_path, monkeypatch, note, columns):
+    titles = []
+    monkeypatch.setattr(Axes, "set_title", lambda self, text, **more: titles.append(text) or SET_TITLE(self, text, **more))
+    read = stills.read_record
+    monkeypatch.setattr(stills, "read_record", lambda file: {**(record := read(file)), "labels": {**record["labels"], "note": note}})
+    assert stills.main([*map(str, runs), "--out", str(tmp_path / "a.png"), "--columns", str(columns)]) == 0
+    render.render(runs[1], out=tmp_path / "b.png", look=render.Look(color="gap", size=(200, 150)), title=note)
+    assert len(titles) == 3 and all("".join(note.split()) in "".join(title.split()) for title in titles)
+    for name in "ab":
+        dark = plt.imread(tmp_path / f"{name}.png")[..., :3].min(axis=2) < 0.5  # of text
+        assert dark.any() and not dark[:, :2].any() and not dark[:, -2:].any() and not dark[:2].any()
 
 
 def test_what_cannot_be_drawn_is_named(runs, tmp_path):

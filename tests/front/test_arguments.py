@@ -1,10 +1,11 @@
-"""Words of the command line that begin with a minus and are no options."""
+"""What the command line takes beside plain options, and that its answers keep to the terminal."""
 
 import pytest
 
 from analysis.errors import UserError
-from analysis import render
+from analysis import render, text_table
 from analysis.formula import verb as formula
+from analysis.front import door, verbs
 from analysis.play import verb as play
 from analysis.score import verb as score
 
@@ -46,3 +47,33 @@ def test_color_has_one_spelling_in_help_and_two_on_the_command_line(parse, capsy
         parse(["--help"])
     said = capsys.readouterr().out
     assert "--color" in said and "--colour" not in said
+
+
+def test_the_last_column_of_a_table_is_broken_where_the_terminal_is_narrow(monkeypatch):
+    rows = [["one", "a sentence that is longer than what is left of a line"], ["another", "short"]]
+    monkeypatch.setenv("COLUMNS", "40")
+    assert text_table.fitted(["name", "what"], rows) == text_table.aligned(["name", "what"], rows)  # no terminal
+    monkeypatch.setattr("sys.stdout", type("Terminal", (), {"isatty": lambda self: True})())
+    lines = text_table.fitted(["name", "what"], rows)
+    assert max(map(len, lines)) <= 40 and len(lines) == 4
+    assert lines[2].startswith(" " * 9) and " ".join(" ".join(lines).split()) == "name what one " + rows[0][1] + " another short"
+    monkeypatch.setenv("COLUMNS", "200")
+    assert text_table.fitted(["name", "what"], rows) == text_table.aligned(["name", "what"], rows)
+
+
+def test_help_keeps_to_the_terminal(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "70")
+    verb = next(verb for verb in verbs.TABLE if verb.name == "score")
+    assert max(map(len, door.usage_of(verb)[1:-1])) <= 70
+
+
+@pytest.mark.parametrize("word", ["help", "--help", "-h"])
+def test_help_of_a_verb_is_that_of_the_verb(word, capsys):
+    with pytest.raises(SystemExit):
+        door.main([word, "score"])
+    assert "usage: bench score" in capsys.readouterr().out
+
+
+def test_the_version_is_that_of_the_sources(capsys):
+    assert door.main(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("barrierbench 0.1.0")

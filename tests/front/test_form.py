@@ -69,8 +69,8 @@ def test_users_see_one_kind_of_error():
 
 def test_one_place_starts_the_program():
     """Other files start git, compilers and their like, Python, or targets of their own."""
-    others = {"claims/history.py", "compare_toolkit.py", "engines/environment.py", "engines/launch.py", "formula/cache.py", "fuzz.py", "readme/snippets.py", "figures/sources.py",
-              *(f"front/{name}.py" for name in ("building", "format", "microbenchmarks", "mutate", "python_module", "rooms", "test", "tidy"))}
+    others = {"animation.py", "claims/history.py", "compare_toolkit.py", "engines/environment.py", "engines/launch.py", "formula/cache.py", "fuzz.py", "readme/snippets.py", "figures/sources.py",
+              *(f"front/{name}.py" for name in ("building", "format", "microbenchmarks", "mutate", "python_module", "rooms", "test", "tidy", "version"))}
     starters, program = set(), re.compile(r"built_program\(|ensure_program\(|RELEASE|BARRIERBENCH_PROGRAM")
     for path in ANALYSIS.rglob("*.py"):
         name = path.relative_to(ANALYSIS).as_posix()

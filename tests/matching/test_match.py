@@ -5,6 +5,8 @@ import shutil
 from pathlib import Path
 
 import pytest
+
+from analysis.places import ROOT
 from made_records import install
 
 from analysis.errors import UserError
@@ -144,6 +146,19 @@ def test_the_sweep_that_is_made(tmp_path):
     config.write_text("[1]")
     with pytest.raises(UserError, match="a.json: not a JSON object"):
         make_sweep(config, ["cubic"], "equal_force", 0.1, "both")
+
+
+def test_a_formula_and_a_file_are_formulations(tmp_path, monkeypatch):
+    monkeypatch.setenv("BARRIERBENCH_CACHE", str(tmp_path / "cache"))
+    config = tmp_path / "a.json"
+    config.write_text('{"schema": "barrierbench.config/1"}')
+    formula, file = "formula:-(d-d_hat)^2*log(d/d_hat)", str(ROOT / "examples/plugins/inverse.json")
+    _, *cases = json.loads(make_sweep(config, [formula, file], "equal_force", 0.1, "both").text)["axes"][0]["cases"]
+    assert [case["set"]["/formulation"]["shape"] for case in cases] == [formula, "inverse"]
+    assert cases[0]["label"].startswith("formula-") and "/" not in cases[0]["label"] and cases[1]["label"] == "inverse"
+    assert all(case["set"]["/formulation"]["stiffness_policy"] == case["set"]["/strain_limit/stiffness_policy"] == {"name": "fixed"} for case in cases)
+    with pytest.raises(UserError, match="formula:d_hat - d"):
+        make_sweep(config, ["formula:d_hat - d"], "equal_force", 0.1, "both")
 
 
 def test_the_real_program(match, program, monkeypatch, tmp_path, capsys):

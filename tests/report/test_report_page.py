@@ -156,6 +156,26 @@ def test_failures_stand_before_any_number_and_every_row_has_its_command(runs):
         assert (runs / unquote(html.unescape(re.search(r'href="([^"]*)"', row)[1]))).is_file()
 
 
+def config_of(folder: Path, **sections) -> None:
+    config = json.loads((folder / "run.json").read_text())["config"]
+    changed(folder, config={name: {**config.get(name, {}), **values} for name, values in sections.items()})
+
+
+def test_the_methods_text_has_duration_and_friction_in_whatever_form_they_are_given(runs):
+    said = "\n".join(methods.text(gathered(runs)))
+    assert "duration 0.05 s" in said and "Friction: none." in said
+    for name in ("log", "cubic", "cubic_dynamic", "quadratic"):
+        config_of(runs / name, time={"duration_s": None, "steps": 5})
+    assert "duration 0.05 s" in "\n".join(methods.text(gathered(runs)))
+    slides = {"mu": 0.3, "law": "smoothed_coulomb", "combine": "min", "eps_v_m_per_s": 0.001, "lag_iterations": 2}
+    config_of(runs / "log", friction=slides)
+    config_of(runs / "cubic", friction={**slides, "mu": 0.0}, scene={"obstacles": [{"friction": 0.5}], "bodies": [{}, {"friction": 0.25}]})
+    said = "\n".join(methods.text(gathered(runs)))
+    assert "none (2 runs)" in said
+    assert "law smoothed_coulomb, coefficient 0.3, of two sides by the rule min, full above a sliding speed of 0.001 m/s, solved 2 times" in said
+    assert "coefficient 0, 0.25 and 0.5 of bodies or obstacles with their own" in said
+
+
 def test_the_methods_text_is_that_of_the_records(runs):
     said = "\n".join(methods.text(gathered(runs)))
     for part in (

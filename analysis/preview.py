@@ -1,0 +1,51 @@
+"""The start of a config as a still, without a run: ./bench render CONFIG."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from .captions import caption
+from .coloring import annotate
+from .errors import UserError
+from .frames import read_frame, scene_at, without_bodies
+from .json_file import read_object
+from .picture_file import picture_file
+from .program import started
+from .render import Look, drawn, save_annotated, save_bare, shown
+
+
+def _start(config: Path, overrides: list[str], scratch: Path) -> subprocess.CompletedProcess:
+    """The program's check of a config, with its start below `scratch`. Errors: UserError without one."""
+    words = [word for one in overrides for word in ("--set", one)]
+    done = started("check", str(config), *words, "--start-frame", str(scratch))
+    if not (scratch / "frames" / "start.ply").is_file():
+        raise UserError(done.stderr.strip() or f"{config}: the program ended with {done.returncode}")
+    return done
+
+
+def preview(config: Path, out: Path | None, look: Look, overrides: list[str]) -> Path:
+    """Writes a PNG and its caption; returns the PNG. A start in which something crosses is drawn, and that is
+    said. Errors: UserError.
+    """
+    if look.color != "body" or look.subdivide:
+        raise UserError("--color, --subdivide: are of runs; a config is drawn with --color body, as it is")
+    path = picture_file(out or Path(), f"{config.stem}_start.png")
+    with tempfile.TemporaryDirectory() as scratch:
+        done = _start(config, overrides, Path(scratch))
+        frame = read_frame(Path(scratch) / "frames" / "start.ply")
+        scene = scene_at(read_object(Path(scratch) / "frames" / "scene.json"), frame)
+    if done.returncode != 0:
+        print(done.stderr.strip(), file=sys.stderr)
+    pixels, scale = drawn(without_bodies(frame, scene, look.hidden), scene, look, None)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    title = f"{config.stem}, start"
+    if look.bare:
+        save_bare(path, pixels)
+    else:
+        save_annotated(path, pixels, title, lambda fig: annotate(fig, scene, frame, look.color, scale))
+    said = "as the program checks it: " + (done.stdout if done.returncode == 0 else done.stderr).strip()
+    path.with_suffix(".txt").write_text(caption(f"{title}, {said} {shown(look)}", []))
+    return path

@@ -1,0 +1,188 @@
+"""What somebody who meets the program asks it first: help of one place, the version, a config through a pipe, how large a scene is, which
+row is which run, and lines that fit the terminal."""
+
+import fcntl
+import json
+import os
+import pty
+import re
+import struct
+import subprocess
+import termios
+
+import pytest
+from test_cli import BLOCK, ROOT, bench, refused, sweep_spec, write
+
+from tests.falling_cloth import CLOTH_ON_BALL
+
+DRAPE2D = ROOT / "configs/scenes/drape2d.json"
+
+
+def on_terminal(program: str, columns: int, *words) -> str:
+    """What the program writes on a terminal of that width."""
+    ours, its = pty.openpty()
+    fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", 40, columns, 0, 0))
+    child = subprocess.Popen([program, *map(str, words)], stdout=its, stderr=its, stdin=subprocess.DEVNULL)
+    os.close(its)
+    said = b""
+    while True:
+        try:
+            part = os.read(ours, 65536)
+        except OSError:  # EIO: the other end is closed
+            part = b""
+        if not part:
+            break
+        said += part
+    os.close(ours)
+    assert child.wait() == 0, said
+    return said.decode()
+
+
+def shown_lines(text: str) -> list[str]:
+    """Lines as they stand on the screen: each rewriting of one is one."""
+    return [line for line in re.split(r"\r\n|\r\x1b\[K|\n", text) if line]
+
+
+# --- help and version
+
+
+def test_help_of_a_verb_is_the_verb_s(program):
+    assert bench(program, "help", "run").stdout == bench(program, "run", "--help").stdout != ""
+    assert "every setting of a sweep" in bench(program, "help", "sweep").stdout
+
+
+def test_help_of_a_place_is_what_is_there_and_below_it(program):
+    whole = bench(program, "help", "config").stdout
+    for words in (["/scene/obstacles"], ["config", "/scene/obstacles"], ["/scene/obstacles/0"], ["/scene/obstacles/N"]):
+        found = bench(program, "help", *words).stdout
+        assert "/scene/obstacles/N: " in found and "radius_m" in found and "dt_s" not in found
+        assert all(line in whole for line in found.splitlines()[2:])
+    leaf = bench(program, "help", "/time/dt_s").stdout
+    assert "/time/dt_s of a config" in leaf and "Time step" in leaf and "steps " not in leaf
+    assert "pointer" in bench(program, "help", "sweep", "/axes").stdout
+
+
+def test_a_place_that_is_not_there_is_refused_with_the_nearest(program):
+    refused(bench(program, "help", "/scene/obstacle"), "did you mean obstacles?")
+    refused(bench(program, "help", "/time/dt_s/more"), "/more", "nothing below /time/dt_s")
+    refused(bench(program, "help", "record", "/steps"), "record /steps")
+    refused(bench(program, "help", "/time", "--schema"), "without --schema")
+    refused(bench(program, "help", "rum"), "did you mean")
+
+
+def test_the_version(program):
+    said = bench(program, "--version")
+    assert said.returncode == 0 and re.match(r"barrierbench \d+\.\d+\.\d+, commit .*, records 3\.\d+\.\d+$", said.stdout)
+
+
+# --- a config from the standard input
+
+
+@pytest.mark.parametrize("verb", ["check", "explain"])
+def test_a_config_through_a_pipe_is_that_of_the_file(program, tmp_path, verb):
+    text = (ROOT / "configs/scenes/hang.json").read_text()
+    of_file, of_pipe = bench(program, verb, ROOT / "configs/scenes/hang.json"), bench(program, verb, "-", input=text, cwd=tmp_path)
+    assert of_pipe.returncode == 0, of_pipe.stderr
+    names = [done.stdout.replace(str(ROOT / "configs/scenes/hang.json"), "-") for done in (of_file, of_pipe)]
+    assert names[0] == names[1]
+
+
+def test_a_run_of_a_config_through_a_pipe(program, tmp_path):
+    done = bench(program, "run", "-", "--out", tmp_path / "out", input=json.dumps(CLOTH_ON_BALL))
+    assert done.returncode == 0, done.stderr
+    assert bench(program, "run", tmp_path / "out/run.json", "--out", tmp_path / "again").returncode == 0
+
+
+def test_what_is_wrong_in_a_pipe_says_where(program, tmp_path):
+    refused(bench(program, "check", "-", input='{"schema": 1'), "the standard input")
+    refused(bench(program, "check", "-", input='{"schema": "barrierbench.config/1", "scene": {"name": "hang"}, "time": {"dt_s": -1}}'), "the standard input#/time/dt_s")
+    refused(bench(program, "sweep", "-", input="{}"), "-")
+
+
+# --- how large a scene is
+
+
+def test_check_says_how_large_a_scene_its_edges_and_d_hat_are(program, tmp_path):
+    grid = {"generator": "grid", "n_x": 5, "n_y": 5, "size_x_m": 0.4, "size_y_m": 0.4}  # edges of 0.1 m and their diagonals
+    body = {"name": "cloth", "mesh": grid, "transform": {"translate_m": [1, 0, 2]}}
+    file = write(tmp_path / "a.json", {**CLOTH_ON_BALL, "scene": {"bodies": [body]}, "formulation": {"name": "log", "d_hat_m": 0.01}})
+    said = bench(program, "check", file).stdout
+    assert "bounding box 0.4 x 0.4 x 0 m, from (0.8, -0.2, 2) to (1.2, 0.2, 2) m" in said
+    mean = (40 * 0.1 + 16 * 0.1 * 2**0.5) / 56
+    assert f"body cloth: 25 vertices, 56 edges of 0.1 to 0.141 m, mean {mean:.3g} m; d_hat 0.01 m is {0.01 / mean:.2g} of the mean edge\n" in said
+    wide = bench(program, "check", file, "--set", "/formulation/d_hat_m=0.11").stdout
+    assert "more than the shortest edge" in wide and "more than" not in said
+
+
+def test_the_start_is_written_as_a_frame_also_where_it_is_refused(program, tmp_path):
+    file = write(tmp_path / "a.json", CLOTH_ON_BALL)
+    assert bench(program, "check", file, "--start-frame", tmp_path / "one").returncode == 0
+    assert sorted(path.name for path in (tmp_path / "one/frames").iterdir()) == ["scene.json", "start.ply"]
+    refused(bench(program, "check", file, "--start-frame", tmp_path / "one"), "--start-frame", "there already")
+    inside = ["--set", "/scene/bodies/0/transform/translate_m=[0,0,0]"]
+    refused(bench(program, "check", file, *inside, "--start-frame", tmp_path / "two"), "a start without intersections")
+    assert (tmp_path / "two/frames/start.ply").is_file()
+
+
+# --- which run is which
+
+
+def row_of(stdout: str) -> str:
+    return stdout.splitlines()[1].split("  ")[0]
+
+
+def test_two_policies_have_two_labels_and_a_name_is_shown(program, tmp_path):
+    few = ["--set", "/time/steps=2"]
+    plain = bench(program, "run", DRAPE2D, *few, "--out", tmp_path / "0")
+    assert row_of(plain.stdout) == "drape2d: log"
+    policies = ['{"name": "ipc_adaptive"}', '{"name": "elasticity_inclusive"}']
+    rows = []
+    for k, policy in enumerate(policies):
+        done = bench(program, "run", DRAPE2D, *few, "--set", f"/formulation/stiffness_policy={policy}", "--out", tmp_path / str(k + 1))
+        assert done.returncode == 0, done.stderr
+        rows.append(row_of(done.stdout))
+        assert rows[-1].startswith(f"drape2d: log, {json.loads(policy)['name']} ")
+        assert json.loads((tmp_path / str(k + 1) / "run.json").read_text())["labels"]["note"] == rows[-1]
+    named = bench(program, "run", DRAPE2D, *few, "--set", '/name="my try"', "--out", tmp_path / "named", "--progress-every", "0.0001")
+    assert row_of(named.stdout) == "my try: log" and "my try: log [" in named.stderr
+    again = bench(program, "run", tmp_path / "named/run.json", "--out", tmp_path / "again")
+    assert row_of(again.stdout) == "my try: log"
+
+
+# --- lines that fit
+
+
+@pytest.mark.parametrize("columns", [60, 80, 100])
+def test_lines_of_a_run_fit_the_terminal(program, tmp_path, columns):
+    words = ["run", DRAPE2D, "--set", "/time/steps=6", "--set", '/name="a name that is longer than what is usual in tables"', "--out", tmp_path / "out"]
+    lines = shown_lines(on_terminal(program, columns, *words))
+    table = [line for line in lines if line.startswith(("run ", "a name"))]
+    assert len(table) >= 2 and any("[time]" in line or "step" in line for line in lines)
+    assert max(map(len, table)) <= max(columns, 77) and all("outcome" in line or "ok" in line or "step" in line or "..." in line for line in table)
+    steps = [line for line in lines if " [" in line]
+    assert all(len(line) < columns for line in steps)
+
+
+def test_a_wide_terminal_and_none_have_every_column(program, tmp_path):
+    words = ["run", BLOCK, "--set", "/time/steps=3", "--out"]
+    heads = [shown_lines(on_terminal(program, columns, *words, tmp_path / str(columns))) for columns in (137, 80)]
+    head = [next(line for line in lines if line.startswith("run ")) for lines in heads]
+    assert head[0] == bench(program, *words, tmp_path / "none").stdout.splitlines()[0]
+    assert "cond bj" in head[0] and "cond bj" not in head[1] and {"outcome", "steps", "newton", "crossings"} <= set(head[1].split())
+
+
+def test_rows_of_a_sweep_in_processes_fit_too(program, tmp_path):
+    lines = shown_lines(on_terminal(program, 80, "sweep", sweep_spec(tmp_path, [3, 4]), "--jobs", "2", "--out", tmp_path / "out"))
+    table = lines[: next(k for k, line in enumerate(lines) if "comparability" in line)]  # below it: what may be compared
+    rows = [line for line in table if line.startswith(("run ", "steps: "))]
+    assert sum(line.startswith("run ") for line in rows) == 1 and sum(" ok " in line for line in rows) == 2
+    assert max(map(len, rows)) <= 80
+
+
+def test_help_list_and_explain_are_broken_at_the_terminal_and_nowhere_else(program):
+    for words in (["help", "config"], ["list", "scenes"], ["list", "methods"], ["explain", str(BLOCK)]):
+        lines = shown_lines(on_terminal(program, 90, *words))
+        too_long = [line for line in lines if len(line) > 90 and " " in line.strip()[:60].strip()]
+        assert len(too_long) < 0.02 * len(lines), too_long[:3]
+        whole = bench(program, *words).stdout
+        assert " ".join(" ".join(lines).split()) == " ".join(whole.split())
