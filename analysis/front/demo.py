@@ -53,10 +53,12 @@ def main(argv: list[str]) -> int:
     args = parser.parse_args(argv)
     if args.jobs < 1:
         raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
+    begun = time.monotonic()
     if code := run_all(args.out, args.jobs):
         return code
     code = importlib.import_module("analysis.figures.demo").make(args.out, None)
     report, page = importlib.import_module("analysis.report.verb"), args.out / "report.html"
     print("\n" + report.report(args.out, page, args.out / "figures"))
+    say(f"runs and figures took {(time.monotonic() - begun) / 60:.1f} minutes, {args.jobs} runs at a time")
     say(f"open {page.resolve().as_uri()}")
     return code
