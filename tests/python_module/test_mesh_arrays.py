@@ -30,10 +30,10 @@ def test_a_mesh_of_arrays_is_the_scene_s(bb, tmp_path, monkeypatch):
 def test_rods_and_tetrahedra(bb, tmp_path):
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     rod = {"vertices": corners[:3], "segments": [[0, 1], [1, 2]]}
-    scene = bb.build_scene(config(rod) | {"scene": {"name": "bodies", "bodies": [{"name": "rod", "mesh": rod, "material": {"density_kg_per_m": 0.1, "rod_stretching_N": 10.0}}]}})
+    scene = bb.build_scene(config(rod) | {"scene": {"name": "bodies", "bodies": [{"name": "rod", "mesh": rod, "material": {"line_density_kg_per_m": 0.1, "rod_stretching_N": 10.0}}]}})
     assert scene.edges.shape == (2, 2)
     solid = {"vertices": corners, "tetrahedra": np.array([[0, 1, 2, 3]])}
-    body = {"name": "solid", "mesh": solid, "material": {"density_kg_per_m3": 1000.0, "solid_youngs_Pa": 1e5, "solid_poisson": 0.3}}
+    body = {"name": "solid", "mesh": solid, "material": {"solid_density_kg_per_m3": 1000.0, "solid_youngs_Pa": 1e5, "solid_poisson": 0.3}}
     assert bb.build_scene(config(solid) | {"scene": {"name": "bodies", "bodies": [body]}}).faces.shape == (4, 3)
 
 
