@@ -12,8 +12,7 @@ from pathlib import Path
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..whole_file import write_whole
-from . import diff_page, figures, players
-from .diff import diff_of
+from . import figures, players
 from .gather import gathered
 from .page import page
 from .verdict import headline
@@ -44,6 +43,9 @@ def report(folder: Path, out: Path, drawn: Path | None = None, most_players: int
 
 def report_of_two(a: Path, b: Path, out: Path) -> str:
     """The same of what differs between two folders. Errors: UserError, RecordError."""
+    from . import diff_page  # takes what judges records, and scipy: a page of one folder needs neither
+    from .diff import diff_of
+
     diff = diff_of(gathered(a), gathered(b))
     write_page(out, diff_page.page(diff, out))
     return f"{diff_page.verdict(diff)[0].text}\n{out} ({out.stat().st_size / 1e6:.1f} MB)"

@@ -13,6 +13,7 @@ UNUSED = {
     "judge.verb": (*TABLES, *DRAWING, "jsonschema"),
     "render": (*TABLES, *SHAPES, "meshio"),
     "stills": (*TABLES, *SHAPES, "meshio"),
+    "report.verb": ("scipy", "jsonschema"),
     "play.verb": (*TABLES, *SHAPES, "meshio"),
     "catalogue.scenes": (*TABLES, *DRAWING, "jsonschema"),
     "formula.verb": ("numpy", "sympy"),
