@@ -8,7 +8,7 @@ from pathlib import Path
 from . import fields
 
 
-def _series(labels: dict) -> str:
+def case_name(labels: dict) -> str:
     """What a line of a figure is called: the case of its sweep, or the formulation."""
     note = labels.get("note") or ""
     case = note.split(": ", 1)[1] if ": " in note else note
@@ -38,7 +38,7 @@ def run_row(record: dict, run: str = "") -> dict:
     (`/time/dt_s`), and where it belongs.
     """
     row = fields.row("runs", record)
-    row |= {"run": run, "folder": Path(run).name, "series": _series(record["labels"])}
+    row |= {"run": run, "folder": Path(run).name, "series": case_name(record["labels"])}
     row |= {pointer: _swept(text) for pointer, text in (row.get("swept") or {}).items()}
     name = own_name(record["labels"])
     row["group"] = row["sweep_id"] or (name if name and row["scene"] == "bodies" else row["scene"])

@@ -21,6 +21,7 @@ from ..coloring import BODY_COLORS
 from ..errors import UserError
 from ..frames import points_of_bodies
 from ..picture import OBSTACLE_COLOR
+from ..run_rows import case_name, own_name
 from .film import Film, shaded_mesh
 from .scales import FIELDS, NOT_COMPUTED, scale
 
@@ -71,8 +72,8 @@ def _film_data(film: Film) -> tuple[dict, bytes]:
         for array in (film.positions, film.gap_rel, film.load_N, film.stretch)
     ]
     words = {
-        "formulation": film.labels["formulation"],
-        "scene": film.labels["scene"],
+        "formulation": case_name(film.labels),
+        "scene": own_name(film.labels) or film.labels["scene"],
         "run": Path(film.run).name,
         "outcome": film.outcome,
         "steps": film.steps,

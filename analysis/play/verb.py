@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..errors import UserError, tells
 from ..front.arguments import color_argument, parser_of
+from ..run_rows import case_name, own_name
 from ..whole_file import write_whole
 from .film import Film, Source, filmed, kept, opened
 from .page import page, page_bytes
@@ -96,7 +97,8 @@ def play(
     notes = differences(films) + ([cut] if cut else [])
     write_whole(out, page(films, colour, notes))
     shown = " beside ".join(
-        f"{len(film.times_s)} frames of {film.labels['scene']}, {film.labels['formulation']} ({film.outcome})"
+        f"{len(film.times_s)} frames of {own_name(film.labels) or film.labels['scene']},"
+        f" {case_name(film.labels)} ({film.outcome})"
         for film in films
     )
     return [*notes, f"{out} ({_megabytes(out.stat().st_size)}): {shown}"]
