@@ -12,17 +12,22 @@ namespace {
 
 enum class Side { beside, exactly, through };
 
-/// Rotates coordinates, mirrors some and scales by a power of two: all exact.
-Vec3d seen(const Vec3d& x, unsigned how) {
+/// What is nearer than that many bits of the size of a pair may be left open, but is never taken for the other.
+constexpr int decided_bits = 48;
+
+/// Shears, rotates coordinates, mirrors some and scales by a power of two: all exact. A shear takes digits.
+Vec3d seen(Vec3d x, unsigned how, int bits) {
+  if (bits <= decided_bits - 4) {
+    x[0] += (static_cast<int>(how % 5) - 2) * x[1] + (static_cast<int>(how % 3) - 1) * x[2];
+    x[1] += (static_cast<int>(how % 4) - 1) * x[2];
+    x[2] += (static_cast<int>(how % 2) * 2 - 1) * x[0];
+  }
   const int first = static_cast<int>(how % 3);
   Vec3d out(x[first], x[(first + 1) % 3], x[(first + 2) % 3]);
   for (int k = 0; k < 3; ++k)
     if ((how / 3 >> k & 1U) != 0) out[k] = -out[k];
   return std::ldexp(1.0, static_cast<int>(how % 7) - 3) * out;
 }
-
-/// What is nearer than that many bits of the size of a pair may be left open, but is never taken for the other.
-constexpr int decided_bits = 48;
 
 void expect(Verdict found, Side side, int bits, const std::string& where) {
   const bool open = bits > decided_bits && found == Verdict::unproven;
@@ -51,7 +56,7 @@ void expect_verdicts(const std::function<void(double by, double up, double down,
           make(by, up, down, motion);
           for (auto* end : {&motion.x0, &motion.x1}) {
             for (auto& x : *end) {
-              const Vec3d turned = seen(Vec3d(x), how);
+              const Vec3d turned = seen(Vec3d(x), how, bits);
               x = turned;
             }
           }
@@ -118,7 +123,7 @@ TEST(TouchWithinRounding, OfAnEdgeAndATriangleThatStandStill) {
         x << 0, 1, 0, by, by, by - 1,   //
             0, 0, 1, 0.25, 0.25, 0.25,  //
             0, 0, 0, -1, 2, 0.5;
-        for (int v = 0; v < 6; ++v) x.col(v) = seen(x.col(v), how);
+        for (int v = 0; v < 6; ++v) x.col(v) = seen(x.col(v), how, bits);
         const StateAudit found = audit_state(two_triangles(), x, true);
         EXPECT_EQ(found.crossings > 0, sign > 0) << bits << " " << how;
         EXPECT_EQ(found.touches > 0, sign == 0) << bits << " " << how;

@@ -10,6 +10,7 @@ from analysis.places import ROOT
 from made_records import install
 
 from analysis.errors import UserError
+from analysis.matching import runs as make_runs
 from analysis.matching.formulations import settings
 from analysis.matching.match import main, make_sweep
 
@@ -174,3 +175,16 @@ def test_the_real_program(match, program, monkeypatch, tmp_path, capsys):
     assert cubic["matching"]["kappa_N_per_m"] > 5 * rows[0]["matching"]["kappa_N_per_m"] > 0  # equal force at 0.1 d_hat, not equal kappa
     assert match(*few, "--set", "/scene/nn=3") == 2 and "found the unknown key" in capsys.readouterr().err
     assert match(*few, "--theta", "0.9", "--set", "/time/steps=2") == 2  # another sweep in the same folder
+
+
+def test_the_inputs_of_overrides_are_inputs(tmp_path):
+    """Another mesh under the name that an override gives is another run: its records are not taken for those of before."""
+    base, mesh = tmp_path / "base.json", tmp_path / "body.obj"
+    base.write_text('{"schema": "barrierbench.config/1"}')
+    made, override = make_runs.sweep("match", base, {}, [{"label": "a", "set": {}}]), "/scene/bodies/0/mesh/file=body.obj"
+    digests = []
+    for text in ("v 0 0 0\n", "v 1 0 0\n"):
+        mesh.write_text(text)
+        digests.append((make_runs.inputs_sha256(made), make_runs.inputs_sha256(made, [override])))
+    (plain, before), (plain_again, after) = digests
+    assert plain == plain_again and before != after and before != plain
