@@ -24,7 +24,7 @@ from .places import ROOT
 from .text_table import markdown
 from .toolkit_meshes import generated_sheets, read_ply, write_problem
 
-DATA = Path(os.environ.get("BARRIERBENCH_DATA", ROOT / ".." / "shared" / "data"))
+DATA = Path(os.environ.get("BARRIERBENCH_DATA", ROOT / "data"))
 PROGRAM = ROOT / "build/release/experiments/microbenchmarks/contact_stages"
 
 STAGES = {  # in the order of one Newton iteration

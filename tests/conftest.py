@@ -10,6 +10,11 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 sys.path.insert(0, str(ROOT / "tests" / "analysis"))
 
+from tests.private import own_folders  # noqa: E402 (of this tree)
+from tests.private.own_folders import own_folders_only  # noqa: E402, F401 (for every test)
+
+own_folders.begin()
+
 
 def _name_the_blas_kernel() -> None:
     """The kernel for which the program would start itself again (core/linear/blas_kernel.cpp), where the processor has it: so each of the

@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +16,7 @@ from pathlib import Path
 from ..errors import UserError, tells
 from ..places import ROOT
 from . import format as formatting
-from . import python_module, rooms
+from . import private, python_module, rooms
 from .building import build, folder, job_count, say, setup
 
 OWN = ("--sanitize", "--browser")  # what ctest does not see
@@ -79,25 +80,22 @@ def ptx_share(log: str) -> list[str]:
     return [f"PTX      {len(ptx)} C++ tests run PTX: {sum(ptx):.0f} of {of_all:.0f} s of one core"]
 
 
+def in_private(words: list[str], log: Path) -> tuple[int, list[str]]:
+    """Runs tests in folders of their own: their exit code, and a line for everything that they left there."""
+    with tempfile.TemporaryDirectory(prefix="barrierbench-tests-") as place:
+        code = _into(log, words, env=private.variables(Path(place), os.environ))
+        left = [f"LEFT     {path.relative_to(place)}" for path in private.left_over(Path(place))]
+    return code, left
+
+
 def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
     log = folder(preset) / "ctest.log"
-    code = _into(
-        log,
-        [
-            "ctest",
-            "--test-dir",
-            str(folder(preset)),
-            "--parallel",
-            "2",
-            "--output-on-failure",
-            "--no-tests=error",
-            *arguments,
-        ],
-    )
+    words = ["ctest", "--test-dir", str(folder(preset)), "--parallel", "2"]
+    code, left = in_private([*words, "--output-on-failure", "--no-tests=error", *arguments], log)
     text = log.read_text(errors="replace")
     print("\n".join(text.splitlines()[-6:]) if code == 0 else without_passed(text), flush=True)
-    summary.lines += ptx_share(text) + not_passed_cpp(text)
-    return code
+    summary.lines += ptx_share(text) + not_passed_cpp(text) + left
+    return code or len(left)
 
 
 def python_tests(preset: str, summary: Summary) -> int:

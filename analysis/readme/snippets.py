@@ -142,6 +142,14 @@ def _config_fault(words: list[str]) -> str:
     return ""
 
 
+def _is_there(command: str) -> bool:
+    """Whether a file of the tree or a known tool. A path outside the tree is a placeholder for a place of the
+    reader's: whether this machine has it says nothing.
+    """
+    path = ROOT / os.path.normpath(os.path.expanduser(command))
+    return command in TOOLS or not path.is_relative_to(ROOT) or path.exists()
+
+
 def _shell_faults(snippet: Snippet) -> list[str]:
     faults = []
     for k, line in enumerate(snippet.text.splitlines()):
@@ -157,7 +165,7 @@ def _shell_faults(snippet: Snippet) -> list[str]:
             elif words[0] == "python3" and words[1:] and (ROOT / words[1]).is_file():
                 fault = "the system's Python may lack the packages: .venv/bin/python"
             else:
-                fault = "" if (ROOT / words[0]).exists() or words[0] in TOOLS else f"{words[0]}: not there"
+                fault = "" if _is_there(words[0]) else f"{words[0]}: not there"
             if fault:
                 faults.append(f"{snippet.page}:{snippet.line + k}: {command.strip()}: {fault}")
     return faults

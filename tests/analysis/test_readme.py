@@ -291,6 +291,12 @@ def test_a_snippet_that_does_not_work_is_named_with_its_line(program, wrong, pla
         assert len(found) == 1 and found[0].startswith(place) and said in found[0], found
 
 
+@pytest.mark.parametrize("line, faulty", [("/home/of/nobody/card/run.sh --out /home/of/nobody/raw", False), ("~/of/nobody.sh", False), ("experiments/of_nobody.sh", True), ("./of_nobody.sh", True), ("of_nobody x", True)])
+def test_a_path_outside_the_tree_is_a_placeholder(line, faulty):
+    """Whether it is there says what somebody once made on this machine."""
+    assert bool(snippets.faults(f"```sh\n{line}\n```\n", "a.md")) is faulty
+
+
 @pytest.mark.parametrize("page", readme.pages_with_snippets(ROOT))
 def test_every_snippet_of_the_pages_works(program, page):
     text = (ROOT / page).read_text()

@@ -1,0 +1,5 @@
+"""Python processes that a test starts are watched too: this folder is on their PYTHONPATH."""
+
+import outside
+
+outside.start()
