@@ -26,9 +26,19 @@ SCENES = (
     "drape_82k.cpu",
     "drape_1m",
     "dense_500k",
-    "dense_184m",
+    "dense_8m",
 )
 RECORDS = ROOT / "results/gpu"
+# Kernels of the graph of iterations, which return at once when the solve is over.
+OF_SOLVE = (
+    "MultiplyDot",
+    "UpdateBlockJacobi",
+    "StepDirection",
+    "SolveClusters",
+    "UpdateResidual",
+    "AddLevels",
+)
+IDLE_SHARE = 0.1  # of the bytes of a kernel's largest launch: what moves less did nothing
 
 
 def parts_of(folder: Path) -> dict[str, dict]:
@@ -134,23 +144,31 @@ def functor(kernel: str) -> str:
 
 def measured_kernels(folder: Path) -> dict[str, dict]:
     """functor -> launches, seconds, bytes, of Nsight Compute's table; empty where it was not there or had no
-    rights.
+    rights. `idle` of the launches did nothing: those of conjugate gradients that a graph makes after the last
+    iteration. Their seconds and bytes are not counted.
     """
     path = folder / "logs/kernels.out"
     lines = path.read_text(errors="replace").splitlines() if path.exists() else []
     start = next((i for i, line in enumerate(lines) if line.startswith('"ID"')), None)
-    kernels: dict[str, dict] = {}
+    launches: dict[str, dict[str, dict[str, float]]] = {}  # functor -> number of a launch -> metrics
     for row in csv.DictReader(lines[start:]) if start is not None else []:
-        if not row.get("Metric Name"):
-            continue
-        entry = kernels.setdefault(functor(row["Kernel Name"]), {"launches": 0, "seconds": 0.0, "bytes": 0.0})
-        value = float(row["Metric Value"].replace(",", ""))
-        if row["Metric Name"] == "gpu__time_duration.sum":
-            entry["launches"] += 1
-            entry["seconds"] += 1e-9 * value
-        elif row["Metric Name"] == "dram__bytes.sum":
-            entry["bytes"] += value
-    return kernels
+        if row.get("Metric Name"):
+            of_launch = launches.setdefault(functor(row["Kernel Name"]), {}).setdefault(row["ID"], {})
+            of_launch[row["Metric Name"]] = float(row["Metric Value"].replace(",", ""))
+    return {name: _of_launches(name, list(of.values())) for name, of in launches.items()}
+
+
+def _of_launches(name: str, launches: list[dict[str, float]]) -> dict:
+    """The sums over the launches of a kernel that did something."""
+    most = max(one.get("dram__bytes.sum", 0.0) for one in launches)
+    working = [one for one in launches if one.get("dram__bytes.sum", 0.0) >= IDLE_SHARE * most]
+    counted = working if name.split("::")[-1] in OF_SOLVE else launches
+    return {
+        "launches": len(counted),
+        "idle": len(launches) - len(counted),
+        "seconds": sum(1e-9 * one.get("gpu__time_duration.sum", 0.0) for one in counted),
+        "bytes": sum(one.get("dram__bytes.sum", 0.0) for one in counted),
+    }
 
 
 def kernels_of(folder: Path) -> list[dict]:
@@ -158,7 +176,10 @@ def kernels_of(folder: Path) -> list[dict]:
     kernels = measured_kernels(folder)
     path = folder / "kernel_times.json"
     if not kernels and path.exists():
-        kernels = {name: {**times, "bytes": None} for name, times in read_object(path)["kernels"].items()}
+        kernels = {
+            name: {"idle": None, **times, "bytes": None}
+            for name, times in read_object(path)["kernels"].items()
+        }
     rows = [
         {
             "name": name,

@@ -22,10 +22,12 @@ from .gpu_tables import (
     LARGE,
     MOST_KERNELS,
     card_rows,
+    copy_rate,
     cost_rows,
     fallen,
     judged,
     kernel_rows,
+    mixes_idle,
     same_rows,
     scene_rows,
 )
@@ -71,8 +73,8 @@ SCENE_HEAD = [
 SAME_HEAD = ["run", "vertices", "steps", "outcome", "Newton iterations", "PCG iterations", "most contacts"]
 
 
-def _of_card(record: dict) -> list[str]:
-    """What failed, the scenes, the runs beside the host and the kernels of one record."""
+def _of_card(record: dict, copy: float) -> list[str]:
+    """What failed, the scenes, the runs beside the host and the kernels of one record. copy: B/s."""
     on = f"on {record['device']['card']}"
     day = record["date_utc"][:10]
     text = []
@@ -93,7 +95,8 @@ def _of_card(record: dict) -> list[str]:
     text += [f"## Kernels {on}, {day}", ""]
     if not record["kernels"]:
         return [*text, "Not measured.", ""]
-    return text + _table(["kernel", "launches", "us a launch", "GB/s", "of the copy"], kernel_rows(record))
+    head = ["kernel", "launches", "idle ones", "us a launch", "GB/s", "of the copy"]
+    return text + _table(head, kernel_rows(record, copy))
 
 
 def _cards(records: list[dict]) -> list[str]:
@@ -101,8 +104,12 @@ def _cards(records: list[dict]) -> list[str]:
     text = [
         (
             "Times are means: of a PCG iteration the linear solves over their iterations, of a Newton"
-            " iteration the steps over theirs. The last column of scenes is the share of the wall time that"
-            " shows that a step ends in a minimum. The copy is read and written."
+            " iteration the steps over theirs; in records until 2026-11-28 the solves hold assembly that they"
+            " waited for. The last column of scenes is the share of the wall time that shows that a step ends"
+            " in a minimum. The copy is read and written; of a card it is the fastest that its records have,"
+            " since some measured it while the clocks were low. Launches of kernels are those that did"
+            " something: a graph of iterations may go on when its solve is over. Records until 2026-11-28 did"
+            " not tell them apart, so that times of such kernels are not known."
         ),
         "",
     ]
@@ -124,7 +131,7 @@ def _cards(records: list[dict]) -> list[str]:
         card_rows(records),
     )
     for record in records:
-        text += _of_card(record)
+        text += _of_card(record, copy_rate(record, records))
     return text
 
 
@@ -167,9 +174,8 @@ def markdown(records: list[dict], prices: dict) -> str:
     return "\n".join(text)
 
 
-def _rates(axis, record: dict, kernels: list[dict]) -> list[dict]:
-    """The panel of one card, and its numbers."""
-    copy = record["device"]["copy"]["on_the_card_Bps"]
+def _rates(axis, record: dict, kernels: list[dict], copy: float) -> list[dict]:
+    """The panel of one card, and its numbers. copy: B/s."""
     shares = [kernel["Bps"] / copy for kernel in kernels]
     axis.barh([re.sub(r"\w+::", "", kernel["name"]) for kernel in kernels], shares, color="#0072B2")
     axis.axvline(1, color="#666666", linewidth=0.6, gid=style.REFERENCE)
@@ -191,7 +197,8 @@ def _rates(axis, record: dict, kernels: list[dict]) -> list[dict]:
 def draw(records: list[dict], stem: Path) -> list[Path]:
     """Rates of kernels over that of a copy, one panel a card. Empty where no kernel has a rate."""
     shown = [
-        (record, [k for k in record["kernels"] if k["Bps"] is not None][:MOST_KERNELS]) for record in records
+        (record, [k for k in record["kernels"] if k["Bps"] is not None and not mixes_idle(k)][:MOST_KERNELS])
+        for record in records
     ]
     shown = [(record, kernels) for record, kernels in shown if kernels]
     if not shown:
@@ -205,7 +212,7 @@ def draw(records: list[dict], stem: Path) -> list[Path]:
     )
     numbers = []
     for axis, (record, kernels) in zip(axes[:, 0], shown):
-        numbers += _rates(axis, record, kernels)
+        numbers += _rates(axis, record, kernels, copy_rate(record, records))
     return style.save(
         fig,
         stem,

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 KEPT = re.compile(
-    r"PATH|TERM|TZ|C(C|XX)(FLAGS)?|CUDA_(HOME|PATH)|CUDACXX|(LD_)?LIBRARY_PATH|NVIDIA_.*|SLURM_CONF"
+    r"PATH|TERM|TZ|C(C|XX)(FLAGS)?|CUDA_(HOME|PATH)|CUDACXX|(LD_)?LIBRARY_PATH|NVIDIA_.*|SLURM_CONF|SNAKEMAKE"
     r"|CCACHE_.*|OPENBLAS_.*|[ALTU]+SAN_OPTIONS|PYTEST_.*|PYTHON(DONTWRITEBYTECODE|UNBUFFERED|WARNINGS)"
     r"|BARRIERBENCH_(?!CACHE$).*|BB_.*|JUDGE_PAIRS"
 )  # the last line: what a user asks of the tests

@@ -132,7 +132,7 @@ def _config_fault(words: list[str]) -> str:
         ]
         if "--plugin" in words:
             return ""  # of a library that the lines before it build
-        if any("cudss" in word or '"cuda"' in word or "dense_184m" in word for word in words):
+        if any("cudss" in word or '"cuda"' in word or "dense_8m" in word for word in words):
             return ""  # needs a card, or minutes
         done = started(*verify, timeout=SECONDS)
         return "" if done.returncode == 0 else _told(done)

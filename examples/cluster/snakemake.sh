@@ -17,4 +17,4 @@ fi
 mkdir -p "$out"
 # In the folder of the records, so that what Snakemake remembers of its jobs lies beside them.
 exec "$snakemake" --snakefile "$here/Snakefile" --directory "$out" --rerun-triggers input mtime \
-  --config "spec=$spec" "out=$out" "shards=$shards" "bench=$bench" "$@"
+  --config "spec=$spec" "out=$out" "shards=$shards" "bench=$bench" "again=$here/again.sh" "$@"

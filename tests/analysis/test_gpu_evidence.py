@@ -1,14 +1,16 @@
 """Records of cards from raw files as the script leaves them, and the page of them."""
 
+import dataclasses
 import json
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from analysis import gpu_evidence, gpu_report
+from analysis import gpu_evidence, gpu_model, gpu_report, gpu_tables
 
 ROOT = Path(__file__).resolve().parents[2]
 PRICES = {"currency": "USD", "cards": [
@@ -38,9 +40,9 @@ def raw(tmp_path):
     (folder / "device.json").write_text(json.dumps({"usable": True, "card": "NVIDIA X100 80GB", "driver": "13.0",
                                                     "copy": {"on_the_card_Bps": 3e12, "to_the_card_Bps": 5e10, "from_the_card_Bps": 5e10}}))
     (folder / "card.csv").write_text("name, driver_version, clocks.max.sm [MHz]\nNVIDIA X100 80GB, 580.1, 1980\n")
-    (folder / "parts.tsv").write_text("device_tests\tpassed\t0\t3\nmemcheck\tfailed\t9\t20\nracecheck\tleft_out\tcompute-sanitizer was not found\t0\ndense_184m\tfailed\t2\t1\n")
+    (folder / "parts.tsv").write_text("device_tests\tpassed\t0\t3\nmemcheck\tfailed\t9\t20\nracecheck\tleft_out\tcompute-sanitizer was not found\t0\ndense_8m\tfailed\t2\t1\n")
     (folder / "logs/memcheck.err").write_text("a line\n========= ERROR SUMMARY: 3 errors\n")
-    (folder / "logs/dense_184m.err").write_text("no memory for matrix values: 9 GiB\n")
+    (folder / "logs/dense_8m.err").write_text("no memory for matrix values: 9 GiB\n")
     (folder / "logs/kernels.out").write_text(NCU)
     (folder / "logs/device_tests.out").write_text("[  PASSED  ]\nX100: 3 kernels in 9 launches, 9 compared with the host, 0 kernels differ\n")
     for scene, outcome in (("drape_82k", "ok"), ("drape_1m", "ok")):
@@ -56,9 +58,9 @@ def test_a_record_has_what_the_script_saw(raw):
     assert record["card"]["driver_version"] == "580.1" and record["card"]["clocks.max.sm"] == "1980"
     scene = record["scenes"]["drape_1m"]
     assert (scene["newton_ms"], scene["pcg_ms"], scene["step_s"]) == (400.0, 5.0, 2.0)
-    assert record["scenes"]["dense_184m"] is None
+    assert record["scenes"]["dense_8m"] is None
     assert [k["name"] for k in record["kernels"]] == ["bb::resident::UpdateP", "bb::resident::SpmvDot"]
-    assert record["kernels"][1] == {"name": "bb::resident::SpmvDot", "launches": 2, "seconds": pytest.approx(4e-6), "bytes": 6e6, "Bps": pytest.approx(1.5e12)}
+    assert record["kernels"][1] == {"name": "bb::resident::SpmvDot", "launches": 2, "idle": 0, "seconds": pytest.approx(4e-6), "bytes": 6e6, "Bps": pytest.approx(1.5e12)}
 
 
 def test_kernels_of_a_library_are_named_without_what_they_are_templates_of():
@@ -66,10 +68,66 @@ def test_kernels_of_a_library_are_named_without_what_they_are_templates_of():
     assert gpu_evidence.functor("void bb::exec::run_each<bb::A<bb::B>>(long, T1)") == "bb::A<bb::B>"
 
 
+def row_of(name, number, n_bytes, ns):
+    kernel = f'"{number}","1","void bb::exec::run_blocks<bb::resident::{name}>(T1)"'
+    return f'{kernel},"dram__bytes.sum","byte","{n_bytes}"\n{kernel},"gpu__time_duration.sum","ns","{ns}"\n'
+
+
+def test_launches_after_the_end_of_a_solve_are_not_in_the_means(raw, tmp_path, capsys):
+    """A graph of iterations goes on when its solve is over; a kernel of another kind may have small launches that work."""
+    launches = [("MultiplyDot", 80e6, 50000)] * 2 + [("MultiplyDot", 1000, 2000)] * 2 + [("Sort", 9e6, 3000), ("Sort", 1000, 1000)]
+    (raw / "logs/kernels.out").write_text(NCU.splitlines()[1] + "\n" + "".join(row_of(name, k, n, ns) for k, (name, n, ns) in enumerate(launches)))
+    found = {kernel["name"].split("::")[-1]: kernel for kernel in gpu_evidence.collect(raw, "", 1)["kernels"]}
+    assert found["MultiplyDot"] == {"name": "bb::resident::MultiplyDot", "launches": 2, "idle": 2, "seconds": pytest.approx(1e-4), "bytes": 160e6, "Bps": pytest.approx(1.6e12)}
+    assert (found["Sort"]["launches"], found["Sort"]["idle"]) == (2, 0)
+    assert "| `bb::resident::MultiplyDot` | 2 | 2 | 50 | 1,600 | 53 % |" in page(raw, tmp_path, capsys)
+
+
+def test_a_record_that_cannot_tell_them_apart_has_no_means_of_such_kernels():
+    kernels = [{"name": f"bb::resident::{name}", "launches": 4, "seconds": 1e-4, "bytes": 160e6, "Bps": 1.6e12} for name in ("MultiplyDot", "GatherBlocks")]
+    rows = gpu_tables.kernel_rows({"kernels": kernels}, 3.2e12)
+    assert rows[0][2:] == ["not known"] * 4 and rows[1][3:] == ["25", "1,600", "50 %"]
+
+
+def test_rates_are_held_against_the_fastest_copy_of_the_card():
+    """A copy that was measured while the clocks were low is slower than kernels."""
+    records = [{"device": {"card": card, "copy": {"on_the_card_Bps": rate}}} for card, rate in (("X", 1.4e12), ("X", 3e12), ("Y", 4e12))]
+    assert [gpu_tables.copy_rate(record, records) for record in records] == [3e12, 3e12, 4e12]
+
+
+def test_the_memory_run_of_old_records_had_another_name():
+    old = {"scenes": {"dense_184m": None}, "parts": {"dense_184m": {"why": "exit code 137"}}}
+    assert gpu_tables._memory_run(old) == "exit code 137"
+
+
+def test_a_scene_for_a_card_is_named_by_its_vertices():
+    """Not by contacts that it has not: one was called after the 184 million of a paper and holds 27 million."""
+    named = {path.stem: json.loads(path.read_text())["scene"] for path in (ROOT / "configs/gpu").glob("*.json") if path.stem != "dense_patch"}
+    assert len(named) >= 4
+    for name, scene in named.items():
+        number, unit = re.fullmatch(r"\w+_(\d+)([km])", name).groups()
+        assert scene.get("layers", 5) * scene["n"] ** 2 == pytest.approx(int(number) * {"k": 1e3, "m": 1e6}[unit], rel=0.06), name
+
+
+def test_pages_say_the_contacts_and_bytes_of_the_scene_that_they_name():
+    dense, million = gpu_model.SIZES[-1], gpu_model.Size("drape_1m", 1048576, 2e6, "")
+    known = gpu_model.read_inputs()
+    contacts = gpu_model.contacts(dense, known["dense_patch"])
+    assert dense.name == "dense_8m" and f"--contacts {round(contacts, -5):.0f} " in (ROOT / "docs/jobs/card.md").read_text()
+    page = (ROOT / "docs/device.md").read_text()
+    record = json.loads((ROOT / "results/gpu/nvidia_h200-2026-11-26.json").read_text())
+    scene = record["scenes"]["drape_1m"]
+    patch = dataclasses.replace(known["dense_patch"], contacts_a_vertex=scene["contacts"] / million.vertices)
+    moved = gpu_model.solver_bytes(million, patch)
+    assert scene["vertices"] == million.vertices and f"with at most {scene['contacts']:.0f} contacts: an iteration of conjugate gradients moves {moved / 1e9:.2f} GB" in page
+    assert f"which take {1e3 * moved / record['device']['copy']['on_the_card_Bps']:.2f} ms" in page and f"The record has {scene['pcg_ms']:.3f} ms" in page
+    assert not re.search(r"184 million", page + (ROOT / "experiments/gpu_evidence.sh").read_text())
+
+
 def test_without_counters_kernels_have_times_and_no_rates(raw):
     (raw / "logs/kernels.out").write_text("==ERROR== ERR_NVGPUCTRPERM - The user does not have permission\n")
     (raw / "kernel_times.json").write_text('{"schema": "barrierbench.kernel_times/1", "kernels": {"bb::A": {"launches": 4, "seconds": 0.5}}}')
-    assert gpu_evidence.collect(raw, "", 1)["kernels"] == [{"name": "bb::A", "launches": 4, "seconds": 0.5, "bytes": None, "Bps": None}]
+    assert gpu_evidence.collect(raw, "", 1)["kernels"] == [{"name": "bb::A", "idle": None, "launches": 4, "seconds": 0.5, "bytes": None, "Bps": None}]
 
 
 def test_a_device_without_a_card_is_no_record(raw, capsys):
@@ -100,8 +158,8 @@ def test_the_page_has_a_row_a_card(raw, tmp_path, capsys):
         assert part in row
     assert "| drape_1m | card | ok | 1,048,576 | 7,000,000 | 2 | 10 | 500 | 2 | 400 | 5 | 50 % |" in text
     assert "- device_tests: X100: 3 kernels in 9 launches, 9 compared with the host, 0 kernels differ" in text
-    assert "- dense_184m: **failed**: no memory for matrix values: 9 GiB" in text
-    assert "| `bb::resident::SpmvDot` | 2 | 2 | 1,500 | 50 % |" in text
+    assert "- dense_8m: **failed**: no memory for matrix values: 9 GiB" in text
+    assert "| `bb::resident::SpmvDot` | 2 | 0 | 2 | 1,500 | 50 % |" in text
     assert gpu_report.NEVER not in text
     # 2 s a step of 0.01 s: 200 s for a second of the scene, at 3 USD an hour.
     assert "| X100 80 GB | 3 USD (2026-01-02, a list) | 1,800 | 0.167 USD |" in text
@@ -164,7 +222,7 @@ def test_the_script_makes_a_record_of_what_passed_and_what_failed(raw, tmp_path)
     assert done.returncode == 0, done.stderr
     record = json.loads(Path(done.stdout.strip()).read_text())
     assert record["parts"]["device_tests"] == {"status": "failed", "seconds": record["parts"]["device_tests"]["seconds"], "why": "no such kernel"}
-    assert record["parts"]["drape_82k"]["status"] == "passed" and record["scenes"]["dense_184m"]["vertices"] == 1048576
+    assert record["parts"]["drape_82k"]["status"] == "passed" and record["scenes"]["dense_8m"]["vertices"] == 1048576
     assert all(record["parts"][f"card_{room}"]["status"] == "passed" for room in ("contact", "elements", "linear", "runs", "sums", "system"))
     same = {run["name"]: run for run in record["same"]}
     accepted = [file.stem for file in (ROOT / "configs/catalogue").glob("*.json") if not file.stem.startswith("intersect-")]

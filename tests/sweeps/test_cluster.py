@@ -9,7 +9,7 @@ import pytest
 from sweep_files import ROOT, SHAPES, STEPS, records, verb, write_sweep
 
 STAND_INS = {
-    "parallel": '''words=(); while [ $# -gt 0 ]; do case "$1" in --jobs|--joblog|--retries) shift 2;; *) words+=("$1"); shift;; esac; done
+    "parallel": '''words=(); while [ $# -gt 0 ]; do case "$1" in --jobs|--joblog) shift 2;; --retries) exit 9;; *) words+=("$1"); shift;; esac; done
 while read -r line; do "${words[@]//\\{\\}/$line}" < /dev/null || exit 1; done''',
     "srun": '[ "$1" = --ntasks=1 ] && shift; exec "$@"',
     "scontrol": 'echo "scontrol $*" >> "$CALLS"',
@@ -60,6 +60,27 @@ def test_a_task_whose_time_is_over_goes_back_into_the_queue(tmp_path, environmen
     task = [ROOT / "examples/cluster/slurm_task.sh", stopped, "s.json", "out", "4"]
     done = subprocess.run(task, env={**environment, "SLURM_ARRAY_JOB_ID": "7", "SLURM_ARRAY_TASK_ID": "3"}, check=False)
     assert done.returncode == 75 and (tmp_path / "calls").read_text() == "scontrol requeue 7_3\n"
+
+
+@pytest.mark.parametrize("codes, calls, last", [([75, 75, 0], 3, 0), ([75, 75, 75, 0], 3, 75), ([75, 2], 2, 2), ([2], 1, 2), ([70], 1, 70), ([137], 1, 137), ([1, 0], 1, 1), ([0], 1, 0)])
+def test_only_a_call_that_ends_with_75_is_made_again(tmp_path, codes, calls, last):
+    """By again.sh, which parallel.sh and the Snakefile start; neither has retries of its own, which would be after every exit code."""
+    (tmp_path / "codes").write_text("".join(f"{code}\n" for code in codes))
+    command = 'echo "$1" >> calls; code="$(head -n 1 codes)"; sed -i 1d codes; exit "$code"'
+    done = subprocess.run([ROOT / "examples/cluster/again.sh", "bash", "-c", command, "bash", "with a blank"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == last and (tmp_path / "calls").read_text() == "with a blank\n" * calls, done.stderr
+    for name in ("parallel.sh", "Snakefile"):
+        text = (ROOT / "examples/cluster" / name).read_text()
+        assert "again.sh" in text and "retries" not in text.replace("again.sh does", "")
+
+
+def test_gnu_parallel_gives_up_wrong_input_at_once(tmp_path, environment):
+    """The sweep is refused by `plan`; a case that fails otherwise is called once."""
+    file, out = write_sweep(tmp_path, STEPS, SHAPES, settings={"/time/dt_s": 0.01}), tmp_path / "out"
+    bench = tmp_path / "tools/bench"
+    bench.write_text(bench.read_text().replace('case "$1" in', 'case "$*" in *--index*) echo "$*" >> "$CALLS"; exit 2;; esac; case "$1" in', 1))
+    done = subprocess.run([ROOT / "examples/cluster/parallel.sh", file, out, "1"], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and len((tmp_path / "calls").read_text().splitlines()) == 1, done.stderr  # the stand-in of parallel stops there
 
 
 def test_a_module_has_its_own_libraries_and_presets(program, tmp_path):
