@@ -14,8 +14,10 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from . import input_file
 from .errors import UserError, tells
 from .front.arguments import parser_of
+from .input_file import below
 from .json_file import read_object
 from .places import ROOT
 from .program import started
@@ -43,11 +45,11 @@ def run(words: list[str]) -> None:
 def samples(folder: Path) -> dict[tuple, dict]:
     """The samples of all traces under a folder, by case, step, iteration, matrix, stage and scaling."""
     found = {}
-    for trace in sorted(folder.rglob("trace.jsonl")):
+    for trace in below(folder, "trace.jsonl"):
         case = (
             trace.parent.name.rpartition("-")[0] or trace.parent.name
         )  # LABEL-ID, and the id knows the tier
-        for line in trace.read_text().splitlines():
+        for line in input_file.read_text(trace).splitlines():
             row = json.loads(line)
             for one in row.get("cond", []):
                 found[(case, row["step"], row["iteration"], one["matrix"], one["stage"], one["scaling"])] = (
@@ -230,7 +232,7 @@ def page(groups: dict[str, list[Pair]], note: str) -> str:
 
 
 def processor() -> str:
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
+    for line in input_file.read_text(Path("/proc/cpuinfo")).splitlines():
         if line.startswith("model name"):
             return line.partition(":")[2].strip()
     return "unknown processor"

@@ -5,13 +5,16 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
+from .input_file import opened
+
+ANY_SIZE = 1 << 62
 BLOCK = 1 << 20  # bytes that are in memory at once
 
 
 def of_file(path: Path) -> str:
-    """Of the bytes of a file. Errors: OSError. Cost: of the size."""
+    """Of the bytes of a file. Errors: UserError. Cost: of the size."""
     digest = hashlib.sha256()
-    with path.open("rb") as file:
+    with opened(path, ANY_SIZE) as file:
         while block := file.read(BLOCK):
             digest.update(block)
     return digest.hexdigest()

@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterator
 from functools import cache
 
+from . import input_file
 from .places import SCHEMAS
 
 OWN_NAMES = ("ids", "status", "labels", "summary")  # sections of a run whose fields need no prefix
@@ -15,7 +16,7 @@ OWN_NAMES = ("ids", "status", "labels", "summary")  # sections of a run whose fi
 @cache
 def schema(name: str) -> dict:
     """configs/schema/NAME.schema.json."""
-    return json.loads((SCHEMAS / f"{name}.schema.json").read_text())
+    return json.loads(input_file.read_text(SCHEMAS / f"{name}.schema.json"))
 
 
 def _leaves(

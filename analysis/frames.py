@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import input_file
 from .errors import UserError
 from .json_file import read_object
 from .record_file import bound_file, bound_files, named_files
@@ -50,7 +51,7 @@ def _elements(header: list[str], path: Path) -> list[tuple[str, int, np.dtype]]:
 def read_frame(path: str | Path) -> Frame:
     """One PLY file as the program writes it (all faces are triangles). Raises UserError."""
     path = Path(path)
-    data = path.read_bytes()
+    data = input_file.read_bytes(path)
     head, mark, body = data.partition(b"end_header\n")
     if not data.startswith(b"ply\n") or not mark:
         raise UserError(f"{path}: not a PLY file")

@@ -17,6 +17,7 @@ import sys
 import time
 from pathlib import Path
 
+from . import input_file
 from .errors import UserError, tells
 from .front import building
 from .front.arguments import parser_of
@@ -34,7 +35,7 @@ LIMITS = ["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosi
 
 
 def targets() -> list[str]:
-    text = (ROOT / "tests" / "fuzz" / "targets.inc").read_text()
+    text = input_file.read_text(ROOT / "tests" / "fuzz" / "targets.inc")
     return re.findall(r"^BB_FUZZ_TARGET\((\w+)\)", text, re.MULTILINE)
 
 

@@ -12,6 +12,7 @@ import re
 import sys
 from pathlib import Path
 
+from . import input_file
 from .errors import UserError
 from .json_file import read_object
 from .places import ROOT
@@ -44,7 +45,7 @@ IDLE_SHARE = 0.1  # of the bytes of a kernel's largest launch: what moves less d
 def parts_of(folder: Path) -> dict[str, dict]:
     """name -> status (passed, failed, timed_out, left_out), seconds, why."""
     parts = {}
-    for line in (folder / "parts.tsv").read_text().splitlines():
+    for line in input_file.read_text(folder / "parts.tsv").splitlines():
         try:
             name, status, more, seconds = line.split("\t")
             parts[name] = {
@@ -64,13 +65,17 @@ def parts_of(folder: Path) -> dict[str, dict]:
 
 
 def _lines(log: Path) -> list[str]:
-    return log.read_text(errors="replace").strip().splitlines() if log.exists() else []
+    return input_file.read_text(log).strip().splitlines() if log.exists() else []
 
 
 def card_state(folder: Path) -> dict:
     """Driver, clocks (MHz), power (W), as nvidia-smi says; empty where it was not there."""
     path = folder / "card.csv"
-    rows = list(csv.DictReader(path.read_text().splitlines(), skipinitialspace=True)) if path.exists() else []
+    rows = (
+        list(csv.DictReader(input_file.read_text(path).splitlines(), skipinitialspace=True))
+        if path.exists()
+        else []
+    )
     return {key.split(" [")[0]: value for key, value in rows[0].items()} if rows else {}
 
 
@@ -148,7 +153,7 @@ def measured_kernels(folder: Path) -> dict[str, dict]:
     iteration. Their seconds and bytes are not counted.
     """
     path = folder / "logs/kernels.out"
-    lines = path.read_text(errors="replace").splitlines() if path.exists() else []
+    lines = input_file.read_text(path).splitlines() if path.exists() else []
     start = next((i for i, line in enumerate(lines) if line.startswith('"ID"')), None)
     launches: dict[str, dict[str, dict[str, float]]] = {}  # functor -> number of a launch -> metrics
     for row in csv.DictReader(lines[start:]) if start is not None else []:
@@ -194,9 +199,9 @@ def kernels_of(folder: Path) -> list[dict]:
 def collect(folder: Path, commit: str, seconds: int) -> dict:
     """The record; commit and seconds of a bundle are in its raw files. Errors: UserError."""
     if not commit and (folder / "commit").exists():
-        commit = (folder / "commit").read_text().strip()
+        commit = input_file.read_text(folder / "commit").strip()
     if seconds == 0 and (folder / "seconds").exists():
-        seconds = int((folder / "seconds").read_text())
+        seconds = int(input_file.read_text(folder / "seconds"))
     device = read_object(folder / "device.json")
     if not device.get("usable") or not device.get("copy"):
         raise UserError(f"{folder}/device.json: no usable card with a measured copy")

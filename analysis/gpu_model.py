@@ -15,6 +15,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from . import input_file
 from .text_table import markdown
 
 INPUTS = Path(__file__).resolve().parents[1] / "results" / "gpu_model_inputs.json"
@@ -62,7 +63,7 @@ SIZES = [
 
 
 def read_inputs(path: Path = INPUTS) -> dict[str, Measured]:
-    return {name: Measured(**entry) for name, entry in json.loads(path.read_text()).items()}
+    return {name: Measured(**entry) for name, entry in json.loads(input_file.read_text(path)).items()}
 
 
 def contacts(size: Size, m: Measured) -> float:
@@ -203,10 +204,10 @@ def measure(source: str, records: list[dict], costs: str) -> dict:
 def main(argv: list[str]) -> int:
     if argv[:1] == ["--inputs"] and len(argv) >= 4:
         *runs, costs = [Path(name) for name in argv[2:]]
-        records = [json.loads(run.read_text()) for run in runs]
+        records = [json.loads(input_file.read_text(run)) for run in runs]
         run_id, steps = records[0]["ids"]["run_id"][:12], records[0]["summary"]["steps"]
         source = f"run {run_id} of {argv[1]} on the host executor, {steps} steps"
-        print(json.dumps(measure(source, records, costs.read_text()), indent=2))
+        print(json.dumps(measure(source, records, input_file.read_text(costs)), indent=2))
         return 0
     print(table(), end="")
     return 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from . import input_file
 from .errors import UserError
 
 
@@ -24,10 +25,9 @@ def read_json(path: Path, remedy: str = "") -> object:
     """What a file holds. remedy: behind what is said of a file that cannot be read. Errors: UserError, also
     for a key that is given twice in one object.
     """
+    text = input_file.read_bytes(path, more=remedy)
     try:
-        return json.loads(path.read_bytes(), object_pairs_hook=_each_key_once)
-    except OSError as fault:
-        raise UserError(f"{path}: {fault.strerror}{remedy}") from None
+        return json.loads(text, object_pairs_hook=_each_key_once)
     except RepeatedKey as key:
         raise UserError(
             f"{path}: the key {str(key)!r} is given twice in one object; each once{remedy}"

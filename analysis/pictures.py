@@ -11,6 +11,7 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
+from . import input_file
 from .errors import UserError, tells
 from .front.arguments import parser_of
 from .places import ROOT
@@ -130,10 +131,10 @@ def main(argv: list[str]) -> int:
     )
     given = parser.parse_args(argv)
     page = ROOT / "README.md"
-    placed(page.read_text(), "")  # before minutes of work
+    placed(input_file.read_text(page), "")  # before minutes of work
     titles = {}
     for picture in PICTURES:
         titles[picture.name] = make(picture, given.runs, ROOT / "docs")
         print(f"docs/{picture.name}.png: {titles[picture.name]}", flush=True)
-    write_whole(page, placed(page.read_text(), row_of(titles)))
+    write_whole(page, placed(input_file.read_text(page), row_of(titles)))
     return 0

@@ -7,6 +7,7 @@ import os
 import shlex
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import NoReturn
 
@@ -14,6 +15,8 @@ from .errors import UserError
 from .places import ROOT
 
 RELEASE = ROOT / "build/release/experiments/barrierbench"
+ANSWERS_WITHIN_S = 20  # a list of names, of a build with sanitizers on a busy machine
+MOST_OF_LIST = 1 << 16  # bytes
 
 
 def built_program(more: str = "") -> Path:
@@ -24,6 +27,35 @@ def built_program(more: str = "") -> Path:
     if not path.exists():
         raise UserError(f"{path} is not built: ./bench build{more}")
     return path
+
+
+def _is_program(path: Path) -> bool:
+    """Whether it lists shapes, as the program does; it is not waited for long, nor read for ever."""
+    streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen([str(path), "list", "shapes"], **streams) as process:
+        alarm = threading.Timer(ANSWERS_WITHIN_S, process.kill)
+        alarm.start()
+        try:
+            return b"cubic" in process.stdout.read(MOST_OF_LIST)
+        finally:
+            alarm.cancel()
+            process.kill()
+
+
+def require_program() -> None:
+    """What BARRIERBENCH_PROGRAM names is asked once whether it is the program: another one hangs, or answers
+    what nobody can read. Errors: UserError.
+    """
+    path = built_program()
+    if path.resolve() == RELEASE.resolve():
+        return
+    found = "no file that can be started" if not (path.is_file() and os.access(path, os.X_OK)) else ""
+    try:
+        found = found or ("" if _is_program(path) else "does not list shapes as barrierbench does")
+    except OSError as fault:
+        found = fault.strerror
+    if found:
+        raise UserError(f"BARRIERBENCH_PROGRAM: found {path}: {found}; allowed: a built program barrierbench")
 
 
 def plugin_words(plugins: list[str]) -> list[str]:
@@ -80,7 +112,10 @@ def run_sweep(
 def evaluated(queries: list[dict], plugins: list[str] = ()) -> list[dict]:
     """Answers of one process of `eval`, in order. Errors: UserError with the first one that is an error."""
     done = started("eval", plugins=plugins, input="".join(json.dumps(query) + "\n" for query in queries))
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    try:
+        answers = [json.loads(line) for line in done.stdout.splitlines()]
+    except ValueError:
+        raise UserError(f"eval: an answer of {built_program()} is no JSON: {done.stdout[:80]!r}") from None
     bad = next((answer["error"] for answer in answers if "error" in answer), None)
     if bad or len(answers) != len(queries):
         why = bad or done.stderr.strip()[:300]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache
@@ -17,7 +18,7 @@ from pathlib import Path
 
 import orjson
 
-from . import fields
+from . import fields, input_file
 from .digests import of_file
 from .errors import UserError
 from .record_rule import RecordRule, shown
@@ -128,16 +129,17 @@ def _parsed(path: Path) -> tuple[object, bool]:
     which all are, in a third of the time; what it refuses, Python's own reader takes or says why not. An
     integer beyond 64 bits, which no record of ours has, is read as the nearest double.
     """
+    if not os.path.lexists(path) and not path.parent.is_file():
+        raise RecordError(f"{path}: not there; allowed: the run.json of a run that is over")
     try:
-        text = path.read_bytes()
+        text = input_file.read_bytes(path)
+    except UserError as fault:
+        raise RecordError(str(fault)) from None
+    try:
         try:
             return orjson.loads(text), True
         except orjson.JSONDecodeError:
             return json.loads(text.decode()), False
-    except FileNotFoundError:
-        raise RecordError(f"{path}: not there; allowed: the run.json of a run that is over") from None
-    except OSError as error:
-        raise RecordError(f"{path}: cannot be read: {error.strerror}; allowed: a record") from None
     except (ValueError, RecursionError) as error:  # ValueError: not JSON, not UTF-8
         raise RecordError(f"{path}: not JSON: {error}") from None
 
@@ -175,8 +177,8 @@ def sha256_of(path: Path) -> str:
     """Of the bytes of a file, in hexadecimal digits. Raises RecordError where it cannot be read."""
     try:
         return of_file(path)
-    except OSError as error:
-        raise RecordError(f"{path}: {error.strerror}; allowed: the file that its record names") from None
+    except UserError as error:
+        raise RecordError(f"{error}, the one that its record names") from None
 
 
 def named_files(record: dict, kind: str) -> list[str]:
@@ -216,7 +218,7 @@ def trace_lines(path: Path) -> tuple[list[dict], int]:
     only the last one can be. Raises RecordError: a line before the last one that is no JSON object, a number
     that is none.
     """
-    lines = path.read_text(errors="replace").splitlines()
+    lines = input_file.read_text(path).splitlines()
     rows = []
     for number, line in enumerate(lines, 1):
         try:

@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 
-from . import pgfplots  # noqa: E402
+from . import own_math, pgfplots  # noqa: E402
 from .captions import caption  # noqa: E402
 from .run_words import hollow_rule, name_of, verdict_word  # noqa: E402
 from .ticks import make_readable  # noqa: E402
@@ -37,6 +37,7 @@ MARKERS = (
 FAILURE = "failure"  # gid of that cross
 SUFFIXES = (".png", ".pdf", ".csv", ".txt", ".svg", ".dat")  # of the files of a figure
 
+own_math.install()
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
 
 plt.rcParams.update(

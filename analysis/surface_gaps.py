@@ -9,6 +9,7 @@ from pathlib import Path
 
 from .errors import tells
 from .front.arguments import parser_of
+from .input_file import below
 from .records import RecordError, read_record
 from .text_table import aligned
 
@@ -76,7 +77,7 @@ def main(arguments: list[str]) -> int:
     )
     records, faults = [], []
     for root in parser.parse_args(arguments).runs:
-        for path in sorted(root.rglob("run.json")):
+        for path in below(root, "run.json"):
             try:
                 records.append((str(path.parent), read_record(path)))
             except RecordError as error:

@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from . import input_file
+
 
 def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Vertices and triangles of a binary PLY with one scalar type for the coordinates."""
-    with open(path, "rb") as file:
+    with input_file.opened(path) as file:
         header: list[str] = []
         while not header or header[-1] != "end_header":
             header.append(file.readline().decode().strip())

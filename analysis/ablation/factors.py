@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import product
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError
 from ..json_file import read_of_schema
 from ..spec_file import read_spec
@@ -41,7 +42,9 @@ class Factorial:
     @property
     def digest(self) -> str:
         """Of both files."""
-        return hashlib.sha256(self.path.read_bytes() + self.sweep_path.read_bytes()).hexdigest()
+        return hashlib.sha256(
+            input_file.read_bytes(self.path) + input_file.read_bytes(self.sweep_path)
+        ).hexdigest()
 
     @property
     def sizes(self) -> tuple[int, ...]:

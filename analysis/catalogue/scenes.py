@@ -11,6 +11,7 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..progress import counted

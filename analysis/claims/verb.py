@@ -16,6 +16,7 @@ import sys
 import time
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError, tells
 from ..figure_files import copy_to_page
 from ..front.arguments import parser_of, plugin_argument
@@ -169,4 +170,4 @@ def write_all(table: Table, asker: Eval) -> None:
         )
     copy_to_page(drawn, ROOT / "docs")
     page = ROOT / "docs" / "results.md"
-    write_whole(page, report.in_page(page.read_text(), answers))
+    write_whole(page, report.in_page(input_file.read_text(page), answers))

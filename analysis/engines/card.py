@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError
 from ..places import ROOT
 from ..spec_file import checked, refused
@@ -64,7 +65,7 @@ def read_card(name: str, engines: Path = ENGINES) -> Card:
     if not path.is_file():
         raise UserError(f"found engine {name!r}; allowed: {', '.join(names(engines))}")
     try:
-        data = tomllib.loads(path.read_text())
+        data = tomllib.loads(input_file.read_text(path))
     except ValueError as error:
         raise UserError(f"{path}: not TOML: {error}") from None
     checked(data, path, "engine_card")

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import input_file
 from ..errors import UserError
 from ..program import built_program
 from ..spec_file import read_spec, refused, require_base
@@ -29,7 +30,7 @@ from .scene import exported
 RECORD = "barrierbench.engines_record/1"
 OURS = "barrierbench"
 MOST_FACTOR = 20.0  # of a fit
-_FITS = Path(matching.__file__).read_text()  # what a fit depends on beside its engine
+_FITS = input_file.read_text(Path(matching.__file__))  # what a fit depends on beside its engine
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ def _key(*parts) -> str:
 def kept(folder: Path, key: str, make: Callable[[], dict]) -> dict:
     """What `make` answers, or what it answered before for the same key."""
     file = folder / "answer.json"
-    if file.is_file() and (old := json.loads(file.read_text())).get("key") == key:
+    if file.is_file() and (old := json.loads(input_file.read_text(file))).get("key") == key:
         return old["answer"]
     answer = make()
     if answer.get("outcome") not in ("not_installed", "not_fitted"):
@@ -83,7 +84,7 @@ def kept(folder: Path, key: str, make: Callable[[], dict]) -> dict:
 def _code(card: Card) -> str:
     """Of what an answer of an engine depends on beside the scene: adapter, what they share, requirements."""
     files = (card.adapter, card.folder.parent / "common.py", card.requirements, card.folder / "card.toml")
-    return _key(*(file.read_text() for file in files))
+    return _key(*(input_file.read_text(file) for file in files))
 
 
 def _ours(study: Study, name: str, scene: dict, parts: int, more: dict, label: str) -> dict:

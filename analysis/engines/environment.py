@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError
 from ..places import ROOT
 from .card import Card
@@ -24,7 +25,7 @@ def python(card: Card) -> Path:
 
 def _recipe(card: Card) -> str:
     """What it has to be made of; its copy says that it is."""
-    return f"{folder(card)}\n{card.requirements.read_text()}"
+    return f"{folder(card)}\n{input_file.read_text(card.requirements)}"
 
 
 def why_not(card: Card) -> str:
@@ -32,7 +33,7 @@ def why_not(card: Card) -> str:
     made = folder(card) / "recipe"
     if not python(card).exists() or not made.exists():
         return f"not installed: ./bench engine {card.name} setup"
-    if made.read_text() != _recipe(card):
+    if input_file.read_text(made) != _recipe(card):
         return f"installed from other requirements: ./bench engine {card.name} setup"
     return ""
 
@@ -42,7 +43,7 @@ def _said(command: list[str], log: Path) -> None:
     with log.open("a") as file:
         done = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False)
     if done.returncode != 0:
-        last = (log.read_text().strip().splitlines() or ["nothing was said"])[-1]
+        last = (input_file.read_text(log).strip().splitlines() or ["nothing was said"])[-1]
         raise UserError(f"{' '.join(command[:4])} ended with {done.returncode}: {last} (log: {log})")
 
 

@@ -9,14 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import input_file
 from ..judge import verb
 from ..whole_file import write_whole
 from .scene import about
-
-
-def positions(folder: Path) -> np.ndarray:
-    """[frames, n, 3] m."""
-    return np.load(folder / "frames.npz")["positions"].astype(float)
 
 
 def width_of(scene: dict) -> float:
@@ -58,7 +54,9 @@ def judge(folder: Path, scene: dict) -> dict:
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         code = verb.main(words)
     record = (
-        json.loads((out / "judgement.json").read_text()) if code in (verb.CLEAN, verb.NOT_CLEAN) else None
+        json.loads(input_file.read_text(out / "judgement.json"))
+        if code in (verb.CLEAN, verb.NOT_CLEAN)
+        else None
     )
     if record is None:
         return {"verdict": "not_judged"}

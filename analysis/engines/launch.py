@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import input_file
 from ..errors import UserError
 from . import environment
 from .card import Card
@@ -25,8 +26,14 @@ OUTCOMES = {
 
 
 def last_line(log: Path) -> str:
-    lines = log.read_text(errors="replace").strip().splitlines() if log.exists() else []
+    lines = input_file.read_text(log).strip().splitlines() if log.exists() else []
     return lines[-1][:300] if lines else ""
+
+
+def positions(folder: Path) -> np.ndarray:
+    """What an adapter left: [frames, n, 3] m. Errors: UserError, and ValueError for no NPZ file."""
+    with input_file.opened(folder / "frames.npz") as raw, np.load(raw) as arrays:
+        return arrays["positions"]
 
 
 def _frames(out: Path, scene: dict) -> tuple[str, str]:
@@ -34,7 +41,7 @@ def _frames(out: Path, scene: dict) -> tuple[str, str]:
     path = out / "frames.npz"
     if not path.is_file() or not (out / "engine.json").is_file():
         return "no_frames", f"{out} lacks frames.npz or engine.json"
-    x = np.load(path)["positions"]
+    x = positions(out)
     if not np.isfinite(x).all():
         bad = int(np.flatnonzero(~np.isfinite(x).all(axis=(1, 2)))[0])
         return "not_finite", f"frame {bad} of {scene['steps']}"
@@ -93,7 +100,7 @@ def run(
         return answer | ended
     outcome, detail = _frames(out, scene)
     if (out / "engine.json").is_file():
-        answer["run"] = json.loads((out / "engine.json").read_text())
+        answer["run"] = json.loads(input_file.read_text(out / "engine.json"))
     return answer | {"outcome": outcome, "detail": detail}
 
 
@@ -111,7 +118,7 @@ def run_all(
         outcome, detail = _frames(folder, scene) if ended["outcome"] == "ok" else ended.values()
         if outcome != "ok":
             raise UserError(f"{folder.name}: {outcome}: {detail} (log: {out / 'log.txt'})")
-        states[folder.name] = np.load(folder / "frames.npz")["positions"].astype(float)
+        states[folder.name] = positions(folder).astype(float)
     return states
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import series, style
+from .. import input_file, series, style
 from ..captions import Facts
 from ..errors import UserError
 
@@ -45,7 +45,7 @@ class Drawing:
         for path in paths:
             if path.suffix == ".txt":
                 words = textwrap.fill(facts.sentence(), 100)
-                path.write_text(f"{self.title}.\n\n{path.read_text()}\n{words}\n")
+                path.write_text(f"{self.title}.\n\n{input_file.read_text(path)}\n{words}\n")
         return paths
 
 

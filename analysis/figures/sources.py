@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from .. import input_file
 from ..digests import of_text
 from ..errors import UserError
 from ..gate.matrices import read_matrix
@@ -33,7 +34,7 @@ def folder_of(file: Path, runs: Path) -> Path:
     """Of the records of a sweep file: its name has a hash of the file, and of the configs, presets and meshes
     that it names.
     """
-    text = file.read_text()
+    text = input_file.read_text(file)
     data = read_object(file)
     base = data.get("base")
     if not isinstance(base, str):

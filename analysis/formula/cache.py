@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from .. import digests
+from .. import digests, input_file
 from ..places import ROOT
 from .grammar import Formula, FormulaError
 
@@ -73,8 +73,8 @@ def command() -> list[str]:
 
 def _runs_v3() -> bool:
     try:
-        words = set(Path("/proc/cpuinfo").read_text().split("flags", 2)[1].split("\n")[0].split())
-    except (OSError, IndexError):
+        words = set(input_file.read_text(Path("/proc/cpuinfo")).split("flags", 2)[1].split("\n")[0].split())
+    except (ValueError, IndexError):
         return False
     return {"avx2", "bmi1", "bmi2", "fma", "f16c", "movbe", "abm"} <= words
 
@@ -101,7 +101,7 @@ def find(key: str) -> Compiled | None:
     """Nothing where it was not made yet, or is not what its JSON says."""
     library, about = folder() / f"{key}.so", folder() / f"{key}.json"
     try:
-        known = json.loads(about.read_text())
+        known = json.loads(input_file.read_text(about))
         whole = known["library_sha256"] == digests.of_file(library)
     except (OSError, ValueError, KeyError, TypeError):
         return None

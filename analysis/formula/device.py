@@ -11,7 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from .. import digests
+from .. import digests, input_file
 from ..places import ROOT
 from . import cache
 from .grammar import Formula, FormulaError, read
@@ -62,7 +62,7 @@ def _key_of(formula: Formula, layout: int, words: list[str]) -> str:
 def _find(place: Path) -> dict | None:
     """Nothing where it was not made yet, a header has changed, or the file is not what its JSON says."""
     try:
-        known = json.loads(place.with_suffix(".ptx.json").read_text())
+        known = json.loads(input_file.read_text(place.with_suffix(".ptx.json")))
         headers = known["headers"]
         whole = known["ptx_sha256"] == digests.of_file(place) and all(
             digests.of_file(ROOT / header) == sha256 for header, sha256 in headers.items()
@@ -97,7 +97,7 @@ def _make(formula: Formula, layout: int, words: list[str], place: Path) -> dict:
                 "entry": source.ENTRY,
                 "formula": formula.text,
                 "ptx_sha256": digests.of_file(there / "formula.ptx"),
-                "headers": _headers((there / "headers.d").read_text()),
+                "headers": _headers(input_file.read_text(there / "headers.d")),
             }
             if any((ROOT / header).stat().st_mtime > begun for header in known["headers"]):
                 raise FormulaError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 
+from .. import input_file
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from .compiled import compiled, compiled_policy
@@ -45,7 +46,7 @@ def main(argv: list[str]) -> int:
     except FormulaError as error:
         raise UserError(f"{args.formula!r}: {error}") from None
     if args.source:
-        print(made.library.with_suffix(".cpp").read_text(), end="")
+        print(input_file.read_text(made.library.with_suffix(".cpp")), end="")
     elif args.json:
         print(json.dumps({**made.about, "library": str(made.library)}, indent=1))
     else:

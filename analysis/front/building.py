@@ -10,6 +10,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from .. import input_file
 from ..errors import BUILD_FAILED, UserError
 from ..places import ROOT
 from ..program import RELEASE
@@ -25,9 +26,9 @@ def say(text: str) -> None:
 def job_count() -> int:
     """One job a core, and 2 GiB of memory for each."""
     try:
-        lines = Path("/proc/meminfo").read_text().splitlines()
+        lines = input_file.read_text(Path("/proc/meminfo")).splitlines()
         free_kib = next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
-    except (OSError, StopIteration):
+    except (UserError, StopIteration):
         free_kib = 4 << 20
     return max(1, min(free_kib // KIB_A_JOB, len(os.sched_getaffinity(0))))
 
@@ -47,7 +48,7 @@ def setup(*packages: str) -> None:
 
 def _has_options(preset: str, options: dict[str, str]) -> bool:
     cache = folder(preset) / "CMakeCache.txt"
-    known = cache.read_text().splitlines() if options else []
+    known = input_file.read_text(cache).splitlines() if options else []
     return all(
         any(line.startswith(f"{name}:") and line.endswith(f"={value}") for line in known)
         for name, value in options.items()
@@ -76,14 +77,14 @@ def _device_options(preset: str, options: dict[str, str]) -> tuple[dict[str, str
     cache = folder(preset) / "CMakeCache.txt"
     if not (folder(preset) / "build.ninja").is_file():
         return ({"BB_CUDA": "CARD", **options} if preset == "release" else options), True
-    known = cache.read_text()
+    known = input_file.read_text(cache)
     asked = re.search(r"^BB_CUDA:STRING=(AUTO|CARD)$", known, re.M)
     without = {name: value for name, value in options.items() if name != "BB_CUDA"}
     if not asked or "BB_CUDA_BUILT:INTERNAL=OFF" not in known:
         return without, False  # it has device code, or somebody has said that it shall have none
     stamp = folder(preset) / "cuda_asked"
     wanted = "AUTO" if options.get("BB_CUDA") == "AUTO" else asked[1]
-    same = wanted == asked[1] and stamp.is_file() and stamp.read_text() == _cuda_here()
+    same = wanted == asked[1] and stamp.is_file() and input_file.read_text(stamp) == _cuda_here()
     return {**without, "BB_CUDA": wanted}, not same
 
 
@@ -102,7 +103,7 @@ def configure(preset: str, options: dict[str, str] | None = None) -> None:
 
 
 def _last_line(log: Path) -> str:
-    lines = log.read_text(errors="replace").splitlines()
+    lines = input_file.read_text(log).splitlines()
     return lines[-1] if lines else ""
 
 
@@ -119,7 +120,7 @@ def _build_quietly(words: list[str], preset: str) -> int:
                 except subprocess.TimeoutExpired:
                     say(f"building build/{preset}: {_last_line(log)}")
         if code != 0:
-            sys.stderr.write(log.read_text(errors="replace"))
+            sys.stderr.write(input_file.read_text(log))
         return code
 
 

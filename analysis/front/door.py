@@ -9,7 +9,7 @@ import textwrap
 from typing import NoReturn
 
 from ..errors import TRY_AGAIN, UserError
-from ..program import RELEASE, become, built_program
+from ..program import RELEASE, become, built_program, require_program
 from . import verbs
 from .arguments import text_width
 from .table import HELP
@@ -57,7 +57,11 @@ def become_program(arguments: list[str]) -> NoReturn:
             f"found {word!r}; allowed: one of the verbs of ./bench help"
             + (f"; did you mean {near}?" if near else "")
         )
-    built = built_program() if "BARRIERBENCH_PROGRAM" in os.environ else building.ensure_program()
+    if "BARRIERBENCH_PROGRAM" in os.environ:
+        require_program()
+        built = built_program()
+    else:
+        built = building.ensure_program()
     os.environ["BENCH_VERBS"] = " ".join(verb.name for verb in verbs.TABLE)  # for its own suggestion
     become(built, arguments)
 
@@ -66,7 +70,10 @@ def run(verb: verbs.Verb, arguments: list[str]) -> int:
     """Runs a verb of the table in this process."""
     from . import building
 
-    if verbs.needs_program(verb, arguments) and "BARRIERBENCH_PROGRAM" not in os.environ:
+    if "BARRIERBENCH_PROGRAM" in os.environ:
+        if verbs.needs_program(verb, arguments) and verb.needs == verbs.PROGRAM:
+            require_program()
+    elif verbs.needs_program(verb, arguments):
         if verb.needs == verbs.PROGRAM:
             building.ensure_program()
         else:

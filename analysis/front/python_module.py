@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 
+from .. import input_file
 from ..errors import UserError, tells
 from ..places import ROOT
 from .building import build, folder, say, setup
@@ -24,13 +25,13 @@ def module_folder() -> str:
 def _install_tools() -> None:
     """Once for each version of the list. Errors: UserError."""
     stamp = TOOLS / "installed.txt"
-    if stamp.is_file() and stamp.read_text() == REQUIREMENTS.read_text():
+    if stamp.is_file() and input_file.read_text(stamp) == input_file.read_text(REQUIREMENTS):
         return
     words = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--upgrade"]
     words += ["--target", str(TOOLS), "--requirement", str(REQUIREMENTS)]
     if subprocess.run(words, stdout=sys.stderr, check=False).returncode != 0:
         raise UserError(f"cannot install {REQUIREMENTS.relative_to(ROOT)}: is there a network?")
-    stamp.write_text(REQUIREMENTS.read_text())
+    stamp.write_text(input_file.read_text(REQUIREMENTS))
 
 
 def options() -> dict[str, str]:

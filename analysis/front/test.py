@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError, tells
 from ..places import ROOT
 from . import format as formatting
@@ -92,7 +93,7 @@ def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
     log = folder(preset) / "ctest.log"
     words = ["ctest", "--test-dir", str(folder(preset)), "--parallel", "2"]
     code, left = in_private([*words, "--output-on-failure", "--no-tests=error", *arguments], log)
-    text = log.read_text(errors="replace")
+    text = input_file.read_text(log)
     print("\n".join(text.splitlines()[-6:]) if code == 0 else without_passed(text), flush=True)
     summary.lines += ptx_share(text) + not_passed_cpp(text) + left
     return code or len(left)
@@ -121,7 +122,7 @@ def python_tests(preset: str, summary: Summary) -> int:
         words,
         env={**os.environ, "BARRIERBENCH_PROGRAM": str(folder(preset) / "experiments/barrierbench")},
     )
-    text = log.read_text(errors="replace")
+    text = input_file.read_text(log)
     print(text, flush=True)
     summary.lines += [
         f"{word}  {line.removeprefix(word)}"

@@ -6,6 +6,7 @@ import re
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
+from .. import input_file
 from ..errors import tells
 from ..places import ROOT
 from .building import folder, job_count, regenerate, setup
@@ -25,7 +26,7 @@ def main(argv: list[str]) -> int:
     base = folder("tidy")
     base.mkdir(parents=True, exist_ok=True)
     (base / "compile_commands.json").write_text(
-        OF_GCC.sub("", (folder("dev") / "compile_commands.json").read_text())
+        OF_GCC.sub("", input_file.read_text(folder("dev") / "compile_commands.json"))
     )
 
     def tidied(file: str) -> int:

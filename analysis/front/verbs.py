@@ -8,6 +8,7 @@ import difflib
 import re
 from pathlib import Path
 
+from .. import input_file
 from ..places import ROOT
 from .table import ENVIRONMENT, PROGRAM, TABLE, WITHOUT, Verb
 
@@ -28,7 +29,7 @@ _ROW = re.compile(rf"^BB_VERB\((\w+), (\w+), {_TEXT}, {_TEXT}\)$")
 def of_program(file: Path = PROGRAM_VERBS) -> tuple[Verb, ...]:
     """The verbs of the program. Errors: ValueError for a line that is neither a verb nor a comment."""
     verbs = []
-    for number, line in enumerate(file.read_text().splitlines(), 1):
+    for number, line in enumerate(input_file.read_text(file).splitlines(), 1):
         if row := _ROW.match(line):
             name, group, text, example = row.groups()
             verbs.append(

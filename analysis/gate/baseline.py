@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError
 from ..places import ROOT
 from ..whole_file import write_whole
@@ -158,7 +159,7 @@ def _content(path: Path, case: str | None, kind: str | None) -> dict:
         raise UserError(
             f"{path}: {'a folder' if path.is_dir() else 'no such baseline'}; {_remedy(path, case, kind)}"
         )
-    text = path.read_text(errors="replace")
+    text = input_file.read_text(path)
     if not text.strip():
         raise UserError(f"{path}: empty")
     try:

@@ -57,6 +57,12 @@ def _torn(case: str, run: Run) -> list[Finding]:
 def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> list[Finding]:
     """Raises UserError when the configs differ and that was not asked for."""
     differ = configs.differences(old.section("config"), new.section("config"))
+    bare = [run.path for run in (old, new) if not run.section("config")]
+    if bare and not different_configs:
+        raise UserError(
+            f"{case}: {' and '.join(map(str, bare))}: no config, so that nothing says whether the two are"
+            " runs of one configuration (--different-configs: compare all the same)"
+        )
     if differ and not different_configs:
         raise UserError(
             "\n".join(

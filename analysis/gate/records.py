@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..input_file import below
 from ..record_file import TRACE, RecordError, leaves, own_trace, read_record, trace_lines
 
 NOT_FINITE = ("nan", "infinite", "minus_infinite")  # the words of Number in core/record/number.hpp
@@ -108,7 +109,7 @@ def find_runs(root: str | Path) -> dict[str, Path]:
         raise RecordError(f"{root}: no such file or folder")
     if root.is_file():
         return {"": root}
-    found = {str(path.parent.relative_to(root)): path for path in sorted(root.rglob("run.json"))}
+    found = {str(path.parent.relative_to(root)): path for path in below(root, "run.json")}
     if not found:
         raise RecordError(f"{root}: no run.json below this folder")
     return {"": found["."]} if list(found) == ["."] else found

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
+from .. import input_file
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..text_table import aligned
@@ -92,7 +93,7 @@ def read(path: Path) -> list[dict]:
     """The lines in their order; a torn last one is left out and said. Raises UserError."""
     if not path.is_file():
         raise UserError(f"{path}: not there; ./bench gate --history {path} writes it")
-    lines, rows = path.read_text().splitlines(), []
+    lines, rows = input_file.read_text(path).splitlines(), []
     for number, text in enumerate(lines, 1):
         try:
             row = json.loads(text)

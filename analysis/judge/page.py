@@ -10,6 +10,7 @@ from string import Template
 
 import numpy as np
 
+from .. import input_file
 from ..style import NARROW_IN, WIDE_IN, plt
 from .verdict import meaning
 
@@ -110,7 +111,7 @@ def figure_of(record: dict) -> str:
 def page_of(record: dict) -> str:
     notes = "".join(f"<p><strong>Note:</strong> {escape(note)}.</p>" for note in record["notes"])
     word, said = record["verdict"], meaning(record)
-    return Template((HERE / "page.html").read_text()).substitute(
+    return Template(input_file.read_text(HERE / "page.html")).substitute(
         verdict=escape(word.replace("_", " ")),
         source=escape(record["trajectory"]["source"]),
         meaning=escape(said[0].upper() + said[1:]),

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from .. import input_file
 from ..claims import entry
 from ..claims.metrics import METRICS
 from ..errors import UserError
@@ -82,12 +83,12 @@ def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
         for one in node:
             yield from _inputs(one, folder, name)
     elif name == "formulation" and node in known():
-        yield (formulations.PRESETS / f"{node}.json").read_bytes()
+        yield input_file.read_bytes(formulations.PRESETS / f"{node}.json")
     elif name == "method" and isinstance(node, str) and (file := entry.METHODS / f"{node}.json").is_file():
-        yield file.read_bytes()
+        yield input_file.read_bytes(file)
         yield from _inputs(read_object(file)["set"], folder)
     elif name in ("base", "extends", "file") and isinstance(node, str) and (folder / node).is_file():
-        yield (folder / node).read_bytes()
+        yield input_file.read_bytes(folder / node)
         if name != "file":
             yield from _inputs(read_object(folder / node), (folder / node).parent)
 
@@ -103,7 +104,9 @@ def inputs_sha256(made: Sweep, overrides: list[str] | None = None, plugins: list
     ):
         found.update(hashlib.sha256(part).digest())
     for plugin in plugins or []:
-        found.update(hashlib.sha256(Path(plugin).read_bytes() if Path(plugin).is_file() else b"").digest())
+        found.update(
+            hashlib.sha256(input_file.read_bytes(Path(plugin)) if Path(plugin).is_file() else b"").digest()
+        )
     return found.hexdigest()
 
 

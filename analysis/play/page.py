@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import input_file
 from ..coloring import BODY_COLORS
 from ..errors import UserError
 from ..frames import points_of_bodies
@@ -55,9 +56,9 @@ def library() -> tuple[str, str]:
         )
     folder = Path(spec.origin).parent / "static"
     own = importlib.metadata.distribution("k3d")
-    licences = [(folder / "standalone.js.LICENSE.txt").read_text()]
-    licences += [path.read_text() for path in own.files or [] if path.name == "LICENSE.txt"]
-    source = ELSEWHERE.sub("", (folder / "standalone.js").read_text())
+    licences = [input_file.read_text(folder / "standalone.js.LICENSE.txt")]
+    licences += [input_file.read_text(path) for path in own.files or [] if path.name == "LICENSE.txt"]
+    source = ELSEWHERE.sub("", input_file.read_text(folder / "standalone.js"))
     return source, f"K3D {own.version}\n\n" + "\n".join(licences)
 
 
@@ -136,13 +137,13 @@ def page(films: list[Film], colour: str, notes: list[str], shared_library: str =
         f'<script type="application/octet-stream" id="film-{k}">{_packed(arrays)}</script>'
         for k, (_, arrays) in enumerate(packed)
     )
-    text = (HERE / "page.html").read_text()
+    text = input_file.read_text(HERE / "page.html")
     values = {
-        "style": (HERE / "page.css").read_text(),
+        "style": input_file.read_text(HERE / "page.css"),
         "licences": licences.replace("&", "&amp;").replace("<", "&lt;"),
         "words": _for_script(json.dumps(words, allow_nan=False)),
         "films": data,
         "library": shared_library or packed_library(),
-        "scripts": "\n".join((HERE / name).read_text() for name in SCRIPTS),
+        "scripts": "\n".join(input_file.read_text(HERE / name) for name in SCRIPTS),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda slot: values[slot[1]], text)

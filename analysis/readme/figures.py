@@ -8,6 +8,8 @@ import re
 import shutil
 from pathlib import Path
 
+from .. import input_file
+
 LINK = re.compile(r"!\[[^\]]*\]\((?:docs/)?(\w+)\.png\)")
 COMPANY = re.compile(r"\b(\w+_more)\b")  # names of further figures in captions
 
@@ -28,7 +30,7 @@ def copy(pages: list[str], made: Path, docs: Path) -> list[str]:
         found.append(name)
         for suffix in (".png", ".txt"):
             shutil.copyfile(made / f"{name}{suffix}", docs / f"{name}{suffix}")
-        todo += COMPANY.findall((made / f"{name}.txt").read_text())
+        todo += COMPANY.findall(input_file.read_text(made / f"{name}.txt"))
     return sorted(found)
 
 
@@ -37,6 +39,6 @@ def absent(docs: Path) -> list[str]:
     return [
         f"{path}: names {name}, and {docs}/{name}.png is not there; ./bench readme --write copies it"
         for path in sorted(docs.glob("*.txt"))
-        for name in dict.fromkeys(COMPANY.findall(path.read_text()))
+        for name in dict.fromkeys(COMPANY.findall(input_file.read_text(path)))
         if not (docs / f"{name}.png").is_file()
     ]

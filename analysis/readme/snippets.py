@@ -13,6 +13,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError
 from ..front import verbs
 from ..places import ROOT
@@ -87,7 +88,9 @@ def _tested_rooms() -> set[str]:
     """The labels of ctest: what `bench test -L` takes."""
     files = (ROOT / "tests").rglob("CMakeLists.txt")
     return {
-        name for file in files for name in re.findall(r"^\s*bb_test\((\w+)", file.read_text(), re.MULTILINE)
+        name
+        for file in files
+        for name in re.findall(r"^\s*bb_test\((\w+)", input_file.read_text(file), re.MULTILINE)
     }
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from .. import input_file
 from ..ablation import table as ablation_table
 from ..ablation.factors import read_factorial
 from ..claims import table as claims_table
@@ -57,7 +58,7 @@ def pages_with_snippets(root: Path) -> list[str]:
 
 def stale(root: Path, numbers: dict) -> list[str]:
     """Pages whose generated parts are not there, or not what the templates make of the kept numbers."""
-    texts = {page: (root / page).read_text() for page in PAGES}
+    texts = {page: input_file.read_text(root / page) for page in PAGES}
     absent = [line for page, text in texts.items() for line in lacking(text, page)]
     return absent + [
         f"{page}: its numbers are not those of results/demo.json and of the other results; ./bench"
@@ -71,7 +72,7 @@ def write_pages(root: Path, numbers: dict) -> list[str]:
     """Errors: UserError for a page without the marks of its parts."""
     changed = []
     for page in PAGES:
-        text = (root / page).read_text()
+        text = input_file.read_text(root / page)
         if absent := lacking(text, page):
             raise UserError("\n".join(absent))
         if (made := filled(text, numbers, page)) != text:
@@ -122,7 +123,9 @@ def arguments(argv: list[str]) -> argparse.Namespace:
 def keep_demo(runs: Path) -> None:
     """Keeps the numbers of the demo's records, copies the figures that the pages show, and says which."""
     write(gather(runs))
-    copied = figures.copy([(ROOT / page).read_text() for page in PAGES], runs / "figures", ROOT / "docs")
+    copied = figures.copy(
+        [input_file.read_text(ROOT / page) for page in PAGES], runs / "figures", ROOT / "docs"
+    )
     print(f"docs: {', '.join(copied) or 'no figure'}")
 
 
@@ -137,7 +140,11 @@ def main(argv: list[str]) -> int:
     built_program()
     numbers = kept()
     found = (
-        [fault for page in pages_with_snippets(ROOT) for fault in faults((ROOT / page).read_text(), page)]
+        [
+            fault
+            for page in pages_with_snippets(ROOT)
+            for fault in faults(input_file.read_text(ROOT / page), page)
+        ]
         + stale(ROOT, numbers)
         + disagreements(ROOT, numbers["several"])
         + figures.absent(ROOT / "docs")

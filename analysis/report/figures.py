@@ -12,7 +12,7 @@ import textwrap
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .. import series
+from .. import input_file, series
 from ..errors import UserError
 from ..figures import condition, gaps, iterations
 from ..records import Records, load
@@ -52,9 +52,9 @@ class Figures:
 
 def figure_of(group: str, png: Path) -> Figure:
     """A picture and the caption beside it (style.save). Errors: OSError."""
-    data = png.read_bytes()
+    data = input_file.read_bytes(png)
     width, height = struct.unpack(">II", data[16:24])  # of IHDR, the first chunk of every PNG
-    shown, _, settings = png.with_suffix(".txt").read_text().partition("\n\n")
+    shown, _, settings = input_file.read_text(png.with_suffix(".txt")).partition("\n\n")
     uri = f"data:image/png;base64,{base64.b64encode(data).decode('ascii')}"
     return Figure(group, uri, width, height, " ".join(shown.split()), " ".join(settings.split()))
 

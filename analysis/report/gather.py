@@ -11,6 +11,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ..errors import UserError
+from ..input_file import below
 from ..record_file import RecordError, leaves, named_files, read_record, read_trace
 from ..run_rows import run_row
 from ..sweeps.cases import read_cases, sighted, split_records
@@ -144,7 +145,7 @@ def _lists(root: Path, found: Folder) -> list[Path]:
     sweeps lack, and what an earlier form of a sweep file has left there, goes to `found`.
     """
     paths, lists = [], {}
-    for file in sorted(root.rglob("cases.json")):
+    for file in below(root, "cases.json"):
         try:
             lists[file.parent] = read_cases(file.parent)
         except (UserError, KeyError, TypeError, ValueError) as error:
@@ -164,7 +165,7 @@ def _half_written(root: Path) -> list[str]:
     return [
         f"{path}: a record that was not finished, without the run.json it would become; ./bench sweep, or the"
         " run again, goes on with it"
-        for path in sorted(root.rglob("run.json.part"))
+        for path in below(root, "run.json.part")
         if not path.with_name("run.json").exists()
     ]
 

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
+from .. import input_file
 from ..places import ROOT
 from .gather import Entry, Folder
 from .tables import shown_path
@@ -183,7 +184,9 @@ def sweep_commands(folder: Folder) -> list[str]:
             continue
         asked, kept = Path(words[1]), entry.path.parent.parent / "sweep.json"
         file = asked if asked.is_absolute() else ROOT / asked
-        same = file.is_file() and kept.is_file() and file.read_bytes() == kept.read_bytes()
+        same = (
+            file.is_file() and kept.is_file() and input_file.read_bytes(file) == input_file.read_bytes(kept)
+        )
         if same and file.is_relative_to(ROOT):
             out = shown_path(kept.parent)
             lines[f"./bench sweep {file.relative_to(ROOT)} --out {shlex.quote(str(out))}"] = None

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import jinja2
 
+from .. import input_file
 from . import methods, tables, verdict
 from .figures import Figures
 from .gather import Folder
@@ -38,7 +39,7 @@ def _templates() -> jinja2.Environment:
 
 def filled(template: str, **values) -> str:
     """A template of this folder; texts from records are escaped."""
-    css, js = ((HERE / name).read_text() for name in ("page.css", "page.js"))
+    css, js = (input_file.read_text(HERE / name) for name in ("page.css", "page.js"))
     return _templates().get_template(template).render(css=css, js=js, **values) + "\n"
 
 

@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 from string import Template
 
+from .. import input_file
 from ..judge.page import table
 from ..style import WIDE_IN, plt
 from .candidate import RIVALS
@@ -21,7 +22,7 @@ MARKS = ("*", "x", "+", "1", "2")  # the candidate first
 def page(score: dict) -> str:
     """score: what score.json holds."""
     label, rows = score["candidate"]["label"], score["rows"]
-    return Template((HERE / "page.html").read_text()).substitute(
+    return Template(input_file.read_text(HERE / "page.html")).substitute(
         title=escape(label),
         about=escape(score["candidate"]["about"]),
         decides="".join(f"<li>{escape(line)}</li>" for line in score["decides"]),

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError
 from .number import Number
 from .pages import NUMBER, Statement, statements
@@ -42,8 +43,8 @@ def unreconciled(root: Path, numbers: Iterable[Number]) -> list[str]:
     not lead its reader to the table in which both stand.
     """
     numbers, faults = list(numbers), []
-    told = shapes_of_table((root / "docs/results.md").read_text())
-    claims = (root / "results/CLAIMS.md").read_text()
+    told = shapes_of_table(input_file.read_text(root / "docs/results.md"))
+    claims = input_file.read_text(root / "results/CLAIMS.md")
     for (metric, shape), _ in apart(numbers).items():
         if shape not in told:
             faults.append(
@@ -51,7 +52,7 @@ def unreconciled(root: Path, numbers: Iterable[Number]) -> list[str]:
             )
         for study in dict.fromkeys(n.study for n in numbers if (n.metric, n.over) == (metric, shape)):
             page = PAGES.get(study, f"results/CLAIMS.md, {study}")
-            text = (root / PAGES[study]).read_text() if study in PAGES else _section(claims, study)
+            text = input_file.read_text(root / PAGES[study]) if study in PAGES else _section(claims, study)
             if SEVERAL not in text:
                 faults.append(
                     f"{page}: {metric} of the log over {shape} is decided differently by other studies; a"
@@ -82,7 +83,7 @@ def unfounded(root: Path, found: Iterable[Statement], numbers: Iterable[Number])
     known += [(1 / v, 1 / upper, 1 / lower) for v, lower, upper in known if min(v, lower, upper) > 0]
     lines = []
     for page in PROSE:
-        stated = list(dict.fromkeys(NUMBER.findall(" ".join((root / page).read_text().split()))))
+        stated = list(dict.fromkeys(NUMBER.findall(" ".join(input_file.read_text(root / page).split()))))
         if not stated:
             raise UserError(f"{page}: no number with an interval is found")
         for text in stated:

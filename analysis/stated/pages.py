@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError
 
 PART = re.compile(
@@ -156,7 +157,7 @@ def statements(root: Path) -> list[Statement]:
     """Errors: UserError for a page in which a reader finds nothing."""
     found = []
     for page, readers in READERS.items():
-        text = (root / page).read_text()
+        text = input_file.read_text(root / page)
         for reader in readers:
             mine = list(reader(text, page))
             if not mine:

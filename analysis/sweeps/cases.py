@@ -11,7 +11,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError
+from ..input_file import below
 from ..json_file import read_of_schema
 
 SCHEMA = "barrierbench.cases/1"
@@ -57,7 +59,7 @@ def split_records(root: Path, lists: dict[Path, list[Case]]) -> tuple[list[Path]
     """
     place = {case.record: (folder, case.index) for folder, cases in lists.items() for case in cases}
     kept, earlier = [], []
-    for path in sorted(root.rglob("run.json")):
+    for path in below(root, "run.json"):
         (kept if path in place or path.parent.parent not in lists else earlier).append(path)
     return sorted(kept, key=lambda path: place.get(path, (path, 0))), earlier
 
@@ -66,7 +68,7 @@ def records_below(root: Path) -> list[Path]:
     """The first of split_records; a line on stderr names each of the others. Errors: UserError for a list of
     cases that is none.
     """
-    lists = {path.parent: read_cases(path.parent) for path in sorted(root.rglob("cases.json"))}
+    lists = {path.parent: read_cases(path.parent) for path in below(root, "cases.json")}
     kept, earlier = split_records(root, lists)
     for path in earlier:
         print(f"{path.parent}: no case of its sweep as it is now; left out", file=sys.stderr)
@@ -107,8 +109,8 @@ def _lives(process: int) -> bool:
 def _holder(lock: Path) -> Sighting | None:
     """Who has the lock of a folder, or had it when it died; None without a lock."""
     try:
-        text, age = lock.read_text(errors="replace"), time.time() - lock.stat().st_mtime
-    except OSError:
+        text, age = input_file.read_text(lock), time.time() - lock.stat().st_mtime
+    except (UserError, OSError):
         return None
     known = HOLDER.fullmatch(text)
     here = known and known[2] == socket.gethostname()

@@ -35,7 +35,7 @@ def test_a_record_that_is_not_there_is_not_called_bad_json(tmp_path, capsys):
     assert stills.main([str(tmp_path / "nope"), "--out", str(tmp_path / "a.png")]) == 2
     assert f"{tmp_path / 'nope/run.json'}: not there" in capsys.readouterr().err
     (tmp_path / "file").write_text("")
-    with pytest.raises(RecordError, match="file/run.json: cannot be read: Not a directory"):
+    with pytest.raises(RecordError, match="file/run.json: Not a directory"):
         Run(tmp_path / "file")
 
 

@@ -64,7 +64,7 @@ def test_what_has_no_condition_number(gate, tmp_path, capsys, text, said):
 def test_a_file_that_is_not_there(gate, tmp_path, capsys):
     kept = tmp_path / "b.json"
     assert gate("accept", "--matrix", tmp_path / "none.mtx", "--baseline", kept, "--reason", "first") == 2
-    assert "no such file" in capsys.readouterr().err and not kept.exists()
+    assert "No such file" in capsys.readouterr().err and not kept.exists()
 
 
 def test_a_folder_is_called_one(gate, tmp_path, capsys):
