@@ -165,11 +165,11 @@ def _judged(path: Path, record: object, finite: bool, foreign: bool, allow_not_f
         raise RecordError(
             f"{path}#{bad[0]}: found {bad[1]}; allowed: a finite number, or null with the word that says why"
         )
-    if not foreign:
-        version = _version(record)
-        fault = _needed_fault(record) or _rule_of_a_record().fault(record, version == OURS, version <= OURS)
-        if fault:
-            raise RecordError(f"{path}#{fault}")
+    version = _version(record)
+    needed = "" if foreign else _needed_fault(record)
+    complete, words = not foreign and version == OURS, not foreign and version <= OURS
+    if fault := needed or _rule_of_a_record().fault(record, complete, words):
+        raise RecordError(f"{path}#{fault}")
     return record
 
 

@@ -81,7 +81,7 @@ def hollow_rule(runs: pd.DataFrame) -> str:
     compared = runs[runs["comparability_reference_run"] != ""]
     if compared.empty:
         return ""
-    names = runs.drop_duplicates("run").set_index("folder")["series"]
+    names = runs.drop_duplicates("folder").set_index("folder")["series"]
     references = " or ".join(
         dict.fromkeys(names.get(folder, folder) for folder in compared["comparability_reference_run"])
     )

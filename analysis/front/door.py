@@ -8,6 +8,7 @@ import sys
 import textwrap
 from typing import NoReturn
 
+from .. import input_file
 from ..errors import TRY_AGAIN, UserError
 from ..program import RELEASE, become, built_program, require_program
 from . import verbs

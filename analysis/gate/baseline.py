@@ -10,6 +10,7 @@ from pathlib import Path
 from .. import input_file
 from ..errors import UserError
 from ..places import ROOT
+from ..spec_file import checked
 from ..whole_file import write_whole
 from .drift import First, digest
 from .envelope import Envelope
@@ -185,6 +186,7 @@ def read(path: str | Path, case: str | None = None, kind: str | None = None) -> 
     """
     path = Path(path)
     data = _content(path, case, kind)
+    checked({key: value for key, value in data.items() if value is not None}, path, "baseline")
     metrics = data.get("metrics")
     if not isinstance(metrics, dict) or not metrics:
         raise UserError(f"{path}: /metrics is empty: it would judge nothing")
