@@ -11,7 +11,6 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from .. import input_file
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..progress import counted
@@ -77,6 +76,8 @@ def main(argv: list[str]) -> int:
     if args.write:
         if len(args.names) != 1:
             raise UserError("--write: one NAME is needed")
+        if os.path.lexists(args.write):
+            raise UserError(f"--write: {args.write} is there; a name that is free is needed")
         write_config(asked[0], args.write, FULL if args.full else MINI)
         print(args.write)
         return 0

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import io
 import os
 import sys
 import textwrap
 from typing import NoReturn
 
-from .. import input_file
 from ..errors import TRY_AGAIN, UserError
 from ..program import RELEASE, become, built_program, require_program
 from . import verbs
@@ -83,30 +83,63 @@ def run(verb: verbs.Verb, arguments: list[str]) -> int:
     return importlib.import_module(f"analysis.{verb.module}").main(arguments)
 
 
+def open_streams() -> None:
+    """A stream that the shell has closed goes nowhere: else the next file that is opened would have its
+    number, and what is printed. A letter that the locale has not is written as its number.
+    """
+    for number, (name, mode) in enumerate((("stdin", "r"), ("stdout", "w"), ("stderr", "w"))):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the lowest free number, which is this one
+            os.set_inheritable(number, True)
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, mode, closefd=False))
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _answer(arguments: list[str]) -> int:
+    if not arguments or (len(arguments) == 1 and arguments[0] in HELP_WORDS):
+        print(usage())
+        return 0
+    if arguments == ["--version"]:
+        from .version import version
+
+        print(version())
+        return 0
+    if len(arguments) == 2 and arguments[0] in HELP_WORDS and verbs.find(arguments[1]):
+        arguments = [arguments[1], "--help"]
+    verb = verbs.find(arguments[0])
+    if verb and not verb.own_help and any(word in HELP for word in arguments[1:]):
+        print("\n".join(["usage: ./bench VERB [ARGUMENTS]", "", *usage_of(verb)]))
+        return 0
+    return run(verb, arguments[1:]) if verb else become_program(arguments)
+
+
+def _forget_output() -> None:
+    """What is left in the buffer goes nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def main(arguments: list[str]) -> int:
     """The exit code."""
+    open_streams()
     try:
-        if not arguments or (len(arguments) == 1 and arguments[0] in HELP_WORDS):
-            print(usage(), flush=True)
-            return 0
-        if arguments == ["--version"]:
-            from .version import version
-
-            print(version(), flush=True)
-            return 0
-        if len(arguments) == 2 and arguments[0] in HELP_WORDS and verbs.find(arguments[1]):
-            arguments = [arguments[1], "--help"]
-        verb = verbs.find(arguments[0])
-        if verb and not verb.own_help and any(word in HELP for word in arguments[1:]):
-            print("\n".join(["usage: ./bench VERB [ARGUMENTS]", "", *usage_of(verb)]), flush=True)
-            return 0
-        return run(verb, arguments[1:]) if verb else become_program(arguments)
+        code = _answer(arguments)
+        sys.stdout.flush()
+        return code
     except UserError as error:
         print(f"bench: {error}", file=sys.stderr)
         return error.code
     except BrokenPipeError:  # the reader, a pager, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()
         return 0
+    except OSError as error:  # of what a verb writes elsewhere it tells itself (errors.tells)
+        _forget_output()
+        print(f"bench: the standard output cannot be written: {error.strerror}", file=sys.stderr)
+        return TRY_AGAIN
     except KeyboardInterrupt:
         print(f"bench {arguments[0]}: interrupted; it may be called again", file=sys.stderr)
         return TRY_AGAIN

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 import subprocess
 
+from .. import input_file
 from ..places import ROOT
 
 
 def version() -> str:
     """What these sources are."""
-    number = re.search(r"^project\(\w+ VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.M)[1]
+    number = re.search(r"^project\(\w+ VERSION (\S+)", input_file.read_text(ROOT / "CMakeLists.txt"), re.M)[1]
     asked = [
         "git",
         "-C",
