@@ -43,12 +43,6 @@ def test_no_other_place_opens_a_file():
     assert {name: calls - KNOWN.get(name, set()) for name, calls in found.items() if calls - KNOWN.get(name, set())} == {}
 
 
-def test_the_python_module_asks_the_program_for_files():
-    """core/input/read_file.hpp is its one place; what is opened beside it is a source of Python that was imported."""
-    found = {path.name: calls for path in sorted((ROOT / "python/barrierbench").glob("*.py")) if (calls := calls_in(path))}
-    assert found == {"python_sources.py": {"open"}}
-
-
 def things(tmp_path: Path) -> dict:
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "folder").mkdir()
