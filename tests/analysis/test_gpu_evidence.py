@@ -28,7 +28,7 @@ NCU = '''==PROF== Connected to process 1
 
 
 def run_json(outcome="ok"):
-    return {"schema": {"name": "barrierbench.run", "version": "3.9.0"}, "status": {"outcome": outcome, "valid": outcome == "ok"}, "scene": {"vertices": 1048576},
+    return {"schema": {"name": "barrierbench.run", "version": "3.99.0"}, "status": {"outcome": outcome, "valid": outcome == "ok"}, "scene": {"vertices": 1048576},
             "ids": {"run_id": "1"}, "labels": {"scene": "drape", "formulation": "log", "dt_s": 0.01, "linear_solver": "pcg"}, "steps": [],
             "summary": {"steps": 2, "newton_iterations": 10, "linear_iterations": 500, "wall_s": 4.0, "time": {"linear_solve_s": 2.5, "end_check_s": 2.0}, "contacts": {"max": 7e6}, "state_hash": "0f"}}
 

@@ -160,10 +160,13 @@ def test_a_program_that_is_named_stands_for_the_build_in_verbs_of_the_program_to
     stand_in = tmp_path / "program"
     stand_in.write_text("#!/bin/sh\necho stand-in $*\n")
     done = called("list", "shapes", BARRIERBENCH_PROGRAM=str(stand_in), PATH="/nowhere")
-    assert done.returncode == 2 and done.stderr == f"bench: {stand_in}: cannot be started: Permission denied; allowed: a program\n"
+    assert done.returncode == 2 and done.stderr == f"bench: BARRIERBENCH_PROGRAM: found {stand_in}: no file that can be started; allowed: a built program barrierbench\n"
     stand_in.chmod(0o755)
     done = called("list", "shapes", BARRIERBENCH_PROGRAM=str(stand_in), PATH="/nowhere")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "stand-in list shapes\n", "")
+    assert done.returncode == 2 and "does not list shapes as barrierbench does" in done.stderr
+    stand_in.write_text("#!/bin/sh\necho stand-in $* cubic\n")
+    done = called("list", "shapes", BARRIERBENCH_PROGRAM=str(stand_in), PATH="/nowhere")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "stand-in list shapes cubic\n", "")
     done = called("list", "shapes", BARRIERBENCH_PROGRAM=str(tmp_path / "none"))
     assert done.returncode == 2 and f"{tmp_path / 'none'} is not built" in done.stderr
 
