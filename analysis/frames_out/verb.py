@@ -7,28 +7,15 @@ import os
 import shutil
 from pathlib import Path
 
-import meshio
 import numpy as np
 
 from ..errors import UserError, tells
-from ..frames import read_frame
 from ..front.arguments import parser_of
-from ..mesh_file import Cells, read_cells
+from ..mesh_arrays import SUFFIXES, read_frame_file
 from .binding import Binding, Fit, bound_mesh, refined
 from .formats import WRITERS, write
 from .sequence import Run, bodies, obstacles, opened, simulated, triangles_of
 
-
-def _read_ply(file: str) -> meshio.Mesh:
-    """A frame of a run too, of which meshio reads no edges and no fields of faces."""
-    try:
-        frame = read_frame(file)
-    except ValueError:  # UserError, or elements of other names
-        return meshio.ply.read(file)
-    return meshio.Mesh(frame.vertices, [("triangle", frame.triangles)])
-
-
-READERS = {".obj": meshio.obj.read, ".ply": _read_ply}
 REACH = 0.05  # of the diagonal of a body's box: how far a vertex may be from its surface
 MOST_TIMES = 6  # 4^6 = 4096 triangles for one
 ABOUT = """
@@ -68,7 +55,9 @@ def with_mesh(
     body, chosen = _body_with_surface(run, name)
     if run.steps[0] != -1:
         raise UserError(f"{run.folder}: no frame of the start, which a mesh is bound to")
-    cells: Cells = read_cells(file, READERS)
+    cells = read_frame_file(file)
+    if not len(cells.triangles):
+        raise UserError(f"{file}: no triangle; at least one is needed")
     bound, fit = bound_mesh(
         cells.points, cells.triangles, run.start.vertices, run.start.triangles, chosen, smooth
     )
@@ -151,7 +140,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "--render-mesh",
         type=Path,
         metavar="FILE",
-        help=f"a mesh of triangles ({', '.join(READERS)}) in the place that --body has at the start: it"
+        help=f"a mesh of triangles ({', '.join(SUFFIXES)}) in the place that --body has at the start: it"
         " follows the surface of the body and is written in its place",
     )
     finer.add_argument(

@@ -1,4 +1,4 @@
-"""Trajectories of one file for all frames: PC2 and NPZ."""
+"""Trajectories of one file for all frames and no cells: PC2 of Blender, MDD of LightWave."""
 
 from __future__ import annotations
 
@@ -12,64 +12,78 @@ from .times import increasing
 from .trajectory import Topology, Trajectory, no_cells
 
 PC2_HEADER = struct.Struct("<12siiffi")
+MDD_HEADER = struct.Struct(">ii")
+MOST_BYTES = 1 << 36
+ROUNDED = "positions are float32 in the file: the states that were judged are the rounded ones"
+
+
+def _bytes(path: Path) -> bytes:
+    if not path.is_file():
+        raise UserError(f"{path}: no regular file")
+    if path.stat().st_size > MOST_BYTES:
+        raise UserError(f"{path}: {path.stat().st_size} bytes; at most {MOST_BYTES} are read")
+    return path.read_bytes()
+
+
+def _bare(n: int) -> Topology:
+    return Topology(n, no_cells(3), no_cells(2), no_cells(4))
+
+
+def _frame_numbers(path: Path, start: float, rate: float, samples: int) -> list[float]:
+    """Of the samples, in frames of the scene. Errors: UserError for numbers that are none."""
+    if not np.isfinite(start):
+        raise UserError(f"{path}: the first sample is at frame {start}; a finite number is needed")
+    if not (np.isfinite(rate) and rate > 0) and samples > 1:
+        raise UserError(
+            f"{path}: found {rate} frames from sample to sample; a finite number above 0 is needed"
+        )
+    return [start + k * rate for k in range(samples)]
 
 
 def of_pc2(path: Path) -> Trajectory:
     """Float32 positions, as Blender's cache has them, without cells."""
-    data = path.read_bytes()
+    data = _bytes(path)
     if len(data) < PC2_HEADER.size or not data.startswith(b"POINTCACHE2\0"):
         raise UserError(f"{path}: not a PC2 file (POINTCACHE2)")
-    _, version, points, _, _, samples = PC2_HEADER.unpack_from(data)
+    _, version, points, start, rate, samples = PC2_HEADER.unpack_from(data)
     wanted = PC2_HEADER.size + 12 * points * samples
     if version != 1 or points < 1 or samples < 1 or len(data) != wanted:
         raise UserError(
             f"{path}: version {version}, {samples} samples of {points} points, {len(data)} bytes; "
             f"version 1 and {wanted} bytes are needed"
         )
+    numbers = _frame_numbers(path, start, rate, samples)
     states = np.frombuffer(data, "<f4", offset=PC2_HEADER.size).reshape(samples, points, 3)
-    bare = Topology(points, no_cells(3), no_cells(2), no_cells(4))
-    note = ("positions are float32 in the file: the states that were judged are the rounded ones",)
-    labels = [f"sample {k}" for k in range(samples)]
-    return Trajectory(bare, lambda: map(np.float64, states), labels, str(path), "pc2", notes=note)
+    labels = [f"sample {k} (frame {number:g})" for k, number in enumerate(numbers)]
+    notes = (
+        ROUNDED,
+        f"the file counts frames, from {numbers[0]:g} to {numbers[-1]:g}, and no seconds: dt_s of --about",
+    )
+    return Trajectory(
+        _bare(points), lambda: map(np.float64, states), labels, str(path), "pc2", notes=notes,
+        frame_numbers=numbers,
+    )  # fmt: skip
 
 
-def _arrays(path: Path) -> dict[str, np.ndarray]:
-    try:
-        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except Exception as error:  # noqa: BLE001 (cut off, empty or of another kind, it fails in any way)
-        why = str(error) or "nothing was said"
-        raise UserError(f"{path}: not an NPZ file: {type(error).__name__}: {why}") from None
-
-
-def _cells(path: Path, arrays: dict[str, np.ndarray], n_vertices: int) -> Topology:
-    cells = {}
-    for name, n in (("triangles", 3), ("segments", 2), ("tetrahedra", 4)):
-        found = arrays.get(name, no_cells(n))
-        if found.ndim != 2 or found.shape[1] != n or found.dtype.kind not in "iu":
-            raise UserError(f"{path}: `{name}` of shape {found.shape}; integers [n, {n}] are needed")
-        cells[name] = found.astype(np.int64)
-    return Topology(n_vertices, **cells)
-
-
-def _times(path: Path, times: np.ndarray | None, n_frames: int) -> list[float] | None:
-    if times is None:
-        return None
-    if times.shape != (n_frames,) or times.dtype.kind not in "iuf":
+def of_mdd(path: Path) -> Trajectory:
+    """Big-endian: int32 frames, int32 points, a float32 time (s) a frame, float32 positions."""
+    data = _bytes(path)
+    if len(data) < MDD_HEADER.size:
+        raise UserError(f"{path}: {len(data)} bytes; not an MDD file")
+    frames, points = MDD_HEADER.unpack_from(data)
+    wanted = MDD_HEADER.size + 4 * frames + 12 * points * frames
+    if frames < 1 or points < 1 or len(data) != wanted:
         raise UserError(
-            f"{path}: `times_s` of shape {times.shape} and type {times.dtype}; "
-            f"a number a frame ({n_frames}) is needed"
+            f"{path}: {frames} frames of {points} points, {len(data)} bytes; {wanted} bytes are needed"
         )
-    return increasing(times.tolist(), lambda k: f"{path}: `times_s`[{k}]")
-
-
-def of_npz(path: Path) -> Trajectory:
-    """`positions` [frames, n, 3]; `triangles`, `segments`, `tetrahedra` and `times_s` where there are any."""
-    arrays = _arrays(path)
-    x = arrays.get("positions")
-    if x is None or x.ndim != 3 or x.shape[2] != 3 or not x.size or x.dtype.kind != "f":
-        found = "no `positions`" if x is None else f"`positions` of shape {x.shape} and type {x.dtype}"
-        raise UserError(f"{path}: {found}; floats [frames, vertices, 3] in m are needed")
-    topology, times = _cells(path, arrays, x.shape[1]), _times(path, arrays.get("times_s"), len(x))
-    labels = [f"frame {k}" for k in range(len(x))]
-    return Trajectory(topology, lambda: map(np.float64, x), labels, str(path), "npz", times)
+    times = np.frombuffer(data, ">f4", frames, MDD_HEADER.size).astype(float)
+    states = np.frombuffer(data, ">f4", offset=MDD_HEADER.size + 4 * frames).reshape(frames, points, 3)
+    return Trajectory(
+        _bare(points),
+        lambda: map(np.float64, states),
+        [f"frame {k}" for k in range(frames)],
+        str(path),
+        "mdd",
+        increasing(times.tolist(), lambda k: f"{path}: time {k}"),
+        notes=(ROUNDED,),
+    )

@@ -1,4 +1,6 @@
-"""Collections of ParaView (.pvd): VTU files with their times. Several parts of one time are one frame."""
+"""Lists of files: collections of ParaView (.pvd) with their times, and what stands for several files of one
+time (.vtm, .pvtu, .pvtp). Several parts of one time are one frame.
+"""
 
 from __future__ import annotations
 
@@ -24,10 +26,106 @@ class Entry:
     file: str
 
 
+LISTS = (".vtm", ".pvtu", ".pvtp")
+MOST_LIST_BYTES = 1 << 26
+MOST_LEVELS = 8  # of lists in lists
+# Blocks that show the same body once more, as PolyFEM writes them; the first that is there is judged.
+SAME_BODY = (("surface", "surf", "faces"), ("volume", "tets"))
+DRAWN = ("contact", "wireframe", "wire", "points", "edges", "verts", "obstacle points")
+
+
+def _root(path: Path) -> ElementTree.Element:
+    if not path.is_file():
+        raise UserError(f"{path}: {'no regular file' if path.exists() else 'no such file'}")
+    if path.stat().st_size > MOST_LIST_BYTES:
+        raise UserError(f"{path}: {path.stat().st_size} bytes; a list of files has at most {MOST_LIST_BYTES}")
+    return ElementTree.parse(path).getroot()
+
+
+def _blocks(root: ElementTree.Element) -> list[tuple[str, str]]:
+    """Names of blocks and files, in the order of the file."""
+    out: list[tuple[str, str]] = []
+
+    def walk(element: ElementTree.Element, name: str) -> None:
+        for child in element:
+            of_child = child.get("name") or name
+            if child.tag == "DataSet" and child.get("file"):
+                out.append((name or of_child, child.get("file", "")))
+            walk(child, of_child if child.tag in ("Block", "Piece") else name)
+
+    walk(root, "")
+    return out
+
+
+def _chosen(blocks: list[tuple[str, str]]) -> tuple[list[str], list[str]]:
+    """Files that are judged, and names of blocks that show the same body."""
+    names = {name.lower() for name, _ in blocks}
+    bodies = [group for group in SAME_BODY if names & set(group)]
+    if not bodies:
+        return [file for _, file in blocks], []
+    hidden = {name for group in bodies[1:] for name in group} | set(DRAWN)
+    kept = [file for name, file in blocks if name.lower() not in hidden]
+    return kept, [name for name, _ in blocks if name.lower() in hidden]
+
+
+def files_of_list(path: Path, levels: int = 0) -> tuple[list[Path], list[str]]:
+    """The mesh files of a .vtm, .pvtu or .pvtp, and what was left out. Errors: UserError."""
+    if path.suffix.lower() not in LISTS:
+        return [path], []
+    if levels > MOST_LEVELS:
+        raise UserError(f"{path}: lists in lists; at most {MOST_LEVELS} levels are allowed")
+    try:
+        root = _root(path)
+    except (ElementTree.ParseError, LookupError, ValueError) as error:
+        raise UserError(f"{path}: not a list of files of VTK: {error}") from None
+    if path.suffix.lower() == ".vtm":
+        files, hidden = _chosen(_blocks(root))
+    else:
+        files, hidden = [one.get("Source", "") for one in root.iter("Piece") if one.get("Source")], []
+    if not files:
+        raise UserError(f"{path}: names no file of a mesh; DataSet file= or Piece Source= is needed")
+    found: list[Path] = []
+    for file in files:
+        inner, more = files_of_list(beside(path, file), levels + 1)
+        found += inner
+        hidden += more
+    return found, hidden
+
+
+def beside(path: Path, file: str) -> Path:
+    """A file that a list names, with the separators of either system."""
+    return path.parent / file.replace("\\", "/")
+
+
+def of_list(paths: list[Path], source: str, times_s: list[float] | None = None) -> Trajectory:
+    """A .vtm or .pvtu a frame."""
+    return of_lists([[path] for path in paths], source, paths[0].suffix.lower()[1:], times_s)
+
+
+def of_lists(frames: list[list[Path]], source: str, kind: str, times_s: list[float] | None) -> Trajectory:
+    """Frames of files, of which each may be a list of files."""
+    every, hidden = [], set()
+    for paths in frames:
+        found: list[Path] = []
+        for path in paths:
+            files, more = files_of_list(path)
+            found += files
+            hidden |= set(more)
+        every.append(found)
+    for paths, found in zip(frames, every):
+        if len(found) != len(every[0]):
+            raise UserError(f"{paths[0]}: {len(found)} files; the first frame has {len(every[0])}")
+    trajectory = of_parts(every, source, kind, times_s)
+    if hidden:
+        said = f"blocks that show the same bodies once more are not judged: {', '.join(sorted(hidden))}"
+        trajectory = replace(trajectory, notes=(*trajectory.notes, said))
+    return trajectory
+
+
 def _entries(path: Path) -> list[Entry]:
     """In the order of the file. Without any timestep, entries are numbered. Errors: UserError."""
     try:
-        sets = ElementTree.parse(path).getroot().findall("Collection/DataSet")
+        sets = _root(path).findall("Collection/DataSet")
     except (ElementTree.ParseError, LookupError, ValueError) as error:
         raise UserError(f"{path}: not a collection of ParaView: {error}") from None
     if not sets:
@@ -80,8 +178,8 @@ def of_pvd(path: Path) -> Trajectory:
     for entries in ordered:
         increasing([e.time_s for e in entries], lambda k, entries=entries: _place(path, entries[k]))
         _check_same_times(path, ordered[0], entries)
-    frames = [[path.parent / entry.file for entry in frame] for frame in zip(*ordered)]
-    found = of_parts(frames, str(path), "pvd", [entry.time_s for entry in ordered[0]])
+    frames = [[beside(path, entry.file) for entry in frame] for frame in zip(*ordered)]
+    found = of_lists(frames, str(path), "pvd", [entry.time_s for entry in ordered[0]])
     notes = no_frames([Path(entry.file).name for entry in every if entry not in kept])
     return replace(found, notes=(*found.notes, *notes))
 

@@ -6,14 +6,17 @@ The topology is that of the first frame; one of another topology is refused by n
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import UserError
-from .meshes import read_mesh, same_topology
+from ..mesh_arrays import MeshArrays
+from .meshes import read_mesh, same_topology, topology_of_mesh
 from .trajectory import Topology, Trajectory
+
+Place = Callable[[MeshArrays], np.ndarray]  # of a part: where its vertices are
 
 # How meshes of analytic obstacles beside frames are called (frames_out): one, or one a frame where they move.
 OBSTACLES = re.compile(r"obstacles(_\d+)?")
@@ -69,22 +72,53 @@ def of_files(paths: list[Path], source: str) -> Trajectory:
     return of_parts([[path] for path in paths], source, paths[0].suffix.lower()[1:])
 
 
+class Notes:
+    """What files have and no mesh, said once for all files of one kind."""
+
+    def __init__(self) -> None:
+        self.first: dict[str, str] = {}
+        self.files: dict[str, set[Path]] = {}
+
+    def hear(self, path: Path, mesh: MeshArrays) -> None:
+        for note in mesh.notes:
+            kind = note.split(": ")[0]
+            self.first.setdefault(kind, note)
+            self.files.setdefault(kind, set()).add(path)
+
+    def __iter__(self) -> Iterator[str]:
+        for kind, note in self.first.items():
+            more = len(self.files[kind]) - 1
+            yield f"{note}, and so in {more} more files" if more else note
+
+
+def read_parts(
+    frames: list[list[Path]], first: list[MeshArrays], fields: list[tuple[str, ...]], notes: Notes
+) -> Iterator[list[MeshArrays]]:
+    """The parts of every frame. Errors: UserError for the first that has another topology."""
+    for paths in frames:
+        parts = []
+        for path, known, wanted in zip(paths, first, fields):
+            part = read_mesh(path, wanted)
+            same_topology(path, known, part)
+            notes.hear(path, part)
+            parts.append(part)
+        yield parts
+
+
 def of_parts(
     frames: list[list[Path]], source: str, kind: str, times_s: list[float] | None = None
 ) -> Trajectory:
     """A list of files a frame, as many in each."""
-    first = [read_mesh(path)[1] for path in frames[0]]
+    first, notes = [read_mesh(path) for path in frames[0]], Notes()
+    none = [()] * len(first)
 
     def read() -> Iterator[np.ndarray]:
-        for paths in frames:
-            points = []
-            for path, topology in zip(paths, first):
-                x, other = read_mesh(path)
-                same_topology(path, topology, other)
-                points.append(x)
-            yield np.concatenate(points)
+        for parts in read_parts(frames, first, none, notes):
+            yield np.concatenate([part.points for part in parts])
 
-    return Trajectory(joined(first), read, [_label(paths) for paths in frames], source, kind, times_s)
+    topology = joined([topology_of_mesh(part) for part in first])
+    labels = [_label(paths) for paths in frames]
+    return Trajectory(topology, read, labels, source, kind, times_s, heard=notes, files=frames)
 
 
 def _label(paths: list[Path]) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -45,6 +46,10 @@ class Trajectory:
     planar: bool = False
     notes: tuple[str, ...] = ()
     half_thickness_m: np.ndarray | None = None  # [n_vertices], where the frames themselves say it
+    heard: Iterable[str] = ()  # notes that come while the frames are read
+    files: list[list[Path]] | None = None  # of every frame, its parts, where they are mesh files
+    displacement: str | None = None  # the field that is added to points at rest
+    frame_numbers: list[float] | None = None  # times in frames of the program that wrote them, not in seconds
 
 
 def no_cells(n: int) -> np.ndarray:
@@ -53,13 +58,6 @@ def no_cells(n: int) -> np.ndarray:
 
 def has_cells(topology: Topology) -> bool:
     return any(len(cells) for cells in (topology.triangles, topology.segments, topology.tetrahedra))
-
-
-def fans(polygons: list[np.ndarray]) -> np.ndarray:
-    """[n, 3] triangles of polygons with 3 or more corners, each a fan about its first corner."""
-    return np.array([(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)], int).reshape(
-        -1, 3
-    )
 
 
 def surface_of(topology: Topology) -> np.ndarray:

@@ -21,18 +21,21 @@ from .physics import Physics, finite_or_none
 from .readers import read_trajectory
 from .trajectory import MOST_METRES, Trajectory, checked, with_parts
 from .verdict import findings, meaning, verdict_of
+from .weld import seam_note, welded
 
 CLEAN, NOT_CLEAN = 0, 1
 FILES = ("judgement.json", "judgement.html")  # record and page
 WIDE_M = 100.0  # beyond it coordinates are asked about: millimetres look like that
-DOC = """TRAJECTORY: a folder of numbered OBJ, PLY or VTU frames, a .pvd collection, .pc2, .npz, or a run of
-barrierbench. What its files do not say (obstacles, rods, thickness, densities): --about FILE
-(configs/schema/judge.schema.json). Every frame is judged by exact signs, and the straight line from each
-frame to the next as a motion. Exit 0: clean, 1: not, 2: cannot be judged."""
+DOC = """TRAJECTORY: a folder of numbered frames (OBJ, PLY, STL, VTU, VTP, VTK, MSH, VTM), a .pvd collection,
+.pc2, .mdd, .npz, or a run of barrierbench. What its files do not say (obstacles, rods, thickness, densities):
+--about FILE (configs/schema/judge.schema.json). Every frame is judged by exact signs, and the straight line
+from each frame to the next as a motion. Exit 0: clean, 1: not, 2: cannot be judged."""
 
 
 def _check(options: argparse.Namespace) -> None:
-    """Errors: UserError for a scale that is none, and a reach that is none or that no gap has."""
+    """Errors: UserError for a scale, a tolerance or a reach that is none, and a reach that no gap has."""
+    if options.weld is not None and not (np.isfinite(options.weld) and options.weld >= 0):
+        raise UserError(f"--weld {options.weld}: a finite number of 0 or more is needed")
     for name in ("scale", "reach"):
         value = getattr(options, name)
         if value is not None and not (np.isfinite(value) and value > 0):
@@ -51,7 +54,19 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "--topology",
         type=Path,
         metavar="MESH",
-        help="for frames without cells (.pc2, .npz): a mesh file of the same vertices",
+        help="for frames without cells (.pc2, .mdd, .npz): a mesh file of the same vertices",
+    )
+    parser.add_argument(
+        "--displacement",
+        metavar="FIELD",
+        help="field of points that is added to points at rest (default: one of a usual name, where the points"
+        " of all frames are the same); none: the points alone",
+    )
+    parser.add_argument(
+        "--weld",
+        type=float,
+        metavar="M",
+        help="vertices of the first frame that are so close (0: in one place) are one",
     )
     parser.add_argument(
         "--reference", type=Path, metavar="TRAJECTORY", help="another one of the same vertices: how far apart"
@@ -90,12 +105,13 @@ def scaled(trajectory: Trajectory, scale: float) -> Trajectory:
 
 def read(options: argparse.Namespace) -> tuple[Trajectory, About]:
     """The trajectory with all that is known of it. Errors: UserError."""
-    found = scaled(read_trajectory(options.trajectory, options.topology), options.scale)
+    found = read_trajectory(options.trajectory, options.topology, options.displacement)
+    found, _ = welded(scaled(found, options.scale), options.weld)
     data, found = with_cells(found, options.about)
     topology, notes = with_parts(checked(found).topology)
     found = replace(found, topology=topology, notes=found.notes + notes)
     if topology.polygons:
-        cut = "polygons of more than three corners were cut into triangles from their first corner"
+        cut = "polygons of more than three corners were cut into triangles, by the places of the first frame"
         found = replace(found, notes=(*found.notes, f"{topology.polygons} {cut}"))
     return found, about_of(data, options.about, found)
 
@@ -116,6 +132,8 @@ class Watch:
         self.reference = reference.frames() if reference else None
         self.largest_m = 0.0
         self.unknown = 0  # frames of the reference that are not finite
+        self.first: np.ndarray | None = None
+        self.moves = False
 
     @np.errstate(all="ignore")
     def __call__(self, number: int, x: np.ndarray) -> None:
@@ -123,6 +141,8 @@ class Watch:
         if self.physics is None:
             self.physics = Physics(t.topology, self.about, x, times_of(t, self.about))
             self.largest_m = float(np.ptp(x, axis=0).max())
+            self.first = np.array(x)
+        self.moves = self.moves or not np.array_equal(x, self.first, equal_nan=True)
         row = self.physics.of(number, x)
         if self.reference is not None and (other := next(self.reference, None)) is not None:
             apart = np.linalg.norm(x - other, axis=1)
@@ -135,7 +155,8 @@ class Watch:
 def reference_of(options: argparse.Namespace, trajectory: Trajectory) -> Trajectory | None:
     if options.reference is None:
         return None
-    found = read_trajectory(options.reference)  # its vertices alone are asked for
+    found = read_trajectory(options.reference, None, options.displacement)  # its vertices alone are asked for
+    found, _ = welded(found, options.weld)
     n, m = trajectory.topology.n_vertices, found.topology.n_vertices
     if n != m:
         raise UserError(f"{options.reference}: {m} vertices; the trajectory has {n}")
@@ -147,7 +168,9 @@ def reference_of(options: argparse.Namespace, trajectory: Trajectory) -> Traject
 
 def notes_of(trajectory: Trajectory, watch: Watch) -> list[str]:
     """What a reader has to know beside the verdict: of the files, of their unit, of the reference."""
-    notes = list(trajectory.notes)
+    notes = [*trajectory.notes, *trajectory.heard]
+    if watch.first is not None:
+        notes += seam_note(trajectory.topology, watch.first)
     if watch.largest_m > WIDE_M:
         notes.append(f"the first frame is {watch.largest_m:g} m wide: if its unit is mm, --scale 0.001")
     if watch.unknown:
@@ -183,6 +206,9 @@ def judged(options: argparse.Namespace) -> dict:
             "last": trajectory.labels[-1],
             "bodies": list(trajectory.topology.names),
             "times_s": None if times is None else times.tolist(),
+            "frame_numbers": trajectory.frame_numbers,
+            "displacement": trajectory.displacement,
+            "moves": watch.moves if len(frames) > 1 else None,
         },
         "reach_m": subject["reach_m"],
         "total": total,
@@ -194,12 +220,19 @@ def judged(options: argparse.Namespace) -> dict:
     }
 
 
+def still(record: dict) -> str:
+    """For the first line: a film in which nothing moves shows nothing of what a program did."""
+    if record["trajectory"]["moves"] is not False:
+        return ""
+    return f" (no vertex moves in {record['trajectory']['frames']} frames)"
+
+
 def said(record: dict) -> str:
     """What is printed: verdict, what was judged, the first findings."""
     total = record["total"]
     closed = len(total["closed_bodies"])
     lines = [
-        f"{record['verdict']}: {meaning(record)}",
+        f"{record['verdict']}{still(record)}: {meaning(record)}",
         f"judged: {total['frames']} frames of {total['triangles']} triangles, {total['edges']} edges, "
         f"{total['vertices']} vertices and {total['obstacles']} obstacles; {total['state_pairs']} pairs in"
         f" states, {total['motion_pairs']} in motions; {total['sides_asked']} vertices against {closed}"

@@ -4,12 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/input/number_in.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
@@ -46,19 +45,20 @@ class TextScanner {
   double number(std::size_t i) const { return parse<double>(i, "a number"); }
   long long integer(std::size_t i) const { return parse<long long>(i, "an integer"); }
 
+  /// A word as a number, with or without a plus before it.
+  template <class T>
+  T value(std::string_view word, const std::string& allowed) const {
+    const std::optional<T> value = number_in<T>(word);
+    if (!value) fail(fmt::format("\"{}\"", word), allowed);
+    return *value;
+  }
+
  private:
   template <class T>
   T parse(std::size_t i, const char* allowed) const {
     if (i >= words_.size())
       fail(fmt::format("{} words", words_.size()), fmt::format("{} as word {}", allowed, i + 1));
-    std::string_view text = words_[i];
-    if (text.size() > 1 && text[0] == '+') text.remove_prefix(1);
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      fail(fmt::format("\"{}\"", words_[i]), fmt::format("{} in range", allowed));
-    }
-    return value;
+    return value<T>(words_[i], fmt::format("{} in range", allowed));
   }
 
   void split(std::string_view line) {

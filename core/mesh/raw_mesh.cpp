@@ -10,6 +10,7 @@
 
 #include "core/math/error.hpp"
 #include "core/mesh/bounds.hpp"
+#include "core/mesh/polygon_cut.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace bb {
@@ -22,10 +23,32 @@ void RawMesh::close_polygon(std::size_t first, long long place) {
   first_corner.push_back(first);
   polygon_place.push_back(place);
 }
+void RawMesh::add_strip(const std::vector<long long>& strip, long long place) {
+  for (std::size_t k = 2; k < strip.size(); ++k) {
+    const long long a = strip[k - 2 + k % 2], b = strip[k - 1 - k % 2], c = strip[k];
+    if (a == b || b == c || a == c) continue;
+    const std::size_t first = corners.size();
+    corners.insert(corners.end(), {a, b, c});
+    close_polygon(first, place);
+  }
+}
 void RawMesh::add_segment(long long a, long long b, long long place) {
   segments.push_back({a, b});
   segment_place.push_back(place);
 }
+std::string note_of(const RawMesh& raw, const std::string& what, const LeftOut& kind, const char* done) {
+  return fmt::format("{}: {} {}, the first at {}", what, kind.count, done, raw.where("element", kind.place));
+}
+
+std::vector<std::string> notes_of(const RawMesh& raw) {
+  std::vector<std::string> notes;
+  for (const auto& [what, kind] : raw.unread) {
+    notes.push_back(note_of(raw, what, kind, "not understood and left out"));
+  }
+  for (const auto& [what, kind] : raw.left_out) notes.push_back(note_of(raw, what, kind, "left out"));
+  return notes;
+}
+
 void RawMesh::close_tetrahedron(std::size_t first, long long place) {
   if (corners.size() != first + 4) {
     throw ConfigError(where("tetrahedron", place), fmt::format("{} corners", corners.size() - first),
@@ -35,9 +58,28 @@ void RawMesh::close_tetrahedron(std::size_t first, long long place) {
   tetrahedron_place.push_back(place);
   corners.resize(first);
 }
+std::size_t RawMesh::end_corner(std::size_t polygon) const {
+  return polygon + 1 < first_corner.size() ? first_corner[polygon + 1] : corners.size();
+}
 std::string RawMesh::where(const char* element, long long place) const {
-  return places_are_lines ? fmt::format("{}:{}", name, place)
-                          : fmt::format("{}: {} {}", name, element, place);
+  if (places_are_lines) return fmt::format("{}:{}", name, place);
+  const bool of_cell = cell_element != nullptr && element != std::string_view(vertex_element);
+  return fmt::format("{}: {} {}", name, of_cell ? cell_element : element, place);
+}
+std::string RawMesh::vertex_found(long long index) const {
+  const bool listed = index >= 0 && index < static_cast<long long>(numbers.size());
+  return fmt::format("{} {}", numbers.empty() ? "vertex" : vertex_element,
+                     listed ? numbers[static_cast<std::size_t>(index)] : index + first_number);
+}
+std::string RawMesh::vertices_allowed() const {
+  const auto n = static_cast<long long>(vertices.size());
+  return n == 0 ? "a file with vertices"
+                : fmt::format("a vertex from {} to {}", first_number, n - 1 + first_number);
+}
+
+void count_one(std::map<std::string, LeftOut>& kinds, const std::string& what, long long place) {
+  LeftOut& kind = kinds[what];
+  if (kind.count++ == 0) kind.place = place;
 }
 
 namespace {
@@ -49,6 +91,9 @@ class Assembler {
   explicit Assembler(const RawMesh& raw) : raw_(raw) {}
 
   TriangleMesh run() {
+    for (const auto& [what, kind] : raw_.unread) {
+      complain("element", kind.place, what, "what a file of this format has");
+    }
     copy_vertices();
     for (std::size_t p = 0; p < raw_.first_corner.size(); ++p) add_polygon(p);
     for (std::size_t s = 0; s < raw_.segments.size(); ++s) add_segment(s);
@@ -81,16 +126,15 @@ class Assembler {
   }
 
   bool in_range(const char* element, long long index, long long place) {
-    const auto n = static_cast<long long>(raw_.vertices.size());
-    if (index >= 0 && index < n) return true;
-    complain(element, place, fmt::format("vertex index {} (0-based)", index), fmt::format("0 to {}", n - 1));
+    if (index >= 0 && index < static_cast<long long>(raw_.vertices.size())) return true;
+    complain(element, place, raw_.vertex_found(index), raw_.vertices_allowed());
     return false;
   }
 
   void add_polygon(std::size_t p) {
     const long long place = raw_.polygon_place[p];
     const std::size_t begin = raw_.first_corner[p];
-    const std::size_t end = p + 1 < raw_.first_corner.size() ? raw_.first_corner[p + 1] : raw_.corners.size();
+    const std::size_t end = raw_.end_corner(p);
     std::vector<int> polygon;
     for (std::size_t c = begin; c < end; ++c) {
       if (!in_range("face", raw_.corners[c], place)) return;
@@ -103,7 +147,8 @@ class Assembler {
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
     if (twice != sorted.end()) {
-      return complain("face", place, fmt::format("a face with vertex {} twice", *twice), "distinct corners");
+      return complain("face", place, fmt::format("a face with {} twice", raw_.vertex_found(*twice)),
+                      "distinct corners");
     }
     const auto [other, is_new] = faces_.try_emplace(std::move(sorted), place);
     if (!is_new) {
@@ -114,44 +159,29 @@ class Assembler {
   }
 
   void add_fan(const std::vector<int>& polygon, long long place) {
-    Vec3d whole = Vec3d::Zero();
     for (std::size_t k = 2; k < polygon.size(); ++k) {
-      whole += area_vector(mesh_.vertices, {polygon[0], polygon[k - 1], polygon[k]});
+      // a corner beyond max_coordinate was complained about
+      if (!area_vector(mesh_.vertices, {polygon[0], polygon[k - 1], polygon[k]}).allFinite()) return;
+    }
+    const std::optional<Triangles> fan = fan_of(mesh_.vertices, polygon);
+    if (!fan && has_flat_corner(mesh_.vertices, polygon)) {
+      return complain("face", place, "a face of zero area", "corners that do not lie on one line");
+    }
+    if (!fan) {
+      return complain("face", place,
+                      fmt::format("a polygon of {} corners that is not convex", polygon.size()),
+                      "triangles, and polygons that triangles round one of their corners cover");
     }
     const int first = static_cast<int>(mesh_.triangles.size());
-    for (std::size_t k = 2; k < polygon.size(); ++k) {
-      const std::array<int, 3> triangle{polygon[0], polygon[k - 1], polygon[k]};
-      const Vec3d part = area_vector(mesh_.vertices, triangle);
-      if (!part.allFinite()) return;  // a corner beyond max_coordinate was complained about
-      if (is_flat(triangle, part)) {
-        return complain("face", place, "a face of zero area", "corners that do not lie on one line");
-      }
-      if (!(part.dot(whole) > 0)) {
-        return complain("face", place,
-                        fmt::format("a polygon of {} corners that is not convex", polygon.size()),
-                        "triangles and convex polygons");
-      }
-      mesh_.triangles.push_back(triangle);
-    }
-    if (polygon.size() > 3) mesh_.fans.push_back({first, static_cast<int>(polygon.size()) - 2});
-  }
-
-  /// Zero area up to the rounding of the cross product: below 4 eps of the squared longest edge, relative to
-  /// which coordinates are subtracted exactly or with one rounding.
-  bool is_flat(const std::array<int, 3>& t, const Vec3d& area) const {
-    double longest_sq = 0;
-    for (int k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::size_t>(k), b = static_cast<std::size_t>((k + 1) % 3);
-      longest_sq = std::max(longest_sq, (mesh_.vertices.col(t[a]) - mesh_.vertices.col(t[b])).squaredNorm());
-    }
-    return area.norm() <= 4 * std::numeric_limits<double>::epsilon() * longest_sq;
+    mesh_.triangles.insert(mesh_.triangles.end(), fan->begin(), fan->end());
+    if (polygon.size() > 3) mesh_.fans.push_back({first, static_cast<int>(fan->size())});
   }
 
   void add_segment(std::size_t s) {
     const auto [a, b] = raw_.segments[s];
     const long long place = raw_.segment_place[s];
     if (!in_range("edge", a, place) || !in_range("edge", b, place)) return;
-    if (a == b) return complain("edge", place, fmt::format("vertex {} twice", a), "two different vertices");
+    if (a == b) return complain("edge", place, raw_.vertex_found(a) + " twice", "two different vertices");
     const auto [other, is_new] = edges_.try_emplace(std::minmax(a, b), place);
     if (!is_new) {
       return complain("edge", place, fmt::format("the same vertices as at {}", other->second),

@@ -1,18 +1,37 @@
-// What a reader hands over: polygons as they stand in the file, with their places. assemble_mesh checks and
-// splits them, so that every format has the same rules. Private to core/mesh.
+// What a reader hands over: polygons as they stand in the file, with their places. Every format goes through the same
+// rules from here on: of a body's mesh (assemble_mesh), or of a frame that is judged (frame_mesh.hpp). Private to core/mesh.
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/mesh/triangle_mesh.hpp"
 
 namespace bb {
 
+/// Numbers at the vertices of a file, as a displacement: `components` of each vertex, vertex after vertex.
+struct PointField {
+  std::string name;
+  int components = 0;
+  std::vector<double> values;  // empty when the field was not asked for
+};
+
+/// What a file has and no mesh: how many, and where the first one is.
+struct LeftOut {
+  long long count = 0, place = 0;
+};
+
 struct RawMesh {
   std::string name;              // file, for messages
   bool places_are_lines = true;  // places below: lines of a text file, otherwise element numbers (0-based)
   const char* vertex_element = "vertex";  // what the place of a vertex counts, when not lines
+  const char* cell_element =
+      nullptr;                     // what the places of all cells count, when not lines; none: each its own
+  long long first_number = 0;      // of a vertex, as the file counts
+  std::vector<long long> numbers;  // of all vertices, where they do not follow from the first
   std::vector<Vec3d> vertices;
   std::vector<long long> vertex_place;
   std::vector<long long> corners;         // 0-based, of all polygons in a row
@@ -22,22 +41,55 @@ struct RawMesh {
   std::vector<long long> segment_place;
   std::vector<std::array<long long, 4>> tetrahedra;
   std::vector<long long> tetrahedron_place;
+  std::vector<PointField> fields;
+  std::map<std::string, LeftOut>
+      left_out;  // what is no surface, rod or solid: points, text, elements of other names
+  std::map<std::string, LeftOut> unread;  // what no rule of the format explains
 
   void add_vertex(const Vec3d& x, long long place);
   /// Takes the corners appended since the last call (or since the start) as one polygon.
   void close_polygon(std::size_t first, long long place);
+  /// Triangles of each three corners in a row, every second one turned over; those with a corner twice only turn.
+  void add_strip(const std::vector<long long>& strip, long long place);
   void add_segment(long long a, long long b, long long place);
   /// Takes the corners from `first` on as a tetrahedron. Errors: ConfigError when they are not four.
   void close_tetrahedron(std::size_t first, long long place);
+  std::size_t n_polygons() const { return first_corner.size(); }
+  /// One past the last corner of a polygon.
+  std::size_t end_corner(std::size_t polygon) const;
   /// "file:line", or "file: element number".
   std::string where(const char* element, long long place) const;
+  /// A number of a vertex as the file counts them, and those that there are.
+  std::string vertex_found(long long index) const;
+  std::string vertices_allowed() const;
 };
+
+/// Counts one thing more of this kind.
+void count_one(std::map<std::string, LeftOut>& kinds, const std::string& what, long long place);
+
+/// A sentence for each kind of thing that was left out or not understood.
+std::vector<std::string> notes_of(const RawMesh& raw);
+std::string note_of(const RawMesh& raw, const std::string& what, const LeftOut& kind, const char* done);
+
+/// Names of fields that are wanted; what else a file has at its points is listed without its values.
+using FieldNames = std::set<std::string, std::less<>>;
 
 /// Errors: ConfigError, see read_mesh.
 TriangleMesh assemble_mesh(const RawMesh& raw);
 
+/// What a file of Gmsh or VTK has and a body has not: triangles that are faces of tetrahedra (as a `skin`, those of one
+/// tetrahedron stay), lines that are sides of other cells, vertices of no cell.
+RawMesh without_sides(RawMesh raw, bool skin);
+
+/// By the extension of the name. Errors: ConfigError, see read_mesh.
+RawMesh parse_raw(const std::string& bytes, const std::string& name, const FieldNames& wanted = {});
+
 RawMesh parse_obj(const std::string& bytes, const std::string& name);
 RawMesh parse_ply(const std::string& bytes, const std::string& name);
 RawMesh parse_stl(const std::string& bytes, const std::string& name);
+RawMesh parse_msh(const std::string& bytes, const std::string& name);
+RawMesh parse_vtk(const std::string& bytes, const std::string& name, const FieldNames& wanted);  // legacy
+RawMesh parse_vtk_xml(const std::string& bytes, const std::string& name,
+                      const FieldNames& wanted);  // vtu, vtp
 
 }  // namespace bb

@@ -1,48 +1,133 @@
-// Wavefront OBJ: v, f (v, v/vt, v//vn, v/vt/vn; negative indices count back) and l. The rest is read past.
+// Wavefront OBJ: v, f (v, v/vt, v//vn, v/vt/vn; negative indices count back from the vertices so far), l; a line that ends
+// with \ goes on in the next one. What draws or groups is read past, lines of words that OBJ does not have are counted.
+#include <algorithm>
+
 #include "core/input/text_scanner.hpp"
 #include "core/mesh/raw_mesh.hpp"
 
 namespace bb {
 namespace {
 
-/// 0-based index of a face or line word; 1-based positive and backward negative in the file.
-long long vertex_index(const TextScanner& scanner, std::string_view word, std::size_t n_vertices) {
-  const std::string_view text = word.substr(0, word.find('/'));
-  long long index = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  if (error != std::errc() || end != text.data() + text.size() || index == 0) {
-    scanner.fail(fmt::format("\"{}\"", word), "a vertex index (1 is the first, -1 the last so far)");
-  }
-  return index > 0 ? index - 1 : static_cast<long long>(n_vertices) + index;
+using Words = std::vector<std::string_view>;
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+/// Texture, normals, groups, materials and display: nothing of a surface.
+bool is_read_past(std::string_view word) {
+  static const std::set<std::string_view> known{
+      "vt",       "vn",         "vp",        "g",      "s",     "o",     "mg",
+      "usemtl",   "mtllib",     "usemap",    "maplib", "lod",   "bevel", "c_interp",
+      "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech", "call",  "csh"};
+  return known.contains(word);
 }
+
+/// Curves and surfaces that are no polygons.
+bool is_free_form(std::string_view word) {
+  static const std::set<std::string_view> known{"cstype", "curv", "curv2", "surf", "bzp",
+                                                "bsp",    "cdc",  "cdp",   "res"};
+  return known.contains(word);
+}
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& bytes, const std::string& name)
+      : scanner_(
+            std::string_view(bytes).substr(bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0),
+            name) {
+    mesh_.name = name;
+    mesh_.first_number = 1;
+  }
+
+  RawMesh run() {
+    while (next()) {
+      if (!words_.empty()) take();
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  /// The words of a line and of those that it goes on in, without a comment.
+  bool next() {
+    words_.clear();
+    bool goes_on = true;
+    for (bool any = false; goes_on; any = true) {
+      if (!scanner_.next_line()) return any;
+      if (!any) line_ = scanner_.line();
+      goes_on = append_line();
+    }
+    return true;
+  }
+
+  /// True where the line ends with a backslash and is no comment.
+  bool append_line() {
+    for (const std::string_view word : scanner_.words()) {
+      if (word.starts_with('#')) return false;
+      words_.push_back(word);
+    }
+    if (words_.empty() || scanner_.words().empty() || !words_.back().ends_with('\\')) return false;
+    words_.back().remove_suffix(1);
+    if (words_.back().empty()) words_.pop_back();
+    return true;
+  }
+
+  void take() {
+    const std::string_view key = words_[0];
+    if (key == "v") {
+      if (words_.size() < 4) scanner_.fail(fmt::format("{} words", words_.size()), "v X Y Z");
+      mesh_.add_vertex({number(1), number(2), number(3)}, line_);
+    } else if (key == "f" || key == "fo") {
+      take_face();
+    } else if (key == "l") {
+      take_line();
+    } else if (key == "p") {
+      count_one(mesh_.left_out, "points (p)", line_);
+    } else if (key.find('\0') != std::string_view::npos) {
+      scanner_.fail("binary data", "the text of an OBJ file");
+    } else if (is_free_form(key)) {
+      scanner_.fail(fmt::format("a curve or surface of free form ({})", key), "polygons (f) and lines (l)");
+    } else if (!is_read_past(key)) {
+      count_one(mesh_.unread, fmt::format("a line that begins with \"{}\"", key.substr(0, 20)), line_);
+    }
+  }
+
+  void take_face() {
+    const std::size_t first = mesh_.corners.size();
+    for (std::size_t k = 1; k < words_.size(); ++k) mesh_.corners.push_back(vertex(words_[k]));
+    if (mesh_.corners.size() - first < 3) {
+      scanner_.fail(fmt::format("a face of {} corners", words_.size() - 1), "at least 3 corners");
+    }
+    mesh_.close_polygon(first, line_);
+  }
+
+  void take_line() {
+    if (words_.size() < 3) scanner_.fail("a line of one point", "l with at least two vertex indices");
+    for (std::size_t k = 2; k < words_.size(); ++k) {
+      mesh_.add_segment(vertex(words_[k - 1]), vertex(words_[k]), line_);
+    }
+  }
+
+  double number(std::size_t i) const { return scanner_.value<double>(words_[i], "a number in range"); }
+
+  /// 0-based. A number above that of the vertices so far may be of one that comes.
+  long long vertex(std::string_view word) const {
+    const std::string_view text = word.substr(0, word.find('/'));
+    const char* allowed = "a vertex index (1 is the first, -1 the last so far)";
+    const auto index = scanner_.value<long long>(text, allowed);
+    const auto n = static_cast<long long>(mesh_.vertices.size());
+    if (index == 0 || index < -n) {
+      scanner_.fail(fmt::format("\"{}\" after {} vertices", word, n), allowed);
+    }
+    return index > 0 ? index - 1 : n + index;
+  }
+
+  TextScanner scanner_;
+  RawMesh mesh_;
+  Words words_;
+  long long line_ = 0;
+};
 
 }  // namespace
 
-RawMesh parse_obj(const std::string& bytes, const std::string& name) {
-  RawMesh mesh;
-  mesh.name = name;
-  TextScanner scanner(bytes, name);
-  while (scanner.next_line()) {
-    const auto& words = scanner.words();
-    if (scanner.word(0) == "v") {
-      mesh.add_vertex({scanner.number(1), scanner.number(2), scanner.number(3)}, scanner.line());
-    } else if (scanner.word(0) == "f") {
-      const std::size_t first = mesh.corners.size();
-      for (std::size_t k = 1; k < words.size() && words[k][0] != '#'; ++k) {
-        mesh.corners.push_back(vertex_index(scanner, words[k], mesh.vertices.size()));
-      }
-      mesh.close_polygon(first, scanner.line());
-    } else if (scanner.word(0) == "l") {
-      if (words.size() < 3) scanner.fail("a line of one point", "l with at least two vertex indices");
-      for (std::size_t k = 2; k < words.size() && words[k][0] != '#'; ++k) {
-        mesh.add_segment(vertex_index(scanner, words[k - 1], mesh.vertices.size()),
-                         vertex_index(scanner, words[k], mesh.vertices.size()), scanner.line());
-      }
-    } else if (!words.empty() && words[0].find('\0') != std::string_view::npos) {
-      scanner.fail("binary data", "the text of an OBJ file");
-    }
-  }
-  return mesh;
-}
+RawMesh parse_obj(const std::string& bytes, const std::string& name) { return ObjReader(bytes, name).run(); }
 
 }  // namespace bb

@@ -1,9 +1,9 @@
 // PLY bodies: one reader of values for text and one for bytes behind the same loop over
 // elements and properties.
-#include <bit>
-#include <cstring>
+#include <algorithm>
 
 #include "core/input/text_scanner.hpp"
+#include "core/mesh/number_bytes.hpp"
 #include "core/mesh/ply_header.hpp"
 #include "core/mesh/raw_mesh.hpp"
 
@@ -48,10 +48,7 @@ class AsciiValues {
 class BinaryValues {
  public:
   BinaryValues(const std::string& bytes, const PlyHeader& header, const std::string& name)
-      : bytes_(bytes),
-        name_(name),
-        at_(header.body),
-        swap_((header.format == PlyFormat::big_endian) == (std::endian::native == std::endian::little)) {}
+      : bytes_(bytes), name_(name), at_(header.body), big_endian_(header.format == PlyFormat::big_endian) {}
 
   void begin(const PlyElement& element, long long number) {
     element_ = &element;
@@ -99,26 +96,24 @@ class BinaryValues {
                         fmt::format("the end of the file after {} bytes", bytes_.size()),
                         fmt::format("{} {} elements", element_->count, element_->name));
     }
-    char raw[sizeof(T)];
-    for (std::size_t i = 0; i < sizeof(T); ++i) raw[swap_ ? sizeof(T) - 1 - i : i] = bytes_[at_ + i];
     at_ += sizeof(T);
-    T value;
-    std::memcpy(&value, raw, sizeof(T));
-    return value;
+    return number_at<T>(bytes_.data() + at_ - sizeof(T), big_endian_);
   }
 
   const std::string& bytes_;
   std::string name_;
   std::size_t at_;
-  bool swap_;
+  bool big_endian_;
   const PlyElement* element_ = nullptr;
   long long number_ = 0;
 };
 
+enum class Corners { polygon, strip, tetrahedron };
+
 /// Where the values we keep stand in an element; -1 when the element has none of them.
 struct Slots {
   int x = -1, y = -1, z = -1, list = -1, edge0 = -1, edge1 = -1;
-  bool of_tetrahedron = false;  // `list`
+  Corners corners = Corners::polygon;  // what `list` holds
 };
 
 Slots slots_of(const PlyElement& element, const std::string& name) {
@@ -133,8 +128,9 @@ Slots slots_of(const PlyElement& element, const std::string& name) {
   };
   if (element.name == "vertex") {
     slots.x = need("x"), slots.y = need("y"), slots.z = need("z");
-  } else if (element.name == "face" || element.name == "tetrahedron") {
-    slots.of_tetrahedron = element.name == "tetrahedron";
+  } else if (element.name == "face" || element.name == "tetrahedron" || element.name == "tristrips") {
+    if (element.name == "tetrahedron") slots.corners = Corners::tetrahedron;
+    if (element.name == "tristrips") slots.corners = Corners::strip;
     slots.list = element.find("vertex_indices");
     if (slots.list < 0 || !element.properties[static_cast<std::size_t>(slots.list)].is_list) {
       throw ConfigError(name, fmt::format("element {} without its corners", element.name),
@@ -142,8 +138,23 @@ Slots slots_of(const PlyElement& element, const std::string& name) {
     }
   } else if (element.name == "edge") {
     slots.edge0 = need("vertex1"), slots.edge1 = need("vertex2");
+  } else if (element.count > 0 && element.find("vertex_indices") >= 0) {
+    throw ConfigError(name, fmt::format("element {} with vertex_indices", element.name),
+                      "face, tristrips, edge and tetrahedron as elements with corners");
   }
   return slots;
+}
+
+void close_corners(Corners what, std::size_t first, long long place, RawMesh& mesh) {
+  if (what == Corners::tetrahedron) return mesh.close_tetrahedron(first, place);
+  if (what == Corners::polygon) return mesh.close_polygon(first, place);
+  std::vector<long long> strip(mesh.corners.begin() + static_cast<std::ptrdiff_t>(first), mesh.corners.end());
+  mesh.corners.resize(first);
+  for (auto begin = strip.begin(); begin != strip.end();) {  // -1 stands between two strips
+    const auto end = std::find(begin, strip.end(), -1);
+    mesh.add_strip({begin, end}, place);
+    begin = end == strip.end() ? end : end + 1;
+  }
 }
 
 template <class Values>
@@ -180,11 +191,7 @@ void read_element(Values& values, const PlyElement& element, const Slots& slots,
   values.end();
   const long long place = values.place(number);
   if (slots.x >= 0) mesh.add_vertex(x, place);
-  if (slots.list >= 0 && slots.of_tetrahedron) {
-    mesh.close_tetrahedron(first, place);
-  } else if (slots.list >= 0) {
-    mesh.close_polygon(first, place);
-  }
+  if (slots.list >= 0) close_corners(slots.corners, first, place, mesh);
   if (slots.edge0 >= 0) mesh.add_segment(edge[0], edge[1], place);
 }
 
@@ -196,6 +203,9 @@ void read_body(const std::string& bytes, const PlyHeader& header, RawMesh& mesh)
   Values values(bytes, header, mesh.name);
   for (std::size_t e = 0; e < slots.size(); ++e) {
     const PlyElement& element = header.elements[e];
+    const bool kept = slots[e].x >= 0 || slots[e].list >= 0 || slots[e].edge0 >= 0;
+    if (!kept && element.count > 0)
+      mesh.left_out[fmt::format("element {}", element.name)] = {element.count, 0};
     for (long long i = 0; i < element.count; ++i) read_element(values, element, slots[e], i, mesh);
   }
   values.finish();

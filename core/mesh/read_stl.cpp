@@ -1,10 +1,10 @@
 // STL, ascii and binary. It has no indices: corners with equal coordinates become one vertex,
 // nothing else does.
-#include <bit>
-#include <cstring>
+#include <algorithm>
 #include <map>
 
 #include "core/input/text_scanner.hpp"
+#include "core/mesh/number_bytes.hpp"
 #include "core/mesh/raw_mesh.hpp"
 
 namespace bb {
@@ -28,13 +28,20 @@ class VertexMerger {
   std::map<std::array<double, 3>, long long> index_;
 };
 
+/// Some programs write the words in capitals.
+std::string lower(std::string_view word) {
+  std::string out(word);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
 void parse_ascii(const std::string& bytes, RawMesh& mesh) {
   TextScanner scanner(bytes, mesh.name);
   VertexMerger merger(mesh);
   std::size_t first = 0;
   bool in_facet = false, ended = false;
   while (scanner.next_line()) {
-    const std::string_view key = scanner.word(0);
+    const std::string key = lower(scanner.word(0));
     if (key == "solid") {
       ended = false;
     } else if (key == "facet") {
@@ -55,7 +62,8 @@ void parse_ascii(const std::string& bytes, RawMesh& mesh) {
     } else if (key == "endsolid") {
       ended = true;
     } else if (key != "outer" && key != "endloop" && !key.empty()) {
-      scanner.fail(fmt::format("\"{}\"", key), "solid, facet, outer, vertex, endloop, endfacet or endsolid");
+      scanner.fail(fmt::format("\"{}\"", scanner.word(0)),
+                   "solid, facet, outer, vertex, endloop, endfacet or endsolid");
     }
   }
   if (in_facet || !ended) scanner.fail("the end of the file", "endfacet and endsolid");
@@ -65,17 +73,6 @@ void parse_ascii(const std::string& bytes, RawMesh& mesh) {
 /// 16 bits; little-endian.
 constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
 
-template <class T>
-T little_endian(const std::string& bytes, std::size_t at) {
-  char raw[sizeof(T)];
-  for (std::size_t i = 0; i < sizeof(T); ++i) {
-    raw[std::endian::native == std::endian::little ? i : sizeof(T) - 1 - i] = bytes[at + i];
-  }
-  T value;
-  std::memcpy(&value, raw, sizeof(T));
-  return value;
-}
-
 void parse_binary(const std::string& bytes, RawMesh& mesh) {
   mesh.places_are_lines = false;
   mesh.vertex_element = "face";
@@ -83,7 +80,7 @@ void parse_binary(const std::string& bytes, RawMesh& mesh) {
     throw ConfigError(mesh.name, fmt::format("{} bytes", bytes.size()),
                       "an STL header of 84 bytes, or ascii STL");
   }
-  const std::size_t n = little_endian<std::uint32_t>(bytes, 80);
+  const std::size_t n = number_at<std::uint32_t>(bytes.data() + 80, false);
   if (bytes.size() != header_bytes + n * triangle_bytes) {
     throw ConfigError(mesh.name, fmt::format("{} bytes", bytes.size()),
                       fmt::format("{} bytes for {} triangles", header_bytes + n * triangle_bytes, n));
@@ -94,7 +91,7 @@ void parse_binary(const std::string& bytes, RawMesh& mesh) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::size_t at = header_bytes + t * triangle_bytes + 12 * (corner + 1);
       const auto coordinate = [&](std::size_t k) {
-        return static_cast<double>(little_endian<float>(bytes, at + 4 * k));
+        return static_cast<double>(number_at<float>(bytes.data() + at + 4 * k, false));
       };
       merger.add_corner({coordinate(0), coordinate(1), coordinate(2)}, static_cast<long long>(t));
     }
@@ -104,9 +101,10 @@ void parse_binary(const std::string& bytes, RawMesh& mesh) {
 
 /// Binary files may start with "solid" too: the size is what tells them apart.
 bool is_binary(const std::string& bytes) {
-  if (bytes.compare(0, 5, "solid") != 0) return true;
+  const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+  if (lower(std::string_view(bytes).substr(begin, 5)) != "solid") return true;
   return bytes.size() >= header_bytes &&
-         bytes.size() == header_bytes + triangle_bytes * little_endian<std::uint32_t>(bytes, 80);
+         bytes.size() == header_bytes + triangle_bytes * number_at<std::uint32_t>(bytes.data() + 80, false);
 }
 
 }  // namespace

@@ -174,8 +174,8 @@ def test_all_bodies_or_one_are_subdivided(run, tmp_path):
     (["--format", "obj", "--subdivide", "1", "--body", "cloht"], "'cloht'; allowed: cloth, rod, block"),
     (["--format", "obj", "--subdivide", "1", "--body", "rod"], "rod has no triangles"),
     (["--format", "obj", "--subdivide", "1", "--reach", "1"], "--reach"),
-    (["--format", "obj", "--render-mesh", "none.obj", "--body", "cloth"], "none.obj: no such file"),
-    (["--format", "obj", "--render-mesh", "a.stl", "--body", "cloth"], "'.stl'; allowed: .obj, .ply"),
+    (["--format", "obj", "--render-mesh", "none.obj", "--body", "cloth"], "none.obj: found No such file"),
+    (["--format", "obj", "--render-mesh", "pytest.ini", "--body", "cloth"], 'extension ".ini"; allowed: one of .obj, .ply'),
 ])
 def test_wrong_words_are_refused_by_name(run, tmp_path, capsys, words, said):
     assert verb.main([str(run), str(tmp_path / "out"), *words]) == 2

@@ -124,6 +124,19 @@ Texts eval_seeds() {
   return out;
 }
 
+/// One triangle, its points compressed by zlib: a header of one block, 72 bytes that become 17.
+std::string compressed_vtu() {
+  return "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" "
+         "compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid>"
+         "<Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" "
+         "Name=\"Points\" "
+         "NumberOfComponents=\"3\" "
+         "format=\"binary\">AQAAAEgAAAAAAAAAEQAAAA==eNpjYMAHPtgzECkPAD1WAl8=</DataArray></Points><Cells>" +
+         test::data_array("Int64", "connectivity", 1, "0 1 2") +
+         test::data_array("Int64", "offsets", 1, "3") + test::data_array("UInt8", "types", 1, "5") +
+         "</Cells></Piece></UnstructuredGrid></VTKFile>";
+}
+
 constexpr std::size_t largest_sweep_seed = 8000;  // bytes
 
 const std::map<std::string, Texts (*)()>& makers() {
@@ -152,6 +165,20 @@ const std::map<std::string, Texts (*)()>& makers() {
       {"mesh_stl",
        [] {
          return Texts{test::tetrahedron_stl_ascii(), test::tetrahedron_stl_binary()};
+       }},
+      {"mesh_msh",
+       [] {
+         return Texts{test::tetrahedron_msh_22(), test::tetrahedron_msh_41(),
+                      test::tetrahedron_msh_22_binary(), test::tetrahedron_msh_41_binary()};
+       }},
+      {"mesh_vtk",
+       [] {
+         return Texts{test::tetrahedron_vtk_ascii(), test::tetrahedron_vtk_binary()};
+       }},
+      {"mesh_vtp", [] { return Texts{test::tetrahedron_vtp_ascii()}; }},
+      {"mesh_vtu",
+       [] {
+         return Texts{test::tetrahedron_vtu_ascii(), test::tetrahedron_vtu_appended(), compressed_vtu()};
        }},
       {"record", [] { return Texts{Json::parse(to_json(test::sample_record())).dump()}; }},
       {"trace", [] { return Texts{to_json(test::sample_trace_row())}; }},
@@ -244,6 +271,34 @@ std::vector<std::string> words_of(const std::string& target) {
   }
   if (target == "mesh_stl")
     out = {"solid", "facet normal", "outer loop", "vertex", "endloop", "endfacet", "endsolid"};
+  if (target == "mesh_msh") {
+    out = {"$MeshFormat",  "$EndMeshFormat", "$Nodes",  "$EndNodes", "$Elements",
+           "$EndElements", "2.2 0 8",        "4.1 0 8", "4.1 1 8"};
+  }
+  if (target == "mesh_vtk") {
+    out = {"POINTS",   "CELLS",        "CELL_TYPES", "POLYGONS", "LINES",   "TRIANGLE_STRIPS",
+           "OFFSETS",  "CONNECTIVITY", "POINT_DATA", "VECTORS",  "SCALARS", "FIELD",
+           "METADATA", "vtktypeint64", "double",     "BINARY",   "ASCII"};
+  }
+  if (target == "mesh_vtu" || target == "mesh_vtp") {
+    out = {"<DataArray",
+           "</DataArray>",
+           "<Piece",
+           "</Piece>",
+           "<PointData>",
+           "NumberOfPoints=",
+           "NumberOfCells=",
+           "NumberOfStrips=",
+           "NumberOfComponents=",
+           "format=\" appended\"",
+           "format=\" binary\"",
+           "offset=",
+           "<AppendedData",
+           "encoding=\" base64\"",
+           "Float64",
+           "UInt8",
+           "header_type=\" UInt64\""};
+  }
   if (target == "matrix")
     out = {"%%MatrixMarket", "matrix", "coordinate", "real", "integer", "symmetric", "general"};
   std::sort(out.begin(), out.end());

@@ -8,6 +8,13 @@ from tests.hostile.files import (
 # --- meshes
 
 FAR = "v 0 0 0\nv %s 0 0\nv 0 1 0\nf 1 2 3\n"
+MSH = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n1 2 0 1 2 %s\n$EndElements\n"
+VTU = (
+    '<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="3" NumberOfCells="1"><Points><DataArray type="Float64" '
+    'NumberOfComponents="3">0 0 0 1 0 0 0 1 0</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity">0 1 2</DataArray>'
+    '<DataArray type="Int64" Name="offsets">3</DataArray><DataArray type="UInt8" Name="types">5</DataArray></Cells></Piece>'
+    "</UnstructuredGrid></VTKFile>"
+)
 MESHES = [
     mesh("ply-10-18-without-properties", "m.ply", ply([VERTICES, ("mystery", 10**18, [])], POINTS), "10"),
     mesh("ply-10-18-binary-without-properties", "m.ply", binary_ply([VERTICES, FACES, ("mystery", 10**18, [])], TRIANGLE_BYTES),
@@ -36,7 +43,7 @@ MESHES = [
     mesh("ply-empty", "m.ply", b"", "m.ply"),
     mesh("ply-zero-bytes", "m.ply", bytes(100_000), "m.ply:1"),
     mesh("ply-x-is-a-list", "m.ply", ply([("vertex", 1, ["list uchar double x", "double y", "double z"])], "1 0 0 0\n"), "property x"),
-    mesh("ply-index-negative", "m.ply", binary_ply([VERTICES, FACES], TRIANGLE_BYTES[:-4] + b"\xff\xff\xff\xff"), "index -1"),
+    mesh("ply-index-negative", "m.ply", binary_ply([VERTICES, FACES], TRIANGLE_BYTES[:-4] + b"\xff\xff\xff\xff"), "vertex -1"),
     mesh("ply-infinite", "m.ply", binary_ply([VERTICES, FACES], binary_points(0, 0, float("inf")) + TRIANGLE_BYTES[24:]), "vertex 0"),
     mesh("stl-4-billion-triangles", "m.stl", binary_stl(0xFFFFFFFF, 50), "m.stl"),
     mesh("stl-cut", "m.stl", binary_stl(2, 99), "m.stl"),
@@ -55,6 +62,14 @@ MESHES = [
     mesh("obj-coordinate-1e309", "m.obj", FAR % "1e309", "m.obj:2"),
     mesh("obj-coordinate-denormal", "m.obj", "v 0 0 0\nv 1e-310 0 0\nv 0 1e-310 0\nf 1 2 3\n", "m.obj:4"),
     mesh("extension", "m.xyz", SQUARE, "m.xyz"),
+    mesh("msh-number-2e9-without-node", "m.msh", MSH % "2000000000", "m.msh: element 1", "node 2000000000"),
+    mesh("msh-10-12-nodes", "m.msh", (MSH % 3).replace("$Nodes\n3", "$Nodes\n1000000000000"), "1000000000000 things"),
+    mesh("vtu-10-12-points", "m.vtu", VTU.replace('Points="3"', 'Points="1000000000000"'), "9 numbers"),
+    mesh("vtu-10-12-cells", "m.vtu", VTU.replace('Cells="1"', 'Cells="1000000000000"'), "1 numbers"),
+    mesh("vtu-type-200", "m.vtu", VTU.replace("5</DataArray>", "200</DataArray>"), "cell 0", "type 200"),
+    mesh("vtu-entities", "m.vtu", '<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]><VTKFile>&x;</VTKFile>', "m.vtu"),
+    mesh("vtk-10-9-corners", "m.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOLYGONS 1 1000000000\n", "1000000000 things"),
+    mesh("obj-word", "m.obj", SQUARE + "q 1 2 3\n", "m.obj:7", '"q"'),
     mesh("ply-empty-lines", "m.ply", ply([VERTICES, FACES], "\n" * 1_000_000), "m.ply"),
 ]
 

@@ -198,7 +198,7 @@ REFUSED = {
     "b/all.npz: not an NPZ file": lambda f: [a(f), "--reference", cut_off(written(f / "b", "npz", CLEAN)[0], 500)],
     "have cells of their own": lambda f: [a(f), "--topology", f / "nothing.obj"],
     "a have cells of their own": lambda f: [written(f / "a", "obj", CLEAN)[0], "--topology", f / "a" / "frame_000.obj"],
-    "nothing.obj: no such file": lambda f: [written(f / "a", "pc2", CLEAN)[0], "--topology", f / "nothing.obj"],
+    "nothing.obj: found No such file": lambda f: [written(f / "a", "pc2", CLEAN)[0], "--topology", f / "nothing.obj"],
     f"{ABOUT}obstacles/0/axis": lambda f: with_about(f, obstacles=[{"kind": "plane", "axis": [0, 0, 0]}]),
     f"{ABOUT}obstacles/0/radius_m: is missing": lambda f: with_about(f, obstacles=[{"kind": "sphere"}]),
     f"{ABOUT}obstacles/0/point_m: found [1e+60": lambda f: with_about(f, obstacles=[{"kind": "plane", "point_m": [1e60, 0, 0]}]),
@@ -208,9 +208,9 @@ REFUSED = {
     f"{ABOUT}thickness_m: found 1e+60": lambda f: with_about(f, thickness_m=1e60),
     f"{ABOUT}dt_s: found 1e+308": lambda f: with_about(f, dt_s=1e308),
     "--reach 1e+16: at most 1e+15": lambda f: [a(f), "--reach", "1e16"],
-    "x.vtu: not readable: ReadError: no reason is given": lambda f: broken_vtu(f),
+    "x.vtu: found Start-end tags mismatch": lambda f: broken_vtu(f),
     "the key 'planar' is given twice": twice,
-    "has a corner that is no number of a vertex": lambda f: [(f / "x.obj").write_text("v 0 0 0\nf 1 2 99999999999999999999\n") and f / "x.obj"],
+    "x.obj:2: found \"99999999999999999999\"": lambda f: [(f / "x.obj").write_text("v 0 0 0\nf 1 2 99999999999999999999\n") and f / "x.obj"],
 }
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from analysis.judge.verdict import meaning
 from analysis.judge import verb
-from analysis.judge.meshes import MESHES
+from analysis.mesh_arrays import SUFFIXES
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 CUBE_TRIANGLES = [[0, 1, 3], [4, 6, 7], [0, 4, 5], [2, 3, 7], [0, 2, 6], [1, 5, 7], [0, 3, 2], [4, 7, 5], [0, 5, 1], [2, 7, 6], [0, 6, 4], [1, 7, 3]]
@@ -196,13 +196,13 @@ REFUSED = {
     "found none of them": lambda f: [f],
     "found .obj, .ply": lambda f: [(f / "a.obj").write_text("x") and (f / "b.ply").write_text("x") and f],
     "no frame between f_1.obj and f_3.obj": lambda f: [[write_obj(f / f"f_{k}.obj", CLEAN[0]) for k in (0, 1, 3)] and f],
-    "triangles are others": lambda f: [[write_obj(f / f"f_{k}.obj", CLEAN[0]) for k in (0, 1)] and (f / "f_1.obj").write_text((f / "f_0.obj").read_text().replace("f 9//1 10//2 11", "f 9//1 11//2 10")) and f],
+    "faces are others": lambda f: [[write_obj(f / f"f_{k}.obj", CLEAN[0]) for k in (0, 1)] and (f / "f_1.obj").write_text((f / "f_0.obj").read_text().replace("f 9//1 10//2 11", "f 9//1 11//2 10")) and f],
     "the first frame has 11": lambda f: [[write_obj(f / f"f_{k}.obj", CLEAN[0]) for k in (0, 1)] and (f / "f_1.obj").write_text("v 0 0 0\n") and f],
     "no triangle, rod": lambda f: [np.savez(f / "x.npz", positions=np.zeros((1, 3, 3))) or f / "x.npz"],
     "floats [frames, vertices, 3]": lambda f: [np.savez(f / "x.npz", positions=np.zeros((3, 3))) or f / "x.npz"],
     "different numbers from 0 to 2": lambda f: [np.savez(f / "x.npz", positions=np.zeros((1, 3, 3)), triangles=np.array([[0, 1, 3]])) or f / "x.npz"],
     "not a PC2 file": lambda f: [(f / "x.pc2").write_bytes(b"no") and f / "x.pc2"],
-    "2 vertices": lambda f: [(f / "x.obj").write_text("v 0 0 0\nv 1 1\n") and f / "x.obj"],
+    "x.obj:2: found 3 words": lambda f: [(f / "x.obj").write_text("v 0 0 0\nv 1 1\n") and f / "x.obj"],
     "#/obstacles/0/kind": lambda f: [written(f / "a", "npz", CLEAN)[0], *about(f, obstacles=[{"kind": "torus"}])],
     "#/given/0": lambda f: [written(f / "a", "npz", CLEAN)[0], *about(f, given=["part 7"])],
     "a sum of 11 vertices": lambda f: [written(f / "a", "npz", CLEAN)[0], *about(f, bodies=[{"name": "x", "vertices": 3}])],
@@ -222,4 +222,4 @@ def test_what_cannot_be_judged_is_refused_and_leaves_nothing(program, tmp_path, 
 
 
 def test_every_format_of_frames_is_tested():
-    assert set(MESHES) == {".obj", ".ply", ".vtu"}
+    assert set(SUFFIXES) == {".obj", ".ply", ".stl", ".vtu", ".vtp", ".vtk", ".msh"}  # the rest: test_judge_files.py

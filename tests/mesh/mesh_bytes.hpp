@@ -81,4 +81,164 @@ inline std::string tetrahedron_stl_binary() {
   return bytes;
 }
 
+inline std::string tetrahedron_rows(const char* separator = "\n") {
+  std::string text;
+  for (const auto& point : tetrahedron_points) {
+    for (const double x : point) text += std::to_string(x) + " ";
+    text += separator;
+  }
+  return text;
+}
+
+/// The four faces with this before each, and node numbers from this one on.
+inline std::string face_rows(const std::string& before, int first, const char* separator = "\n") {
+  std::string text;
+  for (const auto& face : tetrahedron_faces) {
+    text += before;
+    for (const int v : face) text += std::to_string(v + first) + " ";
+    text += separator;
+  }
+  return text;
+}
+
+/// Nodes have the numbers 11 to 14.
+inline std::string tetrahedron_msh_22() {
+  std::string nodes, elements;
+  for (int v = 0; v < 4; ++v) {
+    nodes += std::to_string(11 + v);
+    for (const double x : tetrahedron_points[v]) nodes += " " + std::to_string(x);
+    nodes += "\n";
+  }
+  elements = face_rows("7 2 2 1 1 ", 11);
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n" + nodes + "$EndNodes\n$Elements\n4\n" +
+         elements + "$EndElements\n";
+}
+
+inline std::string tetrahedron_msh_41() {
+  return "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"skin\"\n$EndPhysicalNames\n"
+         "$Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n" +
+         tetrahedron_rows() + "$EndNodes\n$Elements\n1 4 1 4\n2 1 2 4\n" + face_rows("5 ", 1) +
+         "$EndElements\n";
+}
+
+inline std::string tetrahedron_msh_22_binary() {
+  std::string bytes = "$MeshFormat\n2.2 1 8\n";
+  append(bytes, std::int32_t{1}, false);
+  bytes += "\n$EndMeshFormat\n$Nodes\n4\n";
+  for (int v = 0; v < 4; ++v) {
+    append(bytes, std::int32_t{v + 1}, false);
+    for (const double x : tetrahedron_points[v]) append(bytes, x, false);
+  }
+  bytes += "\n$EndNodes\n$Elements\n4\n";
+  for (const int number : {2, 4, 1}) append(bytes, std::int32_t{number}, false);
+  for (int f = 0; f < 4; ++f) {
+    for (const int number : {f + 1, 0}) append(bytes, std::int32_t{number}, false);
+    for (const int v : tetrahedron_faces[f]) append(bytes, std::int32_t{v + 1}, false);
+  }
+  return bytes + "\n$EndElements\n";
+}
+
+inline std::string tetrahedron_msh_41_binary() {
+  std::string bytes = "$MeshFormat\n4.1 1 8\n";
+  append(bytes, std::int32_t{1}, false);
+  bytes += "\n$EndMeshFormat\n$Nodes\n";
+  for (const int number : {1, 4, 1, 4}) append(bytes, std::int64_t{number}, false);
+  for (const int number : {2, 1, 0}) append(bytes, std::int32_t{number}, false);
+  for (const int number : {4, 1, 2, 3, 4}) append(bytes, std::int64_t{number}, false);
+  for (const auto& point : tetrahedron_points) {
+    for (const double x : point) append(bytes, x, false);
+  }
+  bytes += "\n$EndNodes\n$Elements\n";
+  for (const int number : {1, 4, 1, 4}) append(bytes, std::int64_t{number}, false);
+  for (const int number : {2, 1, 2}) append(bytes, std::int32_t{number}, false);
+  append(bytes, std::int64_t{4}, false);
+  for (int f = 0; f < 4; ++f) {
+    append(bytes, std::int64_t{f + 1}, false);
+    for (const int v : tetrahedron_faces[f]) append(bytes, std::int64_t{v + 1}, false);
+  }
+  return bytes + "\n$EndElements\n";
+}
+
+inline std::string tetrahedron_vtk_ascii() {
+  return "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n" +
+         tetrahedron_rows() + "CELLS 4 16\n" + face_rows("3 ", 0) +
+         "CELL_TYPES 4\n5\n5\n5\n5\nCELL_DATA 4\nSCALARS mat int 1\nLOOKUP_TABLE default\n1 1 1 1\n"
+         "POINT_DATA 4\nVECTORS u double\n0 0 0 0 0 0 0 0 0 1 2 3\nFIELD FieldData 1\nbody 1 4 int\n1 1 1 "
+         "1\n";
+}
+
+/// Version 5.1: lists of offsets, a block of METADATA.
+inline std::string tetrahedron_vtk_binary() {
+  std::string bytes = "# vtk DataFile Version 5.1\ntitle\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n";
+  for (const auto& point : tetrahedron_points) {
+    for (const double x : point) append(bytes, static_cast<float>(x), true);
+  }
+  bytes += "\nMETADATA\nINFORMATION 0\n\nPOLYGONS 5 12\nOFFSETS vtktypeint64\n";
+  for (int k = 0; k < 5; ++k) append(bytes, std::int64_t{3 * k}, true);
+  bytes += "\nCONNECTIVITY vtktypeint64\n";
+  for (const auto& face : tetrahedron_faces) {
+    for (const int v : face) append(bytes, std::int64_t{v}, true);
+  }
+  return bytes + "\n";
+}
+
+inline std::string data_array(const std::string& type, const std::string& name, int components,
+                              const std::string& numbers) {
+  return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+         std::to_string(components) + "\" format=\"ascii\">" + numbers + "</DataArray>";
+}
+
+/// With the displacement u of the last vertex.
+inline std::string tetrahedron_vtu_ascii() {
+  return "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\" "
+         "byte_order=\"LittleEndian\"><UnstructuredGrid>"
+         "<Piece NumberOfPoints=\"4\" NumberOfCells=\"4\"><PointData>" +
+         data_array("Float64", "u", 3, "0 0 0 0 0 0 0 0 0 1 2 3") + "</PointData><Points>" +
+         data_array("Float64", "Points", 3, tetrahedron_rows(" ")) + "</Points><Cells>" +
+         data_array("Int64", "connectivity", 1, face_rows("", 0, " ")) +
+         data_array("Int64", "offsets", 1, "3 6 9 12") + data_array("UInt8", "types", 1, "5 5 5 5") +
+         "</Cells></Piece></UnstructuredGrid></VTKFile>";
+}
+
+/// Raw bytes behind the XML, with lengths of 64 bits.
+inline std::string tetrahedron_vtu_appended() {
+  std::string data;
+  const auto array = [&](const std::string& type, const std::string& name, const std::string& bytes) {
+    const std::string offset = std::to_string(data.size());
+    append(data, std::uint64_t{bytes.size()}, false);
+    data += bytes;
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"appended\" offset=\"" + offset +
+           "\"/>";
+  };
+  std::string points, corners, ends, types;
+  for (const auto& point : tetrahedron_points) {
+    for (const double x : point) append(points, x, false);
+  }
+  for (int f = 0; f < 4; ++f) {
+    for (const int v : tetrahedron_faces[f]) append(corners, std::int32_t{v}, false);
+    append(ends, std::int32_t{3 * f + 3}, false);
+    append(types, std::uint8_t{5}, false);
+  }
+  const std::string of_points =
+      array("Float64", "Points", points);  // first: offsets follow the order of the calls
+  const std::string of_corners = array("Int32", "connectivity", corners);
+  const std::string of_ends = array("Int32", "offsets", ends);
+  const std::string of_types = array("UInt8", "types", types);
+  return "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\"><UnstructuredGrid>"
+         "<Piece NumberOfPoints=\"4\" NumberOfCells=\"4\"><Points>" +
+         of_points + "</Points><Cells>" + of_corners + of_ends + of_types +
+         "</Cells></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_" + data +
+         "</AppendedData></VTKFile>";
+}
+
+inline std::string tetrahedron_vtp_ascii() {
+  return "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"4\" "
+         "NumberOfPolys=\"4\">"
+         "<Points>" +
+         data_array("Float32", "Points", 3, tetrahedron_rows(" ")) + "</Points><Polys>" +
+         data_array("Int64", "connectivity", 1, face_rows("", 0, " ")) +
+         data_array("Int64", "offsets", 1, "3 6 9 12") + "</Polys></Piece></PolyData></VTKFile>";
+}
+
 }  // namespace bb::test

@@ -77,18 +77,23 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"overflow", "a.obj", "v 0 0 1e999\n", "a.obj:1", "1e999"},
         BadMesh{"nan", "a.obj", "v 0 0 0\nv nan 0 0\n", "a.obj:2", "nan"},
         BadMesh{"inf", "a.obj", "v 0 0 0\nv 0 -inf 0\n", "a.obj:2", "inf"},
-        BadMesh{"high_index", "a.obj", points + "f 1 2 5\n", "a.obj:5", "vertex index 4"},
+        BadMesh{"high_index", "a.obj", points + "f 1 2 5\n", "a.obj:5", "vertex 5"},
         BadMesh{"zero_index", "a.obj", points + "f 0 1 2\n", "a.obj:5", "\"0\""},
-        BadMesh{"low_index", "a.obj", points + "f -5 1 2\n", "a.obj:5", "vertex index -1"},
+        BadMesh{"low_index", "a.obj", points + "f -5 1 2\n", "a.obj:5", "\"-5\" after 4 vertices"},
         BadMesh{"index_word", "a.obj", points + "f 1 2 x\n", "a.obj:5", "\"x\""},
         BadMesh{"two_corners", "a.obj", points + "f 1 2\n", "a.obj:5", "2 corners"},
-        BadMesh{"repeated_index", "a.obj", points + "f 1 2 2\n", "a.obj:5", "vertex 1 twice"},
+        BadMesh{"repeated_index", "a.obj", points + "f 1 2 2\n", "a.obj:5", "vertex 2 twice"},
         BadMesh{"zero_area", "a.obj", "v 0 0 0\nv 1 1 1\nv 3 3 3\nf 1 2 3\n", "a.obj:4", "zero area"},
         BadMesh{"rounded_zero_area", "a.obj", "v 0 0 0\nv 0.1 0.2 0.3\nv 0.3 0.6 0.9\nf 1 2 3\n", "a.obj:4",
                 "zero area"},
         BadMesh{"repeated_face", "a.obj", points + "f 1 2 3\n\nf 2 1 3\n", "a.obj:7", "same corners"},
-        BadMesh{"not_convex", "a.obj", "v 0 0 0\nv 2 0 0\nv 0.1 0.1 0\nv 0 2 0\nf 2 3 4 1\nf 1 2 4\n",
-                "a.obj:5", "not convex"},
+        BadMesh{"no_fan", "a.obj",
+                "v 0 0 0\nv 3 0 0\nv 3 1 0\nv 2 0.5 0\nv 1 0.5 0\nv 0 1 0\nv -1 3 0\nv -1 -3 0\nf 1 2 3 4 5 "
+                "6 7 8\n",
+                "a.obj:9", "not convex"},
+        BadMesh{"unknown_word", "a.obj", points + "q 1 2 3\n", "a.obj:5", "begins with \"q\""},
+        BadMesh{"free_form", "a.obj", points + "surf 0 1 0 1 1 2 3 4\n", "a.obj:5", "free form (surf)"},
+        BadMesh{"huge_index", "a.obj", points + "f 1 2 2147483648\n", "a.obj:5", "vertex 2147483648"},
         BadMesh{"lone_point", "a.obj", points + "l 1\n", "a.obj:5", "one point"},
         BadMesh{"loop_edge", "a.obj", points + "l 1 1\n", "a.obj:5", "twice"},
         BadMesh{"repeated_edge", "a.obj", points + "l 1 2\nl 2 1\n", "a.obj:6", "same vertices"},
@@ -126,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"fraction", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2.5\n", "a.ply:13",
                 "\"2.5\""},
         BadMesh{"index", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "a.ply:13",
-                "index 3"},
+                "vertex 3"},
         BadMesh{"format_twice", "a.ply", "ply\nformat ascii 1.0\nformat ascii 1.0\n", "a.ply:3", "twice"},
         BadMesh{"version", "a.ply", "ply\nformat ascii 2.0\n", "a.ply:2", "\"2.0\""},
         BadMesh{"long_format", "a.ply", "ply\nformat ascii 1.0 1.0\n", "a.ply:2", "4 words"},
@@ -170,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(
                 with(ply_binary, ply_body + 25, std::numeric_limits<double>::quiet_NaN()), "a.ply: vertex 1",
                 "nan"},
         BadMesh{"binary_index", "a.ply", with(ply_binary, ply_first_face + 13 + 1, std::int32_t{-1}),
-                "a.ply: face 1", "index -1"}),
+                "a.ply: face 1", "vertex -1"}),
     [](const auto& one) { return one.param.label; });
 
 const std::string stl_ascii = tetrahedron_stl_ascii();
@@ -199,6 +204,79 @@ INSTANTIATE_TEST_SUITE_P(
                 "nan"}),
     [](const auto& one) { return one.param.label; });
 
+std::string msh(const std::string& elements) {
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n7 0 1 "
+         "0\n$EndNodes\n$Elements\n" +
+         elements + "$EndElements\n";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    msh, Malformed,
+    ::testing::Values(
+        BadMesh{"empty", "a.msh", "", "a.msh: \"\"", "no $MeshFormat"},
+        BadMesh{"version", "a.msh", "$MeshFormat\n4 0 8\n", "a.msh: \"4 0 8\"", "version \"4\""},
+        BadMesh{"size", "a.msh", "$MeshFormat\n2.2 0 4\n", "a.msh: \"2.2 0 4\"", "numbers of 4 bytes"},
+        BadMesh{"no_node", "a.msh", msh("1\n4 2 0 1 2 3\n"), "a.msh: element 4", "node 3"},
+        BadMesh{"second_order", "a.msh", msh("1\n4 9 0 1 2 7 1 2 7\n"), "a.msh: element 4",
+                "triangle of second order (type 9)"},
+        BadMesh{"unknown_type", "a.msh", msh("1\n4 99 0 1\n"), "a.msh: element 4", "an element of type 99"},
+        BadMesh{"twice", "a.msh", msh("1\n4 2 0 1 2 2\n"), "a.msh: element 4", "node 2 twice"},
+        BadMesh{
+            "node_twice", "a.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n20\n1 0 0 0\n1 1 0 0\n                        ",
+            "a.msh: node 1", "a node of that number already"},
+        BadMesh{"huge_count", "a.msh", msh("1000000000000\n"), "a.msh: \"1000000000000\"",
+                "\"$EndElements\""},
+        BadMesh{"huge_nodes", "a.msh",
+                "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1000000000000\n1 0 0 0\n",
+                "a.msh: \"1000000000000\"", "1000000000000 things"}),
+    [](const auto& one) { return one.param.label; });
+
+const std::string vtk_start =
+    "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\n";
+std::string vtu(const std::string& cells, const std::string& n = "1") {
+  return "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"3\" NumberOfCells=\"" +
+         n + "\"><Points>" + data_array("Float64", "Points", 3, "0 0 0 1 0 0 0 1 0") + "</Points><Cells>" +
+         cells + "</Cells></Piece></UnstructuredGrid></VTKFile>";
+}
+std::string vtu_cells(const std::string& corners, const std::string& ends, const std::string& types) {
+  return data_array("Int64", "connectivity", 1, corners) + data_array("Int64", "offsets", 1, ends) +
+         data_array("UInt8", "types", 1, types);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    vtk, Malformed,
+    ::testing::Values(
+        BadMesh{"empty", "a.vtk", "", "a.vtk: \"\"", "no first line"},
+        BadMesh{"grid", "a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\n",
+                "a.vtk: \"DATASET STRUCTURED_GRID\"", "STRUCTURED_GRID"},
+        BadMesh{"cell_cut", "a.vtk", vtk_start + "CELLS 1 4\n4 0 1 2\n", "a.vtk: \"CELLS 1 4\"",
+                "cell 0 of 4 corners"},
+        BadMesh{"types_missing", "a.vtk", vtk_start + "CELLS 1 4\n3 0 1 2\n", "a.vtk", "1 cells and 0 types"},
+        BadMesh{"hexahedron", "a.vtk", vtk_start + "CELLS 1 9\n8 0 1 2 0 1 2 0 1\nCELL_TYPES 1\n12\n",
+                "a.vtk: cell 0", "a hexahedron (type 12)"},
+        BadMesh{"word", "a.vtk", vtk_start + "NONSENSE 3\n", "a.vtk: \"NONSENSE 3\"", "\"NONSENSE\""},
+        BadMesh{"huge", "a.vtk", vtk_start + "CELLS 1 1000000000\n", "a.vtk: \"CELLS 1 1000000000\"",
+                "1000000000 things"},
+        BadMesh{"xml_empty", "a.vtu", "", "a.vtu", "No document element"},
+        BadMesh{"xml_other", "a.vtu", "<svg/>", "a.vtu", "no <VTKFile>"},
+        BadMesh{"xml_image", "a.vtu", "<VTKFile type=\"ImageData\"/>", "a.vtu", "ImageData"},
+        BadMesh{"xml_corner", "a.vtu", vtu(vtu_cells("0 1 3", "3", "5")), "a.vtu: cell 0", "vertex 3"},
+        BadMesh{"xml_type", "a.vtu", vtu(vtu_cells("0 1 2", "3", "200")), "a.vtu: cell 0", "type 200"},
+        BadMesh{"xml_quadratic", "a.vtu", vtu(vtu_cells("0 1 2 0 1 2", "6", "22")), "a.vtu: cell 0",
+                "quadratic triangle (type 22)"},
+        BadMesh{"xml_corners", "a.vtu", vtu(vtu_cells("0 1", "2", "5")), "a.vtu: cell 0",
+                "a triangle (type 5) of 2 corners"},
+        BadMesh{"xml_offset", "a.vtu", vtu(vtu_cells("0 1 2", "3 2", "5 5"), "2"),
+                "a.vtu: <DataArray> \"connectivity\"", "3 numbers"},
+        BadMesh{"xml_count", "a.vtu", vtu(vtu_cells("0 1 2", "3", "5"), "1000000000000"),
+                "a.vtu: <DataArray> \"types\"", "1 numbers"},
+        BadMesh{"xml_no_cells", "a.vtu", vtu(""), "a.vtu: <Cells> \"Piece\"", "no <DataArray> \"types\""},
+        BadMesh{"xml_offset_beyond", "a.vtu",
+                tetrahedron_vtu_appended().substr(0, tetrahedron_vtu_appended().find(">_") + 20),
+                "a.vtu: <DataArray> \"Points\"", "end of its data"}),
+    [](const auto& one) { return one.param.label; });
+
 TEST(read_mesh, reports_several_violations_at_once) {
   try {
     parse_mesh(points + "f 1 2 9\nf 1 1 2\nf 1 2 3\nf 3 2 1\n", "a.obj");
@@ -216,7 +294,7 @@ TEST(read_mesh, refuses_missing_files_and_unknown_extensions) {
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
     EXPECT_EQ(error.violations().front().found, "extension \".step\"");
-    EXPECT_EQ(error.violations().front().allowed, "one of .obj, .ply, .stl");
+    EXPECT_EQ(error.violations().front().allowed, "one of .obj, .ply, .stl, .msh, .vtk, .vtu, .vtp");
   }
 }
 

@@ -36,15 +36,56 @@ TEST_P(EveryFormat, gives_the_same_tetrahedron) {
   EXPECT_EQ(points, (std::set<std::array<double, 3>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.25}}));
 }
 
-INSTANTIATE_TEST_SUITE_P(read_mesh, EveryFormat,
-                         ::testing::Values(std::pair{"a.obj", tetrahedron_obj()},
-                                           std::pair{"a.PLY", tetrahedron_ply_ascii()},
-                                           std::pair{"le32.ply", tetrahedron_ply_binary<float>(false)},
-                                           std::pair{"be32.ply", tetrahedron_ply_binary<float>(true)},
-                                           std::pair{"le64.ply", tetrahedron_ply_binary<double>(false)},
-                                           std::pair{"be64.ply", tetrahedron_ply_binary<double>(true)},
-                                           std::pair{"ascii.stl", tetrahedron_stl_ascii()},
-                                           std::pair{"binary.Stl", tetrahedron_stl_binary()}));
+INSTANTIATE_TEST_SUITE_P(
+    read_mesh, EveryFormat,
+    ::testing::Values(
+        std::pair{"a.obj", tetrahedron_obj()}, std::pair{"a.PLY", tetrahedron_ply_ascii()},
+        std::pair{"le32.ply", tetrahedron_ply_binary<float>(false)},
+        std::pair{"be32.ply", tetrahedron_ply_binary<float>(true)},
+        std::pair{"le64.ply", tetrahedron_ply_binary<double>(false)},
+        std::pair{"be64.ply", tetrahedron_ply_binary<double>(true)},
+        std::pair{"ascii.stl", tetrahedron_stl_ascii()}, std::pair{"binary.Stl", tetrahedron_stl_binary()},
+        std::pair{"22.msh", tetrahedron_msh_22()}, std::pair{"22b.msh", tetrahedron_msh_22_binary()},
+        std::pair{"41.msh", tetrahedron_msh_41()}, std::pair{"41b.msh", tetrahedron_msh_41_binary()},
+        std::pair{"ascii.vtk", tetrahedron_vtk_ascii()}, std::pair{"binary.vtk", tetrahedron_vtk_binary()},
+        std::pair{"ascii.vtu", tetrahedron_vtu_ascii()}, std::pair{"raw.VTU", tetrahedron_vtu_appended()},
+        std::pair{"ascii.vtp", tetrahedron_vtp_ascii()}));
+
+TEST(read_mesh, splits_a_concave_polygon_round_its_inner_corner) {
+  const TriangleMesh mesh = parse_mesh("v 0 0 0\nv 2 0 0\nv 0.1 0.1 0\nv 0 2 0\nf 2 3 4 1\n", "a.obj");
+
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<int, 3>>{{2, 3, 0}, {2, 0, 1}}));
+  EXPECT_DOUBLE_EQ(surface_area(mesh), 0.2);
+  EXPECT_EQ(mesh.fans, (std::vector<std::array<int, 2>>{{0, 2}}));
+}
+
+TEST(read_mesh, counts_back_from_the_vertices_so_far_and_goes_on_behind_a_backslash) {
+  const TriangleMesh mesh = parse_mesh(
+      "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\n# C:\\\nf -3 -2 \\\n-1 # last\nv 0 0 1\nv 1 0 1\nv 0 1 "
+      "1\nf\t-3\t-2\t-1\r\n",
+      "a.obj");
+
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<int, 3>>{{0, 1, 2}, {3, 4, 5}}));
+}
+
+TEST(read_mesh, leaves_out_the_sides_of_tetrahedra_in_files_of_gmsh_and_says_so) {
+  const std::string nodes =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n2000000000 9 9 "
+      "9\n$EndNodes\n";
+  const std::string elements =
+      "$Elements\n4\n1 15 0 1\n2 1 0 1 2\n3 2 0 1 3 2\n4 4 0 1 2 3 4\n$EndElements\n";
+  std::vector<std::string> notes;
+
+  const TriangleMesh mesh = parse_mesh(nodes + elements, "a.msh", false, &notes);
+  const TriangleMesh with_skin = parse_mesh(nodes + elements, "a.msh", true);
+
+  EXPECT_EQ(mesh.n_vertices(), 4);
+  EXPECT_EQ(mesh.tetrahedra.size(), 1u);
+  EXPECT_TRUE(mesh.triangles.empty() && mesh.segments.empty());
+  EXPECT_EQ(with_skin.triangles.size(), 1u);
+  EXPECT_EQ(notes.size(), 4u);
+  EXPECT_EQ(notes[0], "a line that is a side of another cell: 1 left out, the first at a.msh: element 2");
+}
 
 TEST(read_mesh, splits_a_convex_polygon_into_a_fan) {
   const TriangleMesh mesh = parse_mesh("v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\n", "a.obj");

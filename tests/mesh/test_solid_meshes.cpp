@@ -167,8 +167,8 @@ TEST(SolidFiles, refuse_what_is_no_tetrahedron_with_its_line) {
             (std::vector<std::array<int, 4>>{{0, 1, 2, 3}}));
   expect_refused(ascii_ply(1, "3 0 1 2\n"), "a.ply:15", "3 corners");
   expect_refused(ascii_ply(1, "5 0 1 2 3 4\n"), "a.ply:15", "5 corners");
-  expect_refused(ascii_ply(1, "4 0 1 2 7\n"), "a.ply:15", "vertex index 7");
-  expect_refused(ascii_ply(1, "4 0 1 2 -1\n"), "a.ply:15", "vertex index -1");
+  expect_refused(ascii_ply(1, "4 0 1 2 7\n"), "a.ply:15", "vertex 7");
+  expect_refused(ascii_ply(1, "4 0 1 2 -1\n"), "a.ply:15", "vertex -1");
   expect_refused(ascii_ply(1, "4 0 2 1 3\n"), "a.ply:15", "a tetrahedron of -0.166667 m^3");
   expect_refused(ascii_ply(1, "4 0 1 2 4\n"), "a.ply:15", "a tetrahedron of 0 m^3");
   expect_refused(ascii_ply(1, "4 0 1 1 3\n"), "a.ply:15", "a tetrahedron of 0 m^3");

@@ -1,0 +1,116 @@
+// The verb meshes: mesh files as the program reads them, for the front end and for other programs.
+// A request is a line of JSON on the standard input:
+//   {"path": FILE, "name": what messages call it and whose extension decides (default: path),
+//    "as": "frame" (default: any positions, as frames are judged) or "body" (the rules of a body's mesh),
+//    "skin": of a body, keep triangles that are faces of one tetrahedron, "fields": [names of fields of points]}
+// An answer is a line of JSON, {"error": ...} or the counts and the list of arrays, and then the numbers of these arrays, one after
+// the other, little-endian and by rows.
+#include <fmt/format.h>
+
+#include <bit>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "core/input/json.hpp"
+#include "core/input/read_file.hpp"
+#include "core/mesh/frame_mesh.hpp"
+#include "core/mesh/read_mesh.hpp"
+#include "experiments/cli/options.hpp"
+
+namespace bb::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
+
+/// The arrays of an answer: their names and shapes, and where their numbers lie.
+class Arrays {
+ public:
+  template <class T>
+  void add(const std::string& name, const T* numbers, std::size_t rows, std::size_t columns) {
+    list_.push_back({{"name", name},
+                     {"type", std::is_floating_point_v<T> ? "<f8" : "<i4"},
+                     {"shape", columns == 0 ? Json{rows} : Json{rows, columns}}});
+    parts_.emplace_back(reinterpret_cast<const char*>(numbers),
+                        sizeof(T) * rows * std::max<std::size_t>(columns, 1));
+  }
+  template <std::size_t N>
+  void add(const std::string& name, const std::vector<std::array<int, N>>& cells) {
+    add(name, cells.empty() ? nullptr : cells[0].data(), cells.size(), N);
+  }
+  void write(Json head) const {
+    head["arrays"] = list_;
+    std::cout << head.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+    for (const std::string_view part : parts_)
+      std::cout.write(part.data(), static_cast<std::streamsize>(part.size()));
+    std::cout.flush();
+  }
+
+ private:
+  Json list_ = Json::array();
+  std::vector<std::string_view> parts_;
+};
+
+void answer_body(const std::string& bytes, const std::string& name, bool skin) {
+  std::vector<std::string> notes;
+  const TriangleMesh mesh = parse_mesh(bytes, name, skin, &notes);
+  Arrays arrays;
+  arrays.add("points", mesh.vertices.data(), static_cast<std::size_t>(mesh.n_vertices()), 3);
+  arrays.add("triangles", mesh.triangles);
+  arrays.add("segments", mesh.segments);
+  arrays.add("tetrahedra", mesh.tetrahedra);
+  arrays.write({{"notes", notes}});
+}
+
+void answer_frame(const std::string& bytes, const std::string& name,
+                  const std::set<std::string, std::less<>>& wanted) {
+  const FrameMesh mesh = parse_frame(bytes, name, wanted);
+  Arrays arrays;
+  arrays.add("points", mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.cols()), 3);
+  arrays.add("corners", mesh.corners.data(), mesh.corners.size(), 0);
+  arrays.add("sizes", mesh.sizes.data(), mesh.sizes.size(), 0);
+  arrays.add("triangles", mesh.triangles);
+  arrays.add("segments", mesh.segments);
+  arrays.add("tetrahedra", mesh.tetrahedra);
+  Json fields = Json::object();
+  for (const FrameField& field : mesh.fields) {
+    fields[field.name] = field.components;
+    const auto width = static_cast<std::size_t>(field.components);
+    if (wanted.contains(field.name))
+      arrays.add("field " + field.name, field.values.data(), field.values.size() / width, width);
+  }
+  arrays.write({{"notes", mesh.notes}, {"fields", fields}});
+}
+
+void answer(const std::string& line) {
+  const nlohmann::json request = parse_json(line, "a request");
+  const std::string path = request.at("path"), name = request.value("name", path);
+  const std::string bytes = read_input_file(path, mesh_file);
+  if (request.value("as", "frame") == "body") return answer_body(bytes, name, request.value("skin", false));
+  answer_frame(bytes, name, request.value("fields", std::set<std::string, std::less<>>()));
+}
+
+int answer_all() {
+  for (std::string line; std::getline(std::cin, line);) {
+    try {
+      answer(line);
+    } catch (const ConfigError& error) {
+      std::cout << Json{{"error", error.what()}}.dump(-1, ' ', false, Json::error_handler_t::replace)
+                << std::endl;
+    } catch (const std::bad_alloc&) {
+      std::cout << Json{{"error", "a mesh that the memory does not hold"}}.dump() << std::endl;
+    } catch (const nlohmann::json::exception& error) {
+      std::cout << Json{{"error", fmt::format("a request: {}", error.what())}}.dump() << std::endl;
+    }
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+Action verb::meshes(CLI::App& /*app*/) {
+  return [](const CommonOptions&) { return answer_all(); };
+}
+
+}  // namespace bb::cli
