@@ -9,6 +9,8 @@ from typing import BinaryIO
 import numpy as np
 
 from ..errors import UserError
+from ..input_file import opened
+from .packed import MOST_BYTES
 from .times import increasing
 from .trajectory import Topology, Trajectory, no_cells
 
@@ -118,7 +120,7 @@ def _without_sides(segments: np.ndarray, cells: np.ndarray) -> np.ndarray:
     return segments[[tuple(pair) not in sides for pair in np.sort(segments, axis=1).tolist()]].reshape(-1, 2)
 
 
-def _opened(path: Path, raw: BinaryIO) -> np.lib.npyio.NpzFile:
+def _npz(path: Path, raw: BinaryIO) -> np.lib.npyio.NpzFile:
     try:
         file = np.load(raw, allow_pickle=False)
         if not isinstance(file, np.lib.npyio.NpzFile):
@@ -131,10 +133,8 @@ def _opened(path: Path, raw: BinaryIO) -> np.lib.npyio.NpzFile:
 
 def of_npz(path: Path) -> Trajectory:
     """`positions` [frames, n, 3]; `triangles`, `segments`, `tetrahedra` and `times_s` where there are any."""
-    if not path.is_file():
-        raise UserError(f"{path}: no regular file")
-    with path.open("rb") as raw:
-        found = Npz(path, _opened(path, raw))
+    with opened(path, MOST_BYTES) as raw:
+        found = Npz(path, _npz(path, raw))
         x = found.positions()
         cells = {key: found.cells(key) for key in CORNERS}
         if found.key["segments"] in ("edges", "E"):

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
+from ..input_file import opened
 from .times import increasing
 from .trajectory import Topology, Trajectory, no_cells
 
@@ -18,11 +19,8 @@ ROUNDED = "positions are float32 in the file: the states that were judged are th
 
 
 def _bytes(path: Path) -> bytes:
-    if not path.is_file():
-        raise UserError(f"{path}: no regular file")
-    if path.stat().st_size > MOST_BYTES:
-        raise UserError(f"{path}: {path.stat().st_size} bytes; at most {MOST_BYTES} are read")
-    return path.read_bytes()
+    with opened(path, MOST_BYTES) as file:
+        return file.read()
 
 
 def _bare(n: int) -> Topology:

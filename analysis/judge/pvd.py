@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import UserError
+from ..input_file import SMALL, read_bytes
 from .sequence import no_frames, of_obstacles, of_parts
 from .times import increasing
 from .trajectory import Trajectory
@@ -27,7 +28,6 @@ class Entry:
 
 
 LISTS = (".vtm", ".pvtu", ".pvtp")
-MOST_LIST_BYTES = 1 << 26
 MOST_LEVELS = 8  # of lists in lists
 # Blocks that show the same body once more, as PolyFEM writes them; the first that is there is judged.
 SAME_BODY = (("surface", "surf", "faces"), ("volume", "tets"))
@@ -35,11 +35,7 @@ DRAWN = ("contact", "wireframe", "wire", "points", "edges", "verts", "obstacle p
 
 
 def _root(path: Path) -> ElementTree.Element:
-    if not path.is_file():
-        raise UserError(f"{path}: {'no regular file' if path.exists() else 'no such file'}")
-    if path.stat().st_size > MOST_LIST_BYTES:
-        raise UserError(f"{path}: {path.stat().st_size} bytes; a list of files has at most {MOST_LIST_BYTES}")
-    return ElementTree.parse(path).getroot()
+    return ElementTree.fromstring(read_bytes(path, SMALL))
 
 
 def _blocks(root: ElementTree.Element) -> list[tuple[str, str]]:
