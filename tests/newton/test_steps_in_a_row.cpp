@@ -72,6 +72,10 @@ Method method_of(const Choice& of) {
   method.contact.in_float = method.limit.in_float = values_in_float(of.precision);
   method.hessian_mode = of.hessian;
   fit_terms(method);
+  // so that some step adapts, and some gap is small enough for multipliers
+  if (method.linear_contact) method.linear_contact->stall_updates = 2;
+  if (method.barrier_multipliers)
+    method.barrier_multipliers->near = 0.5, method.barrier_multipliers->release = 0.9;
   return method;
 }
 
