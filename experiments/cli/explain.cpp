@@ -22,6 +22,7 @@
 #include "experiments/run/collision_lines.hpp"
 #include "experiments/run/device_memory.hpp"
 #include "experiments/run/device_run.hpp"
+#include "experiments/run/guarantee.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/runner.hpp"
@@ -56,7 +57,7 @@ std::set<std::string> of_method(const RunConfig& config) {
   return out;
 }
 
-void print_formulation(const RunConfig& config, bool planar) {
+void print_formulation(const RunConfig& config, const Scene& scene) {
   const FormulationConfig& contact = config.formulation;
   const StrainLimitConfig& limit = config.strain_limit;
   fmt::print("contact   {} on {}, d_hat {:g} m, {}\n", contact.shape, to_string(contact.argument),
@@ -66,9 +67,13 @@ void print_formulation(const RunConfig& config, bool planar) {
                limit.onset, limit.width, stiffness_text(limit.stiffness_policy),
                limit.solids.value_or(false) ? ", of triangles and tetrahedra" : "");
   }
-  fmt::print("guarantee {}: {}\n", config.step_solver.name,
-             step_solvers().require(config.step_solver.name, "/step_solver/name").guarantee);
-  if (planar)
+  const char* head = "guarantee";
+  for (const Guarantee& each :
+       guarantees(step_solvers().require(config.step_solver.name, "/step_solver/name"), scene)) {
+    fmt::print("{:<9} {}: {}\n", head, each.of, each.text);
+    head = "";
+  }
+  if (scene.planar)
     fmt::print(
         "          in the plane contact is of boundaries: a triangle that turns inside out is kept from "
         "nothing\n");
@@ -166,7 +171,7 @@ int explain(const RunVerb& verb, const ContactDemand& demand) {
   fmt::print("  surface: {} triangles, {} edges\n\n", scene.surface_triangles.size(),
              scene.surface_edges.size());
   print_method(config);
-  print_formulation(config, scene.planar);
+  print_formulation(config, scene);
   for (const bool needed : {true, false}) {
     fmt::print("{}\n", needed ? "runs" : "skipped");
     for (const auto& [name, item] : plan.items()) {

@@ -117,7 +117,14 @@ const std::vector<Section>& sections() {
          print_entries("policies of the limit (/strain_limit/stiffness_policy)", limit_policies());
        }},
       {"integrators", [] { print_entries("integrators", integrators()); }},
-      {"step_solvers", [] { print_entries("step_solvers", step_solvers()); }},
+      {"step_solvers",
+       [] {
+         print_entries(
+             "step_solvers (/step_solver/name; a guarantee against passing through is of pairs of bodies "
+             "that collide as "
+             "ccd, which all do unless the scene says otherwise)",
+             step_solvers());
+       }},
       {"scenes", print_scenes},
       {"generators", print_generators},
       {"parts", print_parts},

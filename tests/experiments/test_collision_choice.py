@@ -86,6 +86,38 @@ def test_explain_says_what_every_pair_does_and_why(program, tmp_path):
     assert "pairs of bodies\n" not in bench(program, "explain", cloths(tmp_path, [])).stdout
 
 
+def guarantee(program, config, *more):
+    lines = bench(program, "explain", config, *more).stdout.splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("guarantee "))
+    last = next(i for i, line in enumerate(lines) if line.startswith("matching "))
+    return [line[10:] for line in lines[first:last]]
+
+
+@pytest.mark.parametrize(("kind", "said"), [
+    ("proximity", "they may pass through each other"),
+    ("off", "contact does nothing between them"),
+    ("static", "what passes through as a whole from one state to the next is not seen"),
+])
+def test_explain_promises_of_every_pair_what_its_kind_bounds(program, tmp_path, kind, said):
+    rest = [{"a": name, "b": name, "kind": kind} for name in ("large", "small")] if kind != "static" else []
+    some = guarantee(program, cloths(tmp_path, pair(kind)))
+    assert some[0].startswith("line_search, for 2 of 3 pairs of bodies (ccd): no surface passes through")
+    assert some[1].startswith(f"1 pair ({kind}): ") and said in some[1] and len(some) == 2
+    if rest:
+        none = guarantee(program, cloths(tmp_path, pair(kind) + rest))
+        assert none[0] == "line_search: of contact none, since no pair of bodies collides as ccd"
+        assert none[1].startswith(f"3 pairs ({kind}): ") and len(none) == 2
+    whole = guarantee(program, cloths(tmp_path, []))
+    assert len(whole) == 1 and whole[0].startswith("line_search: no surface passes through another")
+
+
+def test_explain_promises_nothing_of_states_that_the_step_solver_does_not_refuse(program, tmp_path):
+    said = guarantee(program, cloths(tmp_path, pair("static")), "--set", "/step_solver/name=penalty", "--set",
+                     "/formulation/shape=quadratic")
+    assert said[0].startswith("penalty, for 2 of 3 pairs of bodies (ccd): none against passing through")
+    assert said[1] == "1 pair (static): none: the step solver accepts states in which they intersect"
+
+
 def test_a_name_that_is_not_there(program, tmp_path):
     refused(bench(program, "check", cloths(tmp_path, [{"a": "smal", "b": "large", "kind": "off"}])),
             "/scene/collisions/0/a", "small, large")

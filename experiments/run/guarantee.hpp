@@ -1,0 +1,21 @@
+// What a run's step solver guarantees against surfaces that pass through each other, pair of bodies by pair of bodies.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/newton/step_solver.hpp"
+#include "core/scene/scene.hpp"
+
+namespace bb {
+
+struct Guarantee {
+  std::string of;    // the step solver, or pairs of one kind
+  std::string text;  // what holds of them
+};
+
+/// One entry where every pair of bodies collides as `ccd`; else the step solver's of those that do, then one a kind that bounds less.
+/// Cost: O(owners^2) where the scene chooses.
+std::vector<Guarantee> guarantees(const StepSolverEntry& solver, const Scene& scene);
+
+}  // namespace bb
