@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include "core/newton/iteration.hpp"
 #include "core/newton/step_solver.hpp"
@@ -13,20 +15,37 @@
 namespace bb {
 namespace {
 
-constexpr double max_dx = 1;        // m, of one iteration
 constexpr double extension = 1.25;  // a full step must be free along this multiple of itself
+
+/// How far a vertex may go in one iteration where the config gives no length, m: the diagonal of the box that holds the start of the
+/// step, where it leads without contact, and the poses of prescribed vertices. It grows and shrinks with the scene.
+double longest_way(const Scene& scene, const StepTask& task, const Positions& x_tilde) {
+  const Positions& x = task.history->x;
+  const double fall = largest_gravity(scene.gravity, scene.gravity_keys) * task.dt * task.dt;
+  Positions posed = x;
+  task.pose(task.dt, posed);
+  Vec3d low = x.rowwise().minCoeff(), high = x.rowwise().maxCoeff();
+  for (const Positions* other : {&x_tilde, static_cast<const Positions*>(&posed)}) {
+    low = low.cwiseMin(other->rowwise().minCoeff());
+    high = high.cwiseMax(other->rowwise().maxCoeff());
+  }
+  const double diagonal = (high - low).norm() + fall;
+  return diagonal > 0 ? diagonal : std::numeric_limits<double>::infinity();
+}
 
 class AccumulatedToi final : public StepSolver {
  public:
   explicit AccumulatedToi(const StepSolverOptions& options)
       : options_(options),
         target_toi_(number(options.parameters, "target_toi")),
-        min_newton_steps_(integer(options.parameters, "min_newton_steps")) {}
+        min_newton_steps_(integer(options.parameters, "min_newton_steps")),
+        given_way_(optional_number(options.parameters, "max_dx_m")) {}
   std::string_view name() const override { return "accumulated_toi"; }
 
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
+    longest_way_ = given_way_ ? *given_way_ : longest_way(system.view().scene(), task, used.x_tilde);
     step.dt_s = 0;  // until a part of it is reached
     double &beta = step.solver.values["toi"] = 0, &iterations = step.solver.values["toi_iterations"] = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
@@ -58,7 +77,7 @@ class AccumulatedToi final : public StepSolver {
     }
     step.end_proof = check_end(system, rule, step, report).proof;
     const double largest = system.direction_size().vertex_m;
-    const double scale = largest > max_dx ? max_dx / largest : 1.0;
+    const double scale = largest > longest_way_ ? longest_way_ / largest : 1.0;
     system.scale_direction(scale);
     const double alpha = feasible_step(system, report);
     report.alpha = scale * alpha;
@@ -107,6 +126,8 @@ class AccumulatedToi final : public StepSolver {
   StepSolverOptions options_;
   double target_toi_;
   int min_newton_steps_;
+  std::optional<double> given_way_;  // m
+  double longest_way_ = 0;           // m, of the step
 };
 
 std::optional<Violation> too_many_newton_steps(const ParameterMap& parameters, int max_iterations) {
@@ -127,6 +148,11 @@ StepSolverEntry step_solver_accumulated_toi() {
   entry.parameters = {
       {"target_toi", open_low(number_in(0, 1, "1")), 0.25, "accumulated time of impact that ends the step"},
       {"min_newton_steps", count(1, 1000000), 1, "smallest number of iterations"},
+      {"max_dx_m", computed(positive("m"), "the diagonal of the box of the scene and of its way in the step"),
+       no_default,
+       "longest way of a vertex in one iteration; a longer direction is shortened, and what was cut off "
+       "counts as not "
+       "advanced (1 m in the code of Ando 2024)"},
   };
   entry.counters = {
       {"toi", "accumulated_toi: time of impact that a step accumulates, as a part of its dt",

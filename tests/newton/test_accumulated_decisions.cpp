@@ -20,6 +20,7 @@ class Watch final : public StepObserver {
 Method accumulated(double kappa = 1) {
   Method method = test::fixed_method("cubic", kappa);
   method.step_solver.name = "accumulated_toi";
+  method.step_solver.parameters["max_dx_m"] = 1.0;
   return method;
 }
 
@@ -38,7 +39,7 @@ double part_taken(const Vec3d& motion) {
   return watch.reports[0].alpha;
 }
 
-/// 1 m is the length of a vertex's way, whatever its direction.
+/// max_dx_m is the length of a vertex's way, whatever its direction.
 TEST(AccumulatedDecisions, TheLargestMotionIsALengthInEveryDirection) {
   for (const Vec3d& way : {Vec3d(1, 0, 0), Vec3d(0, -1, 0), Vec3d(0, 0, 1), Vec3d(1, 1, 0), Vec3d(-1, 0, 1),
                            Vec3d(1, -1, 1), Vec3d(0.2, 0.9, -0.6)}) {

@@ -29,6 +29,7 @@ struct Advanced : private StepObserver {
     options.saddle = settings.rule;
     options.parameters["target_toi"] = settings.target;
     options.parameters["min_newton_steps"] = settings.least;
+    options.parameters["max_dx_m"] = 1.0;
     const auto integrator = make_integrator("implicit_euler");
     History history;
     history.x = history.x_prev = system.view().x();
@@ -67,7 +68,7 @@ TEST(AccumulatedScripted, AStepIsOverWhereTheTargetIsReached) {
   for (const int least : {1, 2, 5}) EXPECT_EQ(Advanced({free_for(1)}, {.least = least}).passes(), least + 1);
 }
 
-/// 1 m is the largest motion of an iteration: of a longer direction the part that was cut off is not advanced.
+/// Of a direction that is longer than max_dx_m the part that was cut off is not advanced.
 TEST(AccumulatedScripted, WhatWasCutOffADirectionIsNotAdvanced) {
   for (const auto& [dx, alpha] : {std::pair{0.999, 1.0}, {1.001, 1 / 1.001}, {4.0, 0.25}, {5.0, 0.2}}) {
     const Advanced step({{.dx = dx}, free_for(1)});

@@ -38,6 +38,7 @@ Flight fly(const StepSolverOptions& options, double speed, const std::vector<Gra
   method.step_solver = options;
   method.step_solver.name = "accumulated_toi";
   method.step_solver.tol_velocity = tolerance;
+  method.step_solver.parameters["max_dx_m"] = 1.0;
   Simulation simulation(scene, method, dt, 1);
   Flight out;
   out.report = simulation.step(out.watch);
