@@ -40,6 +40,7 @@ LETTERS = {
     "not_pd": "D",
     "timeout": "T",
     "oom": "M",
+    "overlap": "E",
 }
 FAILED = "#bdbdbd"
 SHOWN = (

@@ -32,6 +32,7 @@ BAD = (
     "unproven",
     "not_checked",
     "saddle",
+    "cusp",
     "none",
     "not_measured",
     "matrix_indefinite",

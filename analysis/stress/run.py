@@ -26,6 +26,7 @@ TO_THE_END = (
     "ok",
     "not_valid",
     "unproven",
+    "overlap",
 )  # contacts are counted at step ends; a run that stopped earlier may have had them before its first one
 WAITS = "waits"  # in place of an outcome: the program has no such setting yet
 

@@ -51,25 +51,34 @@ void require_indices(const AuditMesh& mesh, const std::vector<int>& vertices) {
 
 }  // namespace
 
-Audit::Audit(AuditMesh mesh) : mesh_(std::move(mesh)), vertices_(colliding_vertices(mesh_)) {
+Audit::Audit(AuditMesh mesh, double promised_overlap)
+    : mesh_(std::move(mesh)), vertices_(colliding_vertices(mesh_)) {
   require_indices(mesh_, vertices_);
   ledger_.self_test_passed = predicates_self_test();
   require_obstacles(mesh_);
   primitives_ = obstacle_primitives(mesh_);
   ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()),
                       static_cast<long>(mesh_.obstacles.size()), primitives_.needed(mesh_.obstacles)};
+  if (!(promised_overlap > 0) || mesh_.obstacles.empty()) return;
+  ends_.emplace(mesh_, promised_overlap);
+  pairs_ = mesh_;
+  pairs_.obstacles.clear();
 }
 
 StateAudit Audit::check_state(const Positions& x, int step) {
-  const StateAudit found = audit_state(mesh_, primitives_, x, ledger_.states == 0);
+  const StateAudit found = audit_state(ends_ ? pairs_ : mesh_, primitives_, x, ledger_.states == 0);
   ledger_.add(found, step);
   return found;
 }
 
 MotionAudit Audit::check_motion(const Positions& x0, const Positions& x1, int step, double tolerance) {
-  const MotionAudit found = audit_motion(mesh_, vertices_, primitives_, x0, x1, tolerance);
+  const MotionAudit found = audit_motion(ends_ ? pairs_ : mesh_, vertices_, primitives_, x0, x1, tolerance);
   ledger_.add(found, step);
   return found;
+}
+
+void Audit::check_step_end(const Positions& x0, const Positions& x1, int step) {
+  if (ends_ && x0.allFinite() && x1.allFinite()) ledger_.add(ends_->judge(primitives_, x0, x1), step);
 }
 
 }  // namespace bb::audit

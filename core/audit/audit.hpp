@@ -3,6 +3,7 @@
 // geometry or contact.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/audit/audit_ledger.hpp"
@@ -14,7 +15,8 @@ class Audit {
  public:
   /// Errors: ConfigError if an index is negative or beyond `fixed`, a radius or an axis makes no obstacle,
   /// or the flags and opposite vertices do not fit the mesh.
-  explicit Audit(AuditMesh mesh);
+  /// @param promised_overlap  m; where > 0, obstacles are judged at the ends of steps alone (check_step_end), with that tolerance.
+  explicit Audit(AuditMesh mesh, double promised_overlap = 0);
 
   /// Judges x [3 n_vertices], m. The first call includes pairs within one rigid body, later calls skip them.
   /// Returns what this state adds to the ledger.
@@ -23,6 +25,9 @@ class Audit {
   /// Judges the linear motion x0 -> x1, m, both ends as committed. @param tolerance m, a tenth of
   /// the park distance. Returns what this motion adds to the ledger.
   MotionAudit check_motion(const Positions& x0, const Positions& x1, int step, double tolerance);
+
+  /// Judges the obstacles in a step from x0 to x1, m, where there is a promise; x0 is the end of the step before, or x1 at the start.
+  void check_step_end(const Positions& x0, const Positions& x1, int step);
 
   /// Tells of a state that the run reached and that is not the end of the last judged motion: an audit with
   /// such a hole is never ok.
@@ -43,6 +48,8 @@ class Audit {
   AuditMesh mesh_;
   std::vector<int> vertices_;
   ObstaclePrimitives primitives_;
+  std::optional<StepEnds> ends_;  // where there is a promise
+  AuditMesh pairs_;               // then: the mesh without obstacles, for states and motions
   AuditLedger ledger_;
 };
 

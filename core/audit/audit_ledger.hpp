@@ -6,6 +6,7 @@
 
 #include "core/audit/motion_audit.hpp"
 #include "core/audit/state_audit.hpp"
+#include "core/audit/step_end.hpp"
 
 namespace bb::audit {
 
@@ -26,6 +27,10 @@ struct AuditLedger {
   long inverted = 0;                       // planar elements, summed over states; not a penetration
   long obstacle_violations = 0;            // of states and motions
   long obstacle_by_vertex = 0;             // those in which a vertex is beyond, not only what lies between
+  long overlaps =
+      0;  // of ends of steps: primitives beyond an obstacle by no more than the step solver promises
+  double deepest_overlap_m = 0;  // of these
+  int first_overlap_step = -1;
   long scene_faults = 0;         // prescribed primitives that cross or cannot be certified; in no other count
   long non_finite = 0;           // states and motions that could not be judged
   long unjudged = 0;             // states of the run that no judged motion led to
@@ -80,6 +85,15 @@ struct AuditLedger {
     obstacle_violations += m.obstacle_violations, scene_faults += m.scene_faults;
     non_finite += m.finite ? 0 : 1;
     note(step, m.first_bad, m.first_fault);
+  }
+  void add(const StepEndAudit& e, int step) {
+    obstacle_judged.add(e.obstacles.judged);
+    obstacle_violations += e.obstacles.violations, obstacle_by_vertex += e.obstacles.by_vertex;
+    unproven += e.obstacles.unproven, scene_faults += e.obstacles.scene_faults;
+    overlaps += e.overlaps;
+    deepest_overlap_m = std::max(deepest_overlap_m, e.deepest_m);
+    if (e.overlaps > 0 && first_overlap_step < 0) first_overlap_step = step;
+    note(step, e.obstacles.first_bad, e.obstacles.first_fault);
   }
   /// A state that the run reached, and that is not the end of the last judged motion.
   void add_unjudged(int step) {

@@ -174,4 +174,8 @@ SurfaceGap surface_gap(const AuditMesh& mesh, const std::vector<int>& vertices,
   return {measure.to_obstacles(primitives), between, std::move(of_vertices)};
 }
 
+double obstacle_gap(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x) {
+  return GapMeasure(mesh, {}, x, 0).to_obstacles(primitives);
+}
+
 }  // namespace bb::audit

@@ -29,4 +29,7 @@ struct SurfaceGap {
 SurfaceGap surface_gap(const AuditMesh& mesh, const std::vector<int>& vertices,
                        const ObstaclePrimitives& primitives, const Positions& x, double reach);
 
+/// SurfaceGap::to_obstacles alone.
+double obstacle_gap(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x);
+
 }  // namespace bb::audit

@@ -82,6 +82,7 @@ StepSolverEntry step_solver_augmented_lagrangian() {
   entry.needs.step_bound = false;
   entry.needs.overlap = entry.needs.multipliers = true;
   entry.set_terms = set_contact_multipliers;
+  entry.promised_overlap = [](const ParameterMap& complete) { return number(complete, "al_tolerance_m"); };
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AugmentedLagrangian>(options);
   };

@@ -59,6 +59,8 @@ struct StepSolverEntry {
   std::vector<SolverCounter> counters;  // that its steps fill in StepReport::solver, all of them
   StepNeeds needs;
   StepSettings settings;
+  /// m, how far a surface may be beyond an obstacle at the end of a step that converges; null: not at all.
+  double (*promised_overlap)(const ParameterMap& complete) = nullptr;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
   void (*set_terms)(const StepSolverOptions& complete,
                     TermOptions&) = nullptr;  // what it asks of terms by numbers

@@ -35,6 +35,11 @@ struct AuditRecord {
   BB_FIELD(long long, unproven, "motions past each other and past obstacles that could not be certified") = 0;
   BB_FIELD(long long, inverted, "planar elements, summed over states") = 0;
   BB_FIELD(long long, obstacle_violations, "those of violations that an obstacle is part of") = 0;
+  BB_FIELD(long long, overlaps,
+           "primitives beyond an obstacle at the end of a step by no more than the step solver promises, "
+           "summed over "
+           "steps; in no other count") = 0;
+  BB_FIELD(Number, overlap_max_m, "deepest of them", "none") = Number::missing("none");
   BB_FIELD(long long, scene_faults,
            "prescribed primitives that cross or cannot be certified; in no other count") = 0;
   BB_FIELD(int, first_bad_step, "-1: none", "-1") = -1;

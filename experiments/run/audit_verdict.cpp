@@ -58,6 +58,14 @@ std::string unproven(const audit::AuditLedger& ledger) {
       done.triangles, need.triangles);
 }
 
+std::string overlap_text(const audit::AuditLedger& ledger) {
+  return fmt::format(
+      "audit: surfaces overlap obstacles at ends of steps, {} primitives summed over the steps, by at most "
+      "{:.3g} m, which is "
+      "within what the step solver promises; first {}",
+      ledger.overlaps, ledger.deepest_overlap_m, when(ledger.first_overlap_step));
+}
+
 }  // namespace
 
 std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const audit::PairName& pair) {
@@ -71,7 +79,7 @@ std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const aud
 }
 
 Verdict judge_audit(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {
-  if (ledger.ok()) return {};
+  if (ledger.ok()) return ledger.overlaps > 0 ? Verdict{Outcome::overlap, overlap_text(ledger)} : Verdict{};
   if (ledger.scene_faults > 0 && ledger.first_fault) {
     std::string text = fmt::format("{}, and both are prescribed: {}",
                                    describe(scene, mesh, *ledger.first_fault), when(ledger.first_fault_step));

@@ -19,21 +19,23 @@ static void keep(Archive& archive, AuditLedger& ledger) {
   archive(ledger.states, ledger.motions, ledger.state_pairs, ledger.motion_pairs, ledger.pair_queries,
           ledger.obstacle_judged.vertices, ledger.obstacle_judged.edges, ledger.obstacle_judged.triangles,
           ledger.crossings, ledger.touches, ledger.violations, ledger.unproven, ledger.inverted,
-          ledger.obstacle_violations, ledger.scene_faults, ledger.non_finite, ledger.unjudged,
-          ledger.self_test_passed, ledger.first_bad_step, ledger.first_fault_step, ledger.first_bad,
-          ledger.first_fault);
+          ledger.obstacle_violations, ledger.overlaps, ledger.deepest_overlap_m, ledger.first_overlap_step,
+          ledger.scene_faults, ledger.non_finite, ledger.unjudged, ledger.self_test_passed,
+          ledger.first_bad_step, ledger.first_fault_step, ledger.first_bad, ledger.first_fault);
 }
 
 }  // namespace audit
 
-AuditWatch::AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record)
+AuditWatch::AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record,
+                       double promised_overlap)
     : scene_(scene),
       record_(record),
       mesh_(make_audit_mesh(scene, dt)),
-      audit_(mesh_),
+      audit_(mesh_, promised_overlap),
       tolerance_(audit_tolerance(scene, ccd_park)),
       reach_(*std::max_element(scene.d_hat.begin(), scene.d_hat.end())) {
   judge(scene.x0, -1);
+  audit_.check_step_end(scene.x0, scene.x0, -1);
   at_step_end_ = {audit_.ledger(), last_judged_};
 }
 
@@ -54,6 +56,7 @@ void AuditWatch::on_motion(const Positions& x0, const Positions& x1, int step) {
 
 void AuditWatch::on_step(const Positions& x, StepRecord& step) {
   if (x != last_judged_) audit_.note_unjudged(step.step);
+  audit_.check_step_end(at_step_end_.last_judged, x, step.step);
   const AuditRecord before = record_;
   fill_record();
   step.crossings = record_.crossings - before.crossings;
@@ -117,6 +120,8 @@ void AuditWatch::fill_record() {
   record_.unproven = ledger.unproven;
   record_.inverted = ledger.inverted;
   record_.obstacle_violations = ledger.obstacle_violations;
+  record_.overlaps = ledger.overlaps;
+  record_.overlap_max_m = ledger.overlaps > 0 ? Number(ledger.deepest_overlap_m) : Number::missing("none");
   record_.scene_faults = ledger.scene_faults;
   record_.first_bad_step = ledger.first_bad_step;
 }

@@ -13,7 +13,9 @@ class Archive;
 class AuditWatch {
  public:
   /// Judges the start. scene and record must outlive it. dt: of a whole step, s.
-  AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record);
+  /// promised_overlap: as of Audit.
+  AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record,
+             double promised_overlap = 0);
 
   void on_motion(const Positions& x0, const Positions& x1, int step);
   /// Fills the counts of the step that ended at x.
@@ -40,7 +42,7 @@ class AuditWatch {
   Positions last_judged_;  // where the next motion has to start
   struct {
     audit::AuditLedger ledger;
-    Positions last_judged;
+    Positions last_judged;  // the end of the step
   } at_step_end_;
 };
 

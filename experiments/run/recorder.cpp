@@ -8,6 +8,17 @@
 #include "experiments/run/step_energies.hpp"
 
 namespace bb {
+namespace {
+
+/// m, 0: none.
+double promised_overlap(const RunConfig& config) {
+  const StepSolverEntry& solver = step_solvers().require(config.step_solver.name, "/step_solver/name");
+  if (!solver.promised_overlap) return 0;
+  return solver.promised_overlap(
+      own_parameters(solver.parameters, config.step_solver.parameters, "/step_solver"));
+}
+
+}  // namespace
 
 Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace,
                    ArtifactWriter* artifacts)
@@ -20,7 +31,8 @@ Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& recor
       gaps_(scene) {
   if (artifacts_ && config.output.frames_every > 0) artifacts_->start();
   record_.audit.enabled = config.passes.audit;
-  if (config.passes.audit) audit_.emplace(scene, config.time.dt, config.contact.ccd_park, record_.audit);
+  if (config.passes.audit)
+    audit_.emplace(scene, config.time.dt, config.contact.ccd_park, record_.audit, promised_overlap(config));
 }
 
 void Recorder::on_matrix(StepSystem& system, int step, int iteration) {

@@ -23,13 +23,13 @@ double hard_limit(const Scene& scene) {
   return largest;
 }
 
-// Steps that ended in a saddle; nothing where no end of a step was looked at.
+// Steps that ended in a saddle or at a cusp; nothing where no end of a step was looked at.
 std::optional<int> saddle_ends(const CountMap& proofs) {
   const auto count = [&proofs](EndProof proof) {
     const auto found = proofs.find(std::string(to_string(proof)));
     return found == proofs.end() ? 0 : found->second;
   };
-  const int saddles = count(EndProof::saddle);
+  const int saddles = count(EndProof::saddle) + count(EndProof::cusp);
   if (saddles + count(EndProof::factor) + count(EndProof::lanczos) == 0) return std::nullopt;
   return saddles;
 }
@@ -59,7 +59,7 @@ void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const s
   if (const BuildValidity& build = record.validity.build; build.checks > 0) {
     add_check(record, "build_valid", build.valid ? 0.0 : 1.0, 0.0, build.valid);
   }
-  const bool ok = record.status.outcome == Outcome::ok;
+  const bool ok = record.status.outcome == Outcome::ok || record.status.outcome == Outcome::overlap;
   add_check(record, "outcome_ok", ok ? 0.0 : 1.0, 0.0, ok);
   record.validity.valid = std::all_of(record.validity.checks.begin(), record.validity.checks.end(),
                                       [](const Check& check) { return check.pass; });

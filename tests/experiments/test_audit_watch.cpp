@@ -28,6 +28,57 @@ StepRecord converged() {
   return step;
 }
 
+/// A motion by z of the whole sheet, as a step of its own.
+void fall(AuditWatch& watch, Positions& x, double z, int step) {
+  const Positions before = x;
+  x.row(2).array() += z;
+  watch.on_motion(before, x, step);
+  StepRecord record = converged();
+  record.step = step;
+  watch.on_step(x, record);
+}
+
+TEST(AuditWatch, AnOverlapWithinWhatIsPromisedHasAWordAndADepthOfItsOwn) {
+  const Scene scene = sheet_over_ball();
+  for (const double promised : {1e-6, 0.0}) {
+    AuditRecord record;
+    AuditWatch watch(scene, 0.01, 0.1, record, promised);
+    Positions x = scene.x0;
+    fall(watch, x, -0.011 - 5e-7, 0);
+    const Verdict within = watch.verdict();
+    if (promised == 0) {
+      EXPECT_EQ(within.outcome, Outcome::penetration) << within.detail;
+      continue;
+    }
+    EXPECT_EQ(within.outcome, Outcome::overlap) << within.detail;
+    EXPECT_NE(within.detail.find("5e-07 m"), std::string::npos) << within.detail;
+    EXPECT_NE(within.detail.find("first in step 0"), std::string::npos) << within.detail;
+    EXPECT_EQ(record.overlaps, 1);  // the triangle over the top
+    EXPECT_NEAR(record.overlap_max_m.value, 5e-7, 1e-12);
+    EXPECT_EQ(record.violations, 0);
+    EXPECT_GT(record.judged, 0);
+    fall(watch, x, -2e-6, 1);
+    EXPECT_EQ(watch.verdict().outcome, Outcome::penetration) << watch.verdict().detail;
+    EXPECT_EQ(record.obstacle_violations, 1);
+  }
+}
+
+TEST(AuditWatch, AnOverlapWithinAStepIsNoneAtItsEndAndAWayThroughTheBallIsStillAPenetration) {
+  const Scene scene = sheet_over_ball();
+  AuditRecord record;
+  AuditWatch watch(scene, 0.01, 0.1, record, 1e-6);
+  Positions x = scene.x0, deep = x, end = x;
+  deep.row(2).array() -= 0.02;
+  end.row(2).array() -= 0.005;
+  watch.on_motion(x, deep, 0);
+  watch.on_motion(deep, end, 0);
+  StepRecord step = converged();
+  watch.on_step(end, step);
+  EXPECT_EQ(watch.verdict().outcome, Outcome::ok) << watch.verdict().detail;
+  fall(watch, end, -0.3, 1);  // out again below, in one step
+  EXPECT_EQ(watch.verdict().outcome, Outcome::penetration) << watch.verdict().detail;
+}
+
 TEST(AuditWatch, ASheetThroughABallBetweenItsVerticesIsAPenetration) {
   const Scene scene = sheet_over_ball();
   AuditRecord record;

@@ -61,6 +61,32 @@ def test_penalty_counts_how_deep_contacts_are(program, tmp_path):
     assert record["summary"]["gap_min_m"] == pytest.approx(-solver["penalty_overlap_m"])
 
 
+def resting(tmp_path: Path, kind: str) -> Path:
+    """A sheet that comes to rest on a floor, or slides over the top of a ball."""
+    floor = {"name": "floor", "kind": "plane", "point_m": [0, 0, 0], "axis": [0, 0, 1]}
+    ball = {"name": "ball", "kind": "sphere", "point_m": [0.03, 0.02, -0.5], "radius_m": 0.5}
+    return write(tmp_path / "rest.json", {
+        "schema": "barrierbench.config/1",
+        "scene": {"name": "bodies", "bodies": [
+            {"name": "sheet", "mesh": {"generator": "grid", "n_x": 4, "n_y": 4, "size_x_m": 0.4, "size_y_m": 0.4},
+             "transform": {"translate_m": [0, 0, 0.004]}, "material": {"springs_N_per_m": 100}}], "obstacles": [floor if kind == "floor" else ball]},
+        "formulation": {"name": "quadratic", "d_hat_m": 0.01, "stiffness_policy": {"kappa_N_per_m": 50}},
+        "matching": {"rule": "as_given"}, "time": {"dt_s": 0.01, "steps": 10}})
+
+
+@pytest.mark.parametrize("kind", ["floor", "ball"])
+def test_an_overlap_with_an_obstacle_within_al_tolerance_has_its_own_word(program, tmp_path, kind):
+    config = resting(tmp_path, kind)
+    for tolerance in (1e-6, 1e-4):
+        record = run(program, config, tmp_path / str(tolerance), "augmented_lagrangian", "--set", f"/step_solver/al_tolerance_m={tolerance}")
+        assert record["status"]["outcome"] == "overlap" and "within what the step solver promises" in record["status"]["detail"], record["status"]
+        assert 0 < record["audit"]["overlap_max_m"] <= tolerance and record["audit"]["overlaps"] > 0
+        assert record["audit"]["violations"] == 0 and record["status"]["valid"]
+        assert sum(step["contacts"]["total"] for step in record["steps"]) > 0
+    deep = run(program, config, tmp_path / "penalty", "penalty")
+    assert deep["status"]["outcome"] == "penetration" and deep["audit"]["overlaps"] == 0, "what promises nothing is judged as ever"
+
+
 def test_settings_of_later_solvers_stand_in_a_config_that_has_one(program, tmp_path):
     own = {"projection": "projection_stiffness", "augmented_lagrangian": "al_tolerance_m"}
     for solver in ["line_search", *own]:
