@@ -35,6 +35,12 @@ ElementAnswer element_answer(const ElementTerms<T, N>& exact, const ElementTerms
           {}};
 }
 
+/// The same, where derivatives may be a choice.
+inline ElementAnswer cusp_answer(bool is_cusp, ElementAnswer answer) {
+  if (is_cusp) answer.status = "cusp";
+  return answer;
+}
+
 /// f.operator()<T>() in the scalar that the fields ask for.
 template <class F>
 ElementAnswer in_scalar_of(const Fields& fields, const F& f) {

@@ -22,6 +22,12 @@ struct BaraffWitkin {
            lame_lambda / T(2) * shear * shear;
   }
 
+  /// Whether psi has a cusp at F: one of its columns is 0. Host-device: yes.
+  template <class T, int R>
+  BB_HD static bool is_cusp(const Mat<T, R, 2>& f, T lame_mu, T) {
+    return lame_mu > T(0) && !(f.col(0).norm() > T(0) && f.col(1).norm() > T(0));
+  }
+
   template <class T, int R>
   BB_HD static DensityTerms<T, R> terms(const Mat<T, R, 2>& f, T lame_mu, T lame_lambda,
                                         Projection projection) {

@@ -39,6 +39,12 @@ BB_HD T cloth_spring_value(const Vec<T, 3> (&x)[2], T rest_length, const SpringL
   return spring_profile<T>((x[1] - x[0]).norm() - rest_length, rest_length, law).energy;
 }
 
+/// Whether the energy has a cusp at x: the points coincide, and it falls whichever way they part. Host-device: yes.
+template <class T>
+BB_HD bool cloth_spring_is_cusp(const Vec<T, 3> (&x)[2], T rest_length, const SpringLaw<T>& law) {
+  return !((x[1] - x[0]).norm() > T(0)) && spring_profile<T>(-rest_length, rest_length, law).slope < T(0);
+}
+
 /// Energy, gradient and Hessian w'' n n^T + w'/l (1 - n n^T), n the unit direction; the transverse part is negative in compression.
 /// At rest length the curvature is that of tension; at l = 0, a cusp, gradient and Hessian are 0. Host-device: yes. Total.
 template <class T>

@@ -41,6 +41,10 @@ class EnergyBatch {
   /// Energies, gradients and Hessians, projected element by element. Cost: O(n); out is resized once and never allocated again.
   virtual void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const = 0;
 
+  /// Elements whose energy has a cusp at x, ascending: it has no derivative there and falls whichever way the element leaves it, so
+  /// that x is no minimum, though the gradient may be 0 and the Hessian positive.
+  virtual std::vector<std::size_t> cusps(const PositionsView&) const { return {}; }
+
   /// Constraints whose energy is this one; null: it has no such form.
   virtual const ConstraintBatch* constraints() const { return nullptr; }
 

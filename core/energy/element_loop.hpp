@@ -76,6 +76,18 @@ void store_energies(std::size_t n, Precision precision, const Value& value, doub
   });
 }
 
+/// Those of n elements for which is.operator()<T>(e) holds, in the scalar of energies, ascending.
+template <class Is>
+std::vector<std::size_t> elements_where(std::size_t n, Precision precision, const Is& is) {
+  std::vector<std::size_t> out;
+  with_value_scalar(precision, [&]<class T>() {
+    for (std::size_t e = 0; e < n; ++e) {
+      if (is.template operator()<T>(e)) out.push_back(e);
+    }
+  });
+  return out;
+}
+
 /// ConfigError unless a column has one entry an element and, where `positive`, no entry that is not > 0.
 inline void check_column(const char* where, std::size_t n, const std::vector<double>& column, bool positive) {
   if (column.size() != n) {

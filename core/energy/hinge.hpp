@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "core/energy/creep.hpp"
 #include "core/energy/stiffening.hpp"
@@ -140,6 +141,15 @@ BB_HD HingeEnergy<T> hinge_energy(const Vec<T, 3> (&x)[4], T stiffness, T expone
   const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
   const Stiffened<T> w = stiffened<T>(deviation, stiffness, exponential, exponent);
   return {w.energy, w.curvature, w.slope / w.curvature};
+}
+
+/// Whether the energy has a cusp at x: half a turn from rest, where it falls whichever way the hinge turns. Host-device: yes.
+template <class T>
+BB_HD bool hinge_is_cusp(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle) {
+  using std::abs;
+  const T pi = T(3.14159265358979323846);
+  return stiffness > T(0) && pi - abs(hinge_deviation<T>(hinge_angle<T>(x), rest_angle)) <=
+                                 T(8) * std::numeric_limits<T>::epsilon();
 }
 
 /// The rest angle of a hinge after it has crept at x, rad. Host-device: yes.

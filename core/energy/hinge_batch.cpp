@@ -26,6 +26,14 @@ void HingeBatch::derivatives(const PositionsView& x, Projection projection, Loca
   for_each_pass(precision_, [&]<class T>(PassParts parts) { fill<T>(x, projection, parts, out); });
 }
 
+std::vector<std::size_t> HingeBatch::cusps(const PositionsView& x) const {
+  return elements_where(size(), precision_, [&]<class T>(std::size_t e) {
+    const Points<4, T> p(x, vertices_, e);
+    const double stiffness = stiffness_[e] + (exponential_.empty() ? 0 : exponential_[e]);
+    return hinge_is_cusp<T>(p.x, static_cast<T>(stiffness), static_cast<T>(rest_angle_[e]));
+  });
+}
+
 template <class T>
 void HingeBatch::fill(const PositionsView& x, Projection projection, PassParts parts, LocalTerms& out) const {
   constexpr std::size_t lanes = hinge_lanes;

@@ -26,6 +26,7 @@ class HingeBatch final : public EnergyBatch {
   std::span<const int> vertices() const override { return vertices_; }
   void values(const PositionsView& x, double* energy) const override;
   void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override;
+  std::vector<std::size_t> cusps(const PositionsView& x) const override;
   std::span<const double> memory() const override;
   void set_memory(std::span<const double> memory) override;
   void flow(const PositionsView& x, double dt, std::span<double> memory) const override;

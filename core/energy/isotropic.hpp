@@ -2,6 +2,7 @@
 // dpsi/dF and d2psi/dF2 in closed form, exact or with its negative eigenvalues projected.
 #pragma once
 
+#include <limits>
 #include <type_traits>
 
 #include "core/energy/density.hpp"
@@ -103,6 +104,17 @@ BB_HD DensityTerms<T, R, C> isotropic_terms(const Svd<T, R, C>& svd, const Densi
   return out;
 }
 
+/// Whether psi has a cusp at F: the last singular value of a 3 x 2 F, or the sum of the last two of a square one, is 0 within
+/// rounding, and psi falls whichever way F leaves there. Host-device: yes.
+template <class T, int R, int C>
+BB_HD bool is_isotropic_cusp(const Vec<T, C>& sigma, const Density<T, C>& density, T stiffness) {
+  using std::sqrt;
+  const T eps = std::numeric_limits<T>::epsilon();
+  const T collapsed = R > C ? sigma[C - 1] : sigma[C - 2] + sigma[C - 1];
+  const T slope = R > C ? density.dpsi[C - 1] : density.dpsi[C - 2] + density.dpsi[C - 1];
+  return collapsed <= T(8) * eps * sigma[0] && slope < -sqrt(eps) * stiffness;
+}
+
 /// A model of triangles and of tetrahedra made of a density in singular values: the interface that every line of registry.inc and
 /// of solids.inc offers.
 template <class InSigma>
@@ -119,6 +131,13 @@ struct Isotropic {
     const Svd<T, R, C> svd = signed_svd(f);
     return isotropic_terms<T, R, C>(svd, InSigma::template eval<T, C>(svd.sigma, lame_mu, lame_lambda),
                                     projection);
+  }
+  /// Whether psi has a cusp at F. Host-device: yes.
+  template <class T, int R, int C = 2>
+  BB_HD static bool is_cusp(const std::type_identity_t<Mat<T, R, C>>& f, T lame_mu, T lame_lambda) {
+    const Vec<T, C> sigma = signed_svd(f).sigma;
+    return is_isotropic_cusp<T, R, C>(sigma, InSigma::template eval<T, C>(sigma, lame_mu, lame_lambda),
+                                      lame_mu);
   }
 };
 

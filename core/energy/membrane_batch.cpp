@@ -1,6 +1,9 @@
 // Loops over membrane triangles.
 #include "core/energy/membrane_batch.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "core/energy/element_loop.hpp"
 #include "core/energy/membrane_rest.hpp"
 #include "core/scene/motion.hpp"
@@ -62,6 +65,18 @@ void MembraneBatch::derivatives(const PositionsView& x, Projection projection, L
                     projection);
   };
   store_elements(size(), precision_, terms, out);
+}
+
+std::vector<std::size_t> MembraneBatch::cusps(const PositionsView& x) const {
+  return elements_where(size(), precision_, [&]<class T>(std::size_t e) {
+    const Points<3, T> p(x, vertices_, e);
+    const Vec<T, 3> a = p.x[1] - p.x[0], b = p.x[2] - p.x[0];
+    // In space a cusp needs a triangle without area.
+    const T thin = std::sqrt(std::numeric_limits<T>::epsilon());
+    if (!planar_ && a.cross(b).norm() > thin * a.norm() * b.norm()) return false;
+    const auto of_model = planar_ ? model<T>().is_cusp_planar : model<T>().is_cusp;
+    return of_model(rest_in<T>(rests_[e]), p.x, static_cast<T>(lame_mu_[e]), static_cast<T>(lame_lambda_[e]));
+  });
 }
 
 void MembraneBatch::scale_rest(std::span<const Vec2d> factors) {

@@ -49,6 +49,7 @@ class MembraneBatch final : public EnergyBatch {
   std::span<const TriangleRest<double>> rests() const { return rests_; }
   void values(const PositionsView& x, double* energy) const override;
   void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override;
+  std::vector<std::size_t> cusps(const PositionsView& x) const override;
   std::span<const double> memory() const override { return plastic_inv_; }
   void set_memory(std::span<const double> memory) override;
   void flow(const PositionsView& x, double dt, std::span<double> memory) const override;

@@ -15,21 +15,24 @@ constexpr bool says_anisotropic() {
 }
 
 template <class Model, class T>
-constexpr MembraneModel<T> entry(std::string_view name, std::string_view doc) {
+constexpr MembraneModel<T> entry(std::string_view name, std::string_view doc, const PoissonRange& poisson) {
   return {name,
           doc,
+          poisson,
           says_anisotropic<Model>(),
           &membrane_value<Model, 3, T>,
           &membrane_value<Model, 2, T>,
           &membrane_terms<Model, 3, T>,
-          &membrane_terms<Model, 2, T>};
+          &membrane_terms<Model, 2, T>,
+          &membrane_is_cusp<Model, 3, T>,
+          &membrane_is_cusp<Model, 2, T>};
 }
 
 }  // namespace
 
 template <class T>
 const Registry<MembraneModel<T>>& membrane_models() {
-#define ENTRY(name, doc) entry<membrane::name, T>(#name, doc),
+#define ENTRY(name, doc, poisson) entry<membrane::name, T>(#name, doc, poisson),
   static const Registry<MembraneModel<T>> models({
 #include "core/energy/registry.inc"
   });

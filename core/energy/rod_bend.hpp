@@ -187,6 +187,16 @@ BB_HD ElementTerms<T, 9> rod_bend_terms(const Vec<T, 3> (&x)[3], T stiffness, T 
   return out;
 }
 
+/// Whether the energy has a cusp at x and falls whichever way the rod leaves its line: a corner folded back (theta = pi), or straight
+/// where it is curved at rest. Host-device: yes.
+template <class T>
+BB_HD bool rod_bend_is_cusp(const Vec<T, 3> (&x)[3], T stiffness, T rest_angle) {
+  using std::abs;
+  const RodCorner<T> corner = rod_corner<T>(x);
+  return stiffness > T(0) && is_rod_cusp<T>(corner, rest_angle) &&
+         abs(corner.angle - rest_angle) > T(8) * std::numeric_limits<T>::epsilon();
+}
+
 // Compiled once for these scalars, in element_terms.cpp: kernels that call it are in headers of many files.
 #ifndef __CUDACC__
 extern template ElementTerms<float, 9> rod_bend_terms<float>(const Vec<float, 3> (&)[3], float, float,

@@ -12,6 +12,12 @@ BB_HD T spring_value(const Vec<T, 3> (&x)[2], T stiffness, T rest_length) {
   return stiffness / T(2) * stretch * stretch;
 }
 
+/// Whether the energy has a cusp at x: the points coincide, and it falls whichever way they part. Host-device: yes.
+template <class T>
+BB_HD bool spring_is_cusp(const Vec<T, 3> (&x)[2], T stiffness, T rest_length) {
+  return stiffness > T(0) && rest_length > T(0) && !((x[1] - x[0]).norm() > T(0));
+}
+
 /// C = l - l0 (m), whose energy C^2/(2 compliance) with compliance 1/k is that of the spring; gradient -n, n, 0 at l = 0.
 /// Host-device: yes. Total.
 template <class T>

@@ -51,6 +51,13 @@ void SpringBatch::values(const PositionsView& x, double* energy) const {
   store_energies(size(), precision_, value, energy);
 }
 
+std::vector<std::size_t> SpringBatch::cusps(const PositionsView& x) const {
+  return elements_where(size(), precision_, [&]<class T>(std::size_t e) {
+    const Points<2, T> p(x, vertices_, e);
+    return spring_is_cusp<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_length_[e]));
+  });
+}
+
 void SpringBatch::derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
   const auto terms = [&]<class T>(std::size_t e) {

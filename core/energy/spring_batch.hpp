@@ -45,6 +45,7 @@ class SpringBatch final : public EnergyBatch {
   std::span<const double> rest_lengths() const { return rest_length_; }  // [n] m
   void values(const PositionsView& x, double* energy) const override;
   void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override;
+  std::vector<std::size_t> cusps(const PositionsView& x) const override;
   const ConstraintBatch* constraints() const override { return &*constraints_; }
 
  private:

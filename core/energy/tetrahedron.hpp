@@ -50,6 +50,13 @@ BB_HD T tetrahedron_value(const TetrahedronRest<T>& rest, const Vec<T, 3> (&x)[4
   return rest.volume * Model::template value<T, 3, 3>(deformation_gradient(rest, x), lame_mu, lame_lambda);
 }
 
+/// Whether that energy has a cusp at x. Host-device: yes.
+template <class Model, class T>
+BB_HD bool tetrahedron_is_cusp(const TetrahedronRest<T>& rest, const Vec<T, 3> (&x)[4], T lame_mu,
+                               T lame_lambda) {
+  return Model::template is_cusp<T, 3, 3>(deformation_gradient(rest, x), lame_mu, lame_lambda);
+}
+
 /// Energy, gradient and Hessian of a tetrahedron. Host-device: yes.
 template <class Model, class T>
 BB_HD ElementTerms<T, 12> tetrahedron_terms(const TetrahedronRest<T>& rest, const Vec<T, 3> (&x)[4],

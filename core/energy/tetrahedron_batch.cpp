@@ -8,9 +8,13 @@ namespace bb {
 
 template <class T>
 const Registry<SolidModel<T>>& solid_models() {
-#define ENTRY(name, doc, poisson_above)                                        \
-  SolidModel<T>{#name, doc, poisson_above, &tetrahedron_value<solid::name, T>, \
-                &tetrahedron_terms<solid::name, T>},
+#define ENTRY(name, doc, poisson)                   \
+  SolidModel<T>{#name,                              \
+                doc,                                \
+                poisson,                            \
+                &tetrahedron_value<solid::name, T>, \
+                &tetrahedron_terms<solid::name, T>, \
+                &tetrahedron_is_cusp<solid::name, T>},
   static const Registry<SolidModel<T>> models({
 #include "core/energy/solids.inc"
   });
@@ -66,6 +70,15 @@ void TetrahedronBatch::derivatives(const PositionsView& x, Projection projection
                             static_cast<T>(lame_lambda_[e]), projection);
   };
   store_elements(size(), precision_, terms, out);
+}
+
+std::vector<std::size_t> TetrahedronBatch::cusps(const PositionsView& x) const {
+  return elements_where(size(), precision_, [&]<class T>(std::size_t e) {
+    const Points<4, T> p(x, vertices_, e);
+    if (tetrahedron_determinant<T>(p.x) > T(0)) return false;  // no singular value is negative
+    return model<T>().is_cusp(rest_in<T>(rests_[e]), p.x, static_cast<T>(lame_mu_[e]),
+                              static_cast<T>(lame_lambda_[e]));
+  });
 }
 
 }  // namespace bb

@@ -5,22 +5,25 @@
 #include <tuple>
 
 #include "core/energy/element_batch.hpp"
+#include "core/energy/poisson_range.hpp"
 #include "core/energy/tetrahedron.hpp"
 #include "core/math/precision.hpp"
 #include "core/parameters/registry.hpp"
 
 namespace bb {
 
-/// One line of solids.inc. The functions are tetrahedron_value and tetrahedron_terms.
+/// One line of solids.inc. The functions are tetrahedron_value, tetrahedron_terms and tetrahedron_is_cusp.
 template <class T>
 struct SolidModel {
   using Value = T (*)(const TetrahedronRest<T>&, const Vec<T, 3> (&)[4], T lame_mu, T lame_lambda);
   using Terms = ElementTerms<T, 12> (*)(const TetrahedronRest<T>&, const Vec<T, 3> (&)[4], T lame_mu,
                                         T lame_lambda, Projection);
+  using IsCusp = bool (*)(const TetrahedronRest<T>&, const Vec<T, 3> (&)[4], T lame_mu, T lame_lambda);
   std::string_view name, doc;
-  double poisson_above;  // Poisson's ratios from here down make an energy that is not smallest at rest
+  PoissonRange poisson;  // of materials that a body may have
   Value value;
   Terms terms;
+  IsCusp is_cusp;
 };
 
 /// Rest data in another scalar.
@@ -51,6 +54,7 @@ class TetrahedronBatch final : public EnergyBatch {
   std::span<const TetrahedronRest<double>> rests() const { return rests_; }
   void values(const PositionsView& x, double* energy) const override;
   void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override;
+  std::vector<std::size_t> cusps(const PositionsView& x) const override;
 
  private:
   template <class T>

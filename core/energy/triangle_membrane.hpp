@@ -68,6 +68,12 @@ BB_HD T membrane_value(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], T l
   return rest.area * Model::template value<T, R>(deformation_gradient<R>(rest, x), lame_mu, lame_lambda);
 }
 
+/// Whether that energy has a cusp at x. Host-device: yes.
+template <class Model, int R, class T>
+BB_HD bool membrane_is_cusp(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], T lame_mu, T lame_lambda) {
+  return Model::template is_cusp<T, R>(deformation_gradient<R>(rest, x), lame_mu, lame_lambda);
+}
+
 /// Energy, gradient and Hessian of a membrane triangle. Host-device: yes.
 template <class Model, int R, class T>
 BB_HD ElementTerms<T, 9> membrane_terms(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], T lame_mu,

@@ -32,24 +32,24 @@ int broken_element(const TermFamily& family) {
   return -1;
 }
 
-std::string element_name(const Scene& scene, const Stencils& stencils, int element) {
+}  // namespace
+
+std::string element_name(const Scene& scene, std::string_view term, std::size_t element,
+                         std::span<const int> vertices) {
   std::string out;
-  const auto width = static_cast<std::size_t>(stencils.width);
-  for (const int v : stencils.vertices.subspan(width * static_cast<std::size_t>(element), width)) {
+  for (const int v : vertices) {
     if (v >= 0) out += (out.empty() ? "" : ", ") + vertex_name(scene, v);
   }
-  return out;
+  return "element " + std::to_string(element) + " of term " + std::string(term) + " (" + out + ")";
 }
-
-}  // namespace
 
 std::string broken_element_name(const Scene& scene, const TermList& terms) {
   for (const auto& term : terms) {
     for (const TermFamily& family : term->families()) {
       const int element = broken_element(family);
       if (element < 0) continue;
-      return "element " + std::to_string(element) + " of term " + std::string(term->name()) + " (" +
-             element_name(scene, family.stencils, element) + ")";
+      const auto e = static_cast<std::size_t>(element), w = static_cast<std::size_t>(family.stencils.width);
+      return element_name(scene, term->name(), e, family.stencils.vertices.subspan(w * e, w));
     }
   }
   return {};

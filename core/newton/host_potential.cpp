@@ -7,6 +7,7 @@
 #include "core/archive/archive.hpp"
 #include "core/newton/element_name.hpp"
 #include "core/solvers/linear_solvers.hpp"
+#include "core/terms/cusps.hpp"
 #include "core/terms/known_step.hpp"
 
 namespace bb {
@@ -214,6 +215,12 @@ void HostPotential::report_overload(const Column& x, const Column& g, const Colu
     const Positions others = points(g) - own;
     slot.term->report_overload(points(x), others, points(dx), out);
   }
+}
+
+Cusps HostPotential::cusps(const Column& x) {
+  Cusps out;
+  for (const auto& term : terms_) term->add_cusps(points(x), out);
+  return out;
 }
 
 std::string HostPotential::describe_non_finite() { return broken_element_name(scene_, terms_); }

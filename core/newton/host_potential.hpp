@@ -67,6 +67,7 @@ class HostPotential final : public IncrementalPotential {
   double energy(TermSet set, const Column& x) override;
   void report(const Column& x, IterateNumbers& out) override;
   void report_end(const Column& x, StepNumbers& out) override;
+  Cusps cusps(const Column& x) override;
   std::string describe_non_finite() override;
   KnownStep known_step() const override;
   /// How many times the largest force of a bounded barrier the loads of a step without progress are. dx: the Newton

@@ -18,6 +18,7 @@ namespace bb {
 
 class Archive;
 class Diagnosis;
+struct Cusps;
 struct KnownStep;
 
 using Column = exec::Buffer<double>;
@@ -108,6 +109,8 @@ class IncrementalPotential {
   virtual double energy(TermSet set, const Column& x) = 0;
   virtual void report(const Column& x, IterateNumbers& out) = 0;
   virtual void report_end(const Column& x, StepNumbers& out) = 0;
+  /// Elements at a cusp.
+  virtual Cusps cusps(const Column& x) = 0;
   /// The first element with a number that is not finite; empty without one.
   virtual std::string describe_non_finite() = 0;
   /// What is frozen for the step, for the copy on the host.

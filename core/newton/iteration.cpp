@@ -140,6 +140,8 @@ EndCheck check_end(StepSystem& system, SaddleRule rule, StepReport& step, Iterat
   ++report.end_checks;
   report.end_check_factorizations += end.factorizations;
   report.end_check_iterations += end.iterations;
+  step.cusps = end.cusps;
+  step.first_cusp = end.first_cusp;
   if (end.proof == EndProof::saddle) keep_smaller(step.saddle_curvature_N_per_m, end.curvature_N_per_m);
   return end;
 }

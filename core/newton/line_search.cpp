@@ -55,7 +55,7 @@ class LineSearch final : public StepSolver {
         return step;
       }
       const EndCheck end = small ? check_end(system, options_.saddle, step, report) : EndCheck();
-      const bool escaped = end.proof == EndProof::saddle && escape_saddle(system, report, tolerance);
+      const bool escaped = is_no_minimum(end.proof) && escape_saddle(system, end, report, tolerance);
       const bool moved = escaped || follow_direction(system, report, at_pose, small);  // 4 to 6
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
@@ -84,11 +84,11 @@ class LineSearch final : public StepSolver {
     collapsed_ = escapes_ = 0;
   }
 
-  // Of 3: a step out of a saddle along negative curvature, which says nothing about the rate. False where the rule has
-  // none, after most_escapes of them, and where E is level; dx is what is left then.
-  bool escape_saddle(StepSystem& system, IterationReport& report, double tolerance) {
+  // Of 3: a step out of a saddle along negative curvature, or away from a cusp, which says nothing about the rate. False where
+  // the rule has none, after most_escapes of them, and where E is level; dx is what is left then.
+  bool escape_saddle(StepSystem& system, const EndCheck& end, IterationReport& report, double tolerance) {
     if (options_.saddle != SaddleRule::escape || escapes_ >= most_escapes) return false;
-    if (!search_.out_of_saddle(system, report, tolerance)) return false;
+    if (!search_.out_of_saddle(system, end.proof, report, tolerance)) return false;
     ++escapes_;
     error_.took(0);
     crawl_.reset();

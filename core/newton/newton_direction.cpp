@@ -1,7 +1,10 @@
 // Gradient and matrix of the iterate, and the Newton direction: the matrix at the level that makes it positive definite,
 // its solve with prescribed motion lifted to the right-hand side, negative curvature.
+#include "core/linear/definiteness.hpp"
+#include "core/newton/element_name.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/resident/sums/vector_kernels.hpp"
+#include "core/terms/cusps.hpp"
 
 namespace bb {
 
@@ -125,8 +128,7 @@ double NewtonSystem::direction_curvature() {
 
 // Where the exact matrix is the one that was factorised, that is the proof. Rows that are clamped add to it: where it is
 // not positive definite then, the exact one is not either.
-EndCheck NewtonSystem::check_end() {
-  const WholePhase timer(clock(), Phase::end_check);
+EndCheck NewtonSystem::check_hessian() {
   EndCheck out;
   const bool known = exact_hessians_ == ExactHessians::all;
   out.proof = EndProof::clamped;
@@ -148,6 +150,36 @@ EndCheck NewtonSystem::check_end() {
   out.proof = EndProof::saddle;
   out.curvature_N_per_m = found.curvature;
   return out;
+}
+
+EndCheck NewtonSystem::check_end() {
+  const WholePhase timer(clock(), Phase::end_check);
+  EndCheck out = check_hessian();
+  look_for_cusps(out);
+  return out;
+}
+
+// The derivatives of an element at a cusp are a choice, so the matrix proves nothing. Away from it E falls along the gradient's
+// limits: a direction of no symmetry finds one of them.
+void NewtonSystem::look_for_cusps(EndCheck& out) {
+  const Cusps found = state_.potential->cusps(state_.x);
+  if (found.count == 0) return;
+  const VecXd seeded = definiteness_right_hand_side(3 * static_cast<Eigen::Index>(found.vertices.size()));
+  std::vector<double> way(static_cast<std::size_t>(state_.x.size()), 0.0);
+  bool free = false;
+  for (std::size_t i = 0; i < 3 * found.vertices.size(); ++i) {
+    const std::size_t at = 3 * static_cast<std::size_t>(found.vertices[i / 3]) + i % 3;
+    if (state_.fixed[at] != 0) continue;
+    way[at] = seeded[static_cast<Eigen::Index>(i)];
+    free = true;
+  }
+  if (!free) return;
+  out.cusps = static_cast<int>(found.count);
+  out.first_cusp =
+      element_name(state_.scene, found.term, found.element, {found.vertices.data(), found.width});
+  if (out.proof == EndProof::saddle) return;
+  out.proof = EndProof::cusp;
+  state_.aside.upload(way);
 }
 
 void NewtonSystem::aim_at_escape(double length) {

@@ -81,6 +81,8 @@ class NewtonSystem : public StepSystem {
   void fill_matrix();
   bool set_right_hand_side();
   bool find_one_direction(SolveReport& report);
+  EndCheck check_hessian();
+  void look_for_cusps(EndCheck& out);
   void take_solution();
   void look_at_direction();
   void move(double alpha, Column& to);

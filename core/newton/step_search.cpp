@@ -17,15 +17,18 @@ void StepSearch::begin_step(StepReport& step) {
   lengthened_ = &(step.solver.values["lengthened"] = 0);
 }
 
-bool StepSearch::out_of_saddle(StepSystem& system, IterationReport& report, double tolerance) {
+bool StepSearch::out_of_saddle(StepSystem& system, EndProof proof, IterationReport& report,
+                               double tolerance) {
   const std::vector<double>& d_hat = system.view().scene().d_hat;
   const double widest = d_hat.empty() ? 0 : *std::max_element(d_hat.begin(), d_hat.end());
   const double length = std::max(widest, 2 * tolerance);
   const WholePhase timer(system.clock(), Phase::end_check);
   system.aim_at_escape(length);
   const double slope = std::min(0.0, system.direction_size().slope_J),
-               curvature = system.direction_curvature();
-  if (curvature < 0 && leave(system, report, slope, curvature, tolerance / length)) return true;
+               curvature = proof == EndProof::cusp ? 0 : system.direction_curvature();
+  if ((curvature < 0 || proof == EndProof::cusp) &&
+      leave(system, report, slope, curvature, tolerance / length))
+    return true;
   system.restore_direction();
   return false;
 }

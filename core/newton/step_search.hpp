@@ -23,10 +23,10 @@ class StepSearch {
   /// nothing bounds it. True where a motion was accepted.
   bool along_direction(StepSystem& system, IterationReport& report, bool energy_test, bool small,
                        double length);
-  /// A step along negative curvature, from d_hat down to the tolerance (m), as far as the bound allows: E has to fall by a
-  /// part of what slope and curvature promise, and by more than rounding. False where no length does: within rounding E is
-  /// level there.
-  bool out_of_saddle(StepSystem& system, IterationReport& report, double tolerance);
+  /// A step along negative curvature, or away from a cusp, as the proof says; from d_hat down to the tolerance (m), as far as the
+  /// bound allows: E has to fall by a part of what slope and curvature promise, and by more than rounding. False where no length
+  /// does: within rounding E is level there.
+  bool out_of_saddle(StepSystem& system, EndProof proof, IterationReport& report, double tolerance);
 
   /// Of the step taken last: its bound, in parts of dx; the part of dx that was taken, above 1 of one that was lengthened;
   /// whether vertices went each as far as contact let it; whether its change of E is noise.

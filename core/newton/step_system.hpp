@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "core/integrators/integrator.hpp"
 #include "core/newton/energy_change.hpp"
@@ -25,11 +26,13 @@ struct DirectionSize {
   double vertex_m = 0;    // largest |dx| of a vertex, prescribed ones included
 };
 
-/// Whether the exact matrix of an iterate is positive definite.
+/// Whether the exact matrix of an iterate is positive definite, and no element at a cusp.
 struct EndCheck {
   EndProof proof = EndProof::not_checked;
   double curvature_N_per_m = 0;  // saddle: v^T H v / v^T v of the direction v that was found
   int factorizations = 0, iterations = 0;
+  int cusps = 0;           // elements at one
+  std::string first_cusp;  // its term, number and vertices
 };
 
 /// A motion whose vertices go each the part that contact lets them go.
@@ -83,8 +86,8 @@ class StepSystem {
   /// Whether that Hessian is positive definite at the iterate, after find_direction(); the direction stays. A
   /// factor of the very matrix that was solved shows it for free.
   virtual EndCheck check_end() = 0;
-  /// After a check that found a saddle: dx becomes the direction of negative curvature with |dx|_inf = length (m), so
-  /// that E does not grow along it to first order.
+  /// After a check that found a saddle or a cusp: dx becomes the direction of negative curvature, or a seeded one of the elements at
+  /// the cusp, with |dx|_inf = length (m), so that E does not grow along it to first order.
   virtual void aim_at_escape(double length) = 0;
 
   // --- the motion from the iterate along dx

@@ -23,8 +23,14 @@ struct StepRecord : WorkCounts {
   BB_FIELD(std::string, detail,
            "what held it: the pin, the pair, the linear status; empty when it converged");
   BB_FIELD(EndProof, end_proof,
-           "what shows that it ended in a minimum of E: a property of the exact matrix at the last iterate") =
-      EndProof::not_checked;
+           "what shows that it ended in a minimum of E: a property of the exact matrix at the last iterate, "
+           "and of elements at a "
+           "cusp of their energy, where there is none") = EndProof::not_checked;
+  BB_FIELD(int, cusps,
+           "elements at a cusp of their energy where the step was looked at last (a spring whose ends "
+           "coincide, a rod folded "
+           "back on itself)") = 0;
+  BB_FIELD(std::string, first_cusp, "the first of them with its vertices; empty without one");
   BB_FIELD(Number, saddle_curvature_N_per_m,
            "smallest v^T H v / v^T v that was found, at its end or at a saddle that it left; the smallest "
            "eigenvalue of "

@@ -28,16 +28,19 @@ enum class EndProof {
   lanczos,   // positive definite: conjugate gradients on a seeded right-hand side met no negative curvature
   clamped,   // some term's exact Hessian is not known; what is known curves upwards
   unproven,  // neither was shown
-  saddle     // not positive definite: a direction of negative curvature is known
+  saddle,    // not positive definite: a direction of negative curvature is known
+  cusp       // no minimum: E has no derivative there, and falls from it
 };
 template <>
-inline constexpr int n_words<EndProof> = 6;
+inline constexpr int n_words<EndProof> = 7;
 
 constexpr std::string_view to_string(EndProof proof) {
-  constexpr std::array<std::string_view, n_words<EndProof>> words = {"not_checked", "factor",   "lanczos",
-                                                                     "clamped",     "unproven", "saddle"};
+  constexpr std::array<std::string_view, n_words<EndProof>> words = {
+      "not_checked", "factor", "lanczos", "clamped", "unproven", "saddle", "cusp"};
   return words[static_cast<std::size_t>(proof)];
 }
+/// Whether it is known that the end is no minimum.
+constexpr bool is_no_minimum(EndProof proof) { return proof == EndProof::saddle || proof == EndProof::cusp; }
 
 constexpr std::string_view to_string(StepStatus status) {
   constexpr std::array<std::string_view, n_words<StepStatus>> words = {

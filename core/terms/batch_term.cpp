@@ -1,6 +1,7 @@
 #include "core/terms/batch_term.hpp"
 
 #include "core/archive/archive.hpp"
+#include "core/terms/cusps.hpp"
 
 namespace bb {
 
@@ -30,6 +31,8 @@ void BatchTerm::end_step(const PositionsView& x, PhaseClock& clock) {
   next_.assign(now.begin(), now.end());
   batch_->flow(x, dt_, next_);
 }
+
+void BatchTerm::add_cusps(const PositionsView& x, Cusps& out) const { out.add(name_, *batch_, x); }
 
 void BatchTerm::keep(Archive& archive) {
   const std::span<const double> now = batch_->memory();

@@ -23,6 +23,7 @@ class BatchTerm final : public Term {
     batch_->derivatives(x, Projection::psd, families_[0].clamped);
   }
   void evaluate(const PositionsView& x) override { batch_->values(x, families_[0].trial_energy.data()); }
+  void add_cusps(const PositionsView& x, Cusps& out) const override;
   bool offers_constraints() const override { return batch_->constraints() != nullptr; }
   void add_constraints(const ConstraintRequest&, std::vector<const ConstraintBatch*>& out) override {
     if (batch_->constraints()) out.push_back(batch_->constraints());

@@ -69,6 +69,8 @@ void StepNumbers::close() {
   const bool converged = status == StepStatus::converged;
   if (!converged) {
     end_proof = EndProof::not_checked;
+    cusps = 0;
+    first_cusp.clear();
     end_error_m = end_error_tolerances = Number::missing("not_converged");
   }
   if (!converged) gap_min_m = gap_min_rel = gap_min_ulps = Number::missing("not_converged");

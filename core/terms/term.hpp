@@ -22,6 +22,7 @@ namespace bb {
 
 class Archive;
 struct ContactLoads;
+struct Cusps;
 struct KnownStep;
 
 /// One time step, the same for all terms.
@@ -177,6 +178,8 @@ class Term {
   virtual void add_constraints(const ConstraintRequest&, std::vector<const ConstraintBatch*>& /*out*/) {}
 
   // --- what is said of it, at the iterate x
+  /// Adds its elements with a cusp.
+  virtual void add_cusps(const PositionsView& /*x*/, Cusps& /*out*/) const {}
   virtual void report(const PositionsView& /*x*/, IterateNumbers&, PhaseClock&) {}
   virtual void report_end(const PositionsView& /*x*/, StepNumbers&, PhaseClock&) {}
   /// How many times the largest force of a bounded barrier the loads of a step without progress are. others:

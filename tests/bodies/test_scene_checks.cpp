@@ -117,6 +117,39 @@ TEST(scene_checks, allow_what_switches_off_elements_that_the_body_cannot_have) {
             "");
 }
 
+TEST(scene_checks, refuse_a_membrane_whose_energy_has_no_bound) {
+  const TriangleMesh sheet = grid_mesh(2, 2, 1, 1);
+  struct Case {
+    const char* model;
+    double poisson;
+    const char* allowed;  // empty: it is taken
+  };
+  const Case cases[] = {
+      {"stable_neo_hookean", -0.2, "a number > 0 with model stable_neo_hookean"},
+      {"stable_neo_hookean", 0, "a number > 0 with model stable_neo_hookean"},
+      {"stable_neo_hookean", 0.01, ""},
+      {"baraff_witkin", -0.2, "a number >= 0 with model baraff_witkin"},
+      {"baraff_witkin", 0, ""},
+      {"corotational", -0.9, ""},
+      {"arap", -0.9, ""},
+      {"stvk", -0.9, ""},
+      {"none", -0.9, ""},
+  };
+  for (const Case& c : cases) {
+    const std::string found = said_of(sheet, [&](Material& m) {
+      m.model = c.model;
+      m.poisson = c.poisson;
+      if (m.model == "baraff_witkin") m.warp_axis = Vec3d::UnitX();
+    });
+    if (std::string(c.allowed).empty()) {
+      EXPECT_EQ(found, "") << c.model;
+      continue;
+    }
+    expect_complaint(found, "body \"body\"/material/poisson");
+    expect_complaint(found, c.allowed);
+  }
+}
+
 TEST(scene_checks, refuse_a_name_used_twice) {
   Obstacle plane;
   plane.name = "cloth";

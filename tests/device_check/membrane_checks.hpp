@@ -36,7 +36,7 @@ template <class T>
 struct Membranes : Columns<T> {
   BB_HD void operator()(exec::Index i) const {
     Slots<T> slots = this->slots(i);
-#define ENTRY(name, doc) membrane_model<membrane::name, T>(slots);
+#define ENTRY(name, ...) membrane_model<membrane::name, T>(slots);
 #include "core/energy/registry.inc"
 #undef ENTRY
   }

@@ -35,7 +35,7 @@ struct Points {
 /// Calls f.operator()<Model>(name) for every line of registry.inc.
 template <class F>
 void for_each_model(const F& f) {
-#define ENTRY(name, doc) f.template operator()<membrane::name>(#name);
+#define ENTRY(name, ...) f.template operator()<membrane::name>(#name);
 #include "core/energy/registry.inc"
 #undef ENTRY
 }

@@ -81,7 +81,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   double direction_curvature() override { return now().escape_curvature; }
   EndCheck check_end() override {
     ++checks;
-    return {now().end, now().end == EndProof::saddle ? now().curvature : 0, 0, 0};
+    return {now().end, now().end == EndProof::saddle ? now().curvature : 0, 0, 0, 0, {}};
   }
   void aim_at_escape(double length) override {
     aimed.push_back(length);

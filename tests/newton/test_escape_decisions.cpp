@@ -127,6 +127,25 @@ TEST(EscapeDecisions, AreTakenUnderTheRuleEscapeAlone) {
   EXPECT_EQ(escaped(minimum), 0);
 }
 
+/// Away from a cusp there is no curvature to ask for: E has to fall by a part of what its slope promises, and beyond rounding.
+TEST(EscapeDecisions, LeaveACuspWhateverTheCurvature) {
+  for (const double curvature : {-2.0, 0.0, 5.0}) {
+    auto script = saddle(curvature, at_one(-0.05));
+    script[0].end = EndProof::cusp;
+    EXPECT_EQ(escaped(script), 1) << curvature;
+    const ScriptedStep told(script, SaddleRule::report);
+    EXPECT_EQ(told.report.end_proof, EndProof::cusp);
+    EXPECT_EQ(told.report.escapes, 0);
+    EXPECT_FALSE(told.report.saddle_curvature_N_per_m.finite());
+  }
+  auto level = saddle(0, at_one(-1e-18));
+  level[0].end = EndProof::cusp;
+  EXPECT_EQ(escaped(level), 0);
+  auto promised = saddle(0, at_one(-0.09), -1);  // a tenth of the slope of 1 is asked for
+  promised[0].end = EndProof::cusp;
+  EXPECT_EQ(escaped(promised), 0);
+}
+
 TEST(EscapeDecisions, AreTakenTenTimesAStepAndThenItEndsInASaddle) {
   auto script = saddle(-2, at_one(-1));
   script.pop_back();

@@ -41,6 +41,12 @@ class ClothSpringBatch final : public EnergyBatch {
     };
     store_elements(size(), precision_, terms, out);
   }
+  std::vector<std::size_t> cusps(const PositionsView& x) const override {
+    return elements_where(size(), precision_, [&]<class T>(std::size_t e) {
+      const Points<2, T> p(x, vertices_, e);
+      return cloth_spring_is_cusp<T>(p.x, static_cast<T>(rest_length(e)), law<T>(e));
+    });
+  }
 
   void set_time(double t) override {
     factor_.clear();
@@ -237,8 +243,9 @@ class ClothSprings final : public Part {
         fields.complain("rest", "two points that coincide", "a rest length > 0");
       }
       fields.finish();
-      return element_answer<T, 6>(cloth_spring_terms<T>(x.x, length, law, Projection::none),
-                                  cloth_spring_terms<T>(x.x, length, law, Projection::psd));
+      return cusp_answer(cloth_spring_is_cusp<T>(x.x, length, law),
+                         element_answer<T, 6>(cloth_spring_terms<T>(x.x, length, law, Projection::none),
+                                              cloth_spring_terms<T>(x.x, length, law, Projection::psd)));
     });
   }
 };

@@ -98,8 +98,9 @@ class Hinges final : public Part {
           fields.has("exponential") ? static_cast<T>(fields.number("exponential", kNonNegative)) : T(0);
       const T a = fields.has("exponent") ? static_cast<T>(fields.number("exponent", kPositive)) : T(2);
       fields.finish();
-      return element_answer<T, 12>(hinge_terms<T>(x.x, Projection::none, k, q, a, angle),
-                                   hinge_terms<T>(x.x, Projection::psd, k, q, a, angle));
+      return cusp_answer(hinge_is_cusp<T>(x.x, k + q, angle),
+                         element_answer<T, 12>(hinge_terms<T>(x.x, Projection::none, k, q, a, angle),
+                                               hinge_terms<T>(x.x, Projection::psd, k, q, a, angle)));
     });
   }
 };

@@ -7,6 +7,7 @@
 
 #include "core/bodies/lumping.hpp"
 #include "core/bodies/part.hpp"
+#include "core/bodies/poisson_check.hpp"
 #include "core/energy/membrane_batch.hpp"
 #include "core/math/svd.hpp"
 #include "core/mesh/topology.hpp"
@@ -186,8 +187,9 @@ ElementAnswer triangle_answer(Fields& fields, const MembraneModel<T>& model) {
                     "an axis with a part in its plane (default: x)");
   }
   fields.finish();
-  return element_answer<T, 9>(model.terms(triangle, x.x, mu, lambda, Projection::none),
-                              model.terms(triangle, x.x, mu, lambda, Projection::psd));
+  return cusp_answer(model.is_cusp(triangle, x.x, mu, lambda),
+                     element_answer<T, 9>(model.terms(triangle, x.x, mu, lambda, Projection::none),
+                                          model.terms(triangle, x.x, mu, lambda, Projection::psd)));
 }
 
 class Membrane final : public Part {
@@ -202,7 +204,8 @@ class Membrane final : public Part {
     add_youngs(out);
     out.add("thickness_m", positive("m"), "Thickness that multiplies youngs_Pa; contact ignores it.",
             &Material::thickness);
-    out.add("poisson", open_high(open_low(number_in(-1, 1, "1"))), "Poisson's ratio, plane stress.",
+    out.add("poisson", open_high(open_low(number_in(-1, 1, "1"))),
+            "Poisson's ratio, plane stress. Some models want more (`bench list membranes`).",
             &Material::poisson);
     out.add("shrink_warp", positive("1"),
             "Factor on rest lengths of triangles and cloth springs along the warp direction; mass and strain "
@@ -245,6 +248,7 @@ class Membrane final : public Part {
   void check(const BodySpec& spec, bool planar, const Complaints& complain) const override {
     const Material& m = spec.material;
     complain.model("/material/model", m.model, membrane_models<double>().names());
+    check_poisson(complain, "", membrane_models<double>().find(m.model), m.poisson);
     check_warp_axis(complain, m, planar);
     check_rest(complain, spec);
     complain.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");  // under either name

@@ -42,6 +42,12 @@ class RodBendBatch final : public EnergyBatch {
     };
     store_elements(size(), precision_, terms, out);
   }
+  std::vector<std::size_t> cusps(const PositionsView& x) const override {
+    return elements_where(size(), precision_, [&]<class T>(std::size_t e) {
+      const Points<3, T> p(x, vertices_, e);
+      return rod_bend_is_cusp<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_angle_[e]));
+    });
+  }
 
  private:
   std::vector<int> vertices_;
@@ -124,10 +130,9 @@ class Rods final : public Part {
                         "three points, each away from the next");
       }
       fields.finish();
-      ElementAnswer out = element_answer<T, 9>(rod_bend_terms<T>(x.x, k, angle, Projection::none),
-                                               rod_bend_terms<T>(x.x, k, angle, Projection::psd));
-      if (is_rod_cusp<T>(rod_corner<T>(x.x), angle)) out.status = "cusp";
-      return out;
+      return cusp_answer(is_rod_cusp<T>(rod_corner<T>(x.x), angle),
+                         element_answer<T, 9>(rod_bend_terms<T>(x.x, k, angle, Projection::none),
+                                              rod_bend_terms<T>(x.x, k, angle, Projection::psd)));
     });
   }
 

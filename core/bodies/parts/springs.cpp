@@ -92,8 +92,9 @@ class Springs final : public Part {
       const T k = static_cast<T>(fields.number("k", kNonNegative));
       fields.finish();
       const T length = (rest.x[1] - rest.x[0]).norm();
-      return element_answer<T, 6>(spring_terms<T>(x.x, k, length, Projection::none),
-                                  spring_terms<T>(x.x, k, length, Projection::psd));
+      return cusp_answer(spring_is_cusp<T>(x.x, k, length),
+                         element_answer<T, 6>(spring_terms<T>(x.x, k, length, Projection::none),
+                                              spring_terms<T>(x.x, k, length, Projection::psd)));
     });
   }
 };

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/bodies/part.hpp"
+#include "core/bodies/poisson_check.hpp"
 #include "core/energy/tetrahedron_batch.hpp"
 #include "core/mesh/topology.hpp"
 
@@ -47,8 +48,9 @@ ElementAnswer tetrahedron_answer(Fields& fields, const SolidModel<T>& model) {
                     "volume > 0: point 3 on the side to which 0 1 2 runs counter-clockwise");
   }
   fields.finish();
-  return element_answer<T, 12>(model.terms(solid, x.x, mu, lambda, Projection::none),
-                               model.terms(solid, x.x, mu, lambda, Projection::psd));
+  return cusp_answer(model.is_cusp(solid, x.x, mu, lambda),
+                     element_answer<T, 12>(model.terms(solid, x.x, mu, lambda, Projection::none),
+                                           model.terms(solid, x.x, mu, lambda, Projection::psd)));
 }
 
 constexpr std::string_view of_solids = "_solid";  // what `eval` puts behind the name of a model
@@ -60,7 +62,8 @@ class Tetrahedra final : public Part {
             &Material::solid_model);
     out.add("solid_youngs_Pa", positive("Pa"), "Young's modulus of tetrahedra.", &Material::solid_youngs);
     out.add("solid_poisson", open_high(open_low(number_in(-1, 0.5, "1"))),
-            "Poisson's ratio of tetrahedra; stable_neo_hookean: above 0.125.", &Material::solid_poisson);
+            "Poisson's ratio of tetrahedra. Some models want more (`bench list solids`).",
+            &Material::solid_poisson);
     out.add("solid_density_kg_per_m3", non_negative("kg/m^3"), "Mass per volume of tetrahedra.",
             &Material::solid_density);
   }
@@ -70,12 +73,7 @@ class Tetrahedra final : public Part {
   void check(const BodySpec& spec, bool, const Complaints& complain) const override {
     const Material& m = spec.material;
     complain.model("/material/solid_model", m.solid_model, solid_models<double>().names());
-    const SolidModel<double>* model = solid_models<double>().find(m.solid_model);
-    if (model && !(m.solid_poisson > model->poisson_above)) {
-      complain("/material/solid_poisson", fmt::format("{}", m.solid_poisson),
-               fmt::format("a number > {} with solid_model {}: else its energy is not smallest at rest",
-                           model->poisson_above, m.solid_model));
-    }
+    check_poisson(complain, "solid_", solid_models<double>().find(m.solid_model), m.solid_poisson);
   }
   std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
     return mesh.tetrahedra.empty() ? "the body has no tetrahedron" : "";

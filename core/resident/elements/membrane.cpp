@@ -101,7 +101,7 @@ void add_part(const ResidentInputs& inputs, const MembranePart& part, ResidentTe
   MembraneBatch batch(part.model, part.triangles, inputs.scene.rest, part.lame_mu, part.lame_lambda,
                       inputs.scene.planar, part.warp);
   if (!part.shrink.empty()) batch.scale_rest(part.shrink);
-#define ENTRY(id, doc) \
+#define ENTRY(id, ...) \
   if (part.model == #id) return add_model<membrane::id>(inputs, batch, part, terms);
 #include "core/energy/registry.inc"
 #undef ENTRY

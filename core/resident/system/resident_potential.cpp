@@ -35,6 +35,7 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
                                      PhaseClock& clock)
     : IncrementalPotential(clock),
       executor_(std::move(executor)),
+      scene_(scene),
       method_(method),
       plan_(plan),
       vectors_(*executor_, fixed, scene.pins),
@@ -227,6 +228,15 @@ void ResidentPotential::set_frugal_from(Index rows) {
 
 void ResidentPotential::set_list_budget(std::size_t bytes) {
   for (const auto& term : terms_) term->set_list_budget(bytes);
+}
+
+// No kernel looks for what next to no step has: the elements of the host do, at the positions of the end of a step.
+Cusps ResidentPotential::cusps(const Column& x) {
+  if (executor_->counts_only()) return {};
+  if (!cusps_) cusps_ = std::make_unique<CuspSearch>(scene_, method_.precision);
+  Positions at(3, x.size() / 3);
+  x.download({at.data(), static_cast<std::size_t>(at.size())});
+  return cusps_->find(at);
 }
 
 void count_memory(NewtonSystem& system, ResidentPotential& potential, const Scene& scene,

@@ -12,6 +12,7 @@
 #include "core/resident/contact/expected_contacts.hpp"
 #include "core/resident/elements/term_inputs.hpp"
 #include "core/resident/linear/resident_pcg.hpp"
+#include "core/terms/cusps.hpp"
 #include "core/terms/plan.hpp"
 
 namespace bb {
@@ -61,6 +62,7 @@ class ResidentPotential final : public IncrementalPotential {
   double energy(TermSet set, const Column& x) override;
   void report(const Column& x, IterateNumbers& out) override;
   void report_end(const Column& x, StepNumbers& out) override;
+  Cusps cusps(const Column& x) override;
   std::string describe_non_finite() override;
   KnownStep known_step() const override;
 
@@ -91,6 +93,7 @@ class ResidentPotential final : public IncrementalPotential {
   void sum_energies(TermSet set, const Column& x, ResidentSum& sum);
 
   std::unique_ptr<exec::Executor> executor_;
+  const Scene& scene_;
   Method& method_;
   const Plan& plan_;
   VectorTools vectors_;
@@ -98,6 +101,7 @@ class ResidentPotential final : public IncrementalPotential {
   ElementMatrix elements_;  // of all terms with stencils that stay
   ResidentTermList terms_;
   std::unique_ptr<ResidentPcg> pcg_;
+  std::unique_ptr<CuspSearch> cusps_;  // made when it is asked for
   Forcing forcing_;
   int max_pcg_iterations_;
 

@@ -1,0 +1,40 @@
+// Elements whose energy has a cusp at the iterate (EnergyBatch::cusps): it is no minimum there, whatever the first and second derivatives
+// that such elements have chosen say.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "core/energy/element_batch.hpp"
+#include "core/math/precision.hpp"
+#include "core/scene/scene.hpp"
+
+namespace bb {
+
+struct Cusps {
+  std::size_t count = 0;
+  std::string_view term;      // of the first element
+  std::size_t element = 0;    // the first one's number in its batch
+  std::vector<int> vertices;  // of all of them, element after element
+  std::size_t width = 0;      // of the first one: so many vertices are its own
+
+  /// Those of a batch of `of`.
+  void add(std::string_view of, const EnergyBatch& batch, const PositionsView& x);
+};
+
+/// The elastic elements of a scene on the host, for a potential whose own are elsewhere. Rest shapes that creep are those of the start.
+class CuspSearch {
+ public:
+  CuspSearch(const Scene& scene, Precision precision);
+  Cusps find(const PositionsView& x) const;
+
+ private:
+  struct Named {
+    std::string_view term;
+    std::unique_ptr<EnergyBatch> batch;
+  };
+  std::vector<Named> batches_;
+};
+
+}  // namespace bb
