@@ -83,7 +83,7 @@ def test_an_overlap_with_an_obstacle_within_al_tolerance_has_its_own_word(progra
         assert 0 < record["audit"]["overlap_max_m"] <= tolerance and record["audit"]["overlaps"] > 0
         assert record["audit"]["violations"] == 0 and record["status"]["valid"]
         assert sum(step["contacts"]["total"] for step in record["steps"]) > 0
-    deep = run(program, config, tmp_path / "penalty", "penalty")
+    deep = run(program, config, tmp_path / "penalty", "penalty", "--set", "/formulation/stiffness_policy/kappa_N_per_m=0.1")
     assert deep["status"]["outcome"] == "penetration" and deep["audit"]["overlaps"] == 0, "what promises nothing is judged as ever"
 
 
