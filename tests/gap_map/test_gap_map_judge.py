@@ -233,3 +233,16 @@ def test_a_plan_grows_with_the_unknowns_and_counts_what_is_there():
     assert plan.growth([(100, 1.0), (200, 5.0)]) == plan.GROWTH
     assert plan.estimate(cells, [], {("a", "1"): 100, ("a", "2"): 1000})["a", "1"] == (2, 0, None)
     assert "nothing measured" in plan.lines(plan.estimate(cells, [], {}))[0]
+
+
+def test_a_step_that_ends_without_contact_has_no_end_in_contact():
+    """Its iterations count among those in contact, but none of them is an end."""
+
+    def line(step, iteration, contacts, cond):
+        sample = {"matrix": "clamped", "stage": "full", "scaling": "none", "status": "ok", "cond": cond}
+        return {"step": step, "iteration": iteration, "contacts": {"obstacle": contacts}, "cond": [sample]}
+
+    lines = [line(0, 0, 2, 10.0), line(0, 1, 2, 30.0), line(1, 0, 3, 500.0), line(1, 1, 0, 7.0)]
+    found = rows.conditions(lines)
+    assert found["cond_end"] == found["cond_end_max"] == 30.0 and found["cond_median"] == 30.0
+    assert rows.conditions(lines[2:])["cond_end"] is None
