@@ -8,7 +8,23 @@ import numpy as np
 
 from . import _core
 
+MOST = 2**31 - 1  # rows and entries
 ASYMMETRY = 1e-9  # of the largest entry: what may be rounding of whoever made the matrix
+
+
+def _require_indices(matrix: Any) -> None:
+    """Errors: ConfigError for indices beyond the shape of a scipy matrix, which scipy itself does not look at."""
+    try:
+        if hasattr(matrix, "check_format"):
+            matrix.check_format(full_check=True)
+        elif matrix.format == "coo":
+            for which, n in zip((matrix.row, matrix.col), matrix.shape):
+                if which.size and (which.min() < 0 or which.max() >= n):
+                    raise ValueError(f"an index out of the range 0 to {n - 1}")
+    except ValueError as error:
+        raise _core.ConfigError(f"matrix: found {error}; allowed: indices within its shape") from None
+    if max(*matrix.shape, matrix.nnz) > MOST:
+        raise _core.ConfigError(f"matrix: found shape {matrix.shape} with {matrix.nnz} entries; allowed: at most {MOST}")
 
 
 class Condition(NamedTuple):
@@ -27,7 +43,8 @@ def condition_number(matrix: Any, scaling: str = "none", tier: int = 2, seed: in
 
     matrix: scipy.sparse or dense. scaling: none, jacobi, block_jacobi (blocks of three rows). tier: 1 inverse power
     and Lanczos, 2 Spectra around a Cholesky factor, 3 dense (n <= 3000), 4 our Lanczos around the factor.
-    Failure is a status. Errors: ConfigError for what is not square, not symmetric or not finite. Needs scipy.
+    Failure is a status. Errors: ConfigError for what is not square, not symmetric or not finite, and for indices
+    beyond its shape. Needs scipy.
 
     >>> import numpy as np
     >>> found = condition_number(np.diag([1.0, 2.0, 8.0]), tier=3)
@@ -36,6 +53,8 @@ def condition_number(matrix: Any, scaling: str = "none", tier: int = 2, seed: in
     """
     from scipy import sparse
 
+    if sparse.issparse(matrix):
+        _require_indices(matrix)
     whole = sparse.csc_matrix(matrix, dtype=float)
     if whole.shape[0] != whole.shape[1]:
         raise _core.ConfigError(f"matrix: found shape {whole.shape}; allowed: a square matrix")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +16,7 @@ from . import _core
 from .meshes import has_arrays, with_files
 
 SCHEMA = "barrierbench.config/1"  # of a config; a dict may leave it out
+LARGEST = 16 << 20  # bytes of a config, as in core/input/read_file.hpp
 Config = Mapping[str, Any] | str | os.PathLike
 
 
@@ -80,6 +82,20 @@ def linear_solvers() -> list[Entry]:
     return _entries(_core.linear_solvers_json())
 
 
+def _text_of(path: Path) -> str:
+    """Of a regular file of at most LARGEST bytes: a FIFO or a device can be waited for, or read, for ever."""
+    status = path.stat()
+    found = "" if stat.S_ISREG(status.st_mode) else "a folder" if stat.S_ISDIR(status.st_mode) else "no regular file"
+    if not found and status.st_size > LARGEST:
+        found = f"{status.st_size} bytes"
+    if found:
+        raise _core.ConfigError(f"{path}: found {found}; allowed: a config of at most {LARGEST} bytes that can be read")
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise _core.ConfigError(f"{path}: found bytes that are not UTF-8; allowed: a config in UTF-8") from None
+
+
 def _given(
     config: Config, overrides: Sequence[str] | Mapping[str, Any], out: str | None = None
 ) -> tuple[str, str, str, list[str]]:
@@ -99,7 +115,7 @@ def _given(
         return config, "config", os.getcwd(), changes
     path = Path(config)
     try:
-        return path.read_text(), str(path), str(path.resolve().parent), changes
+        return _text_of(path), str(path), str(path.resolve().parent), changes
     except OSError as error:
         raise _core.ConfigError(f"{path}: found {error.strerror}; allowed: a config that can be read") from None
 

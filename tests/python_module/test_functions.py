@@ -117,6 +117,33 @@ def test_accd_stops_before_a_head_on_contact(bb):
         bb.accd("point_triangle", x0 * np.nan, x1)
 
 
+@pytest.mark.parametrize("indices, indptr", [([0, 7], [0, 1, 2]), ([0, -1], [0, 1, 2]), ([0, 1], [0, 2, 1]), ([0, 1], [0, 1, 9]), ([0, 2**31 - 1], [0, 1, 2])])
+@pytest.mark.parametrize("form", ["csr_matrix", "csc_matrix"])
+def test_indices_beyond_a_matrix_are_refused(bb, form, indices, indptr):
+    """scipy takes them when they are put into a matrix that is there, and reads memory that is not the matrix's."""
+    sparse = pytest.importorskip("scipy.sparse")
+    matrix = getattr(sparse, form)(np.eye(2))
+    matrix.indices, matrix.indptr = np.array(indices, np.int32), np.array(indptr, np.int32)
+    with pytest.raises(bb.ConfigError, match="matrix: found .*; allowed: indices within its shape"):
+        bb.condition_number(matrix)
+    triplets = sparse.coo_matrix(np.eye(2))
+    triplets.row = np.array([0, 5], np.int32)
+    with pytest.raises(bb.ConfigError, match="an index out of the range 0 to 1"):
+        bb.condition_number(triplets)
+
+
+def test_what_is_no_regular_file_is_no_config(bb, tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "latin.json").write_bytes(b'{"name": "\xe4"}')
+    (tmp_path / "large.json").write_bytes(b"")
+    os.truncate(tmp_path / "large.json", 1 << 40)
+    for path, found in (("/dev/zero", "no regular file"), (tmp_path / "fifo", "no regular file"), (tmp_path, "a folder"), (tmp_path / "none.json", "No such file"),
+                        (tmp_path / "latin.json", "bytes that are not UTF-8"), (tmp_path / "large.json", "1099511627776 bytes")):
+        for call in (bb.resolve, bb.Simulation, bb.run):
+            with pytest.raises(bb.ConfigError, match=f"{path}: found {found}"):
+                call(path)
+
+
 def test_condition_number_is_that_of_numpy(bb):
     sparse = pytest.importorskip("scipy.sparse")
     n = 30
