@@ -11,7 +11,8 @@ struct CopyRates {
          download = 0;  // B/s; a copy within the memory reads and writes: both are counted
 };
 
-/// Several copies of so many bytes each. Errors: OutOfMemory, ExecutionError.
-CopyRates measure_copies(exec::Executor& executor, std::size_t bytes);
+/// Several copies of so many bytes each, within the memory after copies for `warm_s` seconds that are not counted. Errors:
+/// OutOfMemory, ExecutionError.
+CopyRates measure_copies(exec::Executor& executor, std::size_t bytes, double warm_s = 1);
 
 }  // namespace bb::cuda

@@ -79,7 +79,7 @@ ProceduralScene make_scene_drape() {
        "turn of each layer against the one below; 0 puts vertex over vertex, every contact on a "
        "feature boundary"},
       {"sphere", word({"analytic", "mesh"}), "analytic",
-       "an analytic sphere (acts on vertices) or a static icosphere"},
+       "an analytic sphere, against which vertices, edges and faces are held, or a static icosphere"},
       {"sphere_radius_m", positive("m"), 0.25, "radius of the sphere"},
       {"sphere_level", count(0, 6), 3, "subdivisions of the icosphere (sphere = mesh)"},
       gravity_parameter(),

@@ -4,24 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include "core/audit/pair_verdict.hpp"
-#include "tests/folders.hpp"
+#include "tests/optional_data.hpp"
 
 namespace bb::audit::ccd_queries_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path data_folder() {
-  const char* named = std::getenv("BARRIERBENCH_DATA");
-  return fs::path(named ? named : BB_SOURCE_DIR "/../shared/data") / "ccd-queries";
-}
+fs::path data_folder() { return optional_data("ccd-queries"); }
 
 struct Query {
   std::array<Vec3d, 4> x0, x1;

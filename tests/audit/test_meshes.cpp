@@ -4,21 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 
 #include "core/audit/audit.hpp"
 #include "tests/audit/ply.hpp"
-#include "tests/folders.hpp"
+#include "tests/optional_data.hpp"
 
 namespace bb::audit::meshes_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path meshes() {
-  const char* named = std::getenv("BARRIERBENCH_DATA");
-  return fs::path(named ? named : BB_SOURCE_DIR "/../shared/data") / "meshes";
-}
+fs::path meshes() { return optional_data("meshes"); }
 
 AuditMesh surface_of(const Ply& ply) {
   std::vector<std::pair<int, int>> edges;

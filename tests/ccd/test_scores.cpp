@@ -1,7 +1,6 @@
 // Queries with a known truth: the reader, the generator, and that neither continuous test ever misses a hit.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 
@@ -11,7 +10,7 @@
 #include "experiments/ccd/read_queries.hpp"
 #include "experiments/ccd/score.hpp"
 #include "tests/exact/exact_closest.hpp"
-#include "tests/folders.hpp"
+#include "tests/optional_data.hpp"
 
 namespace bb::ccd {
 namespace {
@@ -106,9 +105,7 @@ TEST(CcdRandom, NoFalseNegative) {
 }
 
 TEST(CcdHandMade, NoFalseNegative) {
-  const char* named = std::getenv("BARRIERBENCH_DATA");
-  const std::filesystem::path data =
-      std::filesystem::path(named ? named : BB_SOURCE_DIR "/../shared/data") / "ccd-queries";
+  const std::filesystem::path data = optional_data("ccd-queries");
   if (!std::filesystem::is_directory(data)) GTEST_SKIP() << "no CCD queries at " << data;
   const std::vector<Score> scores = score_queries(read_queries(data.string()));
   std::cout << score_table(scores);

@@ -4,7 +4,6 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -13,7 +12,7 @@
 #include <vector>
 
 #include "core/geometry/accd.hpp"
-#include "tests/folders.hpp"
+#include "tests/optional_data.hpp"
 
 namespace {
 
@@ -77,13 +76,12 @@ void run(const std::vector<Query>& queries, Counts& counts) {
 
 template <PairKind K>
 void run_all(const std::string& folder) {
-  const char* named = std::getenv("BARRIERBENCH_DATA");
-  const std::filesystem::path data = named != nullptr ? named : BB_SOURCE_DIR "/../shared/data";
-  if (!std::filesystem::exists(data / "ccd-queries")) GTEST_SKIP() << "no folder " << data / "ccd-queries";
+  const std::filesystem::path data = optional_data("ccd-queries");
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no folder " << data;
 
   Counts counts;
   int n_inexact = 0;
-  for (const auto& scene : std::filesystem::directory_iterator(data / "ccd-queries")) {
+  for (const auto& scene : std::filesystem::directory_iterator(data)) {
     if (!std::filesystem::is_directory(scene.path() / folder)) continue;
     for (const auto& file : std::filesystem::directory_iterator(scene.path() / folder)) {
       run<K>(read_queries(file.path(), n_inexact), counts);

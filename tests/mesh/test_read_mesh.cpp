@@ -1,14 +1,13 @@
 // Readers: the same tetrahedron out of every format, and what each format alone can say.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
 #include "core/mesh/read_mesh.hpp"
 #include "core/mesh/topology.hpp"
-#include "tests/folders.hpp"
 #include "tests/mesh/mesh_bytes.hpp"
+#include "tests/optional_data.hpp"
 
 namespace bb {
 namespace {
@@ -131,9 +130,7 @@ TEST(read_mesh, merges_stl_corners_only_when_they_are_equal) {
 }
 
 TEST(read_mesh, reads_the_meshes_of_the_test_data) {
-  const char* folder = std::getenv("BARRIERBENCH_DATA");
-  const std::filesystem::path meshes =
-      std::filesystem::path(folder ? folder : BB_SOURCE_DIR "/../shared/data") / "meshes";
+  const std::filesystem::path meshes = optional_data("meshes");
   if (!std::filesystem::exists(meshes)) GTEST_SKIP() << "no test data at " << meshes;
 
   const TriangleMesh cube = read_mesh(meshes / "cube.ply");

@@ -1,14 +1,13 @@
 // The step bound on an executor: alpha and pair of the CPU path to the bit, known times, any order, any batches.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "core/mesh/read_mesh.hpp"
 #include "tests/contact/far_bodies.hpp"
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/contact/rods.hpp"
-#include "tests/folders.hpp"
+#include "tests/optional_data.hpp"
 #include "tests/resident/both_bounds.hpp"
 #include "tests/resident/tested_executor.hpp"
 
@@ -227,9 +226,7 @@ TEST(ResidentStepBound, AsksFewPairsOfSheetsThatSlide) {
 }
 
 TEST(ResidentStepBound, IsThatOfTheCpuPathBetweenTwoFramesOfACloth) {
-  const char* named = std::getenv("BARRIERBENCH_DATA");
-  const std::filesystem::path meshes =
-      std::filesystem::path(named ? named : BB_SOURCE_DIR "/../shared/data") / "meshes";
+  const std::filesystem::path meshes = optional_data("meshes");
   if (!std::filesystem::exists(meshes / "cloth_ball92.ply"))
     GTEST_SKIP() << "no cloth_ball92.ply in " << meshes;
   const TriangleMesh before = read_mesh(meshes / "cloth_ball92.ply"),

@@ -207,7 +207,7 @@ TEST_F(Standin, TimesOfKernelsAreWrittenWhereTheEnvironmentSays) {
 
 TEST_F(Standin, CopiesAreMeasured) {
   cuda::DeviceExecutor executor;
-  const cuda::CopyRates rates = cuda::measure_copies(executor, 1 << 20);
+  const cuda::CopyRates rates = cuda::measure_copies(executor, 1 << 20, 0);
   EXPECT_EQ(rates.bytes, std::size_t{1} << 20);
   for (const double rate : {rates.copy, rates.upload, rates.download}) EXPECT_GT(rate, 0);
 }

@@ -8,17 +8,27 @@
 #include "core/resident/system/resident_potential.hpp"
 
 namespace bb::resident {
+namespace {
+
+/// Charges work to a phase until it is done: launches return at once, and whoever reads a number next would wait for them in
+/// its own phase.
+template <class Work>
+void charge(PhaseClock& clock, Phase phase, exec::Executor& executor, const Work& work) {
+  const ScopedPhase timer(clock, phase);
+  work();
+  executor.synchronize();
+}
+
+}  // namespace
 
 void ResidentPotential::linearise(const Column& x, Column& g) {
   if (plan_.policy_submatrix.needed) {
-    const ScopedPhase timer(clock(), Phase::elastic);
-    fill_elastic(x);
+    charge(clock(), Phase::elastic, *executor_, [&] { fill_elastic(x); });
   }
   g.fill_zero();
   const ResidentContext context{elements_.part(), elements_.n_blocks(), clock()};
   for (const auto& term : terms_) {
-    const ScopedPhase timer(clock(), term->phase());
-    term->linearise(x, context, g);
+    charge(clock(), term->phase(), *executor_, [&] { term->linearise(x, context, g); });
   }
   energies_known_ = true;
   announced_ = false;
@@ -49,16 +59,17 @@ void ResidentPotential::fill_exact(const Column& x, const Column& force) {
 
 // H first, as on the host.
 void ResidentPotential::fill(const Column& x, const Filled& level) {
-  const ScopedPhase timer(clock(), Phase::assembly);
-  elements_.clear();
-  for (const bool elastic : {true, false}) {
-    for (const auto& term : terms_) {
-      if ((term->group() == TermGroup::elastic) != elastic) continue;
-      term->add_matrix(
-          x, hessian_request(method_.hessian_of(term->name()), level.t, level.threshold, level.force));
+  charge(clock(), Phase::assembly, *executor_, [&] {
+    elements_.clear();
+    for (const bool elastic : {true, false}) {
+      for (const auto& term : terms_) {
+        if ((term->group() == TermGroup::elastic) != elastic) continue;
+        term->add_matrix(
+            x, hessian_request(method_.hessian_of(term->name()), level.t, level.threshold, level.force));
+      }
     }
-  }
-  elements_.mirror();
+    elements_.mirror();
+  });
 }
 
 ResidentMatrix ResidentPotential::matrix() const {
@@ -95,6 +106,7 @@ void ResidentPotential::add_given_motion(const Column& x, const Column& motion, 
 }
 
 void ResidentPotential::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {
+  executor_->synchronize();  // what made the right-hand side is the caller's phase
   const ScopedPhase timer(clock(), Phase::linear_solve);
   const double b_norm = pcg_->norm(vectors_.fixed().data(), b.data());
   LinearReport linear;
