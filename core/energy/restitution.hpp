@@ -26,19 +26,44 @@ inline double restitution_damping(double e) {
   return low;
 }
 
-/// k/2 (n . motion)^2 of a relative motion (m): k = load a/h, N/m, n unit. Convex. Host-device. Total.
+/// The damping of one contact in a step of length h, against the way (m) by which its gap opens. A contact pushes and never pulls: what
+/// holds an opening gap back is `load` at most, all that the contact pushes with.
 template <class T>
-BB_HD inline MotionTerms<T> damping_terms(const Vec<T, 3>& motion, const Vec<T, 3>& n, T k) {
+struct ContactDamping {
+  T k;     // load a/h, N/m
+  T load;  // N, >= 0; 0 only where k is 0
+
+  /// N, against the way.
+  BB_HD T force(T way) const { return yields(way) ? load : k * way; }
+  /// J. Convex, with a continuous derivative.
+  BB_HD T energy(T way) const {
+    return yields(way) ? load * (way - load / (T(2) * k)) : k / T(2) * way * way;
+  }
+  BB_HD T stiffness(T way) const { return yields(way) ? T(0) : k; }
+
+ private:
+  BB_HD bool yields(T way) const { return k * way > load; }
+};
+
+/// Its energy in a relative motion (m) along the unit normal n. Host-device. Total.
+template <class T>
+BB_HD inline MotionTerms<T> damping_terms(const Vec<T, 3>& motion, const Vec<T, 3>& n,
+                                          const ContactDamping<T>& of) {
   const T way = motion.dot(n);
-  MotionTerms<T> terms{k / T(2) * way * way, k * way * n, k * n * n.transpose()};
+  MotionTerms<T> terms{of.energy(way), of.force(way) * n, of.stiffness(way) * n * n.transpose()};
   mirror_lower<T, 3>(terms.hess);
   return terms;
 }
-/// Its energy alone, J.
+/// That energy alone, J.
 template <class T>
-BB_HD inline T damping_value(const Vec<T, 3>& motion, const Vec<T, 3>& n, T k) {
+BB_HD inline T damping_value(const Vec<T, 3>& motion, const Vec<T, 3>& n, const ContactDamping<T>& of) {
+  return of.energy(motion.dot(n));
+}
+/// Force times way, J.
+template <class T>
+BB_HD inline T damping_work(const Vec<T, 3>& motion, const Vec<T, 3>& n, const ContactDamping<T>& of) {
   const T way = motion.dot(n);
-  return k / T(2) * way * way;
+  return of.force(way) * way;
 }
 
 }  // namespace bb

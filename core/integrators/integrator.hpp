@@ -42,6 +42,8 @@ class Integrator {
   virtual double weight_factor() const { return 1; }
   /// False when steps read x_prev or v_prev: a velocity that is changed at the end of a step is then not all that the next begins with.
   virtual bool one_step() const { return true; }
+  /// Whether v at the end of a step is what x moved by in it over its length, or 0, and all that the next step reads besides x.
+  bool velocity_of_step() const { return one_step() && !needs_acceleration(); }
   /// Fills `out` without allocating after the first call. dt in s.
   virtual void predict(const History& history, double dt, Prediction& out) const = 0;
   /// Velocity at the end of the step that reached x, and acceleration where needs_acceleration: others leave a as it

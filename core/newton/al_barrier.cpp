@@ -6,6 +6,7 @@
 // than there besides: matrices are factorised or solved as /linear_solver says, with the choice of Hessians that line_search has,
 // and steps end by its rule.
 #include "core/math/error.hpp"
+#include "core/newton/iteration.hpp"
 #include "core/newton/line_search.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/terms/contact.hpp"
@@ -21,10 +22,7 @@ class AlBarrier final : public StepSolver {
                                        .after_motion = [](StepSystem& system) { return update(system); }})) {}
   std::string_view name() const override { return "al_barrier"; }
 
-  void require(StepSystem& system) const override {
-    if (!system.is_on_host())
-      throw ConfigError("/device", "one beside the processor", "cpu: the step solver is al_barrier");
-  }
+  void require(StepSystem& system) const override { require_on_host(system, name()); }
 
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {

@@ -6,7 +6,10 @@
 // max_iterations is that of all Newton iterations of a step together.
 #include <algorithm>
 
+#include "core/newton/iteration.hpp"
 #include "core/newton/line_search.hpp"
+#include "core/newton/newton_system.hpp"
+#include "core/terms/contact.hpp"
 
 namespace bb {
 namespace {
@@ -14,17 +17,18 @@ namespace {
 class AugmentedLagrangian final : public StepSolver {
  public:
   explicit AugmentedLagrangian(const StepSolverOptions& options)
-      : newton_(make_line_search(options, {.bounded = false, .renewals = &updates_})) {}
+      : newton_(make_line_search(options, {.bounded = false})) {}
   std::string_view name() const override { return "augmented_lagrangian"; }
+  void require(StepSystem& system) const override { require_on_host(system, name()); }
 
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
-    updates_ = 0;
     StepReport step = newton_->advance(system, task, used, observer);
     StepNumbers end;
     system.view().report_end(end);
+    const ContactTerm* contact = system.on_host().constraints().contact();
     const auto or_zero = [](const Number& number) { return number.finite() ? number.value : 0.0; };
-    step.solver.values = {{"al_updates", updates_},
+    step.solver.values = {{"al_updates", contact ? contact->multiplier_updates() : 0},
                           {"al_violation_m", std::max(0.0, -or_zero(end.gap_min_m))},
                           {"al_penalty_N_per_m", or_zero(end.kappa_max_N_per_m)},
                           {"al_feasibility_trials", step.solver.values.at("feasibility_trials")}};
@@ -32,7 +36,6 @@ class AugmentedLagrangian final : public StepSolver {
   }
 
  private:
-  double updates_ = 0;
   std::unique_ptr<StepSolver> newton_;
 };
 
@@ -81,6 +84,7 @@ StepSolverEntry step_solver_augmented_lagrangian() {
   };
   entry.needs.step_bound = false;
   entry.needs.overlap = entry.needs.multipliers = true;
+  entry.settings.velocity_of_step = true;
   entry.set_terms = set_contact_multipliers;
   entry.promised_overlap = [](const ParameterMap& complete) { return number(complete, "al_tolerance_m"); };
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {

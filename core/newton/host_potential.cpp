@@ -66,9 +66,10 @@ void HostPotential::change_step(const StepColumns& step) {
   for (const auto& term : terms_) term->change_frame(frame_);
 }
 
+// One term at a time: what friction takes from contact, and how often, does not depend on how often contact was renewed.
 bool HostPotential::renew_lag(const Column& x) {
-  bool renewed = false;
-  for (const auto& term : terms_) renewed = term->renew_lag(points(x)) || renewed;
+  const bool renewed = std::any_of(terms_.begin(), terms_.end(),
+                                   [&x](const auto& term) { return term->renew_lag(points(x)); });
   energies_known_ = energies_known_ && !renewed;
   return renewed;
 }

@@ -1,5 +1,7 @@
 #include "core/newton/iteration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -64,12 +66,22 @@ bool within_rounding(const EnergyChange& change, Precision precision) {
   return std::abs(change.change) <= rounding_of(change, precision);
 }
 
-void require_unmoved_on_host(const StepSystem& system, std::string_view solver) {
+void require_on_host(const StepSystem& system, std::string_view solver) {
+  if (system.is_on_host()) return;
+  throw ConfigError("/device", "one beside the processor", "cpu: the step solver is " + std::string(solver));
+}
+
+void require_unmoved(const Scene& scene, std::string_view solver) {
   const std::string why = "the step solver is " + std::string(solver);
-  if (!system.is_on_host()) throw ConfigError("/device", "one beside the processor", "cpu: " + why);
-  for (const RigidMotion& motion : system.view().scene().motions) {
+  for (const RigidMotion& motion : scene.motions) {
     if (!motion.is_static())
       throw ConfigError("/scene", "prescribed vertices or obstacles that move", "none: " + why);
+  }
+  for (const Pin& pin : scene.pins) {
+    if (!(pin.span.hold > 0)) continue;
+    throw ConfigError(
+        "/scene", fmt::format("a pin that holds vertex {} from hold_s = {} on", pin.vertex, pin.span.hold),
+        "pins that hold from the start, since none leads its vertex to its place: " + why);
   }
 }
 

@@ -35,7 +35,6 @@ class LineSearch final : public StepSolver {
   LineSearch(const StepSolverOptions& options, const LineSearchRules& rules)
       : options_(options),
         search_(number(options.parameters, "armijo"), rules.cap_fraction, rules.bounded),
-        renewals_(rules.renewals),
         after_motion_(rules.after_motion) {}
   std::string_view name() const override { return options_.name; }
 
@@ -63,7 +62,7 @@ class LineSearch final : public StepSolver {
       if (moved && after_motion_ && after_motion_(system)) {
         begin_anew(iteration);
       } else if (small && is_enough(report, moved, tolerance)) {
-        if (!renew_lag(system)) {
+        if (!system.renew_lag()) {
           end_in_minimum(step, end, report, task.dt);
           return step;
         }
@@ -131,13 +130,6 @@ class LineSearch final : public StepSolver {
     return std::max(asked, 8 * value_epsilon(system.view().precision()) * largest);
   }
 
-  // Whether terms have renewed what they lag, so that E is another one.
-  bool renew_lag(StepSystem& system) {
-    if (!system.renew_lag()) return false;
-    if (renewals_) ++*renewals_;
-    return true;
-  }
-
   // E is another one: its minimum is looked for by what is left of the iterations.
   void begin_anew(int iteration) {
     collapsed_ = 0;
@@ -197,7 +189,6 @@ class LineSearch final : public StepSolver {
 
   StepSolverOptions options_;
   StepSearch search_;
-  double* renewals_;
   std::function<bool(StepSystem&)> after_motion_;
   ErrorEstimate error_;
   CrawlWatch crawl_;

@@ -9,9 +9,8 @@
 namespace bb {
 
 struct LineSearchRules {
-  double cap_fraction = 1;     // of a bound that binds, in (0, 1]; not read without a bound
-  bool bounded = true;         // by ACCD and the strain limit; false: trials are judged as states alone
-  double* renewals = nullptr;  // gets how often terms renewed what they lag, step by step
+  double cap_fraction = 1;  // of a bound that binds, in (0, 1]; not read without a bound
+  bool bounded = true;      // by ACCD and the strain limit; false: trials are judged as states alone
   /// After a motion that was accepted: whether E is another one now, so that the step goes on from there.
   std::function<bool(StepSystem&)> after_motion = {};
 };

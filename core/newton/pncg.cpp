@@ -40,7 +40,7 @@ class Pncg final : public StepSolver {
         kind_(text(options.parameters, "pncg_preconditioner")) {}
   std::string_view name() const override { return "pncg"; }
 
-  void require(StepSystem& system) const override { require_unmoved_on_host(system, name()); }
+  void require(StepSystem& system) const override { require_on_host(system, name()); }
 
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
@@ -195,7 +195,7 @@ StepSolverEntry step_solver_pncg() {
   };
   entry.needs.minimum = false;
   entry.asked_to_converge = false;
-  entry.settings.clamped = true;
+  entry.settings.clamped = entry.settings.unmoved = true;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<Pncg>(options);
   };

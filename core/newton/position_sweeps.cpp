@@ -25,9 +25,7 @@ void for_each_number(const ConstraintBatch& batch, std::size_t e, const F& f) {
 }  // namespace
 
 void PositionSweeps::require(StepSystem& system, std::string_view solver) {
-  if (!system.is_on_host())
-    throw ConfigError("/device", "one beside the processor",
-                      "cpu: the step solver is " + std::string(solver));
+  require_on_host(system, solver);
   system.on_host().constraints().require_constraints();
 }
 

@@ -65,6 +65,7 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       parts_(method.step_solver.retries),
       entry_(step_solvers().require(method.step_solver.name, "/step_solver/name")),
       solver_(make_step_solver(method.step_solver)) {
+  if (entry_.settings.unmoved) require_unmoved(scene, entry_.name);
   make_system();
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
@@ -252,7 +253,7 @@ void Simulation::remember(const PositionsView& x, double dt_used) {
 // that while it is held; what it is let go with is the velocity of its motion. First order has that of the step.
 void Simulation::follow_pins(double t_end, double dt) {
   const Integrator& integrator = *method_.integrator;
-  if (!held_.changes() || (integrator.one_step() && !integrator.needs_acceleration())) return;
+  if (!held_.changes() || integrator.velocity_of_step()) return;
   for (const Pin& pin : held_.now().pins) {
     v_next_.col(pin.vertex) = pin_velocity(scene_, pin, t_end, dt);
     if (integrator.needs_acceleration()) a_next_.col(pin.vertex).setZero();

@@ -43,7 +43,11 @@ class StepSolver {
 /// What it asks of the settings of a run.
 struct StepSettings {
   bool implicit_euler = false;  // no other integrator
-  bool clamped = false;         // every Hessian clamped
+  /// Integrators alone whose velocity is that of the step (Integrator::velocity_of_step): a contact stops what comes within one step,
+  /// which formulas of second order take for an acceleration that goes on.
+  bool velocity_of_step = false;
+  bool clamped = false;  // every Hessian clamped
+  bool unmoved = false;  // what is prescribed stays where it starts, and is so from the start
   bool vertex_steps =
       false;             // it can go another part of a step at each vertex, so bounds of vertices are allowed
   std::string protocol;  // of a scene that no other solver follows, and that it follows alone; empty: none

@@ -75,6 +75,7 @@ void ContactTerm::begin_step(const StepFrame& frame, PhaseClock& clock) {
   if (beside_) beside_->begin_step();
   change_frame(frame);
   first_iterate_ = true;
+  carries_ = has_multipliers();
   {
     const ScopedPhase timer(clock, Phase::broad_phase);
     contacts_.update_candidates(frame.x_n, frame.x_n);
@@ -133,6 +134,7 @@ void ContactTerm::scale_multipliers() {
 }
 
 bool ContactTerm::renew_lag(const PositionsView&) {
+  carries_ = false;
   return multipliers_ && multipliers_->update(state_.rows, state_.mollified);
 }
 
@@ -169,8 +171,10 @@ void ContactTerm::add_given_motion(const PositionsView& x, const PositionsView& 
 }
 
 void ContactTerm::add_loads(const PositionsView& x, ContactLoads& out) const {
+  const std::size_t first = out.size();
   bb::add_loads(state_.rows, out);
   bb::add_loads(state_.mollified, x, out);
+  if (carries_) carried_.give(first, out);
 }
 
 void ContactTerm::prepare(const Motion& motion, PhaseClock& clock) {

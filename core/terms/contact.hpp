@@ -11,6 +11,7 @@
 #include "core/barrier/gap_potential.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/scene/contact_plan.hpp"
+#include "core/terms/carried_loads.hpp"
 #include "core/terms/contact_constraints.hpp"
 #include "core/terms/known_step.hpp"
 #include "core/terms/policy_start.hpp"
@@ -56,7 +57,8 @@ class ContactTerm final : public Term {
   void change_frame(const StepFrame& frame) override;
   /// Updates multipliers, where there are some (contact_multipliers.hpp).
   bool renew_lag(const PositionsView& x) override;
-  /// Tells a policy that adapts which pairs had a row at two step ends in a row.
+  /// Keeps the loads where multipliers are part of them, and tells a policy that adapts which pairs had a row at two step ends in a
+  /// row.
   void end_step(const PositionsView& x, PhaseClock& clock) override;
   void adopt(const KnownStep& known) override { adopt_stiffness(known.stiffness); }
   void adopt_from(const Term& other) override {
@@ -95,12 +97,15 @@ class ContactTerm final : public Term {
   /// so that the iterate has to be linearised again. Requires options with barrier_multipliers.
   bool update_beside();
   const BarrierMultiplierCounts& beside() const { return beside_->counts(); }
+  /// In the step. Requires options with multipliers.
+  int multiplier_updates() const { return multipliers_->updates(); }
 
  private:
   void adopt_stiffness(const KnownStiffness& known) {
     stiffness_.adopt(known);
     policy_start_.set_started(true);  // or not yet: that is for the other system to do
   }
+  bool has_multipliers() const { return multipliers_ || beside_; }
   void use_state();
   void fill_shape(ContactState& state);
   void evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,
@@ -110,6 +115,7 @@ class ContactTerm final : public Term {
   void start_policy(const PositionsView& x, const TermContext& context);
   StartSums start_sums(const PositionsView& others) const;
   void list_pair_gaps();
+  void carry_loads(const PositionsView& x);
 
   const Scene& scene_;
   TermOptions& options_;
@@ -121,6 +127,8 @@ class ContactTerm final : public Term {
   std::optional<GapPotential> gap_potential_;  // of any kappa(d)
   std::optional<ContactMultipliers> multipliers_;
   std::optional<BarrierMultipliers> beside_;  // the barrier
+  CarriedLoads carried_;                      // over the start of a step, where there are multipliers
+  bool carries_ = false;                      // the loads of the iterate are those that were carried
   ContactState state_, trial_;
   ContactState constrained_;  // rows that add_constraints() found last
   ContactConstraints constraints_;

@@ -7,6 +7,7 @@ namespace bb {
 
 void ContactMultipliers::begin_step() {
   entries_.clear();
+  updates_ = 0;
   penalty_ = rules_.initial > 0 ? rules_.initial : 10;
 }
 
@@ -74,6 +75,7 @@ bool ContactMultipliers::update(const ContactTable& rows, const MollifiedTable& 
   std::sort(next_.begin(), next_.end(), by_pair);
   if (off_ < rules_.tolerance_m) return false;
   entries_.swap(next_);
+  ++updates_;
   return true;
 }
 

@@ -41,6 +41,8 @@ class ContactMultipliers {
   /// The minimum for these multipliers is reached, with these rows: updates both, unless they are within the tolerance.
   /// @return whether they were updated.
   bool update(const ContactTable& rows, const MollifiedTable& mollified);
+  /// Times that they were updated in the step.
+  int updates() const { return updates_; }
 
  private:
   struct Entry {
@@ -57,6 +59,7 @@ class ContactMultipliers {
   std::vector<Entry> entries_;  // ascending by pair
   std::vector<Entry> next_;     // those of the update that is under way
   double off_ = 0;              // m or N, largest of what has to be within the tolerance
+  int updates_ = 0;
 };
 
 }  // namespace bb

@@ -49,7 +49,8 @@ StartSums ContactTerm::start_sums(const PositionsView& others) const {
   return sums;
 }
 
-void ContactTerm::end_step(const PositionsView&, PhaseClock& clock) {
+void ContactTerm::end_step(const PositionsView& x, PhaseClock& clock) {
+  if (has_multipliers()) carry_loads(x);
   if (!stiffness_.policy().adapts()) return;
   const ScopedPhase timer(clock, Phase::stiffness);
   list_pair_gaps();
@@ -64,6 +65,15 @@ void ContactTerm::end_step(const PositionsView&, PhaseClock& clock) {
   previous_gaps_.swap(gaps_);
 }
 
+// The rows of a state that was reached without energies have none of their shape.
+void ContactTerm::carry_loads(const PositionsView& x) {
+  fill_shape(state_);
+  ContactLoads now;
+  bb::add_loads(state_.rows, now);
+  bb::add_loads(state_.mollified, x, now);
+  carried_.take(now);
+}
+
 void PairGap::keep(Archive& archive) { archive(pair, gap, park); }
 
 void ContactTerm::keep(Archive& archive) {
@@ -71,6 +81,7 @@ void ContactTerm::keep(Archive& archive) {
   archive(started, previous_gaps_);
   policy_start_.set_started(started);
   stiffness_.policy().keep(archive);
+  if (has_multipliers()) carried_.keep(archive);
 }
 
 void ContactTerm::list_pair_gaps() {

@@ -14,7 +14,7 @@ struct KnownLag {
   std::string_view term;
   Positions lagged;              // m, the state
   double t = 0;                  // s, of it
-  ContactLoads contacts;         // all of them; their loads are not read
+  ContactLoads contacts;         // all of them
   std::vector<double> strength;  // [n contacts]
 };
 

@@ -42,10 +42,11 @@ void LaggedContacts::take_rows(const PositionsView& x) {
 
 void LaggedContacts::learn_loads() {
   if (loads_known_) return;
-  const ContactLoads now = contacts_now();
+  ContactLoads now = contacts_now();
   if (now.stencil != contacts_.stencil)
     throw std::logic_error("the rows of a lag changed before their loads");
-  for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = coefficient_[e] * now.load[row_[e]];
+  contacts_.load.swap(now.load);
+  for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = coefficient_[e] * load(e);
   loads_are_known(strength_);
   loads_known_ = true;
 }

@@ -48,6 +48,8 @@ class LaggedContacts : public Term {
   std::size_t contact(std::size_t e) const { return row_[e]; }
   /// N times the unit of 1 over the coefficient.
   double strength(std::size_t e) const { return strength_[e]; }
+  /// N, of the contact itself.
+  double load(std::size_t e) const { return contacts_.load[row_[e]]; }
   template <class T>
   Vec<T, 3> normal(std::size_t e) const {
     return Vec3d::Map(&contacts_.normal[3 * row_[e]]).template cast<T>();

@@ -45,6 +45,8 @@ void LinearContact::adopt_from(const Term& other) {
   const auto& of = static_cast<const LinearContact&>(other);
   constraints_ = of.constraints_;
   anchor_ = of.anchor_;
+  x_n_ = of.x_n_;
+  dt_ = of.dt_;
   penalty_ = of.penalty_;
   standoff_ = of.standoff_;
   list_stencils();
@@ -54,6 +56,9 @@ void LinearContact::begin_step(const StepFrame& frame, PhaseClock&) {
   stalled_ = adaptations_ = 0;
   standoff_ = rules_.standoff;
   if (rules_.penalty > 0) penalty_ = rules_.penalty;
+  x_n_ = frame.x_n;
+  dt_ = frame.dt;
+  for (Constraint& each : constraints_) each.most = most_asked(each.pair);
   set_anchor(frame.x_n);
 }
 
@@ -86,13 +91,17 @@ void LinearContact::list_stencils() {
   families_[0].stencils = {4, stencil_};
 }
 
+double LinearContact::most_asked(PairId pair) const { return pairs_.gap(pair, x_n_).d + rules_.push * dt_; }
+
+double LinearContact::asked(const Constraint& of) const { return std::min(standoff_ * of.at.d_hat, of.most); }
+
 double LinearContact::value(const Constraint& of, const PositionsView& x) const {
   double opening = 0;
   for (std::size_t k = 0; k < 4 && of.at.vertex[k] >= 0; ++k) {
     const int v = of.at.vertex[k];
     opening += of.at.weight[k] * of.at.normal.dot(x.col(v) - anchor_.col(v));
   }
-  return of.at.d - standoff_ * of.at.d_hat + opening;
+  return of.at.d - asked(of) + opening;
 }
 
 double LinearContact::weight(const Constraint& of) const {
@@ -200,6 +209,7 @@ void LinearContact::renew_constraints(Advance& out) {
     if (!is_first) continue;
     Constraint each;
     each.pair = hit.pair;
+    each.most = most_asked(hit.pair);
     merged_.push_back(each);
     ++out.admitted;
   }
@@ -227,6 +237,14 @@ double LinearContact::violation() const {
   double largest = 0;
   for (const Constraint& each : constraints_) {
     if (each.force > 0) largest = std::max(largest, standoff_ * each.at.d_hat - each.at.d);
+  }
+  return largest;
+}
+
+double LinearContact::opening_speed() const {
+  double largest = 0;
+  for (const Constraint& each : constraints_) {
+    if (each.force > 0) largest = std::max(largest, (each.at.d - asked(each)) / dt_);
   }
   return largest;
 }

@@ -2,7 +2,7 @@
 // arXiv 2512.12151). There are two states: the iterate of Newton, whose surfaces may overlap, and the anchor, which is free of
 // contact always. Constraints are pairs that stopped the anchor on its way to an iterate:
 //
-//   c(x) = d(anchor) - delta + grad d(anchor) . (x - anchor) >= 0,   delta = standoff d_hat,
+//   c(x) = d(anchor) - delta + grad d(anchor) . (x - anchor) >= 0,   delta = min(standoff d_hat, d(x_n) + push h),
 //
 // each with a force lambda >= 0 (N) and a weight gamma = decay^n, n the updates in a row in which it was not active. With one
 // penalty mu (N/m) for all and slacks s = max(0, c - lambda/mu) that are fixed for an iteration, E gets
@@ -13,7 +13,9 @@
 // anchor: lambda := max(0, lambda - mu c); the anchor goes towards it as far as ACCD lets it; pairs that stopped it and are
 // the first for one of their vertices become constraints with lambda = 0; those whose weight is below least_weight go.
 // Constraints stay from step to step.
-// Otherwise than there: forces and mu in N and N/m, theirs times h^2; the anchor goes `advance` of the way to its first contact,
+// Otherwise than there: a gap that is below its standoff at the start x_n of a step opens with the speed `push` at most. Theirs has
+// delta = standoff d_hat, so that such a gap opens within one step, with a speed that grows without bound as h falls;
+// forces and mu in N and N/m, theirs times h^2; the anchor goes `advance` of the way to its first contact,
 // theirs to where a tenth of the gap is left; no friction, nothing prescribed that moves.
 #pragma once
 
@@ -67,6 +69,9 @@ class LinearContact final : public Term {
   std::size_t n_constraints() const { return constraints_.size(); }
   /// max(0, -c) at the anchor, m.
   double violation() const;
+  /// The largest speed (m/s) by which a constraint with a force has opened the anchor's gap beyond what it asks for: a force at a
+  /// distance, 0 where multipliers have converged.
+  double opening_speed() const;
   int adaptations() const { return adaptations_; }
   /// Rows at the last step end, with the forces of their constraints.
   const ContactState& state() const { return end_; }
@@ -77,10 +82,13 @@ class LinearContact final : public Term {
     double force = 0;  // lambda, N
     int quiet = 0;     // n
     LinearGap at;      // the anchor
+    double most = 0;   // m, asked for in the step: d(x_n) plus what comes back in the step
     double slack = 0;  // s, m
     void keep(Archive& archive);
   };
   double value(const Constraint& of, const PositionsView& x) const;
+  double asked(const Constraint& of) const;
+  double most_asked(PairId pair) const;
   double weight(const Constraint& of) const;
   void linearise_constraints();
   void list_stencils();
@@ -99,7 +107,8 @@ class LinearContact final : public Term {
   std::vector<MotionHit> fresh_;
   std::vector<double> earliest_;  // [n_vertices] time of the first fresh hit of each
   std::vector<int> stencil_;      // [4 n]
-  Positions anchor_;
+  Positions anchor_, x_n_;
+  double dt_ = 0;  // s
   double penalty_ = 1, standoff_ = 0.1;
   int stalled_ = 0, adaptations_ = 0;
   ContactState end_;

@@ -1,5 +1,6 @@
-// Restitution: every contact that a step begins with damps the speed at which its gap closes by load a (docs/design.md,
-// Restitution). Load, normal and weights are those of the start of the step, a is that of the speed at which the pair met.
+// Restitution: every contact that a step begins with damps the speed at which its gap closes by load a, and that at which it opens
+// by no more than the load (docs/design.md, Restitution). Load, normal and weights are those of the start of the step, a is that of
+// the speed at which the pair met.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,31 +56,30 @@ class Restitution final : public LaggedContacts {
     learn_loads();
     for_each_pass(precision(), [&]<class T>(PassParts parts) {
       store_motion_terms<T>(parts, [&](std::size_t e) {
-        return damping_terms<T>(motion<T>(e, x), normal<T>(e), static_cast<T>(stiffness(e)));
+        return damping_terms<T>(motion<T>(e, x), normal<T>(e), damping<T>(e));
       });
     });
   }
   void evaluate(const PositionsView& x) override {
     with_value_scalar(precision(), [&]<class T>() {
-      store_trial([&](std::size_t e) {
-        return damping_value<T>(motion<T>(e, x), normal<T>(e), static_cast<T>(stiffness(e)));
-      });
+      store_trial(
+          [&](std::size_t e) { return damping_value<T>(motion<T>(e, x), normal<T>(e), damping<T>(e)); });
     });
   }
 
   void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override {
     if (!loads_known()) return;
     double work = 0;
-    for (std::size_t e = 0; e < size(); ++e) {
-      const double way = motion<double>(e, x).dot(normal<double>(e));
-      work += stiffness(e) * way * way;
-    }
+    for (std::size_t e = 0; e < size(); ++e)
+      work += damping_work<double>(motion<double>(e, x), normal<double>(e), damping<double>(e));
     out.restitution_dissipation_J = work;
   }
 
  private:
-  /// Force against the way by which the gap of an element has opened since the start of the step, over that way, N/m.
-  double stiffness(std::size_t e) const { return strength(e) / dt_; }
+  template <class T>
+  ContactDamping<T> damping(std::size_t e) const {
+    return {static_cast<T>(strength(e) / dt_), static_cast<T>(load(e))};
+  }
 
   /// Of a body or an obstacle of the scene.
   struct Sides {

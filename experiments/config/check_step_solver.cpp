@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "barriers/shapes/registry.hpp"
+#include "core/integrators/registry.hpp"
 #include "core/newton/step_solver.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/complain.hpp"
@@ -54,8 +57,23 @@ void check_minimum(const RunConfig& config, const StepNeeds& needs, const Compla
   }
   if (config.friction.lag_iterations > 1 && !needs.minimum) {
     complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
-             "1: of step solvers only these solve a step again: " + solvers_with_minimum());
+             "1: the step solver " + solver.name +
+                 " solves a step once, these solve it again: " + solvers_with_minimum());
   }
+}
+
+/// Contact that stops what comes within one step.
+void check_velocity(const RunConfig& config, const Complain& complain) {
+  std::vector<std::string> right;
+  for (const IntegratorEntry& entry : integrators()) {
+    if (make_integrator(entry.name)->velocity_of_step()) right.push_back(entry.name);
+  }
+  const std::string& chosen = config.integrator.name;
+  if (!integrators().find(chosen) || std::count(right.begin(), right.end(), chosen) > 0) return;
+  complain("/integrator/name", '"' + chosen + '"',
+           fmt::format("{}: the step solver {} stops what meets within one step, and {} takes that for an "
+                       "acceleration that goes on",
+                       fmt::join(right, ", "), config.step_solver.name, chosen));
 }
 
 /// A solver with a term of its own in the matrix asks for one that is positive semi-definite without it.
@@ -108,6 +126,7 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
     complain("/integrator/name", '"' + config.integrator.name + '"',
              "implicit_euler: the step solver is " + solver.name);
   }
+  if (settings.velocity_of_step) check_velocity(config, complain);
   if (unbound && config.formulation.argument != Argument::gap) {
     complain("/formulation/argument", "\"squared_gap\"", "gap: the step solver is " + solver.name);
   }

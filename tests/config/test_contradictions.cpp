@@ -13,6 +13,18 @@ TEST(Contradictions, StepSolverAndIntegrator) {
                    "\"article_literal\"", "protocol article_literal");
 }
 
+TEST(Contradictions, ContactThatStopsWithinAStepAndFormulasOfSecondOrder) {
+  for (const char* solver : {"augmented_lagrangian", "al_free"}) {
+    for (const char* integrator : {"newmark", "bdf2"}) {
+      json config = with(hang_config(), "/step_solver/name", solver);
+      EXPECT_EQ(parsed(config).step_solver.name, solver);
+      config["integrator"]["name"] = integrator;
+      expect_violation(config, "/integrator/name", '"' + std::string(integrator) + '"',
+                       "implicit_euler, half_gravity, quasi_static: the step solver " + std::string(solver));
+    }
+  }
+}
+
 TEST(Contradictions, OnlyASolverThatTestsEnergiesLeavesASaddle) {
   json config = hang_config();
   EXPECT_EQ(parsed(config).step_solver.saddle, SaddleRule::escape);

@@ -87,6 +87,8 @@ TEST(AlFree, the_multiplier_converges_as_fast_as_mass_and_penalty_say) {
   const Scene scene = test::particle_over_plane(mass, 0.0005, d_hat);
   Method method = method_of(0, penalty);
   method.step_solver.parameters["al_free_first"] = std::int64_t{12};
+  method.step_solver.parameters["al_free_recovery_m_per_s"] =
+      1e6;  // it is lifted to the standoff in one step
   fit_terms(method);
   const Ran ran = run(scene, std::move(method), dt, 1);
   // the step that lifts it to the standoff: the multiplier is m (standoff - x_tilde), x_tilde = x_n - g h^2

@@ -215,7 +215,8 @@ TEST(StepsInARow, DependOnPositionsAndVelocitiesAloneWhereNothingRemembers) {
       for (const Feature& feature : test::features())
         if (all && !feature.remembers && !feature.takes_time) feature.add(parts);
       Choice choice{solver.name, "implicit_euler"};
-      choice.friction = parts.friction;
+      // friction remembers the loads of the step before where contact begins each step without its multipliers
+      choice.friction = solver.needs.multipliers ? 0 : parts.friction;
       const Scene scene = parts.scene();
       try {
         Runner run(scene, choice);

@@ -23,6 +23,7 @@ struct LagView {
   const double* normal;      // [3, n] unit
   const std::uint8_t* free;  // [n] bit k: vertex k is free
   const double* strength;    // [n] N times the unit of 1 over the coefficient
+  const double* load;        // [n] N
   const double* x_n;         // [3 n_vertices] m, from where motions are counted
 
   BB_HD Vec3d normal_of(Index r) const { return Vec3d(normal[r], normal[n + r], normal[2 * n + r]); }
@@ -74,12 +75,12 @@ struct RubbingRows : LagView {
 struct DampingRows : LagView {
   double dt;  // s
 
-  BB_HD double stiffness(Index r) const { return strength[r] / dt; }
+  BB_HD ContactDamping<double> damping(Index r) const { return {strength[r] / dt, load[r]}; }
   BB_HD double value(const double* x, Index r) const {
-    return damping_value<double>(motion(x, r), normal_of(r), stiffness(r));
+    return damping_value<double>(motion(x, r), normal_of(r), damping(r));
   }
   BB_HD MotionTerms<double> terms(const double* x, Index r) const {
-    return damping_terms<double>(motion(x, r), normal_of(r), stiffness(r));
+    return damping_terms<double>(motion(x, r), normal_of(r), damping(r));
   }
 };
 
@@ -195,17 +196,17 @@ struct SideCoefficients {
   }
 };
 
-/// strength [n] = coefficient times load, the force that a row carries, its mollifier included.
+/// load [n]: the force that a row carries, its mollifier included; strength [n]: coefficient times load.
 struct LearnLoads {
   RowEnergy contact;  // rows with their barrier, and mollifiers
   SideCoefficients sides;
   const int* body;  // [n_vertices]
-  double* strength;
+  double *load, *strength;
   BB_HD void operator()(Index r) const {
     const RowView& rows = contact.rows;
-    double load = -rows.push[r];
-    if (rows.mollified(r)) load *= contact.mollifier.number[contact.mollifier.of(r)];
-    strength[r] = sides.of(rows, r, body) * load;
+    load[r] = -rows.push[r];
+    if (rows.mollified(r)) load[r] *= contact.mollifier.number[contact.mollifier.of(r)];
+    strength[r] = sides.of(rows, r, body) * load[r];
   }
 };
 
@@ -271,7 +272,9 @@ struct FrictionOfRows {
 struct DampingOfRows {
   DampingRows rows;
   const double* x;
-  BB_HD void operator()(Index r, Compensated& sum) const { sum.add(2 * rows.value(x, r)); }
+  BB_HD void operator()(Index r, Compensated& sum) const {
+    sum.add(damping_work<double>(rows.motion(x, r), rows.normal_of(r), rows.damping(r)));
+  }
 };
 
 /// Speeds at which pairs met; pairs ascending.

@@ -16,6 +16,7 @@ ResidentLag::ResidentLag(exec::Executor& executor, const ResidentSurface& surfac
       weight_(executor, "lagged weights"),
       normal_(executor, "lagged normals"),
       strength_(executor, "lagged strengths"),
+      load_(executor, "lagged loads"),
       free_(executor, "lagged free vertices"),
       pair_(executor, "lagged pairs"),
       pattern_(executor, n_vertices),
@@ -32,8 +33,10 @@ void ResidentLag::take(ResidentRows& rows) {
   };
   copy(vertex_, from.vertex, 4 * from.n), copy(weight_, from.weight, 4 * from.n);
   copy(normal_, from.normal, 3 * from.n), copy(free_, from.free, from.n), copy(pair_, from.pair, from.n);
-  strength_.fit(from.n);
-  strength_.fill_zero();
+  for (auto* column : {&strength_, &load_}) {
+    column->fit(from.n);
+    column->fill_zero();
+  }
   known_ = false;
   RowStencils stencils{{}, rows.n_slots, rows.n_contributions};
   stencils.rows.n = from.n;
@@ -43,7 +46,7 @@ void ResidentLag::take(ResidentRows& rows) {
 
 void ResidentLag::learn(const RowEnergy& contact) {
   const SideCoefficients sides{of_body_.data(), of_obstacle_.data(), rule_};
-  executor_.each(size(), LearnLoads{contact, sides, surface_.view().body, strength_.data()});
+  executor_.each(size(), LearnLoads{contact, sides, surface_.view().body, load_.data(), strength_.data()});
   known_ = true;
 }
 

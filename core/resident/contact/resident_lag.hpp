@@ -22,7 +22,8 @@ class ResidentLag {
 
   Index size() const { return free_.size(); }
   LagView view(const double* x_n) const {
-    return {size(), vertex_.data(), weight_.data(), normal_.data(), free_.data(), strength_.data(), x_n};
+    return {size(),       vertex_.data(),   weight_.data(), normal_.data(),
+            free_.data(), strength_.data(), load_.data(),   x_n};
   }
   const Key* pairs() const { return pair_.data(); }
   double* strength() { return strength_.data(); }
@@ -42,11 +43,11 @@ class ResidentLag {
     std::vector<int> vertex;             // [4, n]
     std::vector<double> weight, normal;  // [4, n], [3, n]
     std::vector<Key> pair;
-    std::vector<double> strength;
+    std::vector<double> strength, load;
   };
   Columns on_host() const {
-    return {vertex_.download(), weight_.download(), normal_.download(), pair_.download(),
-            strength_.download()};
+    return {vertex_.download(), weight_.download(),   normal_.download(),
+            pair_.download(),   strength_.download(), load_.download()};
   }
 
  private:
@@ -55,7 +56,7 @@ class ResidentLag {
   CombineRule rule_;
   exec::Buffer<double> of_body_, of_obstacle_;
   exec::Buffer<int> vertex_;
-  exec::Buffer<double> weight_, normal_, strength_;
+  exec::Buffer<double> weight_, normal_, strength_, load_;
   exec::Buffer<std::uint8_t> free_;
   exec::Buffer<Key> pair_;
   ContactPattern pattern_;

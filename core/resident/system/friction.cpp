@@ -19,7 +19,7 @@ KnownLag known_lag(std::string_view term, const ResidentLag::Columns& columns, c
   const std::size_t n = columns.pair.size();
   ContactLoads& contacts = out.contacts;
   contacts.pair = columns.pair;
-  contacts.load.assign(n, 0);
+  contacts.load = columns.load;
   for (std::size_t r = 0; r < n; ++r) {
     for (std::size_t k = 0; k < 4; ++k) {
       contacts.stencil.push_back(columns.vertex[k * n + r]);

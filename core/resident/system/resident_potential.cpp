@@ -69,8 +69,8 @@ void ResidentPotential::change_step(const StepColumns& step) {
 }
 
 bool ResidentPotential::renew_lag(const Column& x) {
-  bool renewed = false;
-  for (const auto& term : terms_) renewed = term->renew_lag(x) || renewed;
+  const bool renewed =
+      std::any_of(terms_.begin(), terms_.end(), [&x](const auto& term) { return term->renew_lag(x); });
   energies_known_ = energies_known_ && !renewed;
   announced_ = announced_ && !renewed;
   return renewed;
