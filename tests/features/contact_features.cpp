@@ -1,0 +1,140 @@
+// Contact, and what reads its loads.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/features/feature.hpp"
+
+namespace bb::features {
+namespace {
+
+using nlohmann::json;
+
+void add_floor(json& config) { config["scene"]["obstacles"] = {{{"name", "floor"}, {"kind", "plane"}}}; }
+
+/// A plate comes down with 1 m/s where nothing else acts.
+json impact(const Method& method, double dt) {
+  json config = bare(method, dt, static_cast<int>(std::lround(0.02 / dt)));
+  add_floor(config);
+  config["scene"]["bodies"] = {plate("plate", 0.003, -1)};
+  config["formulation"]["d_hat_m"] = 2e-3;
+  config["formulation"]["stiffness_policy"]["kappa_N_per_m"] = 1e5;
+  return config;
+}
+
+std::string leaves_with_no_more(const Method&, const Track& run) {
+  double lowest = run.end()(2, 0), fastest = 0;
+  for (std::size_t k = 0; k < run.t.size(); ++k) {
+    lowest = std::min(lowest, run.x[k].row(2).minCoeff());
+    fastest = std::max(fastest, std::abs(run.velocity(k).z()));
+  }
+  if (lowest > 2.5e-3) return fmt::format("the plate stays at {:.3g} m and meets nothing", lowest);
+  if (fastest > 1.02) return fmt::format("a plate that came with 1 m/s gets {:.3g} m/s", fastest);
+  const double end = run.velocity(run.t.size() - 1).z();
+  return end < -0.02 ? fmt::format("the plate still falls with {:.3g} m/s", end) : "";
+}
+
+Feature impact_in_steps_of(const char* name, double dt) {
+  return {name, "a plate that comes with 1 m/s leaves with 1 m/s at most", {"inertia", "contact"},
+          true, [dt](const Method& method) { return impact(method, dt); }, leaves_with_no_more};
+}
+
+/// On the floor, near the gap at which a barrier carries it.
+json on_the_floor(const Method& method, double dt, int steps) {
+  json config = bare(method, dt, steps);
+  add_floor(config);
+  config["scene"]["bodies"] = {plate("plate", 7e-4)};
+  return config;
+}
+
+/// A plate that slides at 1 m/s; without inertia one that springs hold on a slope of 0.6.
+json sliding(const Method& method) {
+  json config = on_the_floor(method, 1e-3, method.still() ? 50 : 200);
+  config["scene"]["gravity_m_per_s2"] = {method.still() ? 0.6 * g : 0.0, 0, -g};
+  config["scene"]["bodies"][0]["velocity_m_per_s"] = {1, 0, 0};
+  config["friction"] = {{"mu", 0.3}, {"eps_v_m_per_s", 1e-3}};
+  ground(method, config, 25);
+  return config;
+}
+
+std::string slows_by_mu_g(const Method& method, const Track& run) {
+  if (method.still()) {
+    const double way = (run.end() - run.x[0]).row(0).mean();  // the load is that of the step before
+    return differs("way", way, (0.6 - 0.3 * 0.98) * g / 100, 0.02 * g / 100);
+  }
+  const double lost = 0.3 * g * method.weight() * run.t_end();
+  return differs("speed", run.velocity(run.t.size() - 1).x(), 1 - lost, 0.03 * lost);
+}
+
+json resting(const Method& method) {
+  json config = on_the_floor(method, 1e-3, 140);
+  config["scene"]["obstacles"][0]["restitution"] = 0.0;
+  config["scene"].erase("gravity_m_per_s2");
+  config["scene"]["gravity_schedule"] = json::array();
+  for (const auto& [time, value] : {std::pair(0.0, -g), {0.1, -g}, {0.1001, 20.0}})
+    config["scene"]["gravity_schedule"].push_back({{"time_s", time}, {"gravity_m_per_s2", {0, 0, value}}});
+  return config;
+}
+
+std::string leaves_freely(const Method& method, const Track& run) {
+  const double free = 20 * method.weight() * (run.t_end() - 0.1);
+  // held back for a step at most; what the barrier had stored it may give
+  const double speed = run.velocity(run.t.size() - 1).z();
+  if (speed < free - 2 * g * run.dt) return fmt::format("speed is {:.4g}, less than {:.4g} m/s", speed, free);
+  return speed > free + 0.2 ? fmt::format("speed is {:.4g}, more than {:.4g} m/s", speed, free) : "";
+}
+
+json bouncing(const Method& method) {
+  json config = impact(method, 1e-4);
+  config["scene"]["obstacles"][0]["restitution"] = 0.5;
+  return config;
+}
+
+std::string keeps_no_more_than_half(const Method& method, const Track& run) {
+  if (const std::string wrong = leaves_with_no_more(method, run); !wrong.empty()) return wrong;
+  const double end = run.velocity(run.t.size() - 1).z();
+  return end > 0.55 ? fmt::format("a plate of restitution 0.5 leaves with {:.3g} of its speed", end) : "";
+}
+
+}  // namespace
+
+std::vector<Feature> contact_features() {
+  const auto renewed = [](const Method& method) {
+    json config = sliding(method);
+    config["friction"]["lag_iterations"] = 3;
+    return config;
+  };
+  const auto renewed_answer = [](const Method& method, const Track& run) {
+    if (!method.still()) return slows_by_mu_g(method, run);
+    return differs("way", (run.end() - run.x[0]).row(0).mean(), 0.3 * g / 100, 0.02 * g / 100);
+  };
+  return {impact_in_steps_of("contact", 1e-4),
+          impact_in_steps_of("contact in short steps", 1e-5),
+          {"friction",
+           "a plate slows by mu g; on springs, without inertia, it slides by (tan - mu) m g/k",
+           {"contact", "friction"},
+           false,
+           sliding,
+           slows_by_mu_g},
+          {"friction renewed",
+           "the same, with the loads of the end of a step",
+           {"contact", "friction"},
+           false,
+           renewed,
+           renewed_answer},
+          {"restitution 0 and a force that lifts",
+           "a plate at rest leaves with the acceleration of the force",
+           {"contact", "restitution"},
+           true,
+           resting,
+           leaves_freely},
+          {"restitution 0.5",
+           "a plate leaves with half of its speed at most",
+           {"contact", "restitution"},
+           true,
+           bouncing,
+           keeps_no_more_than_half}};
+}
+
+}  // namespace bb::features
