@@ -49,7 +49,7 @@ VERBS = [
       for name, numbers in {"output": (1,), "everything": (0, 1, 2)}.items()],
     VerbCase("closed-help", ("help",), code=0, closed=(1,)),
     VerbCase("full-help", ("help",), ("the standard output cannot be written: No space left on device",), code=CALL_AGAIN, output="/dev/full"),
-    VerbCase("full-verb-help", ("setup", "--help"), ("the standard output cannot be written",), code=CALL_AGAIN, output="/dev/full"),
+    VerbCase("full-verb-help", ("test", "--help"), ("the standard output cannot be written",), code=CALL_AGAIN, output="/dev/full"),
     VerbCase("letters-in-an-ascii-locale", ("status", "gr\u00f6\u00dfe"), ("no such folder",),
              environment={"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}),
 ]
