@@ -131,7 +131,7 @@ def animate(run: Path, out: Path, look: Look, rate: float | None = None) -> Path
     with tempfile.TemporaryDirectory() as scratch:
         part = Path(scratch) / f"film{out.suffix}"
         write(part, _stills(film, record, steps), rate)
-        write_whole_bytes(out, input_file.read_bytes(part))
+        write_whole_bytes(out, input_file.read_bytes(part, input_file.LARGE))
     text = f"{film.title}, {len(steps)} frames from {when(record, steps[0])} to {when(record, steps[-1])}."
     out.with_suffix(".txt").write_text(caption(f"{text} {shown(look)}", [run_row(record)]))
     return out

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import contextlib
 import json
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -40,7 +41,8 @@ class Reader:
 
     def close(self) -> None:
         for stream in (self.child.stdin, self.child.stdout, self.child.stderr):
-            stream.close()
+            with contextlib.suppress(OSError):  # a program that has ended leaves a broken pipe
+                stream.close()
         self.child.wait()
 
     def ask(self, request: dict) -> tuple[dict, dict[str, np.ndarray]]:

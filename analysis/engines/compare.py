@@ -22,7 +22,8 @@ from ..spec_file import read_spec, refused, require_base
 from ..whole_file import write_whole
 from . import environment, launch, matching, ours
 from .card import Card, read_card
-from .judged import error_of, judge, positions
+from .judged import error_of, judge
+from .launch import positions
 from .matching import Material, Tests
 from .ours import Config
 from .scene import exported

@@ -20,7 +20,8 @@ import numpy as np
 
 from ..errors import UserError
 from ..whole_file import write_whole
-from .judged import positions, width_of
+from .judged import width_of
+from .launch import positions
 from .ours import Config
 from .ours import run as run_ours
 from .scene import exported

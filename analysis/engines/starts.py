@@ -16,7 +16,8 @@ import numpy as np
 from ..errors import UserError
 from ..json_file import read_object
 from .compare import RECORD, Study, of_scene
-from .judged import error_of, positions
+from .judged import error_of
+from .launch import positions
 from .ours import Config
 from .scene import exported
 

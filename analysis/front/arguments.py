@@ -40,7 +40,7 @@ class Parser(argparse.ArgumentParser):
         its type takes off again.
         """
         if self.takes_formula and args is not None:
-            args = [f" {word}" if re.match(r"-(?!-|h$|$)", word) else word for word in args]
+            args = [f" {word}" if re.match(r"-(?!-|h?$)", word) else word for word in args]
         return super().parse_known_args(args, namespace)
 
 

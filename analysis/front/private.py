@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 KEPT = re.compile(
-    r"PATH|TERM|TZ|C(C|XX)(FLAGS)?|CUDA_(HOME|PATH)|CUDACXX|(LD_)?LIBRARY_PATH|NVIDIA_.*|SLURM_CONF|SNAKEMAKE"
-    r"|CCACHE_.*|OPENBLAS_.*|[ALTU]+SAN_OPTIONS|PYTEST_.*|PYTHON(DONTWRITEBYTECODE|UNBUFFERED|WARNINGS)"
+    r"PATH|TERM|TZ|C(C|XX)(FLAGS)?|CUDA_(HOME|PATH|VISIBLE_DEVICES)|CUDACXX|(LD_)?LIBRARY_PATH|NVIDIA_.*|SLURM_CONF|SNAKEMAKE"
+    r"|CCACHE_.*|OPENBLAS_.*|(A|L|M|T|UB)SAN_OPTIONS|PYTEST_.*|PYTHON(DONTWRITEBYTECODE|UNBUFFERED|WARNINGS)"
     r"|BARRIERBENCH_(?!CACHE$).*|BB_.*|JUDGE_PAIRS"
 )  # the last line: what a user asks of the tests
 NAMES = ("home", "temporary")  # folders that are empty when a test is over
@@ -39,6 +39,7 @@ def variables(place: Path, environment: Mapping[str, str]) -> dict[str, str]:
         "LANG": "C.UTF-8",
         "XDG_CACHE_HOME": cache,
         "MPLCONFIGDIR": f"{cache}/matplotlib",
+        "CUDA_CACHE_PATH": f"{cache}/nv",  # of the driver, where PTX is compiled for a card
         "CCACHE_DIR": compiler_cache(environment),
     }
 

@@ -125,7 +125,8 @@ ParameterList mesh_list(const json& mesh) {
   const Parameter file{"file", text_up_to(0), no_default, "Path of a mesh file."};
   const Parameter sha256{"sha256", any_text(), no_default, "Expected SHA-256 of the file (hex)."};
   const std::string doc =
-      "{\"generator\": NAME, parameters...} or {\"file\": PATH} (.obj, .ply, .stl, .msh, .vtk, .vtu, .vtp, relative to the config).";
+      "{\"generator\": NAME, parameters...} or {\"file\": PATH} (.obj, .ply, .stl, .msh, .vtk, .vtu, .vtp, "
+      "relative to the config).";
   ParameterList list{
       doc, {generator, file, sha256}, true, {{"generator"}, {"file"}}, "either file or generator"};
   if (mesh.contains("file") && !mesh.contains("generator")) list.rows.erase(list.rows.begin());

@@ -10,7 +10,8 @@ import numpy as np
 from motions import FIXED, run
 
 from analysis.frames import read_frame
-from analysis.mesh_file import Cells, ply_bytes
+from analysis.mesh_arrays import MeshArrays
+from analysis.mesh_file import ply_bytes
 
 RADIUS, YOUNGS, POISSON = 0.1, 1e6, 0.3  # m, Pa
 CONTACT = RADIUS / 20  # m, radius of the contact: the theory is of a small one
@@ -49,7 +50,7 @@ def _disk(rings: int) -> tuple[np.ndarray, np.ndarray]:
     return np.array(polar), np.array(triangles)
 
 
-def ball_part(rings: int) -> Cells:
+def ball_part(rings: int) -> MeshArrays:
     """Of the ball round the origin what is below its centre and within WIDEST_DEG: `rings` rings and as many layers, a quarter of
     `rings` of them over the radius of the contact. Columns of prisms, each cut into three tetrahedra by the numbers of its
     vertices, so that neighbours agree.
@@ -71,7 +72,7 @@ def ball_part(rings: int) -> Cells:
     corner = points[cells]
     volume = np.einsum("ni,ni->n", corner[:, 3] - corner[:, 0], np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]))
     cells[volume < 0] = cells[volume < 0][:, [0, 2, 1, 3]]
-    return Cells(points, np.empty((0, 2), int), np.empty((0, 3), int), cells)
+    return MeshArrays(points, np.empty((0, 3), int), np.empty((0, 2), int), cells)
 
 
 @dataclass
@@ -96,7 +97,7 @@ class Measured:
         return self.force / force_of(self.delta)
 
 
-def _approach(cells: Cells, moved: np.ndarray, force: float, mean_gap: float) -> float:
+def _approach(cells: MeshArrays, moved: np.ndarray, force: float, mean_gap: float) -> float:
     """Of the far ball, from the vertex of the axis nearest to R/4 above the lowest one: how far it came down, and what a force on
     a half-space moves a point at this depth by, F (1 + nu) (3 - 2 nu)/(2 pi E z) (Boussinesq 1885), which it would have to come
     down by more. Nearer than the held vertices, whose distance R is finite.

@@ -54,7 +54,7 @@ def test_the_volume_is_filled_and_the_surface_stays(program, tmp_path, suffix):
     assert code == 0
     points, cells = solid(target)
     inside = volume(points, cells)
-    given = read_cells(source, mesh_file.SURFACES)
+    given = read_cells(source)
     kept, triangles = tetrahedra.merged(given.points, given.triangles)
     np.testing.assert_array_equal(points[: len(kept)], kept)
     assert len(kept) == 100 and inside.min() > 0 and inside.sum() == pytest.approx(HULL.volume, rel=1e-6 if suffix == "stl" else 1e-12)

@@ -26,7 +26,7 @@ def begin() -> None:
     shared = Path(os.environ[PLACE])
     place = shared / os.environ.get("PYTEST_XDIST_WORKER", "alone")
     own = variables(place, os.environ)
-    cache = {"XDG_CACHE_HOME": str(shared / "cache"), "MPLCONFIGDIR": str(shared / "cache/matplotlib")}  # what is made once for all
+    cache = {"XDG_CACHE_HOME": str(shared / "cache"), "MPLCONFIGDIR": str(shared / "cache/matplotlib"), "CUDA_CACHE_PATH": str(shared / "cache/nv")}  # what is made once for all
     tools = [folder for folder in os.environ["PATH"].split(os.pathsep) if os.path.isabs(folder)]  # where a search for a program looks
     folders = os.pathsep.join([str(shared), compiler_cache(os.environ), *tools, *filter(None, [os.environ.get("BARRIERBENCH_DATA")])])
     watched = {outside.TOLD: str(place / "outside.txt"), outside.FOLDERS: folders, "PYTHONPATH": str(Path(__file__).parent)}
