@@ -24,7 +24,9 @@ def _require_indices(matrix: Any) -> None:
     except ValueError as error:
         raise _core.ConfigError(f"matrix: found {error}; allowed: indices within its shape") from None
     if max(*matrix.shape, matrix.nnz) > MOST:
-        raise _core.ConfigError(f"matrix: found shape {matrix.shape} with {matrix.nnz} entries; allowed: at most {MOST}")
+        raise _core.ConfigError(
+            f"matrix: found shape {matrix.shape} with {matrix.nnz} entries; allowed: at most {MOST}"
+        )
 
 
 class Condition(NamedTuple):
