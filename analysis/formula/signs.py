@@ -84,7 +84,7 @@ def _searched(bounds: Callable, good: Callable, fails: Callable) -> tuple[mpmath
         work += len(waiting)
         open_ones = [one for one in waiting if not any(map(good, bounds(*one)))]
         middles = [_middle(*one) for one in open_ones]
-        bad = next((u for u in reversed(middles) if fails(u)), None)
+        bad = next((u for u in reversed(middles) if fails(u) and _in_more_digits(fails, u)), None)
         if bad is not None:
             return bad, []
         waiting = []
@@ -94,6 +94,12 @@ def _searched(bounds: Callable, good: Callable, fails: Callable) -> tuple[mpmath
             else:
                 waiting += [(low, middle), (middle, high)]
     return None, left
+
+
+def _in_more_digits(fails: Callable, u: mpmath.mpf) -> bool:
+    """Whether it is more than rounding: near d_hat a difference may have lost all of its digits."""
+    with mpmath.workdps(3 * DIGITS):
+        return fails(u)
 
 
 def _middle(low: mpmath.mpf, high: mpmath.mpf) -> mpmath.mpf:

@@ -19,11 +19,11 @@ def test_digests_are_those_of_the_bytes(tmp_path):
     (tmp_path / "file").write_bytes(content)
     assert of_file(tmp_path / "file") == hashlib.sha256(content).hexdigest()
     assert of_text("kappa \u00e9") == hashlib.sha256("kappa \u00e9".encode()).hexdigest()
-    with pytest.raises(OSError, match="none"):
+    with pytest.raises(UserError, match="none: No such file or directory"):
         of_file(tmp_path / "none")
 
 
-@pytest.mark.parametrize("text, said", [(None, ": No such file or directory; ./bench made"), ("{", ": not JSON: "), (b"\xff", ": not JSON: "), ("[" * 100000, ": not JSON: "),
+@pytest.mark.parametrize("text, said", [(None, ": No such file or directory; a file that can be read is needed; ./bench made"), ("{", ": not JSON: "), (b"\xff", ": not JSON: "), ("[" * 100000, ": not JSON: "),
                                         ("[]", ": not a JSON object; ./bench made"), ("{}", "#/schema: found None; 'made/1' is needed; ./bench made"),
                                         ('{"schema": "other"}', "#/schema: found 'other'; 'made/1' is needed; ./bench made")])
 def test_what_is_no_file_of_the_schema_is_told_with_what_makes_one(tmp_path, text, said):

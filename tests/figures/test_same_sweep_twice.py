@@ -15,4 +15,4 @@ def test_a_sweep_and_its_copy(program, tmp_path, unpainted, capsys, monkeypatch)
     shutil.copytree(runs / "a", runs / "b")
     assert figures.main([str(runs), str(tmp_path / "figures")]) == 0, capsys.readouterr().err
     assert len(list((tmp_path / "figures").glob("*.png"))) > 3
-    assert report.main([str(runs), "--out", str(tmp_path / "r.html"), "--no-figures"]) == 0, capsys.readouterr().err
+    assert report.main([str(runs), "--out", str(tmp_path / "r.html")]) == 0, capsys.readouterr().err
