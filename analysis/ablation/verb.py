@@ -70,7 +70,7 @@ def gathered(factorial: Factorial, runs: Path, plan: str) -> Table:
 @tells("ablation")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
-    factorial = read_factorial(args.spec.resolve())
+    factorial = read_factorial(args.spec.absolute())
     kept = read() if FILE.is_file() else None
     if kept and kept.digest != factorial.digest and args.no_run:
         raise UserError(f"{FILE}: made of other files than {args.spec} and its sweep; ./bench ablation")

@@ -57,7 +57,9 @@ def library() -> tuple[str, str]:
     folder = Path(spec.origin).parent / "static"
     own = importlib.metadata.distribution("k3d")
     licences = [input_file.read_text(folder / "standalone.js.LICENSE.txt")]
-    licences += [input_file.read_text(path.locate()) for path in own.files or [] if path.name == "LICENSE.txt"]
+    licences += [
+        input_file.read_text(path.locate()) for path in own.files or [] if path.name == "LICENSE.txt"
+    ]
     source = ELSEWHERE.sub("", input_file.read_text(folder / "standalone.js"))
     return source, f"K3D {own.version}\n\n" + "\n".join(licences)
 

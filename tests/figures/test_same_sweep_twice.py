@@ -7,9 +7,9 @@ from analysis.report import verb as report
 from small_sweep import sweep_of
 
 
-def test_a_sweep_and_its_copy(program, tmp_path, unpainted, capsys, monkeypatch):
+def test_a_sweep_and_its_copy(program, tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
-    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0})  # one process, in which no picture is painted
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0})  # one process
     runs = tmp_path / "runs"
     shutil.copytree(sweep_of(program, tmp_path), runs / "a")
     shutil.copytree(runs / "a", runs / "b")
