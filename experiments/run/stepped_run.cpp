@@ -94,8 +94,8 @@ SteppedRun::~SteppedRun() {
 }
 
 void SteppedRun::prepare() {
+  if (options_.note.empty()) options_.note = own_note(config_);
   RunOptions named = options_;
-  if (named.note.empty()) named.note = own_note(config_);
   if (has_folder()) {
     lock_.emplace(options_.folder);
     if (Checkpoint(options_.folder, "").exists()) {

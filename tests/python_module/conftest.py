@@ -42,3 +42,9 @@ def scripted(bb):
     solver = Scripted()
     bb.register_step_solver(solver)
     return solver
+
+
+@pytest.fixture(autouse=True)
+def scratch(bb, tmp_path_factory, monkeypatch):
+    """Meshes without a folder of a run lie there until the process ends."""
+    monkeypatch.setattr("barrierbench.meshes._scratch", lambda: tmp_path_factory.mktemp("meshes"))

@@ -8,7 +8,7 @@ PAGE = Path(__file__).resolve().parents[2] / "docs/python.md"
 
 def test_the_guide_runs(bb):
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert len(blocks) == 5
+    assert len(blocks) == 6
     names: dict = {}
     for block in blocks:
         exec(compile(block, str(PAGE), "exec"), names)

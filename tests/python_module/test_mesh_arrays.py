@@ -6,12 +6,6 @@ import subprocess
 import numpy as np
 import pytest
 
-@pytest.fixture(autouse=True)
-def scratch(bb, tmp_path_factory, monkeypatch):
-    """Meshes without a folder of a run lie there until the process ends."""
-    monkeypatch.setattr("barrierbench.meshes._scratch", lambda: tmp_path_factory.mktemp("meshes"))
-
-
 SQUARE = {"vertices": np.array([[0, 0, 0.5], [1, 0, 0.5], [1, 1, 0.5], [0, 1, 0.5]]), "triangles": np.array([[0, 1, 2], [0, 2, 3]], np.int32)}
 
 
