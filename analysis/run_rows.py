@@ -23,8 +23,8 @@ def own_name(labels: dict) -> str:
 
 
 def _swept(text: str):
-    """The value of a swept pointer, which the record keeps as JSON text; what is no number or word stays
-    text.
+    """The value of a swept pointer, which the record keeps as JSON text; a value that is neither a number nor
+    a word stays text.
     """
     try:
         value = json.loads(text)

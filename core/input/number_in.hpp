@@ -7,7 +7,7 @@
 
 namespace bb {
 
-/// The whole word, with or without a plus before it; none: it is no number, or one out of range. "nan" and "inf" are read.
+/// The whole word, with or without a plus before it; empty: the word is not a number, or is out of range. "nan" and "inf" are read.
 template <class T>
 std::optional<T> number_in(std::string_view word) {
   if (word.size() > 1 && word[0] == '+') word.remove_prefix(1);

@@ -23,7 +23,8 @@ struct Cusps {
   void add(std::string_view of, const EnergyBatch& batch, const PositionsView& x);
 };
 
-/// The elastic elements of a scene on the host, for a potential whose own are elsewhere. Rest shapes that creep are those of the start.
+/// The elastic elements of a scene on the host, for a potential whose own are elsewhere. Rest shapes that creep or shrink
+/// are taken as at the start.
 class CuspSearch {
  public:
   CuspSearch(const Scene& scene, Precision precision);

@@ -17,7 +17,7 @@ namespace bb {
 
 /// What a progress line shows.
 struct Progress {
-  std::string label;      // as own_note
+  std::string label;      // the note of the run
   const char* pass = "";  // "pilot", "time" or "diagnose"
   int step = 0, steps = 0;
   double t_s = 0, t_end_s = 0;  // simulated
