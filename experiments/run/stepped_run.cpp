@@ -95,6 +95,7 @@ SteppedRun::~SteppedRun() {
 
 void SteppedRun::prepare() {
   RunOptions named = options_;
+  if (named.note.empty()) named.note = own_note(config_);
   if (has_folder()) {
     lock_.emplace(options_.folder);
     if (Checkpoint(options_.folder, "").exists()) {

@@ -47,6 +47,7 @@ Ran run(const std::string& solver, double L, double speed = 0) {
     own["al_tolerance_m"] = 1e-6 * L;
     own["al_penalty_initial_N_per_m"] = 10.0;
   }
+  if (solver == "al_free") own["al_free_recovery_m_per_s"] = 0.01 * L;
   fit_terms(method);
   Simulation simulation(scene, method, dt, 8);
   Ran out;
