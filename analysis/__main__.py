@@ -5,7 +5,9 @@ from pathlib import Path
 
 sys.path[0] = str(Path(__file__).resolve().parents[1])
 
-from analysis.front.door import main  # noqa: E402  (the line above says where it is)
+from analysis.front import streams  # noqa: E402  (the line above says where it is)
+from analysis.front.door import main  # noqa: E402
 
 if __name__ == "__main__":
+    streams.prepare()
     sys.exit(main(sys.argv[1:]))

@@ -27,7 +27,7 @@ from .progress import counted
 from .record_file import read_record
 from .render import Look, Shared, drawn_of_run, focus_of, save_annotated, shown, title_of, when
 from .run_rows import run_row
-from .whole_file import check_can_be_written, write_whole_bytes
+from .whole_file import check_can_be_written, write_whole, write_whole_bytes
 
 SUFFIXES = (".gif", ".mp4")
 SAMPLED = 24  # frames that decide what the camera has to hold
@@ -133,5 +133,5 @@ def animate(run: Path, out: Path, look: Look, rate: float | None = None) -> Path
         write(part, _stills(film, record, steps), rate)
         write_whole_bytes(out, input_file.read_bytes(part, input_file.LARGE))
     text = f"{film.title}, {len(steps)} frames from {when(record, steps[0])} to {when(record, steps[-1])}."
-    out.with_suffix(".txt").write_text(caption(f"{text} {shown(look)}", [run_row(record)]))
+    write_whole(out.with_suffix(".txt"), caption(f"{text} {shown(look)}", [run_row(record)]))
     return out

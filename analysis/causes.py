@@ -222,11 +222,11 @@ def main(words: list[str]) -> int:
     plugin_argument(parser)
     given = parser.parse_args(words)
     try:
-        at = tuple(int(part) for part in given.at.split(",")) if given.at else None
-        if at is not None and len(at) != 2:
+        at = tuple(int(part) for part in given.at.split(",")) if given.at is not None else None
+        if at is not None and (len(at) != 2 or min(at) < 0):
             raise ValueError
     except ValueError:
-        raise UserError(f"--at {given.at}: allowed: STEP,ITERATION, both from 0") from None
+        raise UserError(f"--at {given.at!r}: allowed: STEP,ITERATION, both from 0") from None
     folder = run_folder(given.run, given.out, given.set, given.plugin)
     record, rows = diagnosed(folder)
     row = pick(rows, given.scaling, at)

@@ -19,10 +19,11 @@ import time
 from pathlib import Path
 
 from .errors import UserError, tells
-from .front.arguments import parser_of
+from .front.arguments import finite_number, parser_of
 from .places import ROOT
 from .text_table import markdown
 from .toolkit_meshes import generated_sheets, read_ply, write_problem
+from .whole_file import write_whole
 
 DATA = Path(os.environ.get("BARRIERBENCH_DATA", ROOT / "data"))
 PROGRAM = ROOT / "build/release/experiments/microbenchmarks/contact_stages"
@@ -212,7 +213,7 @@ def arguments(argv: list[str] | None) -> argparse.Namespace:
         help="cloth_ball needs the optional data folder (BARRIERBENCH_DATA)",
     )
     parser.add_argument("--size", type=int, default=120, help="cells along a generated sheet")
-    parser.add_argument("--d-hat", type=float, default=1e-2, help="m")
+    parser.add_argument("--d-hat", type=finite_number, default=1e-2, help="m")
     parser.add_argument("--rounds", type=int, default=5, help="timed after one that warms up")
     parser.add_argument("--threads", type=int, default=1, help="of both")
     parser.add_argument(
@@ -271,7 +272,7 @@ def main(argv: list[str]) -> int:
     }
     args.out.mkdir(parents=True, exist_ok=True)
     path = args.out / f"{now:%Y-%m-%dT%H%M%SZ}.json"
-    path.write_text(json.dumps(record, indent=1) + "\n")
+    write_whole(path, json.dumps(record, indent=1) + "\n")
     print(
         f"{name}, {len(x0)} vertices, d_hat {args.d_hat} m, {args.threads} thread(s), shortest of"
         f" {args.rounds}; ipctk {ipctk.__version__}"

@@ -22,6 +22,7 @@ from .json_file import read_object
 from .places import ROOT
 from .program import started
 from .text_table import markdown as table_lines
+from .whole_file import write_whole
 
 SWEEPS = ("demo_strip", "demo_pinned", "demo_article", "demo_drape")
 TIERS = (2, 4)
@@ -251,8 +252,7 @@ def main(words: list[str]) -> int:
     with tempfile.TemporaryDirectory() as folder:
         groups = {name: of_sweep(name, arguments.cases, Path(folder)) for name in arguments.sweeps}
         groups["corpus"] = of_corpus(Path(folder))
-    arguments.out.write_text(
-        page(groups, f" for the cases {', '.join(arguments.cases)}" if arguments.cases else "")
-    )
+    of_cases = f" for the cases {', '.join(arguments.cases)}" if arguments.cases else ""
+    write_whole(arguments.out, page(groups, of_cases))
     print(arguments.out)
     return 0

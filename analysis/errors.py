@@ -4,13 +4,20 @@ Everything else is a mistake of this code.
 
 from __future__ import annotations
 
+import errno
 import functools
 import sys
+import tempfile
 from collections.abc import Callable
 
 BAD_INPUT = 2
 BUILD_FAILED = 70
 TRY_AGAIN = 75  # as the program has it: an interrupt among others
+# What another call will meet too; the list of the program (lasts() in core/record/atomic_write.cpp).
+LASTING = {
+    getattr(errno, name)
+    for name in "EACCES EPERM EROFS ENOENT ENOTDIR EISDIR EEXIST ELOOP ENAMETOOLONG EINVAL".split()
+}
 
 
 class UserError(ValueError):
@@ -21,6 +28,21 @@ class UserError(ValueError):
     def __init__(self, text: str, code: int = BAD_INPUT):
         super().__init__(text)
         self.code = code
+
+
+def code_of(error: UserError | OSError) -> int:
+    """The exit code: a full disk, a file too many and their like may be over when it is called again."""
+    if isinstance(error, UserError):
+        return error.code
+    return BAD_INPUT if error.errno is None or error.errno in LASTING else TRY_AGAIN
+
+
+def text_of(error: UserError | OSError) -> str:
+    """What is said: of a file its name and what the system said."""
+    if isinstance(error, UserError) or error.errno is None:
+        return str(error)
+    unnamed = f"a temporary file ({tempfile.gettempdir()}) or a stream"
+    return f"{error.filename or unnamed}: {error.strerror}"
 
 
 def tells(verb: str) -> Callable:
@@ -36,8 +58,8 @@ def tells(verb: str) -> Callable:
             except BrokenPipeError:
                 raise  # nobody reads: no error of the input
             except (UserError, OSError) as error:
-                print(f"bench {verb}: {error}", file=sys.stderr)
-                return getattr(error, "code", BAD_INPUT)
+                print(f"bench {verb}: {text_of(error)}", file=sys.stderr)
+                return code_of(error)
 
         return guarded
 

@@ -22,6 +22,7 @@ from .places import ROOT
 from .program import started
 from .spec_file import read_spec
 from .text_table import markdown as table_lines
+from .whole_file import write_whole
 
 MOST_BYTES = 8 << 20
 DIRECT = ["cholmod", "lagged_cholesky"]
@@ -101,7 +102,7 @@ def keep(system: dict, side_car: Path, out: Path) -> None:
     order = [key for key in kept if key not in ("block_start", "block_vertex", "coordinates_m", "rhs")]
     order += [key for key in ("block_start", "block_vertex", "coordinates_m", "rhs") if key in kept]
     lines = [f"  {json.dumps(key)}: {json.dumps(kept[key], ensure_ascii=False)}" for key in order]
-    (out / f"{system['name']}.json").write_text("{\n" + ",\n".join(lines) + "\n}\n")
+    write_whole(out / f"{system['name']}.json", "{\n" + ",\n".join(lines) + "\n}\n")
 
 
 def make(spec_file: Path, out: Path) -> None:
@@ -192,7 +193,7 @@ def write_readme(out: Path) -> None:
         " lower bound. Solvers: PCG iterations to a residual of 1e-8, at most 10000, `ok` for none, or how"
         " the solve ended.\n"
     )
-    (out / "README.md").write_text(f"{HEAD}{notes}\n{table(matrices)}\n")
+    write_whole(out / "README.md", f"{HEAD}{notes}\n{table(matrices)}\n")
 
 
 @tells("matrix-corpus")

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .errors import UserError, tells
-from .front.arguments import parser_of
+from .front.arguments import finite_number, parser_of
 from .mesh_arrays import SUFFIXES, MeshArrays, read_body_file
 from .tetrahedra import INSTALL, filled
 from .whole_file import write_whole_bytes
@@ -63,7 +63,10 @@ def parse(argv: list[str]) -> argparse.Namespace:
         f" {INSTALL} installs it); a surface within another is filled too",
     )
     parser.add_argument(
-        "--edge", type=float, metavar="LENGTH", help="with --tetrahedra: about the length of edges within (m)"
+        "--edge",
+        type=finite_number,
+        metavar="LENGTH",
+        help="with --tetrahedra: about the length of edges within (m)",
     )
     options = parser.parse_args(argv)
     if options.edge is not None and not (options.tetrahedra and 0 < options.edge < float("inf")):

@@ -15,6 +15,7 @@ from .json_file import read_object
 from .picture_file import picture_file
 from .program import started
 from .render import Look, drawn, save_annotated, save_bare, shown
+from .whole_file import write_whole
 
 
 def _start(config: Path, overrides: list[str], scratch: Path) -> subprocess.CompletedProcess:
@@ -47,5 +48,5 @@ def preview(config: Path, out: Path | None, look: Look, overrides: list[str]) ->
     else:
         save_annotated(path, pixels, title, lambda fig: annotate(fig, scene, frame, look.color, scale))
     said = "as the program checks it: " + (done.stdout if done.returncode == 0 else done.stderr).strip()
-    path.with_suffix(".txt").write_text(caption(f"{title}, {said} {shown(look)}", []))
+    write_whole(path.with_suffix(".txt"), caption(f"{title}, {said} {shown(look)}", []))
     return path

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
+import signal
 import subprocess
 import sys
 import threading
@@ -94,8 +95,13 @@ def in_shell(line: str, **options) -> subprocess.CompletedProcess:
 
 
 def become(program: Path, words: list[str]) -> NoReturn:
-    """Replaces this process by the program. Errors: UserError where it cannot be started."""
+    """Replaces this process by the program. Errors: UserError where it cannot be started.
+
+    Python ignores SIGPIPE, and a program that is started this way would too: it would report a reader that
+    has seen enough (`| head`) as an output that cannot be written.
+    """
     sys.stdout.flush()
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     try:
         os.execv(program, [str(program), *words])
     except OSError as error:

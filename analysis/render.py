@@ -21,7 +21,7 @@ from .errors import UserError, tells
 from .frames import Frame, frame_of, frame_paths, points_of_bodies, read_scene, scene_at, without_bodies
 from .frames_out.obstacle_mesh import obstacle_mesh
 from .frames_out.sequence import finer_frame
-from .front.arguments import color_argument, parser_of
+from .front.arguments import color_argument, finite_number, parser_of
 from .obstacle_rays import primitive_gaps
 from .picture import Surfaces, camera_of, picture
 from .picture_file import MEANS, picture_file
@@ -30,7 +30,7 @@ from .record_file import read_record
 from .rod_tubes import tubes
 from .run_rows import run_row
 from .titles import broken
-from .whole_file import write_whole_bytes
+from .whole_file import write_whole, write_whole_bytes
 
 MOST_TIMES = 4  # 4^4 = 256 triangles for one
 BAR_IN = 1.2  # inches beside a picture that a bar of colours takes
@@ -257,9 +257,11 @@ def render(
     if look.bare:
         save_bare(path, pixels)
     else:
-        save_annotated(path, pixels, what, lambda fig: annotate(fig, scene, frame, look.color, scale))
+        out = io.BytesIO()
+        save_annotated(out, pixels, what, lambda fig: annotate(fig, scene, frame, look.color, scale))
+        write_whole_bytes(path, out.getvalue())
     text = f"{what}. {shown(look)} {_at_obstacles(frame, scene)}".rstrip()
-    path.with_suffix(".txt").write_text(caption(text, [run_row(record)]))
+    write_whole(path.with_suffix(".txt"), caption(text, [run_row(record)]))
     return path
 
 
@@ -281,7 +283,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--fps",
-        type=float,
+        type=finite_number,
         metavar="N",
         help="frames a second of a GIF or MP4 (default: for 5 s)",
     )
@@ -304,7 +306,7 @@ def look_arguments(parser: argparse.ArgumentParser) -> None:
     """How a picture is drawn, beside its colours."""
     parser.add_argument(
         "--view",
-        type=float,
+        type=finite_number,
         nargs=2,
         default=(-60.0, 22.0),
         metavar=("AZIMUTH", "ELEVATION"),

@@ -16,12 +16,13 @@ import matplotlib.pyplot as plt
 
 from . import style
 from .errors import UserError, tells
-from .front.arguments import parser_of
+from .front.arguments import finite_number, parser_of
 from .picture_file import MEANS, picture_file
 from .progress import counted
 from .record_file import read_record
 from .render import Look, render
 from .titles import broken
+from .whole_file import write_figure
 
 MOST = 60  # runs in one picture
 COLUMNS = 5  # that are as wide as a page
@@ -68,8 +69,7 @@ def sheet(stills: list[Still], out: Path, columns: int) -> Path:
             file = render(still.folder, out=Path(scratch) / "still.png", look=still.look)
             axis.imshow(image.imread(file))
             axis.set_title(title, fontsize=SIZE)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(out, dpi=130, bbox_inches="tight", pad_inches=0.05, metadata={"Software": None})
+    write_figure(fig, out, dpi=130, bbox_inches="tight", pad_inches=0.05, metadata={"Software": None})
     plt.close(fig)
     return out
 
@@ -81,7 +81,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of run.json")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE.png", help=MEANS)
     parser.add_argument("--columns", type=int, default=3, metavar="N", help="pictures in a row (default: 3)")
-    parser.add_argument("--view", type=float, nargs=2, default=VIEW, metavar=("AZIMUTH", "ELEVATION"))
+    parser.add_argument("--view", type=finite_number, nargs=2, default=VIEW, metavar=("AZIMUTH", "ELEVATION"))
     parser.add_argument("--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn")
     given = parser.parse_args(argv)
     if given.columns < 1 or len(given.runs) > MOST:

@@ -20,6 +20,7 @@ from . import own_math, pgfplots  # noqa: E402
 from .captions import caption  # noqa: E402
 from .run_words import hollow_rule, name_of, verdict_word  # noqa: E402
 from .ticks import make_readable  # noqa: E402
+from .whole_file import write_figure, write_whole  # noqa: E402
 
 if TYPE_CHECKING:  # stills and pages take looks from here, and start without pandas
     import pandas as pd
@@ -282,15 +283,14 @@ def save(fig, stem: Path, numbers: pd.DataFrame, shown: str, runs: pd.DataFrame 
 
     shown: sentences on what the figure shows; runs: where settings, machine and day are taken from.
     """
-    stem.parent.mkdir(parents=True, exist_ok=True)
     make_readable(fig.axes)
     paths = [stem.with_name(stem.name + suffix) for suffix in SUFFIXES]
-    fig.savefig(paths[0], metadata={"Software": None})
+    write_figure(fig, paths[0], metadata={"Software": None})
     fig.set_layout_engine("none")  # the picture is laid out; doing it again takes a third of all the time
-    fig.savefig(paths[1], metadata={"CreationDate": None, "Producer": None, "Creator": None})
-    numbers.to_csv(paths[2], index=False)
-    paths[3].write_text(caption(shown, [] if runs is None else runs.to_dict("records")))
-    fig.savefig(paths[4], metadata={"Date": None, "Creator": None})
-    paths[5].write_text(pgfplots.text(numbers))
+    write_figure(fig, paths[1], metadata={"CreationDate": None, "Producer": None, "Creator": None})
+    write_whole(paths[2], numbers.to_csv(index=False))
+    write_whole(paths[3], caption(shown, [] if runs is None else runs.to_dict("records")))
+    write_figure(fig, paths[4], metadata={"Date": None, "Creator": None})
+    write_whole(paths[5], pgfplots.text(numbers))
     plt.close(fig)
     return paths

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 from .errors import UserError
+
+
+@contextlib.contextmanager
+def named(path: Path) -> Iterator[None]:
+    """An error inside of it that names no file gets this one: the system names none where a disk is full."""
+    try:
+        yield
+    except OSError as error:
+        error.filename = error.filename or str(path)
+        raise
 
 
 def write_whole(path: Path, text: str) -> None:
@@ -37,7 +50,15 @@ def write_whole_bytes(path: Path, content: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
     try:
-        part.write_bytes(content)
-        part.replace(path)
+        with named(path):
+            part.write_bytes(content)
+            part.replace(path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def write_figure(figure, path: Path, **options) -> None:
+    """A figure of matplotlib in the format of the ending; options of savefig."""
+    out = io.BytesIO()
+    figure.savefig(out, format=path.suffix[1:], **options)
+    write_whole_bytes(path, out.getvalue())

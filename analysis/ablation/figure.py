@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from .. import style
-from ..whole_file import write_whole
+from ..whole_file import write_figure, write_whole
 from .construction import by_construction
 from .effects import LEAST_SCENES, SHARES, Study
 from .factors import Factorial
@@ -103,8 +103,7 @@ def draw(factorial: Factorial, table: Table, study: Study, path: Path) -> None:
         axis.set_yticks(range(len(labels)), [""] * len(labels))
     if told:
         _matrix(axes[-1], factorial, study)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(path, metadata={"Software": None})
+    write_figure(fig, path, metadata={"Software": None})
     plt.close(fig)
     scenes = len({row["scene"] for row in table.rows})
     text = CAPTION.format(

@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..style import WIDE_IN, plt
+from ..whole_file import write_figure
 from .level import lines
 from .scatter import crosses, of_rows, scatter
 
@@ -85,6 +86,5 @@ def paint(record: dict, path: Path) -> None:
     for axis in axes.flat[len(scenes) :]:
         axis.axis("off")
     _key(axes.flat[len(scenes)], looks, any(one.get("starts") for one in scenes))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=160)
+    write_figure(figure, path, dpi=160)
     plt.close(figure)

@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import input_file
 from ..errors import UserError
+from ..whole_file import write_whole
 from . import environment
 from .card import Card
 
@@ -64,7 +65,7 @@ def _ended(card: Card, jobs: dict[Path, dict], out: Path, variant: str, sets: di
         folder.mkdir(parents=True, exist_ok=True)
         for stale in (folder / "frames.npz", folder / "engine.json"):
             stale.unlink(missing_ok=True)
-        (folder / "scene.json").write_text(json.dumps(scene))
+        write_whole(folder / "scene.json", json.dumps(scene))
         words += ["--scene", str((folder / "scene.json").resolve()), "--out", str(folder.resolve())]
     command = [str(environment.python(card)), str(card.adapter), *words]
     try:

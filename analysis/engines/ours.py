@@ -14,6 +14,7 @@ from ..errors import UserError
 from ..frames import frames_of, read_scene
 from ..program import started
 from ..record_file import read_record
+from ..whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ def run(
         done = started("run", str(config.file), *words, "--out", str(folder), timeout=limit_s)
     except subprocess.TimeoutExpired:
         return answer | {"outcome": "timed_out", "detail": f"after {limit_s:g} s"}
-    log.write_text(done.stdout + done.stderr)
+    write_whole(log, done.stdout + done.stderr)
     if done.returncode != 0:
         return answer | {"outcome": "crashed", "detail": (done.stderr.strip().splitlines() or [""])[-1]}
     record = read_record(folder / "run.json")

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..front.arguments import parser_of
+from ..front.arguments import finite_number, parser_of
 from ..places import ROOT
 from ..text_table import fitted
 from ..whole_file import write_whole
@@ -43,7 +43,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--engine-set", action="append", default=[], metavar="NAME=VALUE", help="run: of the card"
     )
-    parser.add_argument("--limit", type=float, metavar="S", help="run: seconds after which it is stopped")
+    parser.add_argument("--limit", type=finite_number, metavar="S", help="run: stopped after so many seconds")
     parser.add_argument(
         "--scene", action="append", default=[], help="compare: these scenes alone; writes no page"
     )

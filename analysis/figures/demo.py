@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ..records import Records, load
 from ..table import as_text, summary_table
+from ..whole_file import write_whole
 from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
@@ -73,7 +74,7 @@ def make_all_of(records: Records, out: Path) -> str:
         paths = [path for made in pool.map(_picture, draw, of) for path in made]
         paths += shapes.result()
     table = summary_table(records)
-    table.to_csv(out / "table.csv", index=False)
+    write_whole(out / "table.csv", table.to_csv(index=False))
     failed = records.runs[records.runs["outcome"] != "ok"]
     lines = [as_text(table), ""]
     lines += [

@@ -11,6 +11,7 @@ import pandas as pd
 from .. import input_file, series, style
 from ..captions import Facts
 from ..errors import UserError
+from ..whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Drawing:
         for path in paths:
             if path.suffix == ".txt":
                 words = textwrap.fill(facts.sentence(), 100)
-                path.write_text(f"{self.title}.\n\n{input_file.read_text(path)}\n{words}\n")
+                write_whole(path, f"{self.title}.\n\n{input_file.read_text(path)}\n{words}\n")
         return paths
 
 

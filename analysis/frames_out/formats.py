@@ -13,6 +13,7 @@ from xml.sax.saxutils import quoteattr
 import meshio
 import numpy as np
 
+from ..whole_file import named, write_whole, write_whole_bytes
 from .sequence import Mesh, Sequence, State
 
 
@@ -23,7 +24,7 @@ def _name(sequence: Sequence, number: int, suffix: str) -> str:
 
 def _each(sequence: Sequence, folder: Path, suffix: str, content: Callable[[Mesh, State], bytes]) -> None:
     for number, state in enumerate(sequence.states()):
-        (folder / _name(sequence, number, suffix)).write_bytes(content(sequence.mesh, state))
+        write_whole_bytes(folder / _name(sequence, number, suffix), content(sequence.mesh, state))
 
 
 # --- OBJ
@@ -108,12 +109,13 @@ def write_pc2(sequence: Sequence, folder: Path) -> None:
     """
     if not sequence.moves:
         return write_obj(sequence, folder)
-    with (folder / f"{sequence.stem}.pc2").open("wb") as out:
+    path = folder / f"{sequence.stem}.pc2"
+    with named(path), path.open("wb") as out:
         out.write(pc2_header(len(sequence.mesh.of_points), len(sequence.steps)))
         for number, state in enumerate(sequence.states()):
             out.write(state.points.astype("<f4").tobytes())
             if number == 0:
-                (folder / f"{sequence.stem}.obj").write_bytes(obj_bytes(sequence.mesh, state))
+                write_whole_bytes(folder / f"{sequence.stem}.obj", obj_bytes(sequence.mesh, state))
 
 
 # --- VTU, PVD
@@ -137,7 +139,9 @@ def _vtu(mesh: Mesh, state: State) -> meshio.Mesh:
 
 def write_vtu(sequence: Sequence, folder: Path) -> None:
     for number, state in enumerate(sequence.states()):
-        meshio.vtu.write(str(folder / _name(sequence, number, "vtu")), _vtu(sequence.mesh, state))
+        path = folder / _name(sequence, number, "vtu")
+        with named(path):
+            meshio.vtu.write(str(path), _vtu(sequence.mesh, state))
 
 
 def pvd_text(sequences: list[Sequence]) -> str:
@@ -161,7 +165,7 @@ def write(sequences: list[Sequence], kind: str, folder: Path) -> None:
     for sequence in sequences:
         WRITERS[kind](sequence, folder)
     if kind == "vtu":
-        (folder / "frames.pvd").write_text(pvd_text(sequences))
+        write_whole(folder / "frames.pvd", pvd_text(sequences))
     rows = enumerate(zip(sequences[0].steps, sequences[0].times_s))
     table = "".join(f"{number},{step},{time!r}\n" for number, (step, time) in rows)
-    (folder / "times.csv").write_text(f"frame,step,time_s\n{table}")
+    write_whole(folder / "times.csv", f"frame,step,time_s\n{table}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
 import shutil
 import textwrap
@@ -24,6 +25,13 @@ class Parser(argparse.ArgumentParser):
     """A wrong argument is an error of the user like any other: `tells` says it."""
 
     takes_formula = False
+
+    def parse_args(self, args: list[str] | None = None, namespace=None) -> argparse.Namespace:
+        """A word that is empty would be the folder that this is called from, or no number."""
+        for before, word in zip([None, *(args or [])], args or []):
+            if word == "" or re.fullmatch("--[a-z-]+=", word):
+                self.error(f"argument {before if word == '' else word[:-1]}: found nothing; allowed: a value")
+        return super().parse_args(args, namespace)
 
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message} (./{self.prog} --help says what there is)")
@@ -70,6 +78,17 @@ def color_argument(parser: argparse.ArgumentParser, choices: Iterable[str], defa
     parser.add_argument(
         "--colour", dest="color", choices=choices, default=argparse.SUPPRESS, help=argparse.SUPPRESS
     )
+
+
+def finite_number(text: str) -> float:
+    """The type of an argument that is a number: neither nan nor inf, which float() takes."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"found {text!r}; allowed: a finite number")
+    return value
 
 
 def plugin_argument(parser: argparse.ArgumentParser) -> None:

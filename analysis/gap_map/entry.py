@@ -15,7 +15,7 @@ from pathlib import Path
 
 from ..errors import UserError, tells
 from ..figure_files import copy_to_page
-from ..front.arguments import parser_of
+from ..front.arguments import finite_number, parser_of
 from ..matching.formulations import ROOT
 from ..whole_file import write_whole
 from . import figure, plan, report
@@ -118,7 +118,7 @@ def what_arguments(parser: argparse.ArgumentParser) -> None:
         )
     parser.add_argument(
         "--minutes",
-        type=float,
+        type=finite_number,
         metavar="M",
         help="begin no further sweep after so many minutes; what is left is said",
     )

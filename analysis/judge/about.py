@@ -38,10 +38,28 @@ def _check_obstacle(one: dict, path: Path, place: str) -> None:
     for key, numbers in (("point_m", point), ("axis", axis), ("radius_m", [radius])):
         if max(map(abs, numbers)) > MOST_METRES:
             raise refused(path, f"{place}/{key}", one[key], f"at most {MOST_METRES:g} in size")
-    if not np.linalg.norm(axis) > 0:
+    if not any(axis):
         raise refused(path, f"{place}/axis", axis, "a direction, a vector that is not zero,")
     if one["kind"] != "plane" and "radius_m" not in one:
         raise UserError(f"{path}#/{place}/radius_m: is missing; a {one['kind']} needs a number > 0 in m")
+
+
+def _check_whole_cells(path: Path, topology: Topology) -> None:
+    """Errors: UserError with the first cell that has vertices of two bodies."""
+    body = topology.body_of_vertices()
+    for key in ("triangles", "segments", "tetrahedra"):
+        cells = getattr(topology, key)
+        split = np.flatnonzero((body[cells] != body[cells[:, :1]]).any(axis=1))
+        if len(split):
+            cell = cells[split[0]]
+            first, other = (topology.names[k] for k in np.unique(body[cell])[:2])
+            raise refused(
+                path,
+                "bodies",
+                f"the cell {cell.tolist()} of `{key}` (one of {len(split)}) with vertices of {first!r} and"
+                f" of {other!r}",
+                "a list of bodies of which each has all vertices of its cells",
+            )
 
 
 def _with_bodies(data: dict, path: Path, trajectory: Trajectory) -> Trajectory:
@@ -56,7 +74,9 @@ def _with_bodies(data: dict, path: Path, trajectory: Trajectory) -> Trajectory:
     if len(set(names)) != len(names):
         raise refused(path, "bodies", names, "a name for each body")
     first = tuple(np.cumsum([0, *counts[:-1]]).tolist())
-    return replace(trajectory, topology=replace(trajectory.topology, names=tuple(names), first_vertex=first))
+    topology = replace(trajectory.topology, names=tuple(names), first_vertex=first)
+    _check_whole_cells(path, topology)
+    return replace(trajectory, topology=topology)
 
 
 def _body(name: str, path: Path, place: str, trajectory: Trajectory) -> np.ndarray:

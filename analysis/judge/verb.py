@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError, tells
-from ..front.arguments import parser_of
+from ..front.arguments import finite_number, parser_of
 from ..whole_file import check_can_be_written, write_whole
 from .about import About, about_of, with_cells
 from .ask import audited, subject_of
@@ -72,11 +72,14 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "--reference", type=Path, metavar="TRAJECTORY", help="another one of the same vertices: how far apart"
     )
     parser.add_argument(
-        "--scale", type=float, default=1.0, help="of all coordinates of the frames; 0.001: they are in mm"
+        "--scale",
+        type=finite_number,
+        default=1.0,
+        help="of all coordinates of the frames; 0.001: they are in mm",
     )
     parser.add_argument(
         "--reach",
-        type=float,
+        type=finite_number,
         metavar="M",
         help="gaps above it are not measured (default: a tenth of the mean edge)",
     )

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ..digests import of_text
 from ..errors import UserError, tells
-from ..front.arguments import parser_of, plugin_argument
+from ..front.arguments import finite_number, parser_of, plugin_argument
 from ..json_file import read_object
 from ..places import ROOT
 from ..text_table import aligned
@@ -187,7 +187,7 @@ def rule_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--theta",
-        type=float,
+        type=finite_number,
         default=0.1,
         metavar="T",
         help="gap/d_hat at which forces are equal, in (0, 1) (default: %(default)s)",

@@ -14,7 +14,8 @@ from collections import Counter
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..front.arguments import parser_of
+from ..front.arguments import finite_number, parser_of
+from ..front.streams import command
 from ..record_file import RecordError, read_record
 from ..text_table import fitted
 from .cases import OVER, RUNNING, STATES, UNREADABLE, WAITING, Case, Sighting, read_cases, sighted
@@ -107,7 +108,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         help="again and again until all are over: on a terminal in place, else a line when it has changed",
     )
     parser.add_argument(
-        "--every", type=float, default=2, metavar="S", help="seconds between two looks (default: 2)"
+        "--every", type=finite_number, default=2, metavar="S", help="seconds between two looks (default: 2)"
     )
     args = parser.parse_args(argv)
     if not args.every > 0:
@@ -120,7 +121,8 @@ def watch(args: argparse.Namespace) -> int:
     while True:
         shown, is_over = text(args.folder, read_cases(args.folder), outcomes, args.all)
         if sys.stdout.isatty():
-            print(CLEAR + shown, flush=True)
+            command(CLEAR)
+            print(shown, flush=True)
         elif (line := shown.split(", eta")[0].splitlines()[0]) != told:
             told = line
             print(shown.splitlines()[0], flush=True)

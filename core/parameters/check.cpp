@@ -46,6 +46,17 @@ bool check_word(const json& value, const Rule& rule, const std::string& where,
   return report(value, words.size() > 1 ? one_of_text(found, words) : allowed_text(alone), where, violations);
 }
 
+bool check_text(const json& value, const Rule& rule, const std::string& where,
+                std::vector<Violation>& violations) {
+  const auto* text = value.get_ptr<const std::string*>();
+  if (text == nullptr || !size_fits(rule, text->size())) {
+    return report(value, allowed_text(rule), where, violations);
+  }
+  const bool shown_as_it_is = rule.several_lines ? printable(*text) == *text : !has_control_character(*text);
+  return shown_as_it_is ||
+         report(value, allowed_text(rule) + ", without control characters", where, violations);
+}
+
 /// Every element by the same rule; what is wrong is named by its index.
 bool check_elements(json& array, const Rule& element, const std::string& where,
                     std::vector<Violation>& violations) {
@@ -101,6 +112,7 @@ std::string keys_text(const json& object) {
 }  // namespace
 
 bool in_range(const Rule& rule, double value) {
+  if (value != 0 && std::abs(value) < rule.least) return false;
   return std::isfinite(value) && (rule.low_open ? value > rule.low : value >= rule.low) &&
          (rule.high_open ? value < rule.high : value <= rule.high);
 }
@@ -117,8 +129,7 @@ bool check_value(json& value, const Rule& rule, const std::string& where,
       return (value.is_number() && in_range(rule, value.get<double>())) ||
              report(value, allowed_text(rule), where, violations);
     case Kind::text:
-      return (value.is_string() && size_fits(rule, value.get_ref<const std::string&>().size())) ||
-             report(value, allowed_text(rule), where, violations);
+      return check_text(value, rule, where, violations);
     case Kind::word:
       if (!rule.list || !value.is_object()) return check_word(value, rule, where, violations);
       check_object(value, rule.list(value), where, violations);

@@ -19,7 +19,7 @@ void check_object(nlohmann::json& object, const ParameterList& list, const std::
 bool check_value(nlohmann::json& value, const Rule& rule, const std::string& where,
                  std::vector<Violation>& violations);
 
-/// Finite, and within the rule's bounds.
+/// Finite, within the rule's bounds, and 0 or not too small.
 bool in_range(const Rule& rule, double value);
 
 /// The rows' values in a checked object, with their defaults; without rows that are neither given nor have

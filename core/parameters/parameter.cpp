@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/parameters/check.hpp"
+#include "core/parameters/units.hpp"
 
 namespace bb {
 namespace {
@@ -19,11 +20,18 @@ Rule of_kind(Kind kind, std::string unit = "") {
   return rule;
 }
 
+/// Large bounds of numbers as powers of ten.
+std::string bound_text(const Rule& rule, double bound) {
+  const bool large = rule.kind != Kind::integer && rule.kind != Kind::integers && std::abs(bound) >= 1e9;
+  return large ? fmt::format("{:g}", bound) : fmt::format("{}", bound);
+}
+
 std::string range_text(const Rule& rule) {
   std::string out;
-  if (rule.low > -inf) out = fmt::format(" {} {}", rule.low_open ? ">" : ">=", rule.low);
+  if (rule.low > -inf) out = fmt::format(" {} {}", rule.low_open ? ">" : ">=", bound_text(rule, rule.low));
   if (rule.high < inf) {
-    out += fmt::format("{} {} {}", out.empty() ? "" : " and", rule.high_open ? "<" : "<=", rule.high);
+    out += fmt::format("{} {} {}", out.empty() ? "" : " and",
+                       rule.high_open ? "<" : "<=", bound_text(rule, rule.high));
   }
   return out;
 }
@@ -47,7 +55,9 @@ std::string kind_text(const Rule& rule) {
     case Kind::integer:
       return "an integer" + range_text(rule);
     case Kind::number:
-      return "a number" + range_text(rule);
+      return rule.least > 0
+                 ? fmt::format("0, or a number >= {} and <= {}", rule.least, bound_text(rule, rule.high))
+                 : "a number" + range_text(rule);
     case Kind::text:
       return "a string" +
              (rule.min_size == 1 && rule.max_size == 0 ? " that is not empty" : size_text(rule, "bytes"));
@@ -78,11 +88,22 @@ const ParameterValue& value_of(const ParameterMap& parameters, const std::string
 
 }  // namespace
 
-Rule any_number(std::string unit) { return of_kind(Kind::number, std::move(unit)); }
-Rule non_negative(std::string unit) { return number_in(0, inf, std::move(unit)); }
-Rule positive(std::string unit) { return open_low(non_negative(std::move(unit))); }
+Rule any_number(std::string unit) {
+  const double most = sizes_of(unit).most;
+  return number_in(-most, most, std::move(unit));
+}
+Rule non_negative(std::string unit) {
+  const auto [least, most] = sizes_of(unit);
+  Rule rule = number_in(0, most, std::move(unit));
+  rule.least = least;
+  return rule;
+}
+Rule positive(std::string unit) {
+  const auto [least, most] = sizes_of(unit);
+  return number_in(least, most, std::move(unit));
+}
 Rule number_in(double low, double high, std::string unit) {
-  Rule rule = any_number(std::move(unit));
+  Rule rule = of_kind(Kind::number, std::move(unit));
   rule.low = low;
   rule.high = high;
   return rule;
@@ -111,7 +132,16 @@ Rule text_up_to(std::size_t bytes) {
   rule.max_size = bytes;
   return rule;
 }
-Rule any_vector(std::string unit) { return of_kind(Kind::vector, std::move(unit)); }
+Rule free_text() {
+  Rule rule = any_text();
+  rule.several_lines = true;
+  return rule;
+}
+Rule any_vector(std::string unit) {
+  Rule rule = any_number(std::move(unit));
+  rule.kind = Kind::vector;
+  return rule;
+}
 Rule direction() { return of_kind(Kind::direction); }
 Rule name_in(std::function<std::vector<std::string>()> names) {
   Rule rule = of_kind(Kind::word);
@@ -121,7 +151,11 @@ Rule name_in(std::function<std::vector<std::string>()> names) {
 }
 
 Rule open_low(Rule rule) {
-  rule.low_open = true;
+  if (rule.low == 0) {
+    rule.low = sizes_of(rule.unit).least;
+  } else {
+    rule.low_open = true;
+  }
   return rule;
 }
 Rule open_high(Rule rule) {

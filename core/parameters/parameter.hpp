@@ -25,7 +25,7 @@ enum class Kind {
   boolean,
   integer,
   number,
-  text,
+  text,       // without control characters
   word,       // one of the words
   words,      // a list of words, each once
   integers,   // a list
@@ -46,9 +46,11 @@ struct Rule {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool low_open = false, high_open = false;         // the bound itself is not allowed
+  double least = 0;                                 // of the size of a number that is not 0
   std::size_t min_size = 0, max_size = 0;           // bytes of a text, elements of a list; 0: no bound
   std::function<std::vector<std::string>()> words;  // asked when needed: plugins add names
   bool names = false;                               // the words are names of a registry
+  bool several_lines = false;                       // a text may have line ends and tabs
   std::function<ParameterList(const nlohmann::json&)>
       list;              // of an object, which may decide by what it holds; of one in the place of a word
   std::string or_text;   // object: what a string in its place names; whoever reads it puts an object there
@@ -56,22 +58,25 @@ struct Rule {
   bool required = false;
 };
 
+/// Of a number, with the sizes that its unit allows (units.hpp).
 Rule positive(std::string unit);
 Rule non_negative(std::string unit);
-Rule number_in(double low, double high, std::string unit);  // both bounds allowed
 Rule any_number(std::string unit);
+Rule number_in(double low, double high, std::string unit);  // both bounds allowed
 Rule count(std::int64_t low, std::int64_t high);
 Rule flag();
 Rule word(std::vector<std::string> words);
 Rule words(std::vector<std::string> words);
 Rule any_text();
 Rule text_up_to(std::size_t bytes);  // and not empty
+Rule free_text();                    // of several lines
+/// Of three numbers, each as of any_number.
 Rule any_vector(std::string unit);
 Rule direction();
 /// A name of a registry, which plugins may extend.
 Rule name_in(std::function<std::vector<std::string>()> names);
 
-/// The same rule without its bounds, or with more.
+/// The same rule without its bounds, or with more. Above 0 means: of at least the size that the unit allows.
 Rule open_low(Rule rule);
 Rule open_high(Rule rule);
 Rule required(Rule rule);

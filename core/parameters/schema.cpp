@@ -50,6 +50,8 @@ Json rule_schema(const Rule& rule) {
     case Kind::text:
       out["type"] = "string";
       put_size(rule, "minLength", "maxLength", out);
+      out["pattern"] = rule.several_lines ? "^[^\\u0000-\\u0008\\u000B-\\u001F\\u007F-\\u009F]*$"
+                                          : "^[^\\u0000-\\u001F\\u007F-\\u009F]*$";
       return out;
     case Kind::word:
       if (rule.list) break;

@@ -41,10 +41,11 @@ void SettingRows::add_nested(std::string_view name, const SettingRows& settings,
       [&settings, place](const void* from) { return settings.write_all(held(place, from)); });
 }
 
-void SettingRows::add_list(std::string_view name, std::string_view doc, std::size_t most,
+void SettingRows::add_list(std::string_view name, std::string_view doc, std::size_t least, std::size_t most,
                            const SettingRows& settings, Place place, const ListType& list) {
   Rule rule = settings.rule();
   rule.kind = Kind::objects;
+  rule.min_size = least;
   rule.max_size = most;
   add_by_hand(
       {std::string(name), std::move(rule), no_default, std::string(doc)},

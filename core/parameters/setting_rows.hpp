@@ -52,8 +52,8 @@ class SettingRows {
                  const void* blank);
   /// `settings` outlives this list.
   void add_nested(std::string_view name, const SettingRows& settings, Place place, std::string_view or_text);
-  void add_list(std::string_view name, std::string_view doc, std::size_t most, const SettingRows& settings,
-                Place place, const ListType& list);
+  void add_list(std::string_view name, std::string_view doc, std::size_t least, std::size_t most,
+                const SettingRows& settings, Place place, const ListType& list);
   /// `place` is that of a ParameterMap.
   void add_map(const std::vector<Parameter>& rows, const Place& place);
   void add_by_hand(Parameter row, Read read, Write write);

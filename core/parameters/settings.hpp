@@ -29,12 +29,12 @@ class Settings : public SettingRows {
     add_nested(name, settings, place_of(access), or_text);
   }
 
-  /// A list of such objects, kept in a vector of M.
+  /// A list of such objects, of sizes that are given, kept in a vector of M. most 0: no bound.
   template <class M, class Access>
-  void nest_all(std::string_view name, std::string_view doc, std::size_t most, const Settings<M>& settings,
-                Access access) {
+  void nest_all(std::string_view name, std::string_view doc, std::size_t least, std::size_t most,
+                const Settings<M>& settings, Access access) {
     static_assert(std::is_same_v<std::remove_cvref_t<decltype(part(access, blank_))>, std::vector<M>>);
-    add_list(name, doc, most, settings, place_of(access), list_type<M>);
+    add_list(name, doc, least, most, settings, place_of(access), list_type<M>);
   }
 
   /// Rows that are kept in a ParameterMap, each with its default.

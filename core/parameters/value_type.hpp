@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/math/direction.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
@@ -83,6 +84,7 @@ std::optional<double> number_of(const T& value) {
 template <class T>
 void normalise(T& value) {
   if constexpr (std::is_same_v<T, Vec3d>) {
+    value = of_usual_size(value);
     const double length = value.norm();
     if (!(std::abs(length - 1) < 1e-14)) value /= length;
   } else if constexpr (std::is_same_v<T, std::optional<Vec3d>>) {

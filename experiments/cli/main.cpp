@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
+#include <utility>
 
 #include "barriers/plugins.hpp"
 #include "core/math/error.hpp"
@@ -22,9 +23,10 @@ namespace {
 
 using namespace bb::cli;
 
-/// Nobody can read what was answered; an error that happened before stays what it is.
+/// Nobody can read what was answered; an error that happened before stays what it is. Said once.
 int unwritable_output(int code) {
-  say("the standard output cannot be written\n");
+  static bool said = false;
+  if (!std::exchange(said, true)) say("the standard output cannot be written\n");
   return code == exit_ok ? exit_try_again : code;
 }
 
@@ -124,6 +126,7 @@ std::vector<std::pair<CLI::App*, Action>> declare_verbs(CLI::App& app, Given& gi
     part->footer(std::string("example: ") + verb.example);
     out.emplace_back(part, verb.declare(*part));
     common_arguments(*part, given.common, given.plugins_after);
+    refuse_empty_values(*part);
   }
   return out;
 }
@@ -166,6 +169,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", version_text);
   common_arguments(app, common, given.plugins_before);
+  refuse_empty_values(app);
   const auto parts = declare_verbs(app, given);
 
   if (const int code = guarded([&] { return require_verb(common.argv), exit_ok; }); code != exit_ok) {

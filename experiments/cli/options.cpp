@@ -18,6 +18,14 @@ CLI::Validator finite_number(double low, double high, bool above_low) {
           allowed};
 }
 
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() == 0 || !option->nonpositional()) continue;
+    option->check(
+        [](const std::string& text) { return text.empty() ? "found nothing; allowed: a value" : ""; });
+  }
+}
+
 void set_argument(CLI::App& app, std::vector<std::string>& set, const std::string& doc) {
   app.add_option("--set", set, doc)->allow_extra_args(false);
 }

@@ -7,6 +7,9 @@
 
 namespace bb::cli {
 
+/// Refuses an empty value of every option that takes one, which would be 0 or the default. Arguments without a name say themselves what
+/// they need.
+void refuse_empty_values(CLI::App& app);
 /// A finite number from low (or above it) to high; CLI::Range lets NaN through.
 CLI::Validator finite_number(double low, double high, bool above_low = false);
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 
+#include "core/input/names.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/summary_table.hpp"
 #include "experiments/cli/terminal.hpp"
@@ -68,8 +69,8 @@ void ProgressLine::put(std::string text) {
   latest_ = std::move(text);
   if (mode_ != Mode::rewrite) return;
   const std::size_t columns = terminal_columns(STDERR_FILENO);
-  say("\r\033[K" +
-      shortened_to(latest_, columns > 1 ? columns - 1 : 0));  // a full line would move the cursor on
+  // a full line would move the cursor on
+  rewrite_line(shortened_to(printable(latest_), columns > 1 ? columns - 1 : 0));
   dirty_ = true;
 }
 
@@ -87,7 +88,7 @@ void ProgressLine::tell(const std::string& text) {
 
 void ProgressLine::clear() {
   if (!dirty_) return;
-  say("\r\033[K");
+  rewrite_line("");
   dirty_ = false;
 }
 

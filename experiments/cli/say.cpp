@@ -6,9 +6,13 @@
 #include <cerrno>
 #include <csignal>
 
+#include "core/input/names.hpp"
+
 namespace bb::cli {
 
-void say(std::string_view text) {
+namespace {
+
+void write_out(std::string_view text) {
   struct sigaction ignore {
   }, before{};
   ignore.sa_handler = SIG_IGN;
@@ -21,6 +25,12 @@ void say(std::string_view text) {
   }
   ::sigaction(SIGPIPE, &before, nullptr);
 }
+
+}  // namespace
+
+void say(std::string_view text) { write_out(printable(text)); }
+
+void rewrite_line(std::string_view text) { write_out("\r\033[K" + printable(text)); }
 
 void prepare_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {

@@ -5,8 +5,10 @@
 
 namespace bb::cli {
 
-/// Writes the text as it is.
+/// Writes the text; control characters in it are shown, not sent (printable() in core/input/names.hpp).
 void say(std::string_view text);
+/// The same in place of the line where the cursor of a terminal is.
+void rewrite_line(std::string_view text);
 
 /// To be called first. A descriptor 0, 1 or 2 that the caller closed is taken, so that no file that is opened
 /// later gets its number and with it our output; writing to it still fails. A file that grows beyond the

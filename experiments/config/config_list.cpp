@@ -130,7 +130,7 @@ ParameterList sweep_list() {
       {{"schema", required(word({"barrierbench.sweep/1"})), no_default, "Version of this format."},
        {"name", required(text_up_to(max_name_bytes)), no_default,
         "Name of the sweep and of its folder: no /, no .., at most 150 bytes."},
-       {"doc", any_text(), no_default, "Free text."},
+       {"doc", free_text(), no_default, "Free text."},
        {"base", required(text_up_to(0)), no_default, "Path of a config, relative to this file."},
        {"set", listed(Kind::object, 0, overrides_list), no_default, ""},
        {"axes", required(listed(Kind::objects, 1, axis_list)), no_default,

@@ -29,7 +29,7 @@ ParameterList method_list() {
   return {"A published method.",
           {{"schema", required(word({"barrierbench.method/1"})), no_default, "Version of this format."},
            {"name", required(any_text()), no_default, "The name of the file."},
-           {"doc", required(text_up_to(0)), no_default, "What it is."},
+           {"doc", required(free_text()), no_default, "What it is."},
            {"source", required(text_up_to(0)), no_default, "Its publication."},
            {"set", open_object("JSON pointer into the config: value."), no_default, ""},
            {"because", open_object("Pointer of set: the fact that it follows."), no_default, ""},

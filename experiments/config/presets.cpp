@@ -107,6 +107,16 @@ bool is_another(const json& formulation, const json& preset) {
   return policy(formulation) != policy(preset);
 }
 
+/// Which keys a formulation of the user's own making lacks, in words.
+std::string missing_of(const json& formulation) {
+  std::string out;
+  for (const char* key : {"shape", "argument", "stiffness_policy"}) {
+    if (!formulation.contains(key))
+      out += (out.empty() ? ", of which there is no " : ", ") + std::string(key);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string configs_folder() {
@@ -132,8 +142,9 @@ void expand_preset(json& formulation, const std::string& source, std::vector<Vio
     return;
   }
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    const ConfigError error = unknown_name(source + "#/formulation/name", name, names);
-    violations.push_back(error.violations().front());
+    violations.push_back(unknown_name(source + "#/formulation/name", name, names).violations().front());
+    violations.back().allowed +=
+        "; or, as a label, any name beside shape, argument and stiffness_policy" + missing_of(formulation);
     return;
   }
   json base = load_preset(name)["formulation"];

@@ -1,6 +1,7 @@
 // The lists of a scene: bodies with what belongs to them, obstacles (scene.inc); and which list rules a scene
 // or a mesh.
 #include <limits>
+#include <type_traits>
 
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/sections.hpp"
@@ -50,7 +51,9 @@ void add_motion_rows(Settings<S>& out) {
       "time.");
   out.nest_all(
       "keyframes", "Where the motion is at given times, linear between them; instead of rates and scale.",
-      10000, settings_of<Keyframe>(), [](auto& s) -> auto& { return s.keyframes; });
+      // resolved configs have an empty list in the operations of `then`
+      std::is_same_v<S, RigidMotion> ? 1 : 0, 10000, settings_of<Keyframe>(),
+      [](auto& s) -> auto& { return s.keyframes; });
 }
 
 Rule listed(Kind kind, Rule element) {
@@ -69,7 +72,8 @@ Rule listed(Kind kind, Rule element) {
   [](auto& s) -> auto& { return s.member; }
 #define ROW(member, name, rule, doc) out.add(name, rule, doc, ACCESS(member));
 #define NEST(member, name, type) out.nest(name, settings_of<type>(), ACCESS(member));
-#define ALL(member, name, doc, most, type) out.nest_all(name, doc, most, settings_of<type>(), ACCESS(member));
+#define ALL(member, name, doc, least, most, type) \
+  out.nest_all(name, doc, least, most, settings_of<type>(), ACCESS(member));
 #define EXTRA(add) add(out);
 #define END_SECTION \
   return out;       \

@@ -74,7 +74,7 @@ void add_origin(Settings<RunConfig>& out) {
   out.add_row(
       {"name", any_text(), no_default,
        "Free label, which progress lines, tables and figures show; no part of the identity of a run."});
-  out.add_row({"doc", any_text(), no_default, "Free text; no part of the identity of a run."});
+  out.add_row({"doc", free_text(), no_default, "Free text; no part of the identity of a run."});
   out.add_row({"extends", any_text(), no_default,
                "Path of a config, relative to this file, that this one is laid over, object by object."});
   out.add("method", name_in(method_names),

@@ -10,6 +10,7 @@
 
 #include "core/audit/surface_edges.hpp"
 #include "core/input/json.hpp"
+#include "core/math/direction.hpp"
 #include "core/math/error.hpp"
 
 namespace bb::judge {
@@ -148,8 +149,9 @@ void read_obstacles(Keys& keys, Subject& out) {
     obstacle.radius = given.number("radius_m", 0.0, most_metres, 0.0);
     obstacle.inside = given.flag("inside");
     if (round && !(obstacle.radius > 0)) throw ConfigError(where + "/radius_m", "no radius", "a number > 0");
-    if (!(obstacle.axis.norm() > 0))
+    if (obstacle.axis.isZero(0))
       throw ConfigError(where + "/axis", "no direction", "a vector that is not zero");
+    obstacle.axis = of_usual_size(obstacle.axis);
     if (const json* vertex = given.find("vertex")) {
       obstacle.vertex = Keys::integer_of(*vertex, where + "/vertex", 0, out.n_vertices - 1);
       out.mesh.prescribed.resize(static_cast<std::size_t>(out.n_vertices), 0);

@@ -116,6 +116,9 @@ std::vector<StepTrial> study_steps(const RunConfig& config, const std::vector<in
     throw ConfigError("--at", std::to_string(steps[i]),
                       fmt::format("ascending steps from 0 to {}", config.time.steps - 1));
   }
+  if (steps.empty()) {
+    throw ConfigError("--at", "no step", fmt::format("steps from 0 to {}", config.time.steps - 1));
+  }
   const oneapi::tbb::global_control threads(
       oneapi::tbb::global_control::max_allowed_parallelism,
       config.threads > 0

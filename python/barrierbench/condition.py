@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
+from .given import finite_reals, reals
 
 MOST = 2**31 - 1  # rows and entries
 ASYMMETRY = 1e-9  # of the largest entry: what may be rounding of whoever made the matrix
@@ -57,7 +58,8 @@ def condition_number(matrix: Any, scaling: str = "none", tier: int = 2, seed: in
 
     if sparse.issparse(matrix):
         _require_indices(matrix)
-    whole = sparse.csc_matrix(matrix, dtype=float)
+    given = sparse.csc_matrix(matrix) if sparse.issparse(matrix) else sparse.csc_matrix(reals(matrix, "matrix"))
+    whole = sparse.csc_matrix((finite_reals(given.data, "matrix.data"), given.indices, given.indptr), shape=given.shape)
     if whole.shape[0] != whole.shape[1]:
         raise _core.ConfigError(f"matrix: found shape {whole.shape}; allowed: a square matrix")
     upper, off = sparse.triu(whole, 1), whole - whole.T

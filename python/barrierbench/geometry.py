@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .given import finite_reals, real, reals
 
 POINTS = {"point_point": 2, "point_edge": 3, "point_triangle": 4, "edge_edge": 4}
 
@@ -33,7 +34,7 @@ class Advance(NamedTuple):
 
 def _pairs(pair: str, points: ArrayLike, where: str) -> tuple[NDArray[np.float64], tuple[int, ...]]:
     n = POINTS.get(pair, -1)
-    x = np.ascontiguousarray(points, float)
+    x = np.ascontiguousarray(finite_reals(points, where))
     if x.ndim < 2 or x.shape[-1] != 3 or (n > 0 and x.shape[-2] != n):
         raise _core.ConfigError(f"{where}: found shape {x.shape}; allowed: [..., {max(n, 2)}, 3]")
     return x.reshape(-1, *x.shape[-2:]), x.shape[:-2]
@@ -72,7 +73,7 @@ def distance_hessian(pair: str, points: ArrayLike) -> NDArray[np.float64]:
 
 
 def _stacked(*points: ArrayLike) -> NDArray[np.float64]:
-    return np.stack(np.broadcast_arrays(*(np.asarray(p, float) for p in points)), axis=-2)
+    return np.stack(np.broadcast_arrays(*(reals(p, "points") for p in points)), axis=-2)
 
 
 def point_point(p: ArrayLike, q: ArrayLike) -> Distance:
@@ -111,7 +112,7 @@ def accd(pair: str, points_t0: ArrayLike, points_t1: ArrayLike, offset: float = 
     """
     x0, leading = _pairs(pair, points_t0, "points_t0")
     x1, _ = _pairs(pair, points_t1, "points_t1")
-    toi, hit, overlap, probes = _core.accd(pair, x0, x1, offset, park)
+    toi, hit, overlap, probes = _core.accd(pair, x0, x1, real(offset, "offset"), real(park, "park"))
     return Advance(
         toi.reshape(leading),
         hit.astype(bool).reshape(leading),

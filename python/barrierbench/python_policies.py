@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .given import reals
 from .python_sources import is_name, remember
 
 Doubles = NDArray[np.float64]
@@ -68,10 +69,11 @@ def _error(name: str, found: str, allowed: str) -> _core.ConfigError:
 def _kappa(name: str, policy: Any, rows: ContactRows) -> Doubles:
     """Errors: what the policy raises; ConfigError with the contact where kappa is no number >= 0."""
     found = policy.kappa(rows)
+    numbers = reals(found, f"stiffness policy {name}: kappa")
     try:
-        kappa = np.broadcast_to(np.asarray(found, float), rows.d.shape)
-    except (TypeError, ValueError):
-        raise _error(name, f"kappa of shape {np.shape(found)}", f"numbers of shape {rows.d.shape}, that of d") from None
+        kappa = np.broadcast_to(numbers, rows.d.shape)
+    except ValueError:
+        raise _error(name, f"kappa of shape {numbers.shape}", f"numbers of shape {rows.d.shape}, that of d") from None
     wrong = ~(np.isfinite(kappa) & (kappa >= 0))
     if wrong.any():
         at = int(np.flatnonzero(wrong)[0])

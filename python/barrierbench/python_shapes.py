@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .given import reals
 from .python_sources import is_name, remember
 from .shape import Shape
 
 Terms3 = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+LEAST_GROWTH = 0.6  # of b over three decades, against the three before: -log(d) has 1, a bounded power of d at most 0.5
 _NEAR = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 0.95])  # gaps over d_hat at which a declaration is tested
 
 
@@ -39,10 +41,11 @@ def _columns(name: str, terms: Callable, d: np.ndarray, d_hat: np.ndarray) -> li
         raise _error(name, type(found).__name__, "a tuple of b, b', b''")
     out = []
     for what, column in zip(("b", "b'", "b''"), found):
+        numbers = reals(column, f"shape {name}: {what}")
         try:
-            column = np.broadcast_to(np.asarray(column, float), d.shape)
+            column = np.broadcast_to(numbers, d.shape)
         except ValueError:
-            raise _error(name, f"{what} of shape {np.shape(column)}", f"shape {d.shape}, that of d") from None
+            raise _error(name, f"{what} of shape {numbers.shape}", f"shape {d.shape}, that of d") from None
         if not np.isfinite(column).all():
             at = int(np.flatnonzero(~np.isfinite(column))[0])
             raise _error(
@@ -106,6 +109,23 @@ def _check(name: str, terms: Callable, smoothness: int) -> None:
             )
 
 
+def _check_zero(name: str, terms: Callable, infinite: bool) -> None:
+    """What b does as d -> 0, by its growth over decades of the gap. Errors: ConfigError where it is the other thing."""
+    with np.errstate(all="ignore"):
+        if not infinite:
+            _columns(name, terms, np.array([0.0]), np.array([0.01]))
+            return
+        b = _columns(name, terms, 0.01 * np.array([1e-6, 1e-9, 1e-12]), np.full(3, 0.01))[0]
+    before, then = b[1] - b[0], b[2] - b[1]
+    if not then > LEAST_GROWTH * before > 0:
+        raise _error(
+            name,
+            f"infinite_at_zero True of a b that grows by {before:.3g} m^2 from d = 1e-6 to 1e-9 d_hat and by"
+            f" {then:.3g} m^2 from there to 1e-12 d_hat (d_hat = 0.01 m)",
+            "False, or a b without bound as d -> 0: from decade to decade it grows as much or more",
+        )
+
+
 def register_shape(shape: Any) -> Shape:
     """Makes a Python object a shape that configs name, until the process ends; returns it as a Shape.
 
@@ -134,6 +154,7 @@ def register_shape(shape: Any) -> Shape:
         raise _error(name, f"infinite_at_zero {infinite!r}", "True or False")
     terms = _callable_of(shape, name)
     _check(name, terms, smoothness)
+    _check_zero(name, terms, infinite)
     doc = inspect.getdoc(shape) or "a shape of Python"
     _core.register_shape(name, doc.splitlines()[0], smoothness, infinite, _filler(name, terms, infinite))
     remember(shape, name)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .given import json_text
 from .meshes import has_arrays, with_files
 
 SCHEMA = "barrierbench.config/1"  # of a config; a dict may leave it out
@@ -101,16 +102,16 @@ def _given(
 ) -> tuple[str, str, str, list[str]]:
     """Text, source, folder and overrides of a config, for _core. out: folder of the record, for meshes in arrays."""
     changes = (
-        [f"{pointer}={json.dumps(value)}" for pointer, value in overrides.items()]
+        [f"{pointer}={json_text(value, pointer)}" for pointer, value in overrides.items()]
         if isinstance(overrides, Mapping)
         else list(overrides)
     )
     if isinstance(config, Mapping):
-        given = json.dumps({"schema": SCHEMA, **with_files(config)}), "config", os.getcwd(), changes
+        given = json_text({"schema": SCHEMA, **with_files(config)}, "config"), "config", os.getcwd(), changes
         if not (out and has_arrays(config)):
             return given
         _core.build_scene(*given)  # what it refuses leaves nothing in the folder
-        return json.dumps({"schema": SCHEMA, **with_files(config, Path(out) / "inputs")}), *given[1:]
+        return json_text({"schema": SCHEMA, **with_files(config, Path(out) / "inputs")}, "config"), *given[1:]
     if isinstance(config, str) and config.lstrip().startswith("{"):
         return config, "config", os.getcwd(), changes
     path = Path(config)
@@ -123,7 +124,8 @@ def _given(
 def resolve(config: Config, overrides: Sequence[str] | Mapping[str, Any] = ()) -> dict[str, Any]:
     """A config with every default filled in, as a record keeps it.
 
-    config: a dict, JSON text, or the path of a file. overrides: {"/time/steps": 5} or ["/time/steps=5"], as --set.
+    config: a dict (its lists may be numpy arrays), JSON text, or the path of a file. overrides: {"/time/steps": 5} or
+    ["/time/steps=5"], as --set.
     Errors: ConfigError with every violation, each with its JSON pointer.
 
     >>> resolve({"scene": {"name": "hang"}}, {"/time/steps": 5})["time"]["steps"]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .given import finite_reals, real, reals
 
 
 class Terms(NamedTuple):
@@ -86,7 +87,7 @@ class Shape:
         The results have the broadcast shape; () for two numbers. At d = 0 a shape without bound has inf, -inf, inf.
         Cost: O(n), no copy of contiguous float64. Errors: ConfigError naming the element that is out of range.
         """
-        gap, width = np.broadcast_arrays(np.asarray(d, float), np.asarray(d_hat, float))
+        gap, width = np.broadcast_arrays(reals(d, "d"), finite_reals(d_hat, "d_hat"))
         found = self._barrier.terms(np.ascontiguousarray(gap).ravel(), np.ascontiguousarray(width).ravel())
         return Terms(*(column.reshape(gap.shape) for column in found))
 
@@ -96,11 +97,11 @@ class Shape:
         >>> Shape("cubic").rho(0.5)
         4.0
         """
-        return self._barrier.rho(u)
+        return self._barrier.rho(real(u, "u"))
 
     def equilibrium(self, kappa: float, d_hat: float, load: float) -> Equilibrium:
         """The largest gap (m) at which kappa |b'| = load. kappa N/m, d_hat m, load N, all > 0."""
-        return Equilibrium(*self._barrier.equilibrium(kappa, d_hat, load))
+        return Equilibrium(*self._barrier.equilibrium(real(kappa, "kappa"), real(d_hat, "d_hat"), real(load, "load")))
 
     def equal_force(self, d_hat: float, load: float, theta: float = 0.1) -> float:
         """Matching rule equal_force: kappa (N/m) = load/|b'(theta d_hat)|, load in N.
@@ -108,8 +109,8 @@ class Shape:
         >>> round(Shape("cubic").equal_force(d_hat=0.01, load=1.0, theta=0.5), 9)
         200.0
         """
-        return self._barrier.equal_force(d_hat, load, theta)
+        return self._barrier.equal_force(real(d_hat, "d_hat"), real(load, "load"), real(theta, "theta"))
 
     def equal_curvature(self, d_hat: float, curvature: float, theta: float = 0.5) -> float:
         """Matching rule equal_curvature: kappa (N/m) = curvature/b''(theta d_hat), curvature in N/m."""
-        return self._barrier.equal_curvature(d_hat, curvature, theta)
+        return self._barrier.equal_curvature(real(d_hat, "d_hat"), real(curvature, "curvature"), real(theta, "theta"))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .given import folder
 from .python_sources import brought
 from .scene import Config, Scene, _given
 
@@ -52,9 +53,9 @@ class Simulation:
         out: str | os.PathLike | None = None,
         on_iteration: Callable[[dict[str, Any]], None] | None = None,
     ):
-        folder = "" if out is None else str(out)
-        given = _given(config, overrides, folder)
-        self._run = _core.Run(*given, folder, sys.argv[:], _brought(given), True)
+        record = folder(out)
+        given = _given(config, overrides, record)
+        self._run = _core.Run(*given, record, sys.argv[:], _brought(given), True)
         self.on_iteration = on_iteration
         """Called after every Newton iteration with the fields of a line of the trace (`./bench help trace`)."""
         self._scene: Scene | None = None
@@ -169,6 +170,7 @@ def run(
     shows. resume: go on from the checkpoint of this very run. Ctrl-C leaves a checkpoint, as in the program.
     Errors: ConfigError; RecordError; what on_step raises, with a checkpoint left.
     """
-    given = _given(config, overrides, None if out is None else str(out))
-    folder = _core.run_whole(*given, "" if out is None else str(out), sys.argv[:], _brought(given), on_step, resume)
-    return json.loads((Path(folder) / "run.json").read_text())
+    record = folder(out)
+    given = _given(config, overrides, record)
+    written = _core.run_whole(*given, record, sys.argv[:], _brought(given), on_step, resume)
+    return json.loads((Path(written) / "run.json").read_text())

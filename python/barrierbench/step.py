@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .given import real, reals
 
 Doubles = NDArray[np.float64]
 
@@ -144,7 +145,7 @@ class Step:
 
     @direction.setter
     def direction(self, dx: Any) -> None:
-        given = np.asarray(dx, float)
+        given = reals(dx, "direction")
         if given.shape == self.free.shape:
             given = given[self.free]
         n_free = int(self.free.sum())
@@ -177,14 +178,14 @@ class Step:
         """E at x + alpha direction against E at x; None where that state is not feasible.
 
         alpha: in (0, 1], up to `bound()` where that was asked for. A motion whose bound was not asked for is judged by
-        its end alone and may pass through a surface. Errors: ValueError for another alpha.
+        its end alone and may pass through a surface. Errors: ValueError for another alpha (ConfigError is one).
         """
-        found = self._core.trial(alpha)
+        found = self._core.trial(real(alpha, "alpha"))
         return None if found is None else Trial(*found)
 
     def feasible(self, alpha: float) -> bool:
         """`trial` without energies: whether x + alpha direction is feasible."""
-        return self._core.feasible(alpha)
+        return self._core.feasible(real(alpha, "alpha"))
 
     def accept(self) -> None:
         """The state of the last trial, which was feasible, becomes the iterate: `x` is there, the motion is over."""

@@ -61,6 +61,13 @@ def test_a_record_without_a_trace_says_what_to_do(tmp_path, capsys):
     assert "trace.jsonl: not there" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("at", ["", ",", "1", "1,2,3", "-1,0", "a,b", "1,"])
+def test_an_iteration_is_two_numbers_from_0(tmp_path, capsys, at):
+    write_run(tmp_path, "log", 1.0, 0.1)
+    assert causes.main([str(tmp_path / "log"), f"--at={at}"]) == 2
+    assert ("--at: found nothing" if at == "" else f"--at {at!r}: allowed: STEP,ITERATION") in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("words", [("--set", "/time/steps=3"), ("--plugin", "a.so"), ("--out", "there")])
 @pytest.mark.parametrize("given", ["log", "log/run.json"])
 def test_a_record_takes_nothing_that_only_a_run_can(tmp_path, capsys, given, words):

@@ -37,6 +37,25 @@ def test_wrong_configs_do_not_fit(change):
     assert not validator("config").is_valid({**config, **change})
 
 
+def numbers(schema, place=""):
+    """Every rule of a number with a unit, and its place."""
+    if isinstance(schema, dict):
+        if "unit" in schema and ("number" in (schema.get("type"), schema.get("items", {}).get("type"))):
+            yield place, schema if schema["type"] == "number" else schema["items"]
+        for key, value in schema.items():
+            yield from numbers(value, f"{place}/{key}")
+
+
+def test_every_number_has_a_largest_size():
+    """Squares and products of what a config holds stay within double (core/parameters/units.cpp)."""
+    found = dict(numbers(json.loads((ROOT / "configs/schema/config.schema.json").read_text())))
+    assert len(found) > 100
+    for place, rule in found.items():
+        assert max(abs(rule.get(key, 1e300)) for key in ("maximum", "exclusiveMaximum") if key in rule or key == "maximum" and "exclusiveMaximum" not in rule) <= 1e18, place
+        low = rule.get("minimum", rule.get("exclusiveMinimum"))
+        assert low is not None and low >= -1e18, place
+
+
 @pytest.mark.parametrize("axis", [{}, {"pointer": "/a"}, {"pointer": "/a", "values": [1], "cases": [{"label": "a", "set": {}}]}])
 def test_an_axis_of_no_form_does_not_fit(axis):
     assert not validator("sweep").is_valid({"schema": "barrierbench.sweep/1", "name": "a", "base": "b", "axes": [axis]})

@@ -63,7 +63,11 @@ Ending shape_without_a_potential() {
 }
 
 Ending stiffness_that_overflows() {  // kappa b'' is infinite, the force is not
-  Method method = fixed_method("cubic", 1e308);
+  Method method = fixed_method("cubic", 1);
+  PolicyConfig steep;
+  steep.parameters["kappa_N_per_m"] = 1.0;
+  steep.scale = 1e308;
+  method.stiffness = make_policy(steep);
   return simulate(particle(0.005), method);
 }
 

@@ -30,7 +30,6 @@ FILES += [
     Case("file-plugin-too-large", ("--plugin", "it", "list"), {"it": sparse((256 << 20) + 1)}, says=("268435456 bytes",)),
     Case("file-config-no-name", ("check", ""), says=("no path",)),
     Case("file-sweep-no-name", ("sweep", "", "--dry-run"), says=("no path",)),
-    Case("file-plugin-no-name", ("--plugin", "", "list"), says=("no path",)),
     Case("file-eval-no-name", ("eval", ""), says=("no path",)),
     Case("file-mesh-zero-byte", ("check", "a.json"), {"a.json": one_mesh("a\0b.ply")}, says=("zero byte",)),
     Case("file-sweep-base-fifo", ("sweep", "s.json", "--dry-run"),
@@ -89,6 +88,10 @@ def full_stderr() -> None:
     os.dup2(os.open("/dev/full", os.O_WRONLY), 2)
 
 
+def full_stdout() -> None:
+    os.dup2(os.open("/dev/full", os.O_WRONLY), 1)
+
+
 def small_files() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))
 
@@ -99,6 +102,12 @@ OUTPUTS = [
     Case("stderr-full", ("check", BLOCK, "--set", "/time/dt_s=-1"), prepare=full_stderr),
     Case("stderr-full-plugin", ("--plugin", "nowhere.so", "list"), prepare=full_stderr),
     Case("files-of-4000-bytes", SHORT, code=INTERRUPTED_OR_FULL, says=("File too large",), prepare=small_files, writes=("out",)),
+    Case("stdout-full", ("list", "shapes"), code=INTERRUPTED_OR_FULL, says=("the standard output cannot be written",), prepare=full_stdout),
+    *(Case(f"empty-{option.strip('-')}", (*verb, option, ""), says=(option,))
+      for *verb, option in (("steps", BLOCK, "--at"), ("run", BLOCK, "--out"), ("run", BLOCK, "--set"), ("run", BLOCK, "--time-limit"), ("sweep", "s.json", "--index"),
+                            ("sweep", "s.json", "--jobs"), ("ccd", "--random"), ("ccd", "--seed"), ("matrix", "a.mtx", "--tol"), ("explain", BLOCK, "--contacts"), ("--plugin",),
+                            ("--progress-every",), ("--progress",))),
+    Case("name-of-a-file-with-escapes", ("check", "a\x1b[31m\x07.json"), says=("a\\x1b[31m\\x07.json",)),
     Case("out-run-json-a-fifo", SHORT, {"out/run.json": fifo}, code=DONE, writes=("out",)),
     Case("out-run-json-nested", SHORT, {"out/run.json": nested(DEEP)}, code=DONE, writes=("out",)),
     Case("out-a-file", SHORT, {"out": "text"}, says=("out",)),

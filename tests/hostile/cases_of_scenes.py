@@ -1,6 +1,6 @@
 """Meshes, and scenes that config and files show to be wrong."""
 
-from tests.hostile.case import check, mesh, refused_run
+from tests.hostile.case import DONE, check, mesh, refused_run
 from tests.hostile.files import (
     FACES, POINTS, SQUARE, TRIANGLE_BYTES, VERTICES, binary_ply, binary_points, binary_stl, bodies, body, config, grid, one_mesh,
     ply)
@@ -83,6 +83,51 @@ def with_obstacle(kind: str, **more) -> dict:
     return config({"bodies": [body(grid())], "obstacles": [{"name": "thing", "kind": kind, "point_m": [0, 0, -1], **more}]})
 
 
+def moved(**motion) -> dict:
+    """A cloth above a driven plate."""
+    return bodies(body(grid()), {**RIGID_FAR, "motion": motion})
+
+
+HUGE_OR_TINY = {  # what the scene holds, and the place of the number
+    "translate": (bodies(body(grid(), transform={"translate_m": [0, 0, 1e16]})), "transform/translate_m/2: found 1e+16; allowed: a number >= -1e+15 and <= 1e+15 (m)"),
+    "scale": (bodies(body(grid(), transform={"scale": 5e-324})), "transform/scale: found 5e-324; allowed: a number >= 1e-18 and <= 1e+18"),
+    "velocity": (bodies(body(grid(), velocity_m_per_s=[0, -1e308, 0])), "velocity_m_per_s/1: found -1e+308"),
+    "density": (bodies(body(grid(), material={"density_kg_per_m2": 1e308})), "density_kg_per_m2: found 1e+308"),
+    "density-denormal": (bodies(body(grid(), material={"density_kg_per_m2": 1e-310})), "density_kg_per_m2: found 1e-310; allowed: 0, or a number >= 1e-18 and <= 1e+18 (kg/m^2)"),
+    "youngs": (bodies(body(grid(), material={"youngs_N_per_m": 1e308})), "youngs_N_per_m: found 1e+308"),
+    "bending": (bodies(body(grid(), material={"bending_J": 1e300})), "bending_J: found 1e+300"),
+    "offset": (bodies(body(grid(), offset_m=1e308)), "offset_m: found 1e+308"),
+    "d-hat-of-a-body": (bodies(body(grid(), d_hat_m=1e-300)), "d_hat_m: found 1e-300"),
+    "gravity": (config({"bodies": [body(grid())], "gravity_m_per_s2": [0, 0, -1e308]}), "gravity_m_per_s2/2: found -1e+308"),
+    "radius": (with_obstacle("sphere", radius_m=1e200), "radius_m: found 1e+200"),
+    "pull": (bodies(body(grid(), pins=[{"indices": [0], "pull_N_per_m": 1e308}])), "pull_N_per_m: found 1e+308"),
+    "hold": (bodies(body(grid(), pins=[{"indices": [0], "hold_s": 1e308}])), "hold_s: found 1e+308"),
+    "turning": (moved(angular_velocity_rad_per_s=1e300), "angular_velocity_rad_per_s: found 1e+300"),
+    "wind": (config({"bodies": [body(grid())], "air": {"normal_N_s_per_m3": 1, "wind_m_per_s": [1e300, 0, 0]}}), "wind_m_per_s/0: found 1e+300"),
+    "grid": (bodies(body(grid(size_x_m=1e308))), "size_x_m: found 1e+308"),
+}
+EMPTY_LISTS = {
+    "keyframes": (moved(keyframes=[]), "motion/keyframes: found []; allowed: an array of at least 1 and at most 10000 elements"),
+    "then": (moved(velocity_m_per_s=[0, 0, 1], then=[]), "motion/then: found []"),
+    "keyframes-of-a-pin": (bodies(body(grid(), pins=[{"indices": [0], "motion": {"keyframes": []}}])), "pins/0/motion/keyframes: found []"),
+    "pressure-schedule": (bodies(body(grid(), pressure_schedule=[])), "pressure_schedule: found []"),
+    "gravity-schedule": (config({"bodies": [body(grid())], "gravity_schedule": []}), "gravity_schedule: found []"),
+    "pull-factors": (bodies(body(grid(), pins=[{"indices": [0], "pull_N_per_m": 1, "pull_factors": []}])), "pull_factors: found []"),
+    "shrink-schedule": (bodies(body(grid(), material={"shrink_schedule": []})), "shrink_schedule: found []"),
+}
+CONTROL = "a\x1b[31m"
+CONTROL_CHARACTERS = {
+    "body": (bodies(body(grid(), name=CONTROL)), "/scene/bodies/0/name: found \"a\\u001b[31m\"; allowed: a string that is not empty, without control characters"),
+    "body-nul": (bodies(body(grid(), name="a\0b")), "/scene/bodies/0/name: found \"a\\u0000b\""),
+    "body-c1": (bodies(body(grid(), name="a\u009bb")), "/scene/bodies/0/name"),
+    "obstacle": (config({"bodies": [body(grid())], "obstacles": [{"name": CONTROL, "kind": "plane"}]}), "/scene/obstacles/0/name"),
+    "group": (bodies(body(grid(), collision_group=CONTROL)), "/scene/bodies/0/collision_group"),
+    "file": (one_mesh(CONTROL + ".ply"), "/scene/bodies/0/mesh/file"),
+    "config": ({**bodies(body(grid())), "name": CONTROL}, "#/name"),
+    "doc": ({**bodies(body(grid())), "doc": CONTROL}, "#/doc"),
+    "key": ({**bodies(body(grid())), CONTROL: 1}, "a\\x1b[31m"),
+}
+
 WRONG_SCENES = {
     "model": (bodies(body(grid(), material={"model": "corotationl"})), "corotationl"),
     "mesh": ({**one_mesh("m.obj")}, "m.obj:4"),
@@ -99,10 +144,10 @@ WRONG_SCENES = {
     "grid-20000": (bodies(body(grid(n_x=20000, n_y=20000))), "GiB"),
     "cylinder-20000": (bodies(body({"generator": "cylinder", "n_around": 20000, "n_along": 20000})), "GiB"),
     "drape-of-100-layers": (config({"name": "drape", "n": 1000, "layers": 100}), "GiB"),
-    "scaled-far": (bodies(body(grid(), transform={"scale": 1e100})), "1e+15"),
+    "scaled-far": (bodies(body(grid(), transform={"scale": 1e17})), "1e+15"),
     "moved-far": (bodies(body(grid(), transform={"translate_m": [1e155, 0, 0]})), "1e+15"),
-    "plate-driven-far": (bodies(body(grid()), {**RIGID_FAR, "motion": {"velocity_m_per_s": [1e200, 0, 0]}}), "driven too far"),
-    "plate-vanishes": (bodies(body(grid()), {**RIGID_FAR, "transform": {"scale": 1e160, "translate_m": [0, 0, -1]}}), "1e+15"),
+    "plate-driven-far": (bodies(body(grid()), {**RIGID_FAR, "motion": {"velocity_m_per_s": [1e12, 0, 0]}}) | {"time": {"dt_s": 1e6, "steps": 1}}, "driven too far"),
+    "plate-vanishes": (bodies(body(grid()), {**RIGID_FAR, "transform": {"scale": 1e17, "translate_m": [0, 0, -1]}}), "1e+15"),
     "obstacle-far": (config({"bodies": [body(grid())], "obstacles": [{"name": "o", "kind": "plane", "point_m": [0, 0, -1e155]}]}), "1e+15"),
     "jitter-far": ({**bodies(body(grid())), "seeds": {"jitter_m": 1e200}}, "1e+15"),
     "zero-size": (bodies(body(grid(size_x_m=0))), "size_x_m"),
@@ -111,6 +156,12 @@ WRONG_SCENES = {
 SCENE_CASES = [
     make(name, content, says, files={"m.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"} if name == "mesh" else {})
     for name, (content, says) in WRONG_SCENES.items() for make in (check, refused_run)
+]
+SCENE_CASES += [check(f"{kind}-{name}", content, says) for kind, table in (("size", HUGE_OR_TINY), ("empty", EMPTY_LISTS), ("control", CONTROL_CHARACTERS))
+                for name, (content, says) in table.items()]
+SCENE_CASES += [  # a direction may have any size
+    check(f"axis-{size}", config({"bodies": [body(grid(), transform={"axis": [0, 0, size], "angle_deg": 30, "translate_m": [0, 0, 1]})],
+                                  "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, size]}]}), code=DONE) for size in (1e-200, 5e-324, 1e200, 1e308)
 ]
 SCENE_CASES += [
     check("bowl-smaller-than-what-is-in-it", with_obstacle("sphere", radius_m=0.2, inside=True), 'body "cloth" inside obstacle "thing"', "found 1.41421 m across", "less than 0.4 m"),
@@ -124,6 +175,8 @@ SCENE_CASES += [
     check("ten-thousand-and-one-bodies", bodies(*[body(grid(), name=f"b{i}") for i in range(10_001)]), "at most 10000"),
     check("formulation-upwards", {**bodies(body(grid())), "formulation": {
         "name": "../../up", "shape": "log", "argument": "gap", "stiffness_policy": {"name": "fixed"}, "d_hat_m": 0.01}}, "/formulation/name"),
+    check("formulation-a-name-alone", {**bodies(body(grid())), "formulation": {"name": "mine", "shape": "log", "d_hat_m": 0.01}}, "/formulation/name: found \"mine\"", "one of ",
+          "or, as a label, any name beside shape, argument and stiffness_policy, of which there is no argument, stiffness_policy"),
     check("formulation-a-path", {**bodies(body(grid())), "formulation": {"name": "a/b", "d_hat_m": 0.01}}, "/formulation/name"),
     check("formulation-of-300", {**bodies(body(grid())), "formulation": {
         "name": "n" * 300, "shape": "log", "argument": "gap", "stiffness_policy": {"name": "fixed"}, "d_hat_m": 0.01}}, "150 bytes"),

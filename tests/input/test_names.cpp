@@ -27,6 +27,24 @@ TEST(Names, PlainOnesAreAcceptedOthersAreNot) {
   EXPECT_FALSE(is_plain(std::string(max_name_bytes + 1, 'a')));
 }
 
+TEST(Names, ControlCharactersAreShownAsText) {
+  EXPECT_EQ(printable("a\x1b[31mb\x07"), "a\\x1b[31mb\\x07");
+  EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(printable("\r\x7f"), "\\x0d\\x7f");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "1m"),
+            "\\x9b1m");
+  EXPECT_EQ(printable("\x9b"
+                      "1m\xff"),
+            "\\x9b1m\\xff");                       // no UTF-8
+  EXPECT_EQ(printable("\xe4\xb8"), "\\xe4\\xb8");  // cut off
+  for (const char* shown : {"", "a b\n\tc", "\xc3\xa9", "\xe4\xb8\xad", "\xf0\x9f\x98\x80", "\xc2\xa0"}) {
+    EXPECT_EQ(printable(shown), shown);
+  }
+  EXPECT_TRUE(has_control_character("a\n"));
+  EXPECT_FALSE(has_control_character("\xc3\xa9"));
+}
+
 TEST(Names, Utf8IsTold) {
   EXPECT_TRUE(is_utf8("\xc3\xa9"));
   EXPECT_FALSE(is_utf8("\xff"));

@@ -200,6 +200,10 @@ REFUSED = {
     "a have cells of their own": lambda f: [written(f / "a", "obj", CLEAN)[0], "--topology", f / "a" / "frame_000.obj"],
     "nothing.obj: found No such file": lambda f: [written(f / "a", "pc2", CLEAN)[0], "--topology", f / "nothing.obj"],
     f"{ABOUT}obstacles/0/axis": lambda f: with_about(f, obstacles=[{"kind": "plane", "axis": [0, 0, 0]}]),
+    f"{ABOUT}bodies: found \"the cell [0, 1, 3] of `triangles` (one of 1) with vertices of 'left' and of 'right'\"": lambda f: with_about(
+        f, triangles=[[0, 1, 3]], bodies=[{"name": "left", "vertices": 3}, {"name": "right", "vertices": 3}]),
+    f"{ABOUT}bodies: found \"the cell [2, 3] of `segments`": lambda f: with_about(
+        f, segments=[[2, 3]], bodies=[{"name": "left", "vertices": 3}, {"name": "right", "vertices": 3}]),
     f"{ABOUT}obstacles/0/radius_m: is missing": lambda f: with_about(f, obstacles=[{"kind": "sphere"}]),
     f"{ABOUT}obstacles/0/point_m: found [1e+60": lambda f: with_about(f, obstacles=[{"kind": "plane", "point_m": [1e60, 0, 0]}]),
     f"{ABOUT}segments/1: found [0, 99]": lambda f: with_about(f, segments=[[0, 1], [0, 99]]),
@@ -207,11 +211,22 @@ REFUSED = {
     f"{ABOUT}given_vertices/1: found 1000000000000000000000": lambda f: with_about(f, given_vertices=[0, 10**21]),
     f"{ABOUT}thickness_m: found 1e+60": lambda f: with_about(f, thickness_m=1e60),
     f"{ABOUT}dt_s: found 1e+308": lambda f: with_about(f, dt_s=1e308),
+    "argument --scale: found 'nan'; allowed: a finite number": lambda f: [a(f), "--scale", "nan"],
+    "argument --reach: found 'inf'; allowed: a finite number": lambda f: [a(f), "--reach", "inf"],
     "--reach 1e+16: at most 1e+15": lambda f: [a(f), "--reach", "1e16"],
     "x.vtu: found Start-end tags mismatch": lambda f: broken_vtu(f),
     "the key 'planar' is given twice": twice,
     "x.obj:2: found \"99999999999999999999\"": lambda f: [(f / "x.obj").write_text("v 0 0 0\nf 1 2 99999999999999999999\n") and f / "x.obj"],
 }
+
+
+@pytest.mark.parametrize("size", [1e-200, 5e-324, 1e200])
+def test_an_axis_of_any_size_is_a_direction(program, tmp_path, size):
+    """A floor at z = 4: the spear of the first frame ends 0.2 above it, that of the second goes through."""
+    path = write_parts(tmp_path, [5.2, 4.5])
+    records = [judge(tmp_path, path, *about(tmp_path, obstacles=[{"kind": "plane", "name": "floor", "point_m": [0, 0, -0.5], "axis": axis}]))
+               for axis in ([0, 0, 1], [0, 0, size])]
+    assert records[0][0] == records[1][0] and records[0][1]["total"] == records[1][1]["total"]
 
 
 @pytest.mark.parametrize("words", REFUSED)

@@ -1,7 +1,10 @@
 // What a list of parameters says of an object: one message form each, with place, value and what is allowed.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/parameters/check.hpp"
+#include "core/parameters/units.hpp"
 
 namespace bb {
 namespace {
@@ -39,9 +42,10 @@ TEST(Check, EachFormNamesPlaceValueAndWhatIsAllowed) {
       {count(1, 9), "0", "found 0; allowed: an integer >= 1 and <= 9"},
       {count(1, 9), "2.5", "found 2.5; allowed: an integer >= 1 and <= 9"},
       {any, "\"1\"", "found \"1\"; allowed: a number"},
-      {positive("s"), "0", "found 0; allowed: a number > 0 (s)"},
-      {non_negative("1"), "-1", "found -1; allowed: a number >= 0"},
-      {open_high(open_low(number_in(0, 0.5, "1"))), "0.5", "found 0.5; allowed: a number > 0 and < 0.5"},
+      {positive("s"), "0", "found 0; allowed: a number >= 1e-12 and <= 1e+09 (s)"},
+      {non_negative("1"), "-1", "found -1; allowed: 0, or a number >= 1e-18 and <= 1e+18"},
+      {open_low(number_in(-1, 0.5, "1")), "-1", "found -1; allowed: a number > -1 and <= 0.5"},
+      {open_high(open_low(number_in(0, 0.5, "1"))), "0.5", "found 0.5; allowed: a number >= 1e-18 and < 0.5"},
       {any_text(), "3", "found 3; allowed: a string"},
       {text_up_to(3), "\"\"", "found \"\"; allowed: a string of at least 1 and at most 3 bytes"},
       {text_up_to(3), "\"abcd\"", "found \"abcd\"; allowed: a string of at least 1 and at most 3 bytes"},
@@ -66,7 +70,41 @@ TEST(Check, EachFormNamesPlaceValueAndWhatIsAllowed) {
 
 TEST(Check, ElementsAreNamedByTheirIndex) {
   EXPECT_EQ(said(words({"a", "b"}), "[\"a\", \"c\"]"), "a.json#/row/1: found \"c\"; allowed: one of a, b");
-  EXPECT_EQ(said(any_vector("m"), "[1, null, 2]"), "a.json#/row/1: found null; allowed: a number (m)");
+  EXPECT_EQ(said(any_vector("m"), "[1, null, 2]"),
+            "a.json#/row/1: found null; allowed: a number >= -1e+15 and <= 1e+15 (m)");
+}
+
+TEST(Check, SizesAreThoseOfTheUnit) {
+  for (const char* unit :
+       {"m", "s", "m/s", "m/s^2", "deg", "rad", "rad/s", "1", "N/m", "Pa", "kg/m^3", "J", "d_hat"}) {
+    const auto [least, most] = sizes_of(unit);
+    EXPECT_GT(least, 0) << unit;
+    EXPECT_TRUE(std::isnormal(std::pow(least, 8)) && std::isnormal(std::pow(most, 8))) << unit;
+    for (const double good : {least, 1.0, most}) {
+      EXPECT_EQ(said(positive(unit), json(good).dump().c_str()), "") << unit;
+      EXPECT_EQ(said(non_negative(unit), json(good).dump().c_str()), "") << unit;
+      EXPECT_EQ(said(any_number(unit), json(-good).dump().c_str()), "") << unit;
+    }
+    for (const double bad : {5e-324, least / 2, most * 2, 1e308}) {
+      EXPECT_NE(said(positive(unit), json(bad).dump().c_str()), "") << unit << " " << bad;
+    }
+    EXPECT_EQ(said(non_negative(unit), "0"), "") << unit;
+    for (const char* bad : {"1e308", "1e-310", "5e-324"})
+      EXPECT_NE(said(non_negative(unit), bad), "") << unit;
+    EXPECT_NE(said(any_number(unit), "-1e308"), "") << unit;
+    EXPECT_NE(said(any_vector(unit), "[0, 1e308, 0]"), "") << unit;
+    EXPECT_EQ(said(any_vector(unit), "[0, 5e-324, 0]"), "") << unit;
+  }
+}
+
+TEST(Check, TextsHaveNoControlCharacters) {
+  const std::string allowed = "; allowed: a string, without control characters";
+  EXPECT_EQ(said(any_text(), R"("a\u001b[31m")"), "a.json#/row: found \"a\\u001b[31m\"" + allowed);
+  for (const char* bad : {R"("\u0000")", R"("a\nb")", R"("\u007f")", R"("\u009b1m")"})
+    EXPECT_NE(said(any_text(), bad), "") << bad;
+  EXPECT_EQ(said(any_text(), "\"\u00e9\u4e2d \u00a0\""), "");
+  EXPECT_EQ(said(free_text(), R"("a\n\tb")"), "");
+  EXPECT_NE(said(free_text(), R"("a\n\u001b")"), "");
 }
 
 std::string said_of(const char* text, const ParameterList& list) {
@@ -110,7 +148,7 @@ TEST(OwnParameters, AreCheckedAndCompleted) {
     own_parameters(rows, {{"a", -1.0}}, "/here");
     FAIL() << "no error";
   } catch (const ConfigError& error) {
-    EXPECT_STREQ(error.what(), "/here/a: found -1.0; allowed: a number > 0 (m)");
+    EXPECT_STREQ(error.what(), "/here/a: found -1.0; allowed: a number >= 1e-15 and <= 1e+15 (m)");
   }
 }
 

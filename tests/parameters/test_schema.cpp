@@ -16,7 +16,7 @@ json schema(const Rule& rule, ParameterValue fallback = no_default) {
 TEST(Schema, KeywordsOfARow) {
   EXPECT_EQ(
       schema(open_high(open_low(number_in(0, 0.5, "m"))), 0.25),
-      json::parse(R"({"description": "what", "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 0.5,
+      json::parse(R"({"description": "what", "type": "number", "minimum": 1e-15, "exclusiveMaximum": 0.5,
                             "default": 0.25, "unit": "m"})"));
   EXPECT_EQ(schema(count(1, 9), 3), json::parse(R"({"description": "what", "type": "integer", "minimum": 1,
                                                    "maximum": 9, "default": 3, "unit": "1"})"));
@@ -28,8 +28,13 @@ TEST(Schema, KeywordsOfARow) {
             json::parse(R"({"description": "what", "type": "string"})"));  // plugins add names
   EXPECT_EQ(schema(any_vector("m")),
             json::parse(R"({"description": "what", "type": "array", "minItems": 3, "maxItems": 3,
-                            "items": {"type": "number"}, "unit": "m"})"));
+                            "items": {"type": "number", "minimum": -1e15, "maximum": 1e15}, "unit": "m"})"));
   EXPECT_EQ(schema(computed(positive("s"), "the scene's"), 1)["description"], "what Default: the scene's.");
+  EXPECT_EQ(
+      schema(positive("s")),
+      json::parse(
+          R"({"description": "what", "type": "number", "minimum": 1e-12, "maximum": 1e9, "unit": "s"})"));
+  EXPECT_EQ(schema(any_text())["pattern"], R"(^[^\u0000-\u001F\u007F-\u009F]*$)");
   EXPECT_FALSE(schema(computed(positive("s"), "the scene's"), 1).contains("default"));
 }
 

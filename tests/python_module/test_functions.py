@@ -113,7 +113,7 @@ def test_accd_stops_before_a_head_on_contact(bb):
     assert 0.5 - 1e-9 < found.toi[0] <= 0.5
     with pytest.raises(bb.ConfigError, match="as many as at t = 0: 2"):
         bb.accd("point_triangle", x0, x1[:1])
-    with pytest.raises(bb.ConfigError, match="not finite"):
+    with pytest.raises(bb.ConfigError, match="a finite number"):
         bb.accd("point_triangle", x0 * np.nan, x1)
 
 

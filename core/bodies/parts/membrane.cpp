@@ -215,7 +215,7 @@ class Membrane final : public Part {
     out.add("shrink_weft", positive("1"), "The same at right angles to the warp direction.",
             &Material::shrink_weft);
     out.nest_all(
-        "shrink_schedule", "A factor on both over time.", 10000, settings_of<ShrinkKey>(),
+        "shrink_schedule", "A factor on both over time.", 1, 10000, settings_of<ShrinkKey>(),
         [](auto& m) -> auto& { return m.shrink_keys; });
     out.add(
         "membrane_yield", non_negative("1"),

@@ -1,0 +1,17 @@
+// What sizes a quantity of a unit may have: the one place that says so, for settings, scenes, materials and the parameters of
+// registries.
+#pragma once
+
+#include <string_view>
+
+namespace bb {
+
+/// Wide enough for anything physical, and so narrow that products and squares of what a config holds stay within double.
+struct Sizes {
+  double least, most;  // of a value that is not 0
+};
+
+/// Of a number of this unit. A number without any unit ("") has no bound.
+Sizes sizes_of(std::string_view unit);
+
+}  // namespace bb
