@@ -22,11 +22,12 @@ from . import input_file
 from .captions import caption
 from .coloring import annotate, top_of
 from .errors import UserError
+from .frame_pixels import Look, Shared, drawn_of_run, focus_of
 from .frames import frame_of, frame_paths, read_scene, scene_at
 from .progress import counted
 from .record_file import read_record
-from .render import Look, Shared, drawn_of_run, focus_of, save_annotated, shown, title_of, when
 from .run_rows import run_row
+from .still_picture import save_annotated, shown, title_of, when
 from .whole_file import check_can_be_written, write_whole, write_whole_bytes
 
 SUFFIXES = (".gif", ".mp4")

@@ -13,7 +13,7 @@ import subprocess
 from pathlib import Path
 
 from .errors import UserError, tells
-from .front.arguments import parser_of, plugin_argument
+from .front.arguments import parser_of, plugin_argument, set_argument
 from .places import ROOT
 from .program import started
 from .record_file import read_record, read_trace
@@ -217,7 +217,7 @@ def main(words: list[str]) -> int:
         help="by which the worst iteration is picked (default none)",
     )
     parser.add_argument("--at", metavar="STEP,ITERATION", help="that iteration in place of the worst")
-    parser.add_argument("--set", action="append", default=[], help="of a config: /pointer=value")
+    set_argument(parser, "override of a config", "/time/steps=5")
     parser.add_argument("--out", type=Path, help="folder of that run (default results/runs/causes-NAME)")
     plugin_argument(parser)
     given = parser.parse_args(words)
@@ -227,7 +227,7 @@ def main(words: list[str]) -> int:
             raise ValueError
     except ValueError:
         raise UserError(f"--at {given.at!r}: allowed: STEP,ITERATION, both from 0") from None
-    folder = run_folder(given.run, given.out, given.set, given.plugin)
+    folder = run_folder(given.run, given.out, given.overrides, given.plugin)
     record, rows = diagnosed(folder)
     row = pick(rows, given.scaling, at)
     print(

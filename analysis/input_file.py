@@ -15,7 +15,8 @@ from .errors import UserError
 MIB = 1 << 20
 SMALL = 16 * MIB  # a spec, a page, a log, a list
 TABLE = 256 * MIB  # a record, a trace, a frame
-LARGE = 1024 * MIB  # a mesh, a matrix, a trajectory
+LARGE = 1024 * MIB  # a mesh, a matrix, a film
+TRAJECTORY = 64 * LARGE  # positions of all frames in one file, of an engine or for the judge
 
 _TYPES = (
     (stat.S_ISDIR, "a folder"),

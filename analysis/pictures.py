@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 from . import input_file
 from .errors import UserError, tells
+from .frame_pixels import Look
 from .front.arguments import parser_of
 from .places import ROOT
 from .program import started
 from .record_file import read_record
-from .render import Look, render
+from .still_picture import render
 from .whole_file import write_whole
 
 RUNS = ROOT / "results/runs/pictures"

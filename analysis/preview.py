@@ -10,11 +10,12 @@ from pathlib import Path
 from .captions import caption
 from .coloring import annotate
 from .errors import UserError
+from .frame_pixels import Look, drawn
 from .frames import read_frame, scene_at, without_bodies
 from .json_file import read_object
 from .picture_file import picture_file
 from .program import started
-from .render import Look, drawn, save_annotated, save_bare, shown
+from .still_picture import save_annotated, save_bare, shown
 from .whole_file import write_whole
 
 

@@ -16,11 +16,12 @@ import matplotlib.pyplot as plt
 
 from . import style
 from .errors import UserError, tells
+from .frame_pixels import Look
 from .front.arguments import finite_number, parser_of
 from .picture_file import MEANS, picture_file
 from .progress import counted
 from .record_file import read_record
-from .render import Look, render
+from .still_picture import render
 from .titles import broken
 from .whole_file import write_figure
 

@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..front.arguments import parser_of
+from ..front.arguments import parser_of, set_argument
 from ..json_file import read_of_schema
 from ..places import ROOT
 from ..text_table import fitted
@@ -37,13 +37,7 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--formulations", nargs="+", default=list(PAIR), metavar="NAME", help=f"default: {' '.join(PAIR)}"
     )
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="POINTER=VALUE",
-        help="a setting of every run, as of ./bench run: /device='\"cuda\"' (repeatable)",
-    )
+    set_argument(parser, "override in every run", "/device='\"cuda\"'")
     parser.add_argument(
         "--runs",
         type=Path,
@@ -56,7 +50,7 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
         raise UserError("scenes, or --all, are needed, and not both")
     if args.seeds < 1:
         raise UserError(f"--seeds {args.seeds}: at least 1 is needed")
-    args.given = dict(_setting(text) for text in args.set)
+    args.given = dict(_setting(text) for text in args.overrides)
     return args
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..render import Look
+from ..frame_pixels import Look
 from ..stills import COLUMNS, PIXELS, VIEW, Still, sheet
 
 

@@ -33,7 +33,7 @@ def last_line(log: Path) -> str:
 
 def positions(folder: Path) -> np.ndarray:
     """What an adapter left: [frames, n, 3] m. Errors: UserError, and ValueError for no NPZ file."""
-    with input_file.opened(folder / "frames.npz") as raw, np.load(raw) as arrays:
+    with input_file.opened(folder / "frames.npz", input_file.TRAJECTORY) as raw, np.load(raw) as arrays:
         return arrays["positions"].astype(float)
 
 

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..front.arguments import finite_number, parser_of
+from ..front.arguments import finite_number, parser_of, set_argument
 from ..places import ROOT
 from ..text_table import fitted
 from ..whole_file import write_whole
@@ -37,9 +37,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument("--out", type=Path, help="run: folder of frames.npz, engine.json, log.txt, judgement")
     parser.add_argument("--variant", help="run: one of the card (default: its first)")
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="POINTER=JSON", help="run: of the config"
-    )
+    set_argument(parser, "run: override of the config")
     parser.add_argument(
         "--engine-set", action="append", default=[], metavar="NAME=VALUE", help="run: of the card"
     )
@@ -115,7 +113,7 @@ def _run(card: Card, path: Path, options: argparse.Namespace) -> int:
         raise UserError(f"--variant: found {variant!r}; allowed: {', '.join(variants)}")
     if options.out is None:
         raise UserError("--out DIR is needed")
-    scene = read(path, options.set)
+    scene = read(path, options.overrides)
     done = launch.run(card, scene, options.out, variant, _settings(card, options.engine_set), options.limit)
     print(f"{card.name} {variant}: {done['outcome']}: {launch.OUTCOMES[done['outcome']]}")
     if done["outcome"] not in ("ok", "not_finite"):

@@ -91,6 +91,18 @@ def finite_number(text: str) -> float:
     return value
 
 
+def set_argument(parser: argparse.ArgumentParser, words: str, example: str = "/scene/n=8") -> None:
+    """--set, as the program takes it; may be repeated. The values are `overrides` of what is parsed."""
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="/POINTER=VALUE",
+        dest="overrides",
+        help=f"{words}, e.g. {example}; may be repeated",
+    )
+
+
 def plugin_argument(parser: argparse.ArgumentParser) -> None:
     """--plugin, as the program takes it; may be repeated."""
     parser.add_argument(

@@ -37,13 +37,17 @@ def folder(preset: str) -> Path:
     return ROOT / "build" / preset
 
 
+def of_script(*words: str) -> int:
+    """Exit code of the script ./bench."""
+    return subprocess.run([str(ROOT / "bench"), *words], check=False).returncode
+
+
 def setup(*packages: str) -> None:
     """Packages of the system and the Python environment, by the script ./bench. Errors: UserError; the script
     has said why.
     """
-    done = subprocess.run([str(ROOT / "bench"), "setup", *packages], check=False)
-    if done.returncode != 0:
-        raise UserError("the setup failed", done.returncode)
+    if code := of_script("setup", *packages):
+        raise UserError("the setup failed", code)
 
 
 def _has_options(preset: str, options: dict[str, str]) -> bool:

@@ -79,6 +79,8 @@ def run(verb: verbs.Verb, arguments: list[str]) -> int:
             building.ensure_program()
         else:
             building.ensure(verb.needs)
+    if not verb.module:  # setup, which the script answers itself
+        return building.of_script(verb.name, *arguments)
     os.environ.setdefault("BARRIERBENCH_PROGRAM", str(RELEASE))
     return importlib.import_module(f"analysis.{verb.module}").main(arguments)
 

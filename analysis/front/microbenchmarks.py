@@ -14,7 +14,7 @@ TARGET = "barrierbench_microbenchmarks"
 
 @tells("microbenchmarks")
 def main(argv: list[str]) -> int:
-    ensure(TARGET)  # its --help is that of Google Benchmark
+    ensure(TARGET)
     out = ROOT / "results/runs/microbenchmarks"
     out.mkdir(parents=True, exist_ok=True)
     kept = out / f"{datetime.now(timezone.utc):%Y-%m-%dT%H%M%SZ}.json"

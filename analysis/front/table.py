@@ -16,7 +16,7 @@ class Verb(NamedTuple):
     name: str
     group: str  # one of GROUPS
     needs: str  # ENVIRONMENT, PROGRAM, or a target of the release build
-    module: str  # below analysis/; empty: a verb of the program, or of the script itself
+    module: str  # below analysis/; empty: a verb of the program, or of the script ./bench itself
     arguments: str
     help: str
     example: str
@@ -64,7 +64,7 @@ TABLE = (
     Verb("fit-linear", "make", PROGRAM, "fit_linear", "", "measures every linear solver on this machine and fits what `linear_solver: auto` chooses by", "./bench fit-linear"),
     Verb("gpu-report", "make", ENVIRONMENT, "gpu_report", "", "results/GPU.md and its figure from the records of cards that experiments/gpu_evidence.sh made", "./bench gpu-report"),
     Verb("mesh", "make", PROGRAM, "mesh_file", "IN OUT.ply", "a mesh of Gmsh (MSH 2.2, 4.1), VTK (VTU, VTP, legacy) or another program, tetrahedra too, as PLY; tetrahedra within a closed surface", "./bench mesh gear.msh gear.ply"),
-    Verb("setup", "develop", ENVIRONMENT, "", "", "packages, compiler cache, Python environment; instant when all is there", "./bench setup"),
+    Verb("setup", "develop", ENVIRONMENT, "", "", "packages, compiler cache, Python environment; instant when all is there", "./bench setup", own_help=False),
     Verb("build", "develop", ENVIRONMENT, "front.build", "[PRESET]", "configures and builds (release by default; dev, sanitize, cuda-compile)", "./bench build sanitize", own_help=False),
     Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [--browser] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate; --browser installs chromium first, so that the player is tested in it", "./bench test -L eval", own_help=False),
     Verb("format", "develop", ENVIRONMENT, "front.format", "", "clang-format every C++ file and ruff every Python file of analysis/ and python/, in place", "./bench format", own_help=False),
@@ -73,7 +73,7 @@ TABLE = (
     Verb("python", "develop", ENVIRONMENT, "front.python_module", "[--no-tests] [PYTEST ARGUMENTS]", "builds the Python module barrierbench beside the program and runs its tests (docs/python.md); pip install . builds it by itself", "./bench python --no-tests", own_help=False),
     Verb("mutate", "develop", ENVIRONMENT, "front.mutate", "", "puts mistakes into the code one at a time and counts those that the tests catch", "./bench mutate --only 'newton/armijo*'"),
     Verb("fuzz", "develop", ENVIRONMENT, "fuzz", "[TARGET...]", "feeds broken input to every reader under clang's sanitizers; 1 when one of them fails", "./bench fuzz mesh_ply config --seconds 60"),
-    Verb("microbenchmarks", "develop", "barrierbench_microbenchmarks", "front.microbenchmarks", "[GOOGLE BENCHMARK ARGUMENTS]", "ns per shape, query, contact, element, tier; JSON kept in results/runs/microbenchmarks", "./bench microbenchmarks --benchmark_filter='drape/.*:48'"),
+    Verb("microbenchmarks", "develop", "barrierbench_microbenchmarks", "front.microbenchmarks", "[GOOGLE BENCHMARK ARGUMENTS]", "ns per shape, query, contact, element, tier; JSON kept in results/runs/microbenchmarks", "./bench microbenchmarks --benchmark_filter='drape/.*:48'", own_help=False),
     Verb("compare-toolkit", "develop", "contact_stages", "compare_toolkit", "", "our stages of contact beside those of the IPC Toolkit, in turn: a table of ratios", "./bench compare-toolkit --mesh sheets --rounds 3"),
 )
 # fmt: on

@@ -9,8 +9,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ..errors import UserError
-from ..input_file import opened
-from .packed import MOST_BYTES
+from ..input_file import TRAJECTORY, opened
 from .times import increasing
 from .trajectory import Topology, Trajectory, no_cells
 
@@ -133,7 +132,7 @@ def _npz(path: Path, raw: BinaryIO) -> np.lib.npyio.NpzFile:
 
 def of_npz(path: Path) -> Trajectory:
     """`positions` [frames, n, 3]; `triangles`, `segments`, `tetrahedra` and `times_s` where there are any."""
-    with opened(path, MOST_BYTES) as raw:
+    with opened(path, TRAJECTORY) as raw:
         found = Npz(path, _npz(path, raw))
         x = found.positions()
         cells = {key: found.cells(key) for key in CORNERS}

@@ -8,18 +8,17 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..input_file import opened
+from ..input_file import TRAJECTORY, opened
 from .times import increasing
 from .trajectory import Topology, Trajectory, no_cells
 
 PC2_HEADER = struct.Struct("<12siiffi")
 MDD_HEADER = struct.Struct(">ii")
-MOST_BYTES = 1 << 36
 ROUNDED = "positions are float32 in the file: the states that were judged are the rounded ones"
 
 
 def _bytes(path: Path) -> bytes:
-    with opened(path, MOST_BYTES) as file:
+    with opened(path, TRAJECTORY) as file:
         return file.read()
 
 

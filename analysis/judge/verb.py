@@ -64,7 +64,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--weld",
-        type=float,
+        type=finite_number,
         metavar="M",
         help="vertices of the first frame that are so close (0: in one place) are one",
     )

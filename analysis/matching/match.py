@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ..digests import of_text
 from ..errors import UserError, tells
-from ..front.arguments import finite_number, parser_of, plugin_argument
+from ..front.arguments import finite_number, parser_of, plugin_argument, set_argument
 from ..json_file import read_object
 from ..places import ROOT
 from ..text_table import aligned
@@ -223,14 +223,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         ),
     )
     rule_arguments(parser)
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="/POINTER=VALUE",
-        dest="overrides",
-        help="override in every run, e.g. /scene/n=8",
-    )
+    set_argument(parser, "override in every run")
     parser.add_argument(
         "--out",
         type=Path,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from analysis.errors import UserError
-from analysis import render
+from analysis import frame_pixels, render, still_picture
 from analysis.frames import Frame, frame_paths, read_frame, read_scene, without_bodies
 from analysis.obstacle_rays import hits, primitive_gaps, signed_gap
 from analysis.picture import picture
@@ -165,7 +165,7 @@ def test_an_obstacle_that_a_triangle_cuts_shows_through_it_and_no_other(z, shows
     """Seen from above, a millimetre decides: the obstacle is neither shrunk nor moved nor made of facets."""
     frame, scene = _triangle_over_a_ball(z)
     camera = Camera(np.array([0.0, 0, 9]), np.zeros(3), np.array([0.0, 1, 0]), 3000.0, (60.0, 60.0))
-    surfaces, _ = render._assemble(frame, scene, "body", 4.0)
+    surfaces, _ = frame_pixels._assemble(frame, scene, "body", 4.0)
     surfaces.corner_colors[:] = (0, 0, 1)
     image = picture(surfaces, camera, (60, 60), False, np.zeros(3), 4.0)
     grey = np.ptp(image, axis=-1) < 0.05
@@ -173,29 +173,29 @@ def test_an_obstacle_that_a_triangle_cuts_shows_through_it_and_no_other(z, shows
 
 
 def test_a_caption_says_how_far_a_surface_enters_an_obstacle():
-    assert "sheet in ball by 1 mm" in render._at_obstacles(*_triangle_over_a_ball(0.999))
-    assert "closest is 1 mm away (sheet from ball" in render._at_obstacles(*_triangle_over_a_ball(1.001))
+    assert "sheet in ball by 1 mm" in still_picture._at_obstacles(*_triangle_over_a_ball(0.999))
+    assert "closest is 1 mm away (sheet from ball" in still_picture._at_obstacles(*_triangle_over_a_ball(1.001))
     frame, scene = _triangle_over_a_ball(1.5)
-    assert render._at_obstacles(frame, scene | {"obstacles": []}) == ""
+    assert still_picture._at_obstacles(frame, scene | {"obstacles": []}) == ""
 
 
 def test_planar_stills_show_bodies_over_what_obstacles_forbid():
     frame, scene = _triangle_over_a_ball(0.0)
     scene["planar"] = True
     camera = Camera(np.array([0.0, 0, 9]), np.zeros(3), np.array([0.0, 1, 0]), 10.0, (60.0, 60.0), False)
-    surfaces, _ = render._assemble(frame, scene, "body", 4.0)
+    surfaces, _ = frame_pixels._assemble(frame, scene, "body", 4.0)
     surfaces.triangles = surfaces.triangles[:0]
     image = picture(surfaces, camera, (60, 60), True, np.zeros(3), 4.0)
     assert image[30, 30].max() < 0.9 and image[2, 2].min() == 1  # the disk
-    full = picture(render._assemble(frame, scene, "body", 4.0)[0], camera, (60, 60), True, np.zeros(3), 4.0)
+    full = picture(frame_pixels._assemble(frame, scene, "body", 4.0)[0], camera, (60, 60), True, np.zeros(3), 4.0)
     assert np.ptp(full[30, 30]) > 0.2  # the sheet is drawn over it
 
 
 @pytest.mark.parametrize("color", ["body", "gap", "load", "stretch"])
 def test_a_still_is_written_with_its_caption_and_is_the_same_twice(run, tmp_path, color):
-    look = render.Look(color=color, size=SMALL)
-    one = render.render(run, out=tmp_path / "one.png", look=look)
-    two = render.render(run / "run.json", step=4, out=tmp_path / "two.png", look=look)
+    look = frame_pixels.Look(color=color, size=SMALL)
+    one = still_picture.render(run, out=tmp_path / "one.png", look=look)
+    two = still_picture.render(run / "run.json", step=4, out=tmp_path / "two.png", look=look)
     assert one.read_bytes() == two.read_bytes()
     caption = one.with_suffix(".txt").read_text()
     assert "inside an obstacle" in " ".join(caption.split()).lower() and "end of step 4, t = 0.05 s" in caption and "d_hat_m 0.005" in caption and "Machine:" in caption
@@ -206,21 +206,21 @@ def test_a_still_is_written_with_its_caption_and_is_the_same_twice(run, tmp_path
 def test_a_body_that_is_hidden_is_not_drawn_and_the_caption_says_so(run, tmp_path):
     record, scene, paths = opened(run)
     name = scene["bodies"][0]
-    drawn = render.render(run, out=tmp_path / "drawn.png", look=render.Look(size=SMALL))
-    hidden = render.render(run, out=tmp_path / "hidden.png", look=render.Look(size=SMALL, hidden=(name,)))
+    drawn = still_picture.render(run, out=tmp_path / "drawn.png", look=frame_pixels.Look(size=SMALL))
+    hidden = still_picture.render(run, out=tmp_path / "hidden.png", look=frame_pixels.Look(size=SMALL, hidden=(name,)))
     frame = read_frame(paths[-1])
     left = without_bodies(frame, scene, (name,))
     assert len(frame.triangles) > 0 and len(left.triangles) == 0 and len(left.vertices) == len(frame.vertices)
     assert np.abs(plt.imread(drawn) - plt.imread(hidden)).max() > 0.2
     assert f"not drawn: {name}" in " ".join(hidden.with_suffix(".txt").read_text().split())
     with pytest.raises(UserError, match=f"body 'nobody': one of {name}"):
-        render.render(run, out=tmp_path / "no.png", look=render.Look(size=SMALL, hidden=("nobody",)))
+        still_picture.render(run, out=tmp_path / "no.png", look=frame_pixels.Look(size=SMALL, hidden=("nobody",)))
 
 
 def test_colours_follow_the_field(run):
     record, scene, paths = opened(run)
     frame = read_frame(paths[4])
-    surfaces, scale = render._assemble(frame, scene, "gap", 0.3)
+    surfaces, scale = frame_pixels._assemble(frame, scene, "gap", 0.3)
     touched = (frame.of_vertices["gap_rel"] < 1)[frame.triangles]
     colors = surfaces.corner_colors[:50]
     assert scale.vmax == 1 and touched.any() and not touched.all()
@@ -230,7 +230,7 @@ def test_colours_follow_the_field(run):
 
 
 def test_a_finer_still_is_the_picture_alone_and_says_that_it_is_finer(run, tmp_path):
-    finer = render.render(run, out=tmp_path / "a.png", look=render.Look(size=SMALL, subdivide=2, bare=True), title="a cloth")
+    finer = still_picture.render(run, out=tmp_path / "a.png", look=frame_pixels.Look(size=SMALL, subdivide=2, bare=True), title="a cloth")
     assert plt.imread(finer).shape[:2] == SMALL[::-1]
     said = " ".join(finer.with_suffix(".txt").read_text().split())
     assert said.startswith("a cloth, end of step 4, t = 0.05 s.") and "cut 2 times, curved between" in said and "thin lines" not in said
@@ -240,8 +240,8 @@ def test_rods_are_as_thick_as_their_contact_says(run):
     record, scene, paths = opened(run)
     frame = read_frame(paths[4])
     record["config"]["scene"]["bodies"][1]["offset_m"] = 0.004
-    assert list(render._rod_radii(record, scene, frame)) == [0.0] * 36 + [0.004] * 4
-    thin, thick = (render._assemble(frame, scene, "body", 0.3, radii)[0] for radii in (None, render._rod_radii(record, scene, frame)))
+    assert list(frame_pixels._rod_radii(record, scene, frame)) == [0.0] * 36 + [0.004] * 4
+    thin, thick = (frame_pixels._assemble(frame, scene, "body", 0.3, radii)[0] for radii in (None, frame_pixels._rod_radii(record, scene, frame)))
     for surfaces, radius in ((thin, 0.006 * 0.3), (thick, 0.004)):
         ring = surfaces.points[40:52]
         np.testing.assert_allclose(np.linalg.norm(ring - frame.vertices[36], axis=1), radius, rtol=1e-9)
@@ -250,7 +250,7 @@ def test_rods_are_as_thick_as_their_contact_says(run):
 def test_a_plane_fades_into_the_white_round_it():
     frame, scene = _triangle_over_a_ball(3.0)
     scene["obstacles"] = [{"name": "floor", "kind": "plane", "point_m": [0, 0, 0], "axis": [0, 0, 1]}]
-    surfaces, _ = render._assemble(frame, scene, "body", 4.0)
+    surfaces, _ = frame_pixels._assemble(frame, scene, "body", 4.0)
     surfaces.triangles, surfaces.corner_colors = surfaces.triangles[:0], surfaces.corner_colors[:0]
     camera = Camera(np.array([0.0, 0, 30]), np.zeros(3), np.array([0.0, 1, 0]), 130.0, (60.0, 60.0))
     image = picture(surfaces, camera, (60, 60), False, np.zeros(3), 4.0).mean(axis=2)
@@ -267,7 +267,7 @@ def test_what_cannot_be_drawn_is_said(run, tmp_path, capsys):
     record = json.loads((run / "run.json").read_text())
     (tmp_path / "run.json").write_text(json.dumps(record | {"artifacts": []}))
     with pytest.raises(UserError, match="frames_every=1"):
-        render.render(tmp_path)
+        still_picture.render(tmp_path)
 
 
 @pytest.mark.parametrize("damage", ["another frame", "cut", "gone", "another scene", "not named"])
@@ -305,7 +305,7 @@ def test_the_path_that_is_said_is_the_file_that_is_written(run, tmp_path, capsys
 
 
 def test_another_ending_is_refused_before_anything_is_drawn(run, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(render, "drawn_of_run", None)
+    monkeypatch.setattr(still_picture, "drawn_of_run", None)
     assert render.main([str(run), "--out", str(tmp_path / "README.md")]) == 2
     assert f"bench render: --out {tmp_path / 'README.md'}: found the ending .md; allowed: a file that ends in .png" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

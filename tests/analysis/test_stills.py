@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from analysis import render, stills
+from analysis import frame_pixels, still_picture, stills
 from analysis.places import ROOT
 from tests.falling_cloth import CLOTH_ON_BALL
 
@@ -58,7 +58,7 @@ def test_no_title_is_cut_off(runs, tmp_path, monkeypatch, note, columns):
     read = stills.read_record
     monkeypatch.setattr(stills, "read_record", lambda file: {**(record := read(file)), "labels": {**record["labels"], "note": note}})
     assert stills.main([*map(str, runs), "--out", str(tmp_path / "a.png"), "--columns", str(columns)]) == 0
-    render.render(runs[1], out=tmp_path / "b.png", look=render.Look(color="gap", size=(200, 150)), title=note)
+    still_picture.render(runs[1], out=tmp_path / "b.png", look=frame_pixels.Look(color="gap", size=(200, 150)), title=note)
     assert len(titles) == 3 and all("".join(note.split()) in "".join(title.split()) for title in titles)
     for name in "ab":
         dark = plt.imread(tmp_path / f"{name}.png")[..., :3].min(axis=2) < 0.5  # of text

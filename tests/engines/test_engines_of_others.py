@@ -2,16 +2,19 @@
 
 import json
 import sys
+import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from analysis import input_file
 from analysis.engines import card as cards
 from analysis.engines import compare, environment, figure, launch, level, matching, scene, verb
 from analysis.engines.judged import energy_of, error_of, judge
 from analysis.engines.report import text_of
 from analysis.errors import UserError
+from analysis.judge.arrays import of_npz
 from analysis.places import ROOT
 
 HANG = ROOT / "configs/scenes/hang.json"
@@ -42,6 +45,18 @@ def stand_in(tmp_path, body):
         (folder / name).write_text((cards.ENGINES / "template" / name).read_text())
     (folder / "adapter.py").write_text(body)
     return cards.read_card("template", tmp_path / "engines")
+
+
+def test_frames_of_an_engine_may_be_as_large_as_the_judge_takes_them(tmp_path):
+    """More than a mesh may have; the hole in the file takes no place on the disk."""
+    x = np.arange(12.0).reshape(2, 2, 3)
+    with zipfile.ZipFile(tmp_path / "frames.npz", "w") as file:
+        with file.open("positions.npy", "w") as part:
+            np.lib.format.write_array(part, x)
+        file.start_dir += input_file.LARGE  # where the list of the parts begins
+    assert (tmp_path / "frames.npz").stat().st_size > input_file.LARGE
+    np.testing.assert_array_equal(launch.positions(tmp_path), x)
+    np.testing.assert_array_equal(list(of_npz(tmp_path / "frames.npz").frames()), x)
 
 
 @pytest.mark.parametrize("name", cards.names())

@@ -1,11 +1,15 @@
 """What the command line takes beside plain options, and that its answers keep to the terminal."""
 
+import re
+
 import pytest
 
 from analysis.errors import UserError
-from analysis import render, text_table
+from analysis import causes, render, text_table
 from analysis.formula import verb as formula
 from analysis.front import door, verbs
+from analysis.matching import match
+from analysis.places import ROOT
 from analysis.play import verb as play
 from analysis.score import verb as score
 
@@ -47,6 +51,18 @@ def test_color_has_one_spelling_in_help_and_two_on_the_command_line(parse, capsy
         parse(["--help"])
     said = capsys.readouterr().out
     assert "--color" in said and "--colour" not in said
+
+
+def test_set_is_declared_in_one_place(capsys):
+    """All verbs take it from there; --set of the gate names a set of cases."""
+    declared = {path.relative_to(ROOT / "analysis").as_posix() for path in (ROOT / "analysis").rglob("*.py") if re.search(r'add_argument\(\s*"--set"', path.read_text())}
+    assert declared == {"front/arguments.py", "gate/cases.py"}
+    assert render.parse(["run", "--set", "/scene/n=8", "--set", "/time/steps=2"]).overrides == ["/scene/n=8", "/time/steps=2"]
+    assert match.arguments(["config", "--set", "/scene/n=8"]).overrides == ["/scene/n=8"]
+    for parse in (render.parse, match.arguments, causes.main):
+        with pytest.raises(SystemExit):
+            parse(["--help"])
+        assert "--set /POINTER=VALUE" in capsys.readouterr().out
 
 
 def test_the_last_column_of_a_table_is_broken_where_the_terminal_is_narrow(monkeypatch):

@@ -4,6 +4,7 @@ import importlib
 import importlib.util
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import analysis
-from analysis.front import door, verbs
+from analysis.front import building, door, verbs
 
 ROOT = Path(__file__).resolve().parents[2]
 CLI = ROOT / "experiments/cli"
@@ -48,6 +49,38 @@ def test_help_of_a_verb_without_options_of_its_own_does_nothing_else(monkeypatch
     for verb in plain:
         assert door.main([verb.name, asked]) == 0
         assert verb.help.split()[0] in (said := capsys.readouterr().out) and verb.example in said
+
+
+@pytest.mark.parametrize("asked", ["-h", "--help"])
+@pytest.mark.parametrize("verb", verbs.TABLE, ids=lambda verb: verb.name)
+def test_every_verb_answers_for_help_with_its_usage_and_0(verb, asked, monkeypatch, capfd):
+    """Nothing is built or installed for it."""
+    for part in ("build", "of_script"):
+        monkeypatch.setattr(building, part, lambda *_, **__: pytest.fail("something was built"))
+    monkeypatch.delenv("BARRIERBENCH_PROGRAM", raising=False)
+    try:
+        code = door.main([verb.name, asked])
+    except SystemExit as ended:  # of argparse
+        code = ended.code
+    said = capfd.readouterr()
+    assert code == 0 and said.err == "" and said.out.startswith("usage: ") and (verb.example in said.out or verb.name == "mutate")
+
+
+def test_the_script_says_the_usage_of_setup_and_installs_nothing(tmp_path):
+    """PATH has no dpkg and no apt-get."""
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    for tool in ("bash", "dirname", "readlink", "cat", "cmp"):
+        (tools / tool).symlink_to(shutil.which(tool))
+    for words in (["setup", "--help"], ["setup", "-h"], ["help", "setup"]):
+        done = subprocess.run([ROOT / "bench", *words], capture_output=True, text=True, check=False, env=os.environ | {"PATH": str(tools)})
+        assert done.returncode == 0 and done.stderr == "" and "./bench setup" in done.stdout and done.stdout.startswith("usage: "), done.stderr
+
+
+def test_setup_by_the_front_door_is_that_of_the_script(monkeypatch):
+    ran = []
+    monkeypatch.setattr(building.subprocess, "run", lambda words, **_: ran.append(words) or subprocess.CompletedProcess(words, 7))
+    assert door.main(["setup", "chromium"]) == 7 and ran == [[str(ROOT / "bench"), "setup", "chromium"]]
 
 
 def test_every_row_of_python_has_its_file_with_a_main():

@@ -44,9 +44,9 @@ def test_the_codes_are_those_of_the_program():
     assert errors.code_of(errors.UserError("a", 70)) == 70 and errors.code_of(OSError("of a library")) == 2
 
 
-def test_a_full_disk_names_the_file_and_may_be_tried_again(tmp_path):
+def test_a_full_disk_names_the_file_and_may_be_tried_again(program, tmp_path):
     (tmp_path / "in.msh").write_text(TRIANGLE)
-    done = bench("mesh", "in.msh", "out.ply", cwd=tmp_path, preexec_fn=few_bytes)
+    done = bench("mesh", "in.msh", "out.ply", cwd=tmp_path, program=program, preexec_fn=few_bytes)
     assert (done.returncode, done.stderr) == (75, "bench mesh: out.ply: File too large\n")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["in.msh"]
 
@@ -84,7 +84,7 @@ def test_nothing_else_writes_what_a_user_asked_for():
         lines = [line for line in path.read_text().splitlines() if writes.search(line) and "index=False" not in line]
         if lines:
             found[path.relative_to(ROOT / "analysis").as_posix()] = len(lines)
-    assert found == {"whole_file.py": 3, "render.py": 1, "judge/page.py": 1, "score/page.py": 1,  # pictures in memory
+    assert found == {"whole_file.py": 3, "still_picture.py": 1, "judge/page.py": 1, "score/page.py": 1,  # pictures in memory
                      "judge/ask.py": 1, "matching/runs.py": 1, "condition_table.py": 1, "matrix_corpus.py": 1, "readme/snippets.py": 1, "toolkit_meshes.py": 1,
                      "figures/rebuild.py": 1, "formula/cache.py": 2, "formula/device.py": 2,  # which name their folder
                      "front/building.py": 2, "front/python_module.py": 1, "front/test.py": 1, "front/tidy.py": 1, "engines/environment.py": 1, "engines/launch.py": 2,
@@ -97,8 +97,8 @@ def test_nothing_else_writes_what_a_user_asked_for():
 ESCAPES = "a\x1b[31mb\x07c\x7fd\x9be"
 
 
-def test_control_characters_of_a_name_are_shown_as_text(tmp_path):
-    done = bench("judge", f"{ESCAPES}.obj", cwd=tmp_path)
+def test_control_characters_of_a_name_are_shown_as_text(program, tmp_path):
+    done = bench("judge", f"{ESCAPES}.obj", cwd=tmp_path, program=program)
     assert done.returncode == 2 and r"a\x1b[31mb\x07c\x7fd\x9be.obj: no such file" in done.stderr
     assert not re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f]", done.stderr + done.stdout)
 

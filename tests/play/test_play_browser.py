@@ -2,25 +2,17 @@
 error is said. Skipped where Chromium or playwright is absent: ./bench test --browser installs both.
 """
 
-import importlib.util
 import io
-import shutil
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
 from analysis.play import verb
+from tests.browser import needs_browser, opened_browser
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-SOFTWARE_GL = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 DARK_GROUND = np.array([0x14, 0x17, 0x1C]) / 255
 PATIENCE_MS = 120_000  # a machine without a card that does other things too
-
-needs_browser = pytest.mark.skipif(
-    CHROMIUM is None or importlib.util.find_spec("playwright") is None,
-    reason="chromium or playwright is not installed (./bench test --browser)",
-)
 
 
 class Opened:
@@ -50,13 +42,9 @@ class Opened:
 
 
 @pytest.fixture(scope="module")
-def browser():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as play:
-        started = play.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE_GL)
+def browser(tmp_path_factory):
+    with opened_browser(tmp_path_factory.mktemp("browser"), PATIENCE_MS) as started:
         yield started
-        started.close()
 
 
 @pytest.fixture(scope="module")

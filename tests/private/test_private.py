@@ -5,10 +5,12 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from analysis.front.private import left_over, variables
+from tests import browser
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFTEST = f"""import sys
@@ -87,3 +89,14 @@ def test_what_is_left_is_named_and_taken_away(tmp_path):
     (tmp_path / "home/.x/y").touch()
     (tmp_path / "temporary/pytest-of-a").mkdir()
     assert left_over(tmp_path, "pytest-of-*") == [tmp_path / "home/.x"] and left_over(tmp_path) == [tmp_path / "temporary/pytest-of-a"] and left_over(tmp_path) == []
+
+
+def test_a_browser_of_tests_has_a_home_of_its_own(tmp_path):
+    """Chromium keeps certificates in ~/.pki, whatever its profile. No other test starts it otherwise."""
+    asked = {}
+    play = SimpleNamespace(chromium=SimpleNamespace(launch=lambda **words: asked.update(words) or "started"))
+    assert browser.launched(play, tmp_path, 7) == "started" and asked["timeout"] == 7
+    folders = {name: Path(asked["env"][name]) for name in ("HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME")}
+    assert folders["HOME"] == tmp_path and all(folder.is_relative_to(tmp_path) for folder in folders.values()) and asked["env"]["PATH"] == os.environ["PATH"]
+    starts = [path.name for path in (ROOT / "tests").rglob("*.py") if ".launch(" in path.read_text() and path != Path(__file__)]
+    assert starts == ["browser.py"]

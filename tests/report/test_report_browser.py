@@ -18,20 +18,16 @@ from analysis.report.figures import figure_of
 from analysis.report.gather import gathered
 from analysis.report.page import page
 from report_runs import changed, conditions, write_records
+from tests.browser import needs_browser, opened_browser
 from tests.play.play_runs import run_of
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-SOFTWARE_GL = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PATIENCE_MS = 240_000  # a machine without a card that does other things too
 MANY = 1000
 # Seconds of processor time of such a page. Making it took 6; the other two are wide bounds that still have to be narrowed on a
 # machine that does nothing else.
 MAKE_S, READY_S, SORT_S = 30, 60, 20
 
-pytestmark = pytest.mark.skipif(
-    CHROMIUM is None or importlib.util.find_spec("playwright") is None,
-    reason="chromium or playwright is not installed (./bench test --browser)",
-)
+pytestmark = needs_browser
 
 # Text whose contrast with what lies behind it is too low (WCAG 2, 4.5, or 3 for large text): [ratio, text, colour, ground].
 CONTRAST = """() => {
@@ -104,13 +100,9 @@ class Opened:
 
 
 @pytest.fixture(scope="module")
-def browser():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as play:
-        started = play.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE_GL, timeout=PATIENCE_MS)
+def browser(tmp_path_factory):
+    with opened_browser(tmp_path_factory.mktemp("browser"), PATIENCE_MS) as started:
         yield started
-        started.close()
 
 
 @pytest.fixture(scope="module")
