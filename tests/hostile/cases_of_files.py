@@ -31,7 +31,7 @@ FILES += [
     Case("file-config-no-name", ("check", ""), says=("no path",)),
     Case("file-sweep-no-name", ("sweep", "", "--dry-run"), says=("no path",)),
     Case("file-eval-no-name", ("eval", ""), says=("no path",)),
-    Case("file-mesh-zero-byte", ("check", "a.json"), {"a.json": one_mesh("a\0b.ply")}, says=("zero byte",)),
+    Case("file-mesh-zero-byte", ("check", "a.json"), {"a.json": one_mesh("a\0b.ply")}, says=("#/scene/bodies/0/mesh/file", "without control characters")),
     Case("file-sweep-base-fifo", ("sweep", "s.json", "--dry-run"),
          {"s.json": sweep([{"pointer": "/time/steps", "values": [1]}], base="it"), "it": fifo}, says=("FIFO",)),
     Case("file-presets-nowhere", ("check", BLOCK, "--set", "/formulation=cubic"), environment={"BARRIERBENCH_CONFIGS": "nowhere"},
