@@ -15,6 +15,7 @@ from ..gap_map import figure as gap_figure
 from ..gap_map import kept as gap_kept
 from ..gap_map import size_figure
 from ..gap_map.judge import counts
+from ..gap_map.size import drawn_sizes
 from ..gap_map.spec import read_spec as read_gap_map
 from ..json_file import read_object
 from ..matching import pareto, pareto_figure
@@ -158,7 +159,7 @@ def gap_maps(found, drawing: Drawing) -> list[Path]:
 
 
 def gap_sizes(found, drawing: Drawing) -> list[Path]:
-    if not size_figure.drawn_sizes(found):
+    if not drawn_sizes(found.rows):
         raise drawing.nothing(
             "no place of the map has a run of the log and one of the cubic that got through"
         )

@@ -20,7 +20,7 @@ from ..matching.formulations import ROOT
 from ..whole_file import write_whole
 from . import figure, plan, report
 from .judge import counts
-from .kept import about, digests, kept_rows, read_for, source_of
+from .kept import about, digests, kept_rows, read_for, sort_out, source_of
 from .rows import CANNOT, NOT_RUN, add_rho, cannot_reach, records_in, row
 from .runs import folder_of, run_missing
 from .spec import LIMITS, PARTS, Cell, Spec, cells, limit_settings, part, read_spec
@@ -101,9 +101,9 @@ def collect(
     return rows, sources
 
 
-def write_page(found: Map, results: Path, docs: Path, figures: Path) -> None:
+def write_page(found: Map, spec: Spec, results: Path, docs: Path, figures: Path) -> None:
     copy_to_page(figure.draw_all(found, figures), docs)
-    write_whole(results / "GAP_MAP.md", report.markdown(found))
+    write_whole(results / "GAP_MAP.md", report.markdown(found, sort_out(found, spec).why))
 
 
 def what_arguments(parser: argparse.ArgumentParser) -> None:
@@ -203,9 +203,17 @@ def check_store(kept: Path, spec: Spec) -> None:
         )
 
 
+def counted_rows(kept: Path, spec: Spec) -> dict[tuple, tuple[dict, dict]]:
+    """Of the runs that gap_map.json keeps those that count; what is refused is said, and why."""
+    found = kept_rows(kept, spec)
+    if found.refused:
+        print(f"gap-map: {kept} has runs that do not count for {spec.path}: {found.why}", file=sys.stderr)
+    return found.counted
+
+
 def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
     """Runs what may be run and has no row, and writes gap_map.json. Errors: UserError, RecordError."""
-    beyond, before = cannot_reach(spec), kept_rows(kept, spec)
+    beyond, before = cannot_reach(spec), counted_rows(kept, spec)
     check_store(kept, spec)
     if not args.no_run:
         asked = part(spec, args.part) if args.part else spec
@@ -239,12 +247,13 @@ def main(argv: list[str]) -> int:
     spec = read_spec(args.spec)
     if args.plan:
         beyond = cannot_reach(spec)
-        return show_plan(spec, collect(spec, beyond, args.runs, kept_rows(kept, spec))[0], beyond)
+        return show_plan(spec, collect(spec, beyond, args.runs, counted_rows(kept, spec))[0], beyond)
     # The page from the kept numbers, without the program; figures of an earlier such call are no records.
     made = [path.name for path in args.runs.iterdir()] if args.runs.is_dir() else ["figures"]
     alone = args.no_run and kept.is_file() and made == ["figures"]
     write_page(
         read_for(kept, spec) if alone else make_map(args, spec, kept),
+        spec,
         results,
         ROOT / "docs" if args.results is None else results,
         args.runs / "figures",

@@ -18,6 +18,7 @@ from . import size_figure
 from .compare import Lines, lines
 from .judge import FAR, MADE, Pair, counts, extent, pairs, scatter
 from .rows import NOT_RUN
+from .size import drawn_sizes
 from .spec import LIMITS, REFERENCE
 from .table import Map
 
@@ -330,4 +331,4 @@ def draw_all(found: Map, folder: Path, width_in: float | None = None) -> list[Pa
         paths += draw_map(found, [REFERENCE, *rest], folder / "gap_map_more", width_in)
         paths += draw_law(found, rest, folder / "gap_law_more")
     paths += draw_law(found, list(found.main), folder / "gap_law")
-    return paths + (size_figure.draw(found, folder / "gap_size") if size_figure.drawn_sizes(found) else [])
+    return paths + (size_figure.draw(found, folder / "gap_size") if drawn_sizes(found.rows) else [])

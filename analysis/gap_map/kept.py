@@ -6,6 +6,8 @@ and its record means the same.
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..digests import of_text
@@ -50,26 +52,67 @@ def source_of(record: dict) -> dict[str, str]:
     }
 
 
-def kept_rows(path: Path, spec: Spec) -> dict[tuple, tuple[dict, dict]]:
-    """PLACE -> row and its source, of the rows in `path` that count for the spec as it is now; nothing
-    without the file. Errors: UserError for a file that cannot be read.
+@dataclass(frozen=True)
+class Kept:
+    """counted: PLACE -> row and its source, of the kept runs that count for a spec. refused: why not ->
+    how many of the others; a run that is refused for two reasons has both in one."""
+
+    counted: dict[tuple, tuple[dict, dict]]
+    refused: dict[str, int]
+
+    @property
+    def why(self) -> str:
+        """`2 of 3 kept runs, ...`; empty where all count."""
+        n = sum(self.refused.values())
+        reasons = "; ".join(f"{some} {reason}" for reason, some in self.refused.items())
+        return f"{n} of {n + len(self.counted)} kept runs: {reasons}" if n else ""
+
+
+def _reasons(found: Map, spec: Spec) -> Callable[[dict, dict], str]:
+    """Of a row and its source: why it does not count for the spec as it is now; empty where it does."""
+    now = digests(spec)
+    same = {place for place, digest in now.items() if found.about["places"].get("-".join(place)) == digest}
+    shapes = {shape for shape, of in spec.shapes.items() if found.about["shapes"].get(shape) == list(of)}
+
+    def why(row: dict, source: dict) -> str:
+        place, reasons = (row["scene"], row["resolution"]), []
+        if place not in same:
+            reasons.append(
+                f"whose settings, meshes or base config have changed since ({' '.join(place)})"
+                if place in now
+                else f"of a place that the spec has no more ({' '.join(place)})"
+            )
+        if row["shape"] not in shapes:
+            reasons.append(f"whose shape the spec has no more or gives otherwise ({row['shape']})")
+        if changed := other_meanings(source["version"]):
+            since = ", ".join(sorted({change["since"] for change in changed.values()}))
+            reasons.append(
+                f"with records {source['version']}, in which {len(changed)} fields mean something else than"
+                f" in records from {since} on, {', '.join(sorted(changed)[-3:])} among them"
+            )
+        return ", and ".join(reasons)
+
+    return why
+
+
+def sort_out(found: Map, spec: Spec) -> Kept:
+    """The kept runs that count for the spec as it is now, and the others."""
+    why, kept = _reasons(found, spec), Kept({}, {})
+    for row in found.rows:
+        if row["source"] is not None:
+            source = found.about["sources"][row["source"]]
+            if reason := why(row, source):
+                kept.refused[reason] = kept.refused.get(reason, 0) + 1
+            else:
+                kept.counted[tuple(row[column] for column in PLACE)] = (row, source)
+    return kept
+
+
+def kept_rows(path: Path, spec: Spec) -> Kept:
+    """Of the file that earlier calls wrote; nothing without it. Errors: UserError for a file that cannot be
+    read.
     """
-    if not path.is_file():
-        return {}
-    kept, now = read(path), digests(spec)
-    same = {place for place, digest in now.items() if kept.about["places"].get("-".join(place)) == digest}
-    shapes = {shape for shape, of in spec.shapes.items() if kept.about["shapes"].get(shape) == list(of)}
-    found = {}
-    for row in kept.rows:
-        source = None if row["source"] is None else kept.about["sources"][row["source"]]
-        if (
-            source
-            and (row["scene"], row["resolution"]) in same
-            and row["shape"] in shapes
-            and not other_meanings(source["version"])
-        ):
-            found[tuple(row[column] for column in PLACE)] = (row, source)
-    return found
+    return sort_out(read(path), spec) if path.is_file() else Kept({}, {})
 
 
 def about(spec: Spec, command: str, rows: list[dict], sources: list[dict]) -> dict:

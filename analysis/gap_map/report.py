@@ -201,26 +201,40 @@ def _of(found: Map, key: str) -> str:
     return ", ".join(sorted({source[key] for source in found.about["sources"]}))
 
 
-def _not_run(found: Map, n: dict) -> list[str]:
+def _not_run(found: Map, n: dict, refused: str) -> list[str]:
     """How much of the map is not there yet; n: counts of its rows."""
     if not n[NOT_RUN]:
         return []
     return [
         (
-            f"**{n[NOT_RUN]} of {n['cells']} cells are not run yet**: `./bench gap-map` goes on. By"
-            f" scene, runs that are there of those that can be: {extent(found.rows)}. Every number below"
-            " is of the runs that are there."
+            f"**{n[NOT_RUN]} of {n['cells']} cells are not run yet**"
+            f"{'.' if refused else ': `./bench gap-map` goes on.'} By scene, runs that are there of those"
+            f" that can be: {extent(found.rows)}. Every number below is of the runs that are there."
         ),
         "",
     ]
 
 
-def _head(found: Map) -> list[str]:
+def _refused(refused: str) -> list[str]:
+    """What another call would make of the runs of this page."""
+    if not refused:
+        return []
+    return [
+        (
+            "**A call that collects runs no longer counts all of these**: it refuses, and runs again,"
+            f" {refused}. The numbers of this page are of the programs that are named below;"
+            " `./bench gap-map --no-run` writes it anew from what is kept."
+        ),
+        "",
+    ]
+
+
+def _head(found: Map, refused: str) -> list[str]:
     """What was run, by what, and what the numbers are."""
     about, n = found.about, counts(found.rows)
     hours = sum(r["seconds"] or 0 for r in found.rows) / 3600
     low, high = about["unknowns"]
-    lines = ["# Gap map", "", f"{about['doc']}.", "", *_not_run(found, n)]
+    lines = ["# Gap map", "", f"{about['doc']}.", "", *_not_run(found, n, refused), *_refused(refused)]
     lines += [
         (
             f"{n['cells']} cells, {about['runs']} runs of {low} to {high} unknowns, {hours:.2g} h of one core"
@@ -243,7 +257,12 @@ def _head(found: Map) -> list[str]:
         ),
         "",
     ]
-    lines += [
+    return lines + _company(about, refused)
+
+
+def _company(about: dict, refused: str) -> list[str]:
+    """Other studies of the same, and the builds of this one."""
+    lines = [
         "Claims and ablation measure some of these ratios under other conditions: [One quantity, several"
         " studies](../docs/results.md#one-quantity-several-studies).",
         "",
@@ -251,8 +270,8 @@ def _head(found: Map) -> list[str]:
     if len(builds := {source["build"] for source in about["sources"]}) > 1:
         lines += [
             (
-                f"The runs are of {len(builds)} builds of the program: a row counts as long as its settings"
-                " and the meaning of its record are those of now."
+                f"The runs are of {len(builds)} builds of the program"
+                + ("." if refused else ": their settings and the meaning of their records are those of now.")
             ),
             "",
         ]
@@ -291,8 +310,9 @@ def _tail(found: Map) -> list[str]:
     return lines
 
 
-def markdown(found: Map) -> str:
-    lines = _head(found)
+def markdown(found: Map, refused: str = "") -> str:
+    """refused: which of its runs no longer count for its spec, and why (kept.Kept.why)."""
+    lines = _head(found, refused)
     lines += ["## What a reader keeps", "", *(f"{k}. {s}" for k, s in enumerate(sentences(found), 1)), ""]
     lines += ["![the gap map](../docs/gap_map.png)", ""]
     for title, head, beside in (

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..claims.estimate import student
 from .compare import METRICS, Place, Ratio, over_scenes
 from .rows import NOT_RUN
 from .spec import REFERENCE
@@ -76,3 +79,49 @@ def halves(sizes: list[Size], theta: float) -> Halves | None:
     }
     spans = tuple((min(s.unknowns for s in side), max(s.unknowns for s in side)) for side in sides)
     return Halves(ratios, scenes, spans)
+
+
+def thetas_of(sizes: list[Size]) -> list[float]:
+    """Targets that were run at the most sizes, the largest first: others have no line to speak of."""
+    places = {theta: {s.place for s in sizes if s.theta == theta} for theta in {s.theta for s in sizes}}
+    most = max(map(len, places.values()), default=0)
+    return sorted((theta for theta, of in places.items() if len(of) == most), reverse=True)
+
+
+def drawn_sizes(rows: list[dict]) -> list[Size]:
+    """What the figure has a marker for, and what slopes are of."""
+    every = by_size(rows)
+    thetas = thetas_of(every)
+    return [s for s in every if s.ratios and s.theta in thetas]
+
+
+@dataclass(frozen=True)
+class Slope:
+    """d ln(ratio)/d ln(unknowns): of each scene the least-squares line through its meshes, and the mean over
+    scenes with its 95% interval (Student's t over scenes), which one scene does not have."""
+
+    value: float
+    lower: float | None
+    upper: float | None
+    by_scene: dict[str, float]
+
+    def __str__(self) -> str:
+        ends = "" if self.lower is None else f" [{self.lower:.3g}, {self.upper:.3g}]"
+        return f"{self.value:.3g}{ends}"
+
+
+def slope(sizes: list[Size], metric: str) -> Slope | None:
+    """Over all that is given, of one target. None where no scene has two sizes."""
+    lines: dict[str, list[tuple[float, float]]] = {}
+    for s in sizes:
+        lines.setdefault(s.scene, []).append((math.log(s.unknowns), math.log(s.ratios[metric])))
+    of = {
+        scene: float(np.polyfit(*np.transpose(line), 1)[0])
+        for scene, line in lines.items()
+        if len({x for x, _ in line}) > 1
+    }
+    if not of:
+        return None
+    values = list(of.values())
+    ends = map(float, student(values)) if len(of) > 1 else (None, None)
+    return Slope(float(np.mean(values)), *ends, of)

@@ -11,7 +11,7 @@ from .. import style
 from ..captions import Facts
 from ..errors import UserError
 from ..ticks import log_ticks
-from .size import LIMIT, SHAPE, Size, by_size
+from .size import LIMIT, SHAPE, Size, by_size, drawn_sizes, thetas_of
 from .table import Map
 
 TITLE = "The log over the cubic against the number of unknowns"
@@ -51,19 +51,6 @@ def _failed(sizes: list[Size], thetas: list[float]) -> str:
     return "Not drawn, since one of the two did not get through: " + ", ".join(named) + "." if named else ""
 
 
-def thetas_of(sizes: list[Size]) -> list[float]:
-    """Targets that were run at the most sizes, the largest first: others have no line to speak of."""
-    places = {theta: {s.place for s in sizes if s.theta == theta} for theta in {s.theta for s in sizes}}
-    most = max(map(len, places.values()), default=0)
-    return sorted((theta for theta, of in places.items() if len(of) == most), reverse=True)
-
-
-def drawn_sizes(found: Map) -> list[Size]:
-    every = by_size(found.rows)
-    thetas = thetas_of(every)
-    return [s for s in every if s.ratios and s.theta in thetas]
-
-
 def _panel(axis, sizes: list[Size], metric: str, looks: dict[str, tuple[str, str]]) -> None:
     axis.axhline(1, color="#888888", linewidth=0.8, gid=style.REFERENCE, zorder=0)
     for scene, (color, marker) in looks.items():
@@ -88,7 +75,7 @@ def draw(found: Map, stem: Path, width_in: float = style.WIDE_IN, title: str = T
     the log has one of the other shape beside it.
     """
     every = by_size(found.rows)
-    thetas, sizes = thetas_of(every), drawn_sizes(found)
+    thetas, sizes = thetas_of(every), drawn_sizes(found.rows)
     if not sizes:
         raise UserError(f"nothing to draw: no run of the log beside one of {SHAPE}, limit {LIMIT}")
     looks = dict(zip(dict.fromkeys(s.scene for s in sizes), LOOKS))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..text_table import markdown as table_lines
 from .compare import METRICS, at_theta
-from .size import BORDER, LIMIT, SHAPE, Halves, by_size, halves
+from .size import BORDER, LIMIT, SHAPE, Halves, by_size, drawn_sizes, halves, slope
 from .table import Map
 
 NAMES = {"cond_p95": "raw cond", "bj_p95": "block Jacobi", "pcg": "PCG", "newton": "Newton"}
@@ -62,6 +62,30 @@ def pair_section(found: Map) -> list[str]:
     ]
 
 
+def _slopes(found: Map) -> list[str]:
+    """A row a target of the figure, of what the figure draws."""
+    rows, sizes = [], drawn_sizes(found.rows)
+    for theta in dict.fromkeys(s.theta for s in sorted(sizes, key=lambda s: -s.theta)):
+        mine = [s for s in sizes if s.theta == theta]
+        of = {metric: slope(mine, metric) for metric in METRICS}
+        if all(of.values()):
+            scenes = of["newton"].by_scene
+            unknowns = [s.unknowns for s in mine if s.scene in scenes]
+            span = f"{min(unknowns)} to {max(unknowns)}"
+            rows.append([f"{theta:g}", str(len(scenes)), span, *(str(of[metric]) for metric in METRICS)])
+    if not rows:
+        return []
+    heads = [f"{NAMES[m]}, slope of log over {SHAPE}" for m in METRICS]
+    return [
+        "Slopes d ln(ratio)/d ln(unknowns) of the lines of the figure: the least-squares line of each scene"
+        " through its meshes, and the mean over scenes with its 95% interval (Student's t; scenes are the"
+        " samples). Below 0 the ratio falls as the mesh gets finer: -1 halves it when unknowns double.",
+        "",
+        *table_lines(["theta", "scenes", "unknowns", *heads], rows),
+        "",
+    ]
+
+
 def section(found: Map) -> list[str]:
     both = _both(found)
     if not both:
@@ -87,5 +111,6 @@ def section(found: Map) -> list[str]:
         "",
         *table_lines(["theta", "unknowns", "of", "scenes", *heads], rows),
         "",
+        *_slopes(found),
     ]
     return lines

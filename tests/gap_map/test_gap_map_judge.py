@@ -187,6 +187,21 @@ def test_sizes_are_compared_in_the_same_scenes():
     assert size_page.sentences(page_of(by_sizes()[:2])) == [] and "c 1 at theta 0.01 (cubic: stall_overload)" in "\n".join(size_page.section(page_of(by_sizes())))
 
 
+def test_slopes_are_of_what_the_figure_draws_and_their_interval_is_over_scenes():
+    """Scene a has the ratio n^-1, b n^-0.5 with a mesh more; c has one size and no slope. By hand: -0.75 and 0.25 t(0.975, 1)."""
+    found = []
+    for scene, resolution, unknowns, power in (("a", "1", 100, -1.0), ("a", "2", 400, -1.0), ("b", "1", 100, -0.5), ("b", "2", 900, -0.5), ("b", "3", 2500, -0.5), ("c", "1", 100, 3.0)):
+        found += [made(shape, 0.01, 0.1, scene, resolution, unknowns=unknowns, cond_p95=100.0 * (unknowns**power if shape == "log" else 1.0)) for shape in ("log", "cubic")]
+    of = size.slope(size.drawn_sizes(found), "cond_p95")
+    assert of.by_scene == pytest.approx({"a": -1.0, "b": -0.5}) and of.value == pytest.approx(-0.75)
+    assert (of.lower, of.upper) == pytest.approx((-0.75 - 0.25 * 12.7062047, -0.75 + 0.25 * 12.7062047))
+    assert size.slope([s for s in size.by_size(found) if s.scene == "c"], "cond_p95") is None
+    [alone] = [size.slope([s for s in size.by_size(found) if s.scene == "a"], "cond_p95")]
+    assert str(alone) == "-1" and alone.lower is None
+    [row] = [line for line in size_page._slopes(page_of(found)) if line.startswith("| 0.01")]
+    assert row.startswith(f"| 0.01 | 2 | 100 to 2500 | {of} | 0 [0, 0] |")
+
+
 def test_how_often_contact_makes_the_largest_eigenvalue_counts_each_run_once():
     every = [made("log", cond_end=10.0, nc_end=1.0), made("log", 0.5, cond_end=1.5, nc_end=1.0), made("cubic"), made("quadratic")]
     assert judge.made_by_contact(every, "off") == (1, 2)
