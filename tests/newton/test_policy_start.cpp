@@ -59,6 +59,27 @@ TEST(PolicyStart, is_once_a_run_with_the_sums_of_the_first_contacts) {
   EXPECT_EQ(heard[0].time.c, 0.25);
 }
 
+/// Vertices that are let go into contact: newmark looks at the forces of that state first, and what it told the policy then is
+/// forgotten. The policy starts with the sums of the step: weights of 2 and 4 N, and the inertia of an acceleration by weight and
+/// contact, at 30 N/m.
+TEST(PolicyStart, is_that_of_the_step_and_not_of_the_look_at_its_first_forces) {
+  Scene scene = three_particles();
+  scene.motions.resize(1);
+  for (const int v : {0, 1}) scene.pins.push_back({v, 0, {-1, 2 * dt}});
+  std::vector<StiffnessGlobals> heard;
+  Method method = test::fixed_method("quadratic", 1, "newmark");
+  method.stiffness = std::make_unique<Balancing>(heard);
+  Simulation simulation(scene, method, dt, 3);
+  StepObserver nobody;
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(simulation.step(nobody).contacts.total(), 0U);
+  ASSERT_EQ(heard.size(), 0U);
+  ASSERT_EQ(simulation.step(nobody).contacts.obstacle, 2U);
+  ASSERT_EQ(heard.size(), 2U) << "once by the look, once by the step";
+  const double one = 2 * 0.6 * d_hat, other = 2 * 0.3 * d_hat;
+  EXPECT_NEAR(heard[0].grad_b_dot_grad_e, -one * 2 - other * 4, 1e-12);
+  EXPECT_NEAR(heard[1].grad_b_dot_grad_e, -one * (2 + 2 - 30 * one) - other * (4 + 4 - 30 * other), 1e-12);
+}
+
 /// Bodies of unlike d_hat: the smallest of all, whether that body touches or not.
 TEST(PolicyStart, is_told_the_smallest_d_hat_of_the_scene) {
   for (const std::size_t narrow : {0U, 1U, 2U}) {
