@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "tests/config/config_text.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::test::config_id_test {
 namespace {
@@ -83,8 +84,7 @@ TEST(ConfigId, EverySceneFileResolvesToItself) {
 }
 
 TEST(ConfigId, ExtendsIsLaidUnderneath) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "config_extends";
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   std::ofstream(folder / "base.json") << with(hang_config(), "/time/steps", 7).dump();
   std::ofstream(folder / "loop.json") << R"({"extends": "loop.json"})";
   std::ofstream(folder / "over.json") << R"({"extends": "base.json", "time": {"dt_s": 0.005}})";
@@ -93,7 +93,7 @@ TEST(ConfigId, ExtendsIsLaidUnderneath) {
   EXPECT_EQ(config.time.steps, 7);
   EXPECT_EQ(config.time.dt, 0.005);
   EXPECT_THROW(load_config((folder / "loop.json").string()), ConfigError);
-  EXPECT_THROW(parse_config(R"({"extends": "nowhere.json"})", "a", folder.string()), ConfigError);
+  EXPECT_THROW(parse_config(R"({"extends": "nowhere.json"})", "a", folder.path()), ConfigError);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "tests/config/config_text.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::test::methods_test {
 namespace {
@@ -113,8 +114,7 @@ TEST(Methods, AnOverrideThatNamesOneLiesOverTheFileAndUnderTheOthers) {
 }
 
 TEST(Methods, OnlyTheHighestCounts) {
-  const fs::path folder = fs::path(testing::TempDir()) / "methods_extends";
-  fs::create_directories(folder);
+  const TemporaryFolder folder;
   std::ofstream(folder / "base.json") << pure_with("ando2024", "/seeds/main", 7).dump();
   std::ofstream(folder / "over.json") << R"({"extends": "base.json", "method": "ipc2020"})";
   std::ofstream(folder / "plain.json") << R"({"extends": "base.json", "precision": "double"})";
@@ -144,11 +144,9 @@ TEST(Methods, AnUnknownNameIsNamed) {
 class MethodFile : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "method_files";
-    fs::remove_all(folder_);
     fs::create_directories(folder_ / "methods");
     fs::create_directory_symlink(fs::path(configs_folder()) / "formulations", folder_ / "formulations");
-    ::setenv("BARRIERBENCH_CONFIGS", folder_.c_str(), 1);
+    ::setenv("BARRIERBENCH_CONFIGS", folder_.path().c_str(), 1);
   }
   void TearDown() override { ::unsetenv("BARRIERBENCH_CONFIGS"); }
 
@@ -176,7 +174,7 @@ class MethodFile : public testing::Test {
                        {"set", {{"/time/dt_s", 0.001}}},
                        {"because", {{"/time/dt_s", "a fact"}}},
                        {"differs", json::object()}};
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(MethodFile, SaysWhatIsWrongWithIt) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/pilot.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::test {
 
@@ -72,12 +72,9 @@ inline double slope(const char* shape, double d, double d_hat) {
 
 inline RunRecord run(const RunConfig& config) {
   RunOptions options;
-  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  options.folder = std::filesystem::temp_directory_path() /
-                   ("barrierbench_run_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
-  RunRecord record = run_config(config, options);
-  std::filesystem::remove_all(options.folder);
-  return record;
+  const TemporaryFolder folder;
+  options.folder = folder;
+  return run_config(config, options);
 }
 
 /// A load of the pilot and the vertex that carried it, on the plane z = 0.

@@ -1,7 +1,6 @@
 // Runs that end as only their surroundings can make them: no time, no memory, a device that fails, a library that gives up.
 #include <cholmod.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -16,6 +15,7 @@
 #include "experiments/run/runner.hpp"
 #include "tests/experiments/endings.hpp"
 #include "tests/newton/small_scenes.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::test {
 namespace {
@@ -56,8 +56,8 @@ class Greedy final : public Integrator {
 
 Ending run(const std::string& config, const Overrides& overrides, double time_limit_s) {
   RunOptions options;
-  options.folder =
-      std::filesystem::temp_directory_path() / ("barrierbench_outcomes_" + std::to_string(::getpid()));
+  const TemporaryFolder folder;
+  options.folder = folder;
   options.time_limit_s = time_limit_s;
   const RunRecord record = run_config(parse_config(config, "test", ".", overrides), options);
   Ending out{record.status.outcome, record.status.detail, {}, {}, 0};
@@ -70,7 +70,6 @@ Ending run(const std::string& config, const Overrides& overrides, double time_li
     out.solves.insert(nlohmann::json::parse(line)["linear_status"].get<std::string>());
   }
   EXPECT_TRUE(std::filesystem::exists(options.folder / "run.json"));
-  std::filesystem::remove_all(options.folder);
   return out;
 }
 
@@ -111,15 +110,14 @@ Ending greedy() {
 Ending failing() {
   ::setenv("BARRIERBENCH_FAIL_KERNEL", "MultiplyDot:1", 1);
   RunOptions options;
-  options.folder =
-      std::filesystem::temp_directory_path() / ("barrierbench_failing_" + std::to_string(::getpid()));
+  const TemporaryFolder folder;
+  options.folder = folder;
   const RunConfig config = parse_config(resting_block, "test", ".", Overrides{"/device=host"});
   EXPECT_THROW(run_config(config, options), DeviceStopped);
   ::unsetenv("BARRIERBENCH_FAIL_KERNEL");
   EXPECT_TRUE(std::filesystem::exists(options.folder / "checkpoint.bin"));
   std::ifstream file(options.folder / "run.json");
   const auto status = nlohmann::json::parse(file)["status"];
-  std::filesystem::remove_all(options.folder);
   EXPECT_EQ(status["outcome"], "kernel_failed");
   return {Outcome::kernel_failed, status["detail"].get<std::string>(), {}, {}, 0};
 }

@@ -2,13 +2,13 @@
 #include "experiments/run/checkpoint.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "core/math/error.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::checkpoint_test {
 namespace {
@@ -17,12 +17,6 @@ namespace fs = std::filesystem;
 
 class CheckpointFiles : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "bb_checkpoint_XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string bytes(const std::string& name) const {
     std::ifstream in(folder_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -30,7 +24,7 @@ class CheckpointFiles : public ::testing::Test {
   void put(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 /// A state of some size and two lists, one of which has no item at every other step.

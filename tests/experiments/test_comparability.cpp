@@ -2,7 +2,6 @@
 #include "experiments/run/comparability.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 
 #include "core/record/folder_lock.hpp"
 #include "core/record/writer.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::comparability_test {
 namespace {
@@ -228,12 +228,6 @@ TEST(Comparability, DefaultReferenceIsTheFirstThatFitsAndNotTheLast) {
 
 class ComparabilityFiles : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "bb_comparability_XXXXXX").string();
-    root_ = ::mkdtemp(pattern.data());
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
   void write(const char* name, double gap) const {
     RunRecord r;
     r.ids.run_id = std::string(64, 'a');
@@ -245,7 +239,7 @@ class ComparabilityFiles : public ::testing::Test {
     write_run(root_ / name, r);
   }
   json read(const char* name) const { return json::parse(std::ifstream(root_ / name / "run.json")); }
-  fs::path root_;
+  test::TemporaryFolder root_;
 };
 
 TEST_F(ComparabilityFiles, EveryRecordOfASweepGetsItAndOneThatSaysSoIsLeftAlone) {

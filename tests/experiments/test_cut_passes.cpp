@@ -1,7 +1,6 @@
 // What the record says of a run whose first or second pass was cut off: the states of the two passes are compared only
 // where both went to the end.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <new>
@@ -9,6 +8,7 @@
 
 #include "experiments/config/parse.hpp"
 #include "experiments/run/runner.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::cut_passes_test {
 namespace {
@@ -23,14 +23,12 @@ constexpr const char* falling_sheet = R"({"schema": "barrierbench.config/1",
 /// A run whose pass of this name finds no memory after `steps` of its steps.
 RunRecord cut_in(const std::string& pass, int steps) {
   RunOptions options;
-  options.folder = std::filesystem::temp_directory_path() /
-                   ("barrierbench_cut_" + pass + std::to_string(steps) + "_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
+  options.folder = folder;
   options.progress = [&](const Progress& progress) {
     if (pass == progress.pass && progress.step == steps) throw std::bad_alloc();
   };
-  RunRecord record = run_config(parse_config(falling_sheet, "test", ".", {}), options);
-  std::filesystem::remove_all(options.folder);
-  return record;
+  return run_config(parse_config(falling_sheet, "test", ".", {}), options);
 }
 
 std::optional<bool> check(const RunRecord& record, const std::string& name) {

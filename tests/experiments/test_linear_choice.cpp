@@ -13,6 +13,7 @@
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/plan.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::linear_choice_test {
 namespace {
@@ -42,17 +43,11 @@ class LinearChoiceTest : public testing::Test {
  protected:
   void SetUp() override {
     const fs::path presets = fs::path(configs_folder()) / "formulations";
-    std::string name = (fs::temp_directory_path() / "bb_models_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
     fs::create_directory_symlink(presets, folder_ / "formulations");
     fs::create_directory(folder_ / "linear_models");
-    ::setenv("BARRIERBENCH_CONFIGS", folder_.c_str(), 1);
+    ::setenv("BARRIERBENCH_CONFIGS", folder_.path().c_str(), 1);
   }
-  void TearDown() override {
-    ::unsetenv("BARRIERBENCH_CONFIGS");
-    fs::remove_all(folder_);
-  }
+  void TearDown() override { ::unsetenv("BARRIERBENCH_CONFIGS"); }
   std::string write(const json& model, const std::string& name = "one.json") const {
     const fs::path file = folder_ / "linear_models" / name;
     std::ofstream(file) << model.dump();
@@ -77,7 +72,7 @@ class LinearChoiceTest : public testing::Test {
     }
     return "not refused";
   }
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(LinearChoiceTest, TheModelOfThisProcessorChoosesByTheSizeOfTheScene) {

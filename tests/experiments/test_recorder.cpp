@@ -1,8 +1,6 @@
 // What a recorder makes of a simulation: each number against the state it is said to be of.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,6 +13,7 @@
 #include "experiments/run/recorder.hpp"
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::recorder_test {
 namespace {
@@ -241,8 +240,7 @@ struct Both final : StepObserver {
 };
 
 TEST(Recorder, a_trace_line_is_the_iteration_that_newton_reported) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("barrierbench_trace_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
   Scene scene = test::particle_over_plane(mass, 0.9 * d_hat, d_hat);
   scene.v0(2, 0) = -1;
   Method method = test::fixed_method("cubic", kappa);
@@ -272,7 +270,6 @@ TEST(Recorder, a_trace_line_is_the_iteration_that_newton_reported) {
     EXPECT_EQ(j.at("decrement_J"), report.decrement_J);
     EXPECT_EQ(j.at("cond").size(), 3U);  // one stage of this scene, three scalings
   }
-  std::filesystem::remove_all(folder);
   EXPECT_GT(n, 3U);
   EXPECT_EQ(n, reports.size());
 }

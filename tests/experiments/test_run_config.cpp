@@ -1,6 +1,5 @@
 // A whole run on the smallest scene: what makes its record valid, and what ends it.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "experiments/run/method.hpp"
 #include "experiments/run/runner.hpp"
 #include "tests/barriers/limit_policies.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::run_config_test {
 namespace {
@@ -24,8 +24,8 @@ RunRecord run(const std::vector<std::string>& overrides) {
   RunOptions options;
   options.build.valid = true;
   options.build.checks = 1;
-  options.folder =
-      std::filesystem::temp_directory_path() / ("barrierbench_run_config_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
+  options.folder = folder;
   RunRecord record = run_config(parse_config(block, "test", ".", overrides), options);
   const std::filesystem::path file = options.folder / "run.json";
   const auto read = read_run(file);
@@ -34,7 +34,6 @@ RunRecord run(const std::vector<std::string>& overrides) {
     std::ifstream in(file);
     EXPECT_EQ(to_json(*read), std::string(std::istreambuf_iterator<char>(in), {}));
   }
-  std::filesystem::remove_all(options.folder);
   return record;
 }
 

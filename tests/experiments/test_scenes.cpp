@@ -1,7 +1,6 @@
 // Scenes as their users run them: from a config to a record, with the physics that has to come out.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
 #include <cmath>
 
 #include <filesystem>
@@ -12,25 +11,19 @@
 #include "experiments/run/runner.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 #include "experiments/scenes/resting_block_1d.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::scenes_test {
 namespace {
 
 class Scenes : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const ::testing::TestInfo* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("barrierbench_scenes_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   RunRecord run(const std::string& text, std::vector<std::string> overrides = {}) const {
     RunOptions options;
     options.folder = folder_;
     return run_config(parse_config(text, "test", ".", overrides), options);
   }
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 const std::vector<std::string> watched = {"/passes={\"time\": true, \"diagnose\": true, \"audit\": true}"};

@@ -1,11 +1,11 @@
 // The solid scenes of configs/scenes as their users run them: contacts are active, nothing crosses, and what has to come out does.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "experiments/config/parse.hpp"
 #include "experiments/run/runner.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::solid_scenes_test {
 namespace {
@@ -13,11 +13,10 @@ namespace {
 RunRecord run_solid(const std::string& name, std::vector<std::string> overrides) {
   overrides.emplace_back("/passes={\"time\": true, \"diagnose\": false, \"audit\": true}");
   RunOptions options;
-  options.folder =
-      std::filesystem::temp_directory_path() / ("barrierbench_" + name + "_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
+  options.folder = folder;
   const RunRecord record =
       run_config(load_config(configs_folder() + "/scenes/" + name + ".json", overrides), options);
-  std::filesystem::remove_all(options.folder);
   EXPECT_EQ(record.status.outcome, Outcome::ok) << record.status.detail;
   EXPECT_GT(record.audit.judged, 0);
   EXPECT_EQ(record.audit.crossings + record.audit.violations + record.audit.unproven, 0);

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "core/record/phase_times.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/runner.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::start_check_test {
 namespace {
@@ -127,8 +127,7 @@ TEST(StartCheck, ATimeLimitEndsItAndSaysWhere) {
 }
 
 TEST(StartCheck, TheRecordHasItsOutcomeAndItsSeconds) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / fmt::format("barrierbench_start_{}", ::getpid());
+  const test::TemporaryFolder folder;
   RunOptions options;
   options.folder = folder;
   options.time_limit_s = 1e-9;
@@ -143,7 +142,6 @@ TEST(StartCheck, TheRecordHasItsOutcomeAndItsSeconds) {
   EXPECT_EQ(record.steps.size(), 3U);
   EXPECT_GT(record.summary.start_check_s, 0);
   EXPECT_LT(record.summary.start_check_s, 5);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "core/record/writer.hpp"
 #include "experiments/run/runner.hpp"
 #include "tests/experiments/calibrated.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::time_limit_test {
 namespace {
@@ -30,8 +31,8 @@ Stopped stopped_at(int at, double d_hat_m, const std::vector<std::string>& overr
   all.insert(all.end(), overrides.begin(), overrides.end());
   Stopped out;
   RunOptions options;
-  options.folder =
-      std::filesystem::temp_directory_path() / fmt::format("barrierbench_limit_{}_{}", ::getpid(), at);
+  const test::TemporaryFolder folder;
+  options.folder = folder;
   options.time_limit_s = limit_s;
   const double begin = now_s();
   options.progress = [&](const Progress& progress) {
@@ -41,7 +42,6 @@ Stopped stopped_at(int at, double d_hat_m, const std::vector<std::string>& overr
   run_config(parsed(falling, all), options);
   out.after_limit_s = now_s() - begin - 1.2 * limit_s;
   out.record = read_run(options.folder / "run.json").value();
-  std::filesystem::remove_all(options.folder);
   return out;
 }
 

@@ -1,5 +1,6 @@
-"""The C++ of the product: functions fit a screen."""
+"""The C++ of the product has functions that fit a screen; that of the tests makes temporary files in one way."""
 
+import re
 from pathlib import Path
 
 import lizard
@@ -8,6 +9,8 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("core", "barriers", "experiments", "python/src")
 LONGEST = 60  # lines, from its name to its last brace
 LONG = 40
+TEMPORARY = re.compile(r"temp_directory_path|TempDir\(|mk[ds]temp|tmpfile|tmpnam|P_tmpdir|TMPDIR|/tmp\b")
+FOLDER = "tests/temporary_folder.hpp"
 
 
 def lengths() -> dict[str, int]:
@@ -25,3 +28,12 @@ def test_functions_fit_a_screen():
     assert not {name: lines for name, lines in found.items() if lines > LONGEST}
     long = {name: lines for name, lines in found.items() if lines > LONG}
     assert len(long) <= 5, long
+
+
+def test_temporary_files_of_tests_lie_in_folders_of_one_class():
+    kinds = (".cpp", ".hpp", ".cu", ".in")
+    files = [path for path in sorted((ROOT / "tests").rglob("*")) if path.suffix in kinds]
+    texts = {str(path.relative_to(ROOT)): path.read_text() for path in files}
+    assert [name for name, text in texts.items() if TEMPORARY.search(text)] == [FOLDER]
+    assert len(texts) > 400
+    assert sum(f'#include "{FOLDER}"' in text for text in texts.values()) > 20

@@ -1,27 +1,22 @@
 // Only regular files are opened, and no more of them is read than their kind allows.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb {
 namespace {
 
 class ReadFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("read_file_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string at(const char* name) const { return (folder_ / name).string(); }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 std::string fault_of(const std::string& path, const InputKind& kind) {
@@ -55,7 +50,7 @@ TEST_F(ReadFile, WhatIsNoRegularFileIsNamed) {
   ASSERT_EQ(::mkfifo(at("fifo").c_str(), 0600), 0);
   EXPECT_EQ(fault_of(at("fifo"), ten), "a FIFO");
   EXPECT_EQ(fault_of("/dev/zero", ten), "a character device");
-  EXPECT_EQ(fault_of(folder_.string(), ten), "a folder");
+  EXPECT_EQ(fault_of(folder_.path(), ten), "a folder");
   EXPECT_EQ(fault_of("", ten), "no path");
   EXPECT_EQ(fault_of(at("absent"), ten), "No such file or directory");
   EXPECT_EQ(fault_of(std::string("/dev/null\0a", 11), ten), "a path with a zero byte");

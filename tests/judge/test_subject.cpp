@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/math/error.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::judge::subject_test {
 namespace {
@@ -27,11 +28,9 @@ json two_triangles_and_a_rod() {
 }
 
 Subject read(const json& document) {
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() /
-      (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_subject.json");
-  std::ofstream(path) << document.dump();
-  return read_subject(path.string());
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "subject.json") << document.dump();
+  return read_subject(folder / "subject.json");
 }
 
 /// The pointer at which a document is refused; empty: it is not.

@@ -1,4 +1,4 @@
-// Stored systems of the tests, in a folder of their own.
+// Stored systems of the tests.
 #pragma once
 
 #include <filesystem>
@@ -13,22 +13,6 @@ namespace bb {
 inline void write_file(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
-
-/// Empty, and removed with the object.
-class TestFolder {
- public:
-  TestFolder() : path_(std::filesystem::temp_directory_path() / "barrierbench_matrix_XXXXXX") {
-    std::string name = path_.string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A chain of springs with given diagonal: tridiagonal, n rows.
 inline StoredSystem chain(int n, double diagonal) {

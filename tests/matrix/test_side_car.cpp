@@ -6,6 +6,7 @@
 
 #include "core/math/error.hpp"
 #include "tests/matrix/stored.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::side_car_test {
 namespace {
@@ -31,7 +32,7 @@ json side_car(const StoredSystem& stored, const std::string& matrix) {
 }
 
 TEST(SideCar, ASystemComesBackAsItWas) {
-  const TestFolder folder;
+  const test::TemporaryFolder folder;
   const StoredSystem a = full_system();
   const std::string matrix = matrix_market_text(a.system.lower);
   write_file(folder / "a.mtx", matrix);
@@ -65,7 +66,7 @@ TEST(SideCar, ASystemComesBackAsItWas) {
 }
 
 TEST(SideCar, WithoutOneBlocksAndRightHandSideAreAssumed) {
-  const TestFolder folder;
+  const test::TemporaryFolder folder;
   for (const int n : {6, 7}) {
     write_file(folder / "a.mtx", matrix_market_text(chain(n, 2.5).system.lower));
     const StoredSystem b = read_system((folder / "a.mtx").string());
@@ -78,7 +79,7 @@ TEST(SideCar, WithoutOneBlocksAndRightHandSideAreAssumed) {
 }
 
 TEST(SideCar, ABlockSizeWillDo) {
-  const TestFolder folder;
+  const test::TemporaryFolder folder;
   write_file(folder / "a.mtx", matrix_market_text(chain(4, 2.5).system.lower));
   write_file(folder / "a.json",
              R"({"schema": "barrierbench.matrix/1", "block_size": 2, "rhs": [1, 2, 3, 4.5]})");
@@ -129,7 +130,7 @@ TEST(SideCar, EveryFaultIsNamedWithItsPointer) {
        R"({"cond": [{"scaling": "none", "tier": 2, "status": "ok", "cond": "1"}]})",
        {"#/cond/0/cond", "a number"}},
   };
-  const TestFolder folder;
+  const test::TemporaryFolder folder;
   const StoredSystem a = full_system();
   const std::string matrix = matrix_market_text(a.system.lower);
   write_file(folder / "a.mtx", matrix);
@@ -151,7 +152,7 @@ TEST(SideCar, EveryFaultIsNamedWithItsPointer) {
 }
 
 TEST(SideCar, SeveralFaultsAreSaidAtOnce) {
-  const TestFolder folder;
+  const test::TemporaryFolder folder;
   write_file(folder / "a.mtx", matrix_market_text(chain(3, 2.5).system.lower));
   write_file(folder / "a.json", R"({"schema": "barrierbench.matrix/1", "form": "x", "dt_s": 0, "rhs": [1]})");
   try {
@@ -163,7 +164,7 @@ TEST(SideCar, SeveralFaultsAreSaidAtOnce) {
 }
 
 TEST(SideCar, ATornOneIsRefusedWithItsLine) {
-  const TestFolder folder;
+  const test::TemporaryFolder folder;
   const StoredSystem a = full_system();
   const std::string matrix = matrix_market_text(a.system.lower);
   write_file(folder / "a.mtx", matrix);

@@ -8,6 +8,7 @@
 #include "core/mesh/solid_generators.hpp"
 #include "core/mesh/topology.hpp"
 #include "core/mesh/write_mesh.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::test::solid_meshes {
 namespace {
@@ -140,7 +141,9 @@ TEST(SolidFiles, ply_reads_back_bit_for_bit) {
   EXPECT_EQ(back.tetrahedra, mesh.tetrahedra);
   EXPECT_EQ(back.triangles, mesh.triangles);
   EXPECT_EQ(back.segments, mesh.segments);
-  EXPECT_THROW(write_obj(::testing::TempDir() + "solid.obj", mesh), ConfigError);
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(write_obj(folder / "solid.obj", mesh), ConfigError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
 /// Four points in space and the lines of `element tetrahedron`.

@@ -8,6 +8,7 @@
 #include "core/mesh/generators.hpp"
 #include "core/mesh/read_mesh.hpp"
 #include "core/mesh/write_mesh.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb {
 namespace {
@@ -22,7 +23,8 @@ class Written : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Written, reads_back_bit_for_bit) {
   const TriangleMesh mesh = sphere_with_a_tail();
-  const std::string path = ::testing::TempDir() + "written" + GetParam();
+  const test::TemporaryFolder folder;
+  const std::string path = folder / (std::string("written") + GetParam());
 
   if (std::string(GetParam()) == ".obj") {
     write_obj(path, mesh);
@@ -34,7 +36,6 @@ TEST_P(Written, reads_back_bit_for_bit) {
   EXPECT_EQ(back.vertices, mesh.vertices);
   EXPECT_EQ(back.triangles, mesh.triangles);
   EXPECT_EQ(back.segments, mesh.segments);
-  std::filesystem::remove(path);
 }
 INSTANTIATE_TEST_SUITE_P(write_mesh, Written, ::testing::Values(".obj", ".ply"));
 
@@ -46,7 +47,8 @@ TEST(write_mesh, columns_stand_beside_what_is_read_back) {
   for (std::size_t i = 0; i < stretch.size(); ++i) stretch[i] = 0.25 * static_cast<double>(i);
   const std::string bytes =
       ply_bytes(mesh, {{"body", bodies}}, {{"body", std::vector<int>(80, 3)}, {"stretch", stretch}});
-  const std::string path = ::testing::TempDir() + "columns.ply";
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "columns.ply";
 
   std::ofstream(path, std::ios::binary) << bytes;
   const TriangleMesh back = read_mesh(path);
@@ -58,7 +60,6 @@ TEST(write_mesh, columns_stand_beside_what_is_read_back) {
   EXPECT_EQ(bytes.size() - ply_bytes(mesh).size(), 42 * 4 + 80 * (4 + 8) +
                                                        std::string("property int body\n").size() * 2 +
                                                        std::string("property double stretch\n").size());
-  std::filesystem::remove(path);
 }
 
 TEST(write_mesh, says_why_a_file_cannot_be_written) {
@@ -66,17 +67,12 @@ TEST(write_mesh, says_why_a_file_cannot_be_written) {
 }
 
 TEST(write_mesh, leaves_nothing_half_written) {
-  const std::filesystem::path folder = ::testing::TempDir() + "taken.obj";
-  std::filesystem::create_directory(folder);  // a folder stands where the file should
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "taken.obj");  // a folder stands where the file should
 
-  EXPECT_THROW(write_obj(folder, sphere_with_a_tail()), ConfigError);
+  EXPECT_THROW(write_obj(folder / "taken.obj", sphere_with_a_tail()), ConfigError);
 
-  int leftovers = 0;
-  for (const auto& file : std::filesystem::directory_iterator(::testing::TempDir())) {
-    leftovers += file.path().filename().string().starts_with("taken.obj.tmp") ? 1 : 0;
-  }
-  EXPECT_EQ(leftovers, 0);
-  std::filesystem::remove(folder);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // A hash is read back for the very same file only.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
 
 #include "core/record/kept_hash.hpp"
 #include "core/record/provenance.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::kept_hash_test {
 namespace {
@@ -15,8 +15,7 @@ namespace fs = std::filesystem;
 
 class KeptHash : public ::testing::Test {
  protected:
-  KeptHash() { fs::create_directories(root_), write("abc"); }
-  ~KeptHash() override { fs::remove_all(root_); }
+  KeptHash() { write("abc"); }
 
   void write(const std::string& text) const { std::ofstream(file_) << text; }
   std::size_t kept() const {
@@ -28,9 +27,9 @@ class KeptHash : public ::testing::Test {
     for (const auto& entry : fs::directory_iterator(folder_)) std::ofstream(entry.path()) << text;
   }
 
-  fs::path root_ = fs::temp_directory_path() / ("bb_kept_hash_" + std::to_string(::getpid()));
+  test::TemporaryFolder root_;
   fs::path folder_ = root_ / "hashes";
-  std::string file_ = (root_ / "program").string();
+  std::string file_ = root_ / "program";
 };
 
 TEST_F(KeptHash, IsThatOfTheFileAndIsReadTheNextTime) {
@@ -72,8 +71,8 @@ TEST_F(KeptHash, AFolderThatCannotBeMadeKeepsNothing) {
   write("abc");
   EXPECT_EQ(kept_sha256(file_, fs::path(file_) / "below_a_file", 0), sha256_hex("abc"));
   EXPECT_EQ(kept_sha256(file_, {}, 0), sha256_hex("abc"));
-  EXPECT_EQ(kept_sha256((root_ / "nothing").string(), folder_, 0), "");
-  EXPECT_EQ(kept_sha256(root_.string(), folder_, 0), "");
+  EXPECT_EQ(kept_sha256(root_ / "nothing", folder_, 0), "");
+  EXPECT_EQ(kept_sha256(root_.path(), folder_, 0), "");
   EXPECT_EQ(kept(), 0u);
 }
 

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "tests/record/sample_record.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::provenance_test {
 namespace {
@@ -24,7 +25,8 @@ TEST(Sha256, KnownAnswers) {  // FIPS 180-4 examples
 }
 
 TEST(Sha256, FilesAndMissingFiles) {
-  const std::string path = (std::filesystem::temp_directory_path() / "bb_sha_test").string();
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "text";
   std::ofstream(path) << "abc";
   EXPECT_EQ(sha256_file(path), sha256_hex("abc"));
   const std::string long_text(200'000, 'x');  // more than one block of reading

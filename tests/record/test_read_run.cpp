@@ -1,6 +1,5 @@
 // A record is read by the list of its fields: every fault is named with its place.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include "core/math/error.hpp"
 #include "core/record/writer.hpp"
 #include "tests/record/sample_record.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::read_run_test {
 namespace {
@@ -17,17 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-const fs::path& file() {
-  static const fs::path path =
-      fs::temp_directory_path() / ("bb_read_" + std::to_string(::getpid()) + ".json");
-  return path;
-}
-
 std::optional<RunRecord> read(const Json& record) {
-  std::ofstream(file()) << record;
-  const auto out = read_run(file());
-  fs::remove(file());
-  return out;
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "run.json") << record;
+  return read_run(folder / "run.json");
 }
 
 /// What the reader says of it; empty when it reads it.
@@ -35,7 +28,6 @@ std::string refusal(const Json& record) {
   try {
     EXPECT_TRUE(read(record).has_value());
   } catch (const ConfigError& error) {
-    fs::remove(file());
     return error.what();
   }
   return {};
@@ -132,10 +124,10 @@ TEST(ReadRun, ANullWithoutAReasonIsRefused) {
 TEST(ReadRun, WhatIsNoRecordIsNothing) {
   EXPECT_FALSE(read(Json{{"schema", "barrierbench.config/1"}}));
   EXPECT_FALSE(read(Json::array()));
-  std::ofstream(file()) << R"({"schema": )";
-  EXPECT_FALSE(read_run(file()));
-  fs::remove(file());
-  EXPECT_FALSE(read_run(file()));
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "run.json") << R"({"schema": )";
+  EXPECT_FALSE(read_run(folder / "run.json"));
+  EXPECT_FALSE(read_run(folder / "no_file.json"));
 }
 
 }  // namespace

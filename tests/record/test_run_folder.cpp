@@ -12,6 +12,7 @@
 #include "core/record/folder_lock.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::run_folder_test {
 namespace {
@@ -21,11 +22,7 @@ using nlohmann::json;
 
 class RunFolder : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "bb_folder_XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  RunFolder() { fs::create_directory(folder_); }
 
   fs::path write(const std::string& name, const std::string& text) const {
     fs::create_directories((folder_ / name).parent_path());
@@ -40,7 +37,8 @@ class RunFolder : public ::testing::Test {
     }
     write("run.json", record.dump());
   }
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_ / "run";
 };
 
 TEST_F(RunFolder, AnEarlierRunGoesWithWhatItWrote) {
@@ -53,7 +51,7 @@ TEST_F(RunFolder, AnEarlierRunGoesWithWhatItWrote) {
 }
 
 TEST_F(RunFolder, FilesOfOthersStay) {
-  const std::string beside = "../" + folder_.filename().string() + "_outside.ply";  // of this test alone
+  const std::string beside = "../outside.ply";
   const fs::path outside = write(beside, "o");
   const std::vector<std::string> others = {"frames/holiday.ply", "notes.txt", "frames/step_1.ply",
                                            "inputs/a.ply"};
@@ -70,7 +68,6 @@ TEST_F(RunFolder, FilesOfOthersStay) {
   EXPECT_TRUE(fs::exists(folder_ / "frames/step_000002.ply"));
   EXPECT_TRUE(fs::exists(outside));
   EXPECT_FALSE(fs::exists(folder_ / "run.json"));
-  fs::remove(outside);
 }
 
 TEST_F(RunFolder, ARecordThatSaysNothingUsefulIsNoFailure) {

@@ -14,6 +14,7 @@
 #include "core/record/writer.hpp"
 #include "tests/folders.hpp"
 #include "tests/record/sample_record.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::writer_test {
 namespace {
@@ -23,19 +24,11 @@ using nlohmann::json;
 
 class Writer : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "bb_writer_XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  void TearDown() override {
-    fs::permissions(folder_, fs::perms::owner_all);
-    fs::remove_all(folder_);
-  }
   std::size_t entries() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
   json read(const std::string& name) const { return json::parse(std::ifstream(folder_ / name)); }
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 /// No file of this process may grow beyond `bytes`: a disk that is full, for everyone who writes.

@@ -12,6 +12,7 @@
 #include "tests/standin/cudart.hpp"
 #include "tests/standin/device_kernels.hpp"
 #include "tests/standin/messages.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::device_kernels {
 void add_to(cuda::KernelTable& table);
@@ -190,7 +191,8 @@ TEST_F(Standin, AGraphIsInstantiatedOnceAndMemoryIsGivenBack) {
 }
 
 TEST_F(Standin, TimesOfKernelsAreWrittenWhereTheEnvironmentSays) {
-  const std::string file = testing::TempDir() + "kernel_times.json";
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "kernel_times.json";
   setenv("BARRIERBENCH_KERNEL_TIMES", file.c_str(), 1);
   for (const int launches : {3, 2}) {  // executors of one process
     const auto executor = cuda::make_device_executor();

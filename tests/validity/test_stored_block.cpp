@@ -7,20 +7,15 @@
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/validity/stored_block.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace bb::stored_block_test {
 namespace {
 
 class StoredBlocks : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("validity_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path folder_;
+  test::TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_ / "validity";
 };
 
 std::string text_of(const std::filesystem::path& file) {
