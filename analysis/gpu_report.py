@@ -76,7 +76,7 @@ SAME_HEAD = ["run", "vertices", "steps", "outcome", "Newton iterations", "PCG it
 def _of_card(record: dict, copy: float) -> list[str]:
     """What failed, the scenes, the runs beside the host and the kernels of one record. copy: B/s."""
     on = f"on {record['device']['card']}"
-    day = record["date_utc"][:10]
+    day = f"{record['date_utc'][:10]}, commit {record['git_commit'][:10] or 'not known'}"
     text = []
     if lines := fallen(record):
         text += [f"## What failed {on}, {day}", "", *lines, ""]

@@ -9,8 +9,9 @@ from pathlib import Path
 from .. import input_file
 from ..errors import UserError
 from .number import Number
-from .pages import NUMBER, Statement, statements
+from .pages import NO_NUMBERS, NUMBER, by_page
 from .several import apart, shapes_of_table
+from .statement import Statement
 
 SEVERAL = "#one-quantity-several-studies"
 PROSE = ("README.md", "docs/results.md")  # pages that take numbers from the pages of results/
@@ -92,7 +93,20 @@ def unfounded(root: Path, found: Iterable[Statement], numbers: Iterable[Number])
     return lines
 
 
+def silent(found: dict[str, list[Statement]]) -> list[str]:
+    """One line for every page in which nothing is read, though it is not known to state no number."""
+    return [
+        f"{page}: no statement is read, of {len(found)} pages; a reader is needed, or its name in NO_NUMBERS"
+        " of analysis/stated/pages.py"
+        for page, of in found.items()
+        if not of and page not in NO_NUMBERS
+    ]
+
+
 def faults(root: Path, numbers: Iterable[Number]) -> list[str]:
-    """All of it. Errors: UserError for a page in which nothing is read."""
-    found, numbers = statements(root), list(numbers)
-    return contradictions(found) + unreconciled(root, numbers) + unfounded(root, found, numbers)
+    """All of it. Errors: UserError for a page in which a reader that is made for it finds nothing."""
+    found, numbers = by_page(root), list(numbers)
+    every = [one for of in found.values() for one in of]
+    return (
+        silent(found) + contradictions(every) + unreconciled(root, numbers) + unfounded(root, every, numbers)
+    )

@@ -7,11 +7,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from .. import input_file
 from ..errors import UserError
+from .counted import (
+    catalogue,
+    cluster,
+    engines,
+    engines_in_words,
+    mentions,
+    stress,
+    work_precision,
+    work_precision_caption,
+)
+from .statement import Statement, tables
+from .whole_page import everything
 
 PART = re.compile(
     r"^- (?P<says>.+?): \*\*(?P<verdict>.+)\*\*.*?\. (?P<measures>[^.]*?(?:\d\.\d[^.]*?)?)"
@@ -25,17 +36,6 @@ LAW = re.compile(
     r" with standard deviation \S+ \(a factor \S+\)); (the law with [^:]+): (\d+) of (\d+) pairs,"
     r" (ln\(measured/predicted\) \S+ in the mean with standard deviation \S+ \(a factor [^)]+\))"
 )
-
-
-@dataclass(frozen=True)
-class Statement:
-    """page: file and place in it. verdict: None where the page states a number and decides nothing."""
-
-    page: str
-    quantity: str
-    conditions: str
-    number: str
-    verdict: str | None = None
 
 
 def _slice(below: list[str]) -> str:
@@ -70,28 +70,9 @@ def _law(text: str, page: str) -> Iterator[Statement]:
             yield Statement(page, f"scatter of {form} ({found[1]})", "", f"{n} of {of}: {scatter}")
 
 
-def _cells(line: str) -> list[str]:
-    return [cell.strip() for cell in line.strip().strip("|").split("|")]
-
-
-def _tables(text: str) -> Iterator[tuple[str, list[str], list[str]]]:
-    """Title above, heads and cells of every row of every table."""
-    title, heads = "", None
-    for line in text.splitlines():
-        if line.startswith("#"):
-            title, heads = line.lstrip("# "), None
-        elif line.startswith("|"):
-            if heads is None:
-                heads = _cells(line)
-            elif not line.startswith("|---"):
-                yield title, heads, _cells(line)
-        elif line.strip():
-            heads = None
-
-
 def _map(text: str, page: str) -> Iterator[Statement]:
     """Ratios of the gap map, over the log's."""
-    for title, heads, cells in _tables(text):
+    for title, heads, cells in tables(text):
         for head, cell in zip(heads, cells):
             if head.endswith(" over the log's") and NUMBER.fullmatch(cell):
                 conditions = f"{title}, {heads[0]} {cells[0]}; {cells[-1]}"
@@ -100,7 +81,7 @@ def _map(text: str, page: str) -> Iterator[Statement]:
 
 def _pair(text: str, page: str) -> Iterator[Statement]:
     """The log over the cubic alone: by target and limit, and by size."""
-    for title, heads, cells in _tables(text):
+    for title, heads, cells in tables(text):
         for head, cell in zip(heads, cells):
             if ", log over " in head and NUMBER.fullmatch(cell):
                 conditions = "; ".join(c for h, c in zip(heads, cells) if ", log over " not in h)
@@ -109,7 +90,7 @@ def _pair(text: str, page: str) -> Iterator[Statement]:
 
 def _pareto(text: str, page: str) -> Iterator[Statement]:
     """Ratios over all scenes at equal reached gap."""
-    for title, heads, cells in _tables(text):
+    for title, heads, cells in tables(text):
         for head, cell in zip(heads, cells):
             if heads[0] == "number" and (found := NUMBER.match(cell)):
                 yield Statement(page, f"{title}: {cells[0]} of {cells[1]}", head, found["number"])
@@ -117,14 +98,14 @@ def _pareto(text: str, page: str) -> Iterator[Statement]:
 
 def _ablation(text: str, page: str) -> Iterator[Statement]:
     """Main effects, with what is decided of them."""
-    for title, heads, cells in _tables(text):
+    for title, heads, cells in tables(text):
         if heads[0] == "factor" and len(cells) == 6:
             yield Statement(page, f"{title}: {cells[1]}", "ablation", cells[2], cells[5].strip("*"))
 
 
 def _verdicts(text: str, page: str) -> Iterator[Statement]:
     """The number of a claim in a table of verdicts: that of the part of which results/CLAIMS.md has more."""
-    for _, heads, cells in _tables(text):
+    for _, heads, cells in tables(text):
         if heads[0] == "claim" and (found := NUMBER.search(cells[-1])):
             confirmed = "confirmed" if cells[-1].endswith("confirmed scenes") else "exploratory"
             measures = cells[-1][: found.start()].rstrip(": ")
@@ -147,20 +128,42 @@ READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
     "results/GAP_MAP.md": (_map, _pair, _law),
     "results/PARETO.md": (_pareto,),
     "results/ABLATION.md": (_ablation,),
+    "results/STRESS.md": (stress,),
+    "results/CATALOGUE.md": (catalogue,),
+    "results/WORK_PRECISION.md": (work_precision,),
+    "results/ENGINES.md": (engines,),
     "docs/results.md": (_verdicts,),
+    "docs/engines.md": (engines_in_words,),
+    "docs/verbs.md": (mentions,),
+    "docs/jobs/cluster.md": (cluster,),
     "docs/gap_law.txt": (_law,),
     "docs/gap_law_more.txt": (_law,),
 }
+CAPTIONS = {"docs/work_precision_*.txt": work_precision_caption}
+NO_NUMBERS = ()  # pages that state none, so that nothing can be read in them
+EVERY = ("README.md", "docs/*.md", "docs/*/*.md", "docs/*.txt", "results/*.md")
 
 
-def statements(root: Path) -> list[Statement]:
-    """Errors: UserError for a page in which a reader finds nothing."""
-    found = []
-    for page, readers in READERS.items():
+def pages_of(root: Path) -> list[str]:
+    """All pages, from the root, whether a reader is made for them or not."""
+    return [path.relative_to(root).as_posix() for pattern in EVERY for path in sorted(root.glob(pattern))]
+
+
+def _readers(page: str) -> list[Callable[[str, str], Iterator[Statement]]]:
+    return [*READERS.get(page, ()), *(reader for of, reader in CAPTIONS.items() if Path(page).match(of))]
+
+
+def by_page(root: Path) -> dict[str, list[Statement]]:
+    """Of every page, what is read by its own readers and by the one of all pages. Errors: UserError for a
+    page in which a reader that is made for it finds nothing, and for one that is not there.
+    """
+    found: dict[str, list[Statement]] = {}
+    for page in dict.fromkeys([*READERS, *pages_of(root)]):
         text = input_file.read_text(root / page)
-        for reader in readers:
+        found[page] = list(everything(text, page))
+        for reader in _readers(page):
             mine = list(reader(text, page))
             if not mine:
                 raise UserError(f"{page}: no statement is found of the kind {reader.__name__.strip('_')}")
-            found += mine
+            found[page] += mine
     return found

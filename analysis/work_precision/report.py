@@ -98,6 +98,12 @@ def _failure(row: dict) -> str:
     return f"{row['formulation']} {place} ({row['solver']}) {row['outcome']}"
 
 
+def _runs(scene: dict) -> str:
+    """Those that are judged, and those that are the references of others."""
+    judged, every = len(scene["rows"]), scene["about"]["runs"]
+    return f"{judged} runs" + (f" and {every - judged} of references" if every > judged else "")
+
+
 def _scene(scene: dict) -> list[str]:
     anchor, band, about = scene["anchor"], band_of(scene), scene["about"]
     lines = [
@@ -106,7 +112,7 @@ def _scene(scene: dict) -> list[str]:
         (
             f"`{scene['base']}`, {scene['duration_s']:g} s and one step, anchor: dt {anchor['dt_s']:g} s,"
             f" d_hat {anchor['d_hat_m']:g} m, tolerance {anchor['tolerance']:g} of min(d_hat, fall of a"
-            f" step)/dt. Error: `{scene['error']}`, {MEANING[scene['error']]}. {about['runs']} runs,"
+            f" step)/dt. Error: `{scene['error']}`, {MEANING[scene['error']]}. {_runs(scene)},"
             f" {about['seconds']:.0f} s in all (pilots and audit included), {about['unknowns']} unknowns,"
             f" {about['machine']}, {about['date']}, build {about['build'][:8]}."
         ),

@@ -8,6 +8,7 @@ from analysis.errors import UserError
 from analysis.places import ROOT
 from analysis.readme import slices, verb
 from analysis.stated import check, pages, several
+from analysis.stated.statement import tables
 from analysis.stated.number import OFF, OWN, SAME, Number, strongest
 
 ONE = Number("cond_p95", "log", "cubic", 0.01, OFF, "H1", False, 5, (9, 576), 7.3, 3.95, 13.5, True, "", "contact_slices")
@@ -66,15 +67,17 @@ def test_where_a_page_ranks_shapes_by_exploratory_numbers_it_says_so():
 
 def test_the_table_of_verdicts_has_the_confirmed_number():
     """docs/results.md: where scenes confirmed a claim, or refuted it, its number is theirs."""
-    rows = [cells for _, heads, cells in pages._tables((ROOT / "docs/results.md").read_text()) if heads[0] == "claim"]
+    rows = [cells for _, heads, cells in tables((ROOT / "docs/results.md").read_text()) if heads[0] == "claim"]
     judged = [cells for cells in rows if cells[4] not in ("-", "closed form")]
     assert len(judged) > 15
     assert [cells[0] for cells in judged if pages.NUMBER.search(cells[5]) and not cells[5].endswith("confirmed scenes")] == []
 
 
 def test_pages_hold_no_two_statements_that_disagree(kept):
-    found = pages.statements(ROOT)
-    assert len(found) > 1000 and {one.page.partition(",")[0] for one in found} == set(pages.READERS)
+    found = pages.by_page(ROOT)
+    assert len(found) > 75 and all(found.values()) and sum(map(len, found.values())) > 12000
+    assert {"README.md", "docs/results.md", "results/STRESS.md", "results/CATALOGUE.md", "results/ENGINES.md", "results/WORK_PRECISION.md"} <= set(found)
+    assert set(found) == {path.relative_to(ROOT).as_posix() for path in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "docs").rglob("*.txt"), *(ROOT / "results").glob("*.md")]}
     assert check.faults(ROOT, kept["several"]) == []
 
 
@@ -112,12 +115,15 @@ def test_parts_of_claims_are_read_with_slice_scenes_and_evidence():
 
 def test_a_page_in_which_nothing_is_read_is_no_page_without_faults(tmp_path):
     for page in pages.READERS:
-        (tmp_path / page).parent.mkdir(exist_ok=True)
+        (tmp_path / page).parent.mkdir(exist_ok=True, parents=True)
         (tmp_path / page).write_text((ROOT / page).read_text())
-    assert len(pages.statements(tmp_path)) == len(pages.statements(ROOT))
+    assert set(pages.by_page(tmp_path)) == set(pages.READERS)
+    (tmp_path / "docs/more.md").write_text("# More\n\nNothing here.\n")
+    [told] = check.silent(pages.by_page(tmp_path))
+    assert told.startswith(f"docs/more.md: no statement is read, of {len(pages.READERS) + 1} pages")
     (tmp_path / "results/GAP_MAP.md").write_text("# Gap map\n\nwritten otherwise\n")
     with pytest.raises(UserError, match="results/GAP_MAP.md: no statement is found of the kind map"):
-        pages.statements(tmp_path)
+        pages.by_page(tmp_path)
 
 
 def root_with(tmp_path, several_page: str, claims: str, ablation: str):
