@@ -64,10 +64,13 @@ def test_weight_and_motion_of_a_solid_with_a_skin_have_their_closed_form():
         density={"block": 6.0, "leaf": 0.5},
         gravity_m_s2=(0, 0, -10.0),
     )
-    physics = Physics(TOPOLOGY, about, REST, [0.0, 0.1])
+    physics = Physics(TOPOLOGY, about, REST, [0.0, 0.1, 0.35])
     first, second = physics.of(0, REST), physics.of(1, REST + [0, 0.2, 0.3])
+    third = physics.of(2, REST + [0.5, 0.2, -0.2])  # after 0.25 s, not 0.1
     heights = 6.0 * (np.array(OF_BLOCK) @ BLOCK[:, 2])  # kg m
     assert first["gravity_J"] == pytest.approx(10 * heights)
     assert second["gravity_J"] == pytest.approx(10 * (heights + (3 + 1.5) * 0.3))
     assert second["momentum_kg_m_s"] == pytest.approx([0, 4.5 * 2, 4.5 * 3])
     assert second["kinetic_J"] == pytest.approx(0.5 * 4.5 * (4 + 9))
+    assert third["momentum_kg_m_s"] == pytest.approx([4.5 * 2, 0, -4.5 * 2])
+    assert third["kinetic_J"] == pytest.approx(0.5 * 4.5 * (4 + 4))
