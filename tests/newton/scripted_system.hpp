@@ -28,6 +28,7 @@ struct ScriptedIteration {
   double detour_bound = 0;  // of the direction round curved gaps; 0: there is none
   double t = 0;             // of the matrix that was solved, 0 exact to 1 clamped
   bool lengthens = false;   // scaling the direction changes what bound and change are of
+  StepBound work = {};      // of every bound that is asked for
 };
 
 /// What the system says of itself in every iteration.
@@ -89,6 +90,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   }
   void prepare_motion(MotionEnd, bool) override {}
   double bound_motion(IterationReport& report) override {
+    report.bound = now().work;
     if (detouring_) return now().detour_bound;
     return report.alpha_ccd = escaping_ ? now().escape_bound : std::min(1.0, now().bound / length_);
   }
