@@ -216,7 +216,22 @@ TEST(Pncg, EpsilonIsWhatAStepStopsAt) {
   }
 }
 
-/// As published no vertex goes farther than d_hat / 2 in an iteration, near a surface or not.
+/// Far from the first one, at rest.
+void add_particle_of_wide_d_hat(Scene& scene) {
+  scene.bodies.push_back({"wide", 1, 1});
+  for (Positions* of : {&scene.rest, &scene.x0, &scene.v0}) {
+    of->conservativeResize(3, 2);
+    of->col(1) = of == &scene.v0 ? Vec3d(0, 0, 0) : Vec3d(1, 0, 1);
+  }
+  scene.mass.push_back(scene.mass[0]);
+  scene.body.push_back(1);
+  scene.d_hat.push_back(3 * scene.d_hat[0]);
+  scene.offset.push_back(0);
+  scene.surface_vertices.push_back(1);
+}
+
+/// As published no vertex goes farther than d_hat / 2 in an iteration, near a surface or not; of bodies that differ in d_hat the
+/// smallest one counts.
 TEST(Pncg, HalfOfDHatBoundsEveryMotion) {
   struct Longest final : StepObserver {
     double m = 0;
@@ -227,6 +242,7 @@ TEST(Pncg, HalfOfDHatBoundsEveryMotion) {
   Scene scene = test::particle_over_plane(0.2, 1, d_hat);
   scene.v0(2, 0) = -9.9;  // and 0.1 of gravity: 20 times d_hat/2 in a step
   scene.gravity = Vec3d(0, 0, -10);
+  add_particle_of_wide_d_hat(scene);
   for (const char* bound : {"accd", "half_d_hat"}) {
     Method method = method_of(1e-12, bound);
     Simulation simulation(scene, method, 0.01, 1);

@@ -95,6 +95,8 @@ TEST(Projection, contact_keeps_a_chain_that_falls_above_the_floor_and_pulls_noth
   const auto rises = [](bool floor) { return chain(6, 0.8 * d_hat, level, false, floor, 200, -0.15); };
   const Ran near = run(rises(true), 1, 10, 1);
   EXPECT_EQ(near.of("projection_constraints"), 5 + 6);
+  ASSERT_LT(near.x.row(2).maxCoeff(), d_hat);
+  EXPECT_EQ(near.of("projection_overlap_m"), 0) << "an open gap is no overlap";
   EXPECT_EQ(near.x, run(rises(false), 1, 10, 1).x);
 }
 
