@@ -58,6 +58,7 @@ def _draw(records: Records, group: str, row: pd.Series, both: dict, out: Path) -
         axis.set(xlabel="time (s)", ylabel="condition number")
         axis.set_title(title)
         style.log_if_decades(axis)
+    fig.suptitle(f"{group}, run {row['series']}: the Newton matrix, clamped and as it was solved", fontsize=8)
     style.letter_panels(axes)
     style.legend_below(fig, axes[0])
     table = pd.concat(numbers)[

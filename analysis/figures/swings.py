@@ -80,7 +80,7 @@ def sentence(bands: list[tuple[str, Band]], start: str) -> str:
     Empty without bands.
     """
     words = [
-        f"{what}, {b.series} from {start.format(b.start)} on, {b.low:.2g} to {b.high:.2g} at the end"
+        f"{what}, {b.series} from {start.format(b.start)} on, {b.low:.3g} to {b.high:.3g} at the end"
         for what, b in bands
     ]
     return (

@@ -22,17 +22,16 @@ SWEEPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article"
 
 
 def run_all(out: Path, jobs: int) -> int:
-    """Every sweep into its folder below `out`, `jobs` runs at a time; what each says is printed when it ends.
-    The exit code of the first one that failed, or 0.
+    """Every sweep into its folder below `out`, `jobs` runs at a time; a run has its row when it ends. Returns
+    the exit code of the first one that failed, or 0.
     """
     begun = time.monotonic()
     say(f"{', '.join(SWEEPS)}: {jobs} runs at a time, minutes")
     failed = 0
     for name in SWEEPS:
         file = ROOT / f"configs/sweeps/{name}.json"
-        done = run_sweep(file, out / name, "--jobs", str(jobs), "--progress", "none")
-        print(done.stdout, flush=True)
-        say(f"{name} ended after {time.monotonic() - begun:.0f} s {done.stderr}".rstrip())
+        done = run_sweep(file, out / name, "--jobs", str(jobs), "--progress", "none", stdout=None)
+        say(f"{name} ended, {time.monotonic() - begun:.0f} s since the start\n")
         failed = failed or done.returncode
     return failed
 

@@ -28,6 +28,7 @@ struct Material : parts::AllKeys {
 /// Which vertices of a body are prescribed, or pulled; a vertex is selected when any of the given ways selects it.
 struct PinSpec {
   std::vector<int> indices;                 // of the body's own vertices
+  std::vector<std::string> objects;         // of the mesh file; build_scene adds their vertices to indices
   std::optional<std::array<Vec3d, 2>> box;  // closed box (min, max) in start positions, m
   bool top_row = false;                     // vertices with the largest start y (planar) or z, exactly
   bool all = false;

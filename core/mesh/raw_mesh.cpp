@@ -36,6 +36,31 @@ void RawMesh::add_segment(long long a, long long b, long long place) {
   segments.push_back({a, b});
   segment_place.push_back(place);
 }
+void RawMesh::keep_polygons(const std::function<bool(std::size_t)>& keep) {
+  RawMesh kept;
+  for (std::size_t p = 0; p < n_polygons(); ++p) {
+    if (!keep(p)) continue;
+    const std::size_t first = kept.corners.size();
+    for (std::size_t c = first_corner[p]; c < end_corner(p); ++c) kept.corners.push_back(corners[c]);
+    kept.close_polygon(first, polygon_place[p]);
+    if (!polygon_objects.empty()) kept.polygon_objects.push_back(polygon_objects[p]);
+  }
+  corners = std::move(kept.corners);
+  first_corner = std::move(kept.first_corner);
+  polygon_place = std::move(kept.polygon_place);
+  polygon_objects = std::move(kept.polygon_objects);
+}
+void RawMesh::keep_segments(const std::function<bool(std::size_t)>& keep) {
+  RawMesh kept;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    if (!keep(s)) continue;
+    kept.add_segment(segments[s][0], segments[s][1], segment_place[s]);
+    if (!segment_objects.empty()) kept.segment_objects.push_back(segment_objects[s]);
+  }
+  segments = std::move(kept.segments);
+  segment_place = std::move(kept.segment_place);
+  segment_objects = std::move(kept.segment_objects);
+}
 std::string note_of(const RawMesh& raw, const std::string& what, const LeftOut& kind, const char* done) {
   return fmt::format("{}: {} {}, the first at {}", what, kind.count, done, raw.where("element", kind.place));
 }

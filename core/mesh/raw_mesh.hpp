@@ -2,12 +2,15 @@
 // rules from here on: of a body's mesh (assemble_mesh), or of a frame that is judged (frame_mesh.hpp). Private to core/mesh.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/mesh/mesh_objects.hpp"
+#include "core/mesh/read_mesh.hpp"
 #include "core/mesh/triangle_mesh.hpp"
 
 namespace bb {
@@ -41,6 +44,10 @@ struct RawMesh {
   std::vector<long long> segment_place;
   std::vector<std::array<long long, 4>> tetrahedra;
   std::vector<long long> tetrahedron_place;
+  std::vector<std::string> object_names;              // of objects and groups, each once
+  std::vector<std::vector<std::size_t>> object_sets;  // what polygons and segments are of, together
+  std::vector<std::size_t> polygon_objects,
+      segment_objects;  // the set of each; empty: no names in the format
   std::vector<PointField> fields;
   std::map<std::string, LeftOut>
       left_out;  // what is no surface, rod or solid: points, text, elements of other names
@@ -54,6 +61,9 @@ struct RawMesh {
   void add_segment(long long a, long long b, long long place);
   /// Takes the corners from `first` on as a tetrahedron. Errors: ConfigError when they are not four.
   void close_tetrahedron(std::size_t first, long long place);
+  /// Drops the polygons, or segments, for which `keep` is false.
+  void keep_polygons(const std::function<bool(std::size_t)>& keep);
+  void keep_segments(const std::function<bool(std::size_t)>& keep);
   std::size_t n_polygons() const { return first_corner.size(); }
   /// One past the last corner of a polygon.
   std::size_t end_corner(std::size_t polygon) const;
@@ -80,6 +90,13 @@ TriangleMesh assemble_mesh(const RawMesh& raw);
 /// What a file of Gmsh or VTK has and a body has not: triangles that are faces of tetrahedra (as a `skin`, those of one
 /// tetrahedron stay), lines that are sides of other cells, vertices of no cell.
 RawMesh without_sides(RawMesh raw, bool skin);
+/// Without the vertices of no cell; a mesh with a corner that is no vertex stays as it is, and is refused later.
+RawMesh without_loose_vertices(RawMesh raw);
+
+/// Objects in the order in which the file names them first, those without faces and lines left out.
+std::vector<MeshObject> objects_of(const RawMesh& raw);
+/// The faces and lines of the objects that are chosen, with their vertices. Errors: ConfigError for an unknown name.
+RawMesh only_objects(RawMesh raw, const MeshChoice& choice);
 
 /// By the extension of the name. Errors: ConfigError, see read_mesh.
 RawMesh parse_raw(const std::string& bytes, const std::string& name, const FieldNames& wanted = {});

@@ -30,38 +30,24 @@ std::map<Side<3>, int> faces_of(const RawMesh& raw) {
 /// Without the triangles that are faces of tetrahedra; as a skin, those of one stay.
 void drop_faces(RawMesh& raw, bool skin) {
   const std::map<Side<3>, int> faces = faces_of(raw);
-  RawMesh kept;
-  for (std::size_t p = 0; p < raw.n_polygons(); ++p) {
-    const std::size_t begin = raw.first_corner[p], end = raw.end_corner(p);
-    if (end - begin == 3) {
-      const auto found =
-          faces.find(sorted(Side<3>{raw.corners[begin], raw.corners[begin + 1], raw.corners[begin + 2]}));
-      if (found != faces.end() && !(skin && found->second == 1)) {
-        count_one(raw.left_out, "a triangle that is a face of tetrahedra", raw.polygon_place[p]);
-        continue;
-      }
-    }
-    const std::size_t first = kept.corners.size();
-    for (std::size_t c = begin; c < end; ++c) kept.corners.push_back(raw.corners[c]);
-    kept.close_polygon(first, raw.polygon_place[p]);
-  }
-  raw.corners = std::move(kept.corners);
-  raw.first_corner = std::move(kept.first_corner);
-  raw.polygon_place = std::move(kept.polygon_place);
+  raw.keep_polygons([&](std::size_t p) {
+    const std::size_t begin = raw.first_corner[p];
+    if (raw.end_corner(p) - begin != 3) return true;
+    const auto found =
+        faces.find(sorted(Side<3>{raw.corners[begin], raw.corners[begin + 1], raw.corners[begin + 2]}));
+    if (found == faces.end() || (skin && found->second == 1)) return true;
+    count_one(raw.left_out, "a triangle that is a face of tetrahedra", raw.polygon_place[p]);
+    return false;
+  });
 }
 
 /// Without the lines that are among `sides`.
 void drop_lines(RawMesh& raw, const std::set<Side<2>>& sides) {
-  RawMesh kept;
-  for (std::size_t s = 0; s < raw.segments.size(); ++s) {
-    if (sides.contains(sorted(raw.segments[s]))) {
-      count_one(raw.left_out, "a line that is a side of another cell", raw.segment_place[s]);
-      continue;
-    }
-    kept.add_segment(raw.segments[s][0], raw.segments[s][1], raw.segment_place[s]);
-  }
-  raw.segments = std::move(kept.segments);
-  raw.segment_place = std::move(kept.segment_place);
+  raw.keep_segments([&](std::size_t s) {
+    if (!sides.contains(sorted(raw.segments[s]))) return true;
+    count_one(raw.left_out, "a line that is a side of another cell", raw.segment_place[s]);
+    return false;
+  });
 }
 
 std::set<Side<2>> sides_of(const RawMesh& raw) {
@@ -123,6 +109,11 @@ bool has_wrong_corner(const RawMesh& raw) {
 }
 
 }  // namespace
+
+RawMesh without_loose_vertices(RawMesh raw) {
+  if (!has_wrong_corner(raw)) drop_points(raw);
+  return raw;
+}
 
 RawMesh without_sides(RawMesh raw, bool skin) {
   if (has_wrong_corner(raw)) return raw;  // refused later, by the numbers of the file

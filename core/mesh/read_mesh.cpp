@@ -37,12 +37,15 @@ RawMesh parse_raw(const std::string& bytes, const std::string& name, const Field
                     "one of .obj, .ply, .stl, .msh, .vtk, .vtu, .vtp");
 }
 
-TriangleMesh parse_mesh(const std::string& bytes, const std::string& name, bool skin,
-                        std::vector<std::string>* notes) {
+MeshFile parse_mesh_file(const std::string& bytes, const std::string& name, const MeshChoice& choice) {
   RawMesh raw = parse_raw(bytes, name);
-  if (has_sides(extension_of(name))) raw = without_sides(std::move(raw), skin);
-  if (notes != nullptr) *notes = notes_of(raw);
-  return assemble_mesh(raw);
+  if (has_sides(extension_of(name))) raw = without_sides(std::move(raw), choice.skin);
+  if (!choice.objects.empty()) raw = only_objects(std::move(raw), choice);
+  return {assemble_mesh(raw), objects_of(raw), notes_of(raw)};
+}
+
+TriangleMesh parse_mesh(const std::string& bytes, const std::string& name) {
+  return parse_mesh_file(bytes, name).mesh;
 }
 
 TriangleMesh read_mesh(const std::string& path) { return parse_mesh(read_input_file(path, mesh_file), path); }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/mesh/mesh_objects.hpp"
 #include "core/mesh/triangle_mesh.hpp"
 
 namespace bb {
@@ -16,7 +17,7 @@ namespace bb {
 ///   become lone segments, PLY `tetrahedron` elements (lists of 4 vertex_indices) and tetrahedra of Gmsh and VTK tetrahedra.
 ///   STL corners with equal coordinates become one vertex. Of Gmsh and VTK files, triangles that are faces of tetrahedra
 ///   (as a `skin`, those of one tetrahedron stay), lines that are sides of other cells and points of no cell are left out.
-///   Normals, colours, texture coordinates, groups and PLY elements of other names are read past.
+///   Normals, colours, texture coordinates and PLY elements of other names are read past.
 /// @return vertices in file units, taken as m
 /// Errors: ConfigError naming file and line (text) or element and number (binary), at most 20 at
 /// once: missing file,
@@ -29,8 +30,23 @@ namespace bb {
 TriangleMesh read_mesh(const std::string& path);
 
 /// The same from bytes; `name` is used in messages and its extension decides the format.
-/// @param notes what was left out, a sentence a kind of thing
-TriangleMesh parse_mesh(const std::string& bytes, const std::string& name, bool skin = false,
-                        std::vector<std::string>* notes = nullptr);
+TriangleMesh parse_mesh(const std::string& bytes, const std::string& name);
+
+/// What is read of a file.
+struct MeshChoice {
+  bool skin = false;  // triangles that are faces of one tetrahedron stay
+  std::vector<std::string>
+      objects;  // names of OBJ objects (o) and groups (g), with their vertices alone; none: the whole file
+  std::string where;  // where the objects were asked for, for messages; none: the file
+};
+
+struct MeshFile {
+  TriangleMesh mesh;
+  std::vector<MeshObject> objects;  // in the order of the file; empty where no face or line has a name
+  std::vector<std::string> notes;   // what was left out, a sentence a kind of thing
+};
+
+/// Errors: those of read_mesh; ConfigError for an object that the file has not.
+MeshFile parse_mesh_file(const std::string& bytes, const std::string& name, const MeshChoice& choice = {});
 
 }  // namespace bb

@@ -1,5 +1,6 @@
 // Wavefront OBJ: v, f (v, v/vt, v//vn, v/vt/vn; negative indices count back from the vertices so far), l; a line that ends
-// with \ goes on in the next one. What draws or groups is read past, lines of words that OBJ does not have are counted.
+// with \ goes on in the next one. Objects (o) and groups (g) name the faces and lines that follow; an object ends the groups before
+// it. What draws is read past, lines of words that OBJ does not have are counted.
 #include <algorithm>
 
 #include "core/input/text_scanner.hpp"
@@ -12,12 +13,12 @@ using Words = std::vector<std::string_view>;
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-/// Texture, normals, groups, materials and display: nothing of a surface.
+/// Texture, normals, materials and display: nothing of a surface.
 bool is_read_past(std::string_view word) {
-  static const std::set<std::string_view> known{
-      "vt",       "vn",         "vp",        "g",      "s",     "o",     "mg",
-      "usemtl",   "mtllib",     "usemap",    "maplib", "lod",   "bevel", "c_interp",
-      "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech", "call",  "csh"};
+  static const std::set<std::string_view> known{"vt",     "vn",       "vp",       "s",          "mg",
+                                                "usemtl", "mtllib",   "usemap",   "maplib",     "lod",
+                                                "bevel",  "c_interp", "d_interp", "shadow_obj", "trace_obj",
+                                                "ctech",  "stech",    "call",     "csh"};
   return known.contains(word);
 }
 
@@ -36,6 +37,7 @@ class ObjReader {
             name) {
     mesh_.name = name;
     mesh_.first_number = 1;
+    mesh_.object_sets.emplace_back();
   }
 
   RawMesh run() {
@@ -79,6 +81,8 @@ class ObjReader {
       take_face();
     } else if (key == "l") {
       take_line();
+    } else if (key == "o" || key == "g") {
+      take_names(key == "o");
     } else if (key == "p") {
       count_one(mesh_.left_out, "points (p)", line_);
     } else if (key.find('\0') != std::string_view::npos) {
@@ -97,13 +101,35 @@ class ObjReader {
       scanner_.fail(fmt::format("a face of {} corners", words_.size() - 1), "at least 3 corners");
     }
     mesh_.close_polygon(first, line_);
+    mesh_.polygon_objects.push_back(mesh_.object_sets.size() - 1);
   }
 
   void take_line() {
     if (words_.size() < 3) scanner_.fail("a line of one point", "l with at least two vertex indices");
     for (std::size_t k = 2; k < words_.size(); ++k) {
       mesh_.add_segment(vertex(words_[k - 1]), vertex(words_[k]), line_);
+      mesh_.segment_objects.push_back(mesh_.object_sets.size() - 1);
     }
+  }
+
+  /// The rest of an o line is one name, which may have blanks; every word of a g line is one.
+  void take_names(bool of_object) {
+    std::vector<std::size_t>& names = of_object ? object_ : groups_;
+    names.clear();
+    if (of_object) groups_.clear();
+    if (of_object && words_.size() > 1)
+      names.push_back(number_of(fmt::format("{}", fmt::join(words_.begin() + 1, words_.end(), " "))));
+    for (std::size_t k = 1; !of_object && k < words_.size(); ++k)
+      names.push_back(number_of(std::string(words_[k])));
+    std::set<std::size_t> all(object_.begin(), object_.end());
+    all.insert(groups_.begin(), groups_.end());
+    mesh_.object_sets.emplace_back(all.begin(), all.end());
+  }
+
+  std::size_t number_of(const std::string& name) {
+    const auto [found, is_new] = numbers_.try_emplace(name, mesh_.object_names.size());
+    if (is_new) mesh_.object_names.push_back(name);
+    return found->second;
   }
 
   double number(std::size_t i) const { return scanner_.value<double>(words_[i], "a number in range"); }
@@ -124,6 +150,8 @@ class ObjReader {
   RawMesh mesh_;
   Words words_;
   long long line_ = 0;
+  std::vector<std::size_t> object_, groups_;    // numbers of the names that hold now
+  std::map<std::string, std::size_t> numbers_;  // of a name
 };
 
 }  // namespace

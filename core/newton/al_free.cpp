@@ -244,7 +244,7 @@ StepSolverEntry step_solver_al_free() {
     LinearContactRules rules;
     rules.standoff = of("al_free_standoff");
     rules.penalty = of("al_free_penalty_N_per_m");
-    rules.push = of("al_free_recovery_m_per_s");
+    rules.recovery_speed = of("al_free_recovery_m_per_s");
     rules.decay = of("al_free_decay");
     rules.least_weight = of("al_free_least_weight");
     rules.advance = of("al_free_advance");

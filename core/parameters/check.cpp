@@ -78,6 +78,7 @@ bool check_array(json& value, const Rule& rule, const std::string& where,
   Rule element = rule;
   element.kind = rule.kind == Kind::words      ? Kind::word
                  : rule.kind == Kind::integers ? Kind::integer
+                 : rule.kind == Kind::texts    ? Kind::text
                  : rule.kind == Kind::box      ? Kind::vector
                  : rule.kind == Kind::objects  ? Kind::object
                                                : Kind::number;
@@ -174,6 +175,7 @@ ParameterValue to_value(const Rule& rule, const json& value) {
     case Kind::number:
       return value.get<double>();
     case Kind::words:
+    case Kind::texts:
       return value.get<std::vector<std::string>>();
     case Kind::vector:
     case Kind::direction:

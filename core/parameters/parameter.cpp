@@ -67,6 +67,8 @@ std::string kind_text(const Rule& rule) {
       return "an array" + size_text(rule, "elements") + ", each once and " + one_of(rule);
     case Kind::integers:
       return "an array of integers" + range_text(rule);
+    case Kind::texts:
+      return "an array of one or more strings, none of them empty";
     case Kind::vector:
       return "an array of 3 numbers";
     case Kind::direction:
@@ -130,6 +132,11 @@ Rule text_up_to(std::size_t bytes) {
   Rule rule = any_text();
   rule.min_size = 1;
   rule.max_size = bytes;
+  return rule;
+}
+Rule texts() {
+  Rule rule = text_up_to(0);
+  rule.kind = Kind::texts;
   return rule;
 }
 Rule free_text() {

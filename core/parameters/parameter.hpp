@@ -29,6 +29,7 @@ enum class Kind {
   word,       // one of the words
   words,      // a list of words, each once
   integers,   // a list
+  texts,      // a list of texts that are not empty
   vector,     // three numbers
   direction,  // three numbers, not all 0
   box,        // two vectors
@@ -70,6 +71,7 @@ Rule words(std::vector<std::string> words);
 Rule any_text();
 Rule text_up_to(std::size_t bytes);  // and not empty
 Rule free_text();                    // of several lines
+Rule texts();                        // a list of at least one, none of them empty
 /// Of three numbers, each as of any_number.
 Rule any_vector(std::string unit);
 Rule direction();

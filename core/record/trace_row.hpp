@@ -147,7 +147,8 @@ struct WorkCounts {
       long long, detours,
       "moves along the direction with a second-order correction, since curved gaps held it: alpha and its "
       "bounds are of that") = 0;
-  BB_FIELD(long long, escapes, "moves along a direction of negative curvature, out of a saddle") = 0;
+  BB_FIELD(long long, escapes,
+           "moves along a direction of negative curvature, out of a saddle or away from a cusp") = 0;
   BB_RECORD_END;
 
   WorkCounts& operator+=(const WorkCounts& other) {

@@ -91,7 +91,9 @@ void LinearContact::list_stencils() {
   families_[0].stencils = {4, stencil_};
 }
 
-double LinearContact::most_asked(PairId pair) const { return pairs_.gap(pair, x_n_).d + rules_.push * dt_; }
+double LinearContact::most_asked(PairId pair) const {
+  return pairs_.gap(pair, x_n_).d + rules_.recovery_speed * dt_;
+}
 
 double LinearContact::asked(const Constraint& of) const { return std::min(standoff_ * of.at.d_hat, of.most); }
 

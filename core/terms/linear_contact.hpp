@@ -2,7 +2,7 @@
 // arXiv 2512.12151). There are two states: the iterate of Newton, whose surfaces may overlap, and the anchor, which is free of
 // contact always. Constraints are pairs that stopped the anchor on its way to an iterate:
 //
-//   c(x) = d(anchor) - delta + grad d(anchor) . (x - anchor) >= 0,   delta = min(standoff d_hat, d(x_n) + push h),
+//   c(x) = d(anchor) - delta + grad d(anchor) . (x - anchor) >= 0,   delta = min(standoff d_hat, d(x_n) + recovery_speed h),
 //
 // each with a force lambda >= 0 (N) and a weight gamma = decay^n, n the updates in a row in which it was not active. With one
 // penalty mu (N/m) for all and slacks s = max(0, c - lambda/mu) that are fixed for an iteration, E gets
@@ -13,7 +13,7 @@
 // anchor: lambda := max(0, lambda - mu c); the anchor goes towards it as far as ACCD lets it; pairs that stopped it and are
 // the first for one of their vertices become constraints with lambda = 0; those whose weight is below least_weight go.
 // Constraints stay from step to step.
-// Otherwise than there: a gap that is below its standoff at the start x_n of a step opens with the speed `push` at most. Theirs has
+// Otherwise than there: a gap that is below its standoff at the start x_n of a step opens with `recovery_speed` at most. Theirs has
 // delta = standoff d_hat, so that such a gap opens within one step, with a speed that grows without bound as h falls;
 // forces and mu in N and N/m, theirs times h^2; the anchor goes `advance` of the way to its first contact,
 // theirs to where a tenth of the gap is left; no friction, nothing prescribed that moves.

@@ -27,14 +27,14 @@ struct FrictionOptions {
 
 /// Contact without a barrier (core/terms/linear_contact.hpp).
 struct LinearContactRules {
-  double standoff = 0.1;       // d_hat of the pair, gap that constraints ask for
-  double penalty = 0;          // N/m; 0: set_penalty()
-  double push = 0.01;          // m/s, at which a gap comes back to its standoff
-  double decay = 0.9;          // of the weight of a constraint that is not active, an update
-  double least_weight = 0.01;  // below which it goes
-  double advance = 0.9;        // part of the way to the first contact that is gone
-  double stall_time = 1e-4;    // smaller advances count as none
-  int stall_updates = 50;      // that many of them in a row double the penalty and halve the standoff
+  double standoff = 0.1;         // d_hat of the pair, gap that constraints ask for
+  double penalty = 0;            // N/m; 0: set_penalty()
+  double recovery_speed = 0.01;  // m/s, at which a gap comes back to its standoff
+  double decay = 0.9;            // of the weight of a constraint that is not active, an update
+  double least_weight = 0.01;    // below which it goes
+  double advance = 0.9;          // part of the way to the first contact that is gone
+  double stall_time = 1e-4;      // smaller advances count as none
+  int stall_updates = 50;        // that many of them in a row double the penalty and halve the standoff
 };
 
 struct TermOptions {

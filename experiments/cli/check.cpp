@@ -7,10 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "core/input/names.hpp"
+#include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
+#include "core/mesh/read_mesh.hpp"
 #include "core/record/run_folder.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/artifacts.hpp"
 #include "experiments/run/device_run.hpp"
@@ -21,7 +25,7 @@
 namespace bb::cli {
 namespace {
 
-constexpr std::size_t most_bodies = 20;
+constexpr std::size_t most_bodies = 20, most_objects = 20;
 
 /// Edges of one body's surface and rods at the start, m.
 struct EdgeLengths {
@@ -56,8 +60,25 @@ std::string edges_text(const EdgeLengths& edges, double d_hat, double offset) {
   return out;
 }
 
-/// Box of all bodies at the start, and the edges of each.
-void print_sizes(const Scene& scene) {
+/// The objects and groups of a body's mesh file, which a config can name.
+void print_objects(const MeshSource& source) {
+  if (source.file.empty()) return;
+  const MeshFile file = parse_mesh_file(read_input_file(source.file, mesh_file), source.file,
+                                        {false, source.objects, source.file});
+  if (file.objects.empty()) return;
+  std::string line = "    objects and groups of its file: ";
+  for (std::size_t i = 0; i < std::min(most_objects, file.objects.size()); ++i) {
+    const MeshObject& object = file.objects[i];
+    line +=
+        fmt::format("{}{} ({} vertices)", i == 0 ? "" : ", ", printable(object.name), object.vertices.size());
+  }
+  if (file.objects.size() > most_objects)
+    line += fmt::format(", and {} more", file.objects.size() - most_objects);
+  print_wrapped(line, 6);
+}
+
+/// Box of all bodies at the start, the edges of each, and what its file has names for.
+void print_sizes(const RunConfig& config, const Scene& scene) {
   const auto start = scene.x0.leftCols(scene.n_body_vertices());
   if (start.cols() == 0) return;
   const Vec3d low = start.rowwise().minCoeff(), high = start.rowwise().maxCoeff(), size = high - low;
@@ -71,6 +92,7 @@ void print_sizes(const Scene& scene) {
     const auto first = static_cast<std::size_t>(body.first_vertex);
     fmt::print("  body {}: {} vertices, {}\n", body.name, body.n_vertices,
                edges_text(edges[i], scene.d_hat[first], scene.offset[first]));
+    if (i < config.scene.bodies.size()) print_objects(config.scene.bodies[i].mesh);
   }
   if (scene.bodies.size() > most_bodies)
     fmt::print("  and {} more bodies\n", scene.bodies.size() - most_bodies);
@@ -100,7 +122,7 @@ int check(const RunVerb& verb) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
   fmt::print("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));
-  print_sizes(scene);
+  print_sizes(config, scene);
   return exit_ok;
 }
 

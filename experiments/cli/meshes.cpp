@@ -2,8 +2,9 @@
 // A request is a line of JSON on the standard input:
 //   {"path": FILE, "name": what messages call it and whose extension decides (default: path),
 //    "as": "frame" (default: any positions, as frames are judged) or "body" (the rules of a body's mesh),
-//    "skin": of a body, keep triangles that are faces of one tetrahedron, "fields": [names of fields of points]}
-// An answer is a line of JSON, {"error": ...} or the counts and the list of arrays, and then the numbers of these arrays, one after
+//    "skin": of a body, keep triangles that are faces of one tetrahedron, "objects": of a body, [names of OBJ objects and groups] alone,
+//    "fields": [names of fields of points]}
+// An answer is a line of JSON, {"error": ...} or notes, objects and groups and the list of arrays, and then the numbers of these arrays, one after
 // the other, little-endian and by rows.
 #include <fmt/format.h>
 
@@ -52,15 +53,26 @@ class Arrays {
   std::vector<std::string_view> parts_;
 };
 
-void answer_body(const std::string& bytes, const std::string& name, bool skin) {
-  std::vector<std::string> notes;
-  const TriangleMesh mesh = parse_mesh(bytes, name, skin, &notes);
+/// Names of objects and groups, and how much of the mesh they are.
+Json objects_json(const std::vector<MeshObject>& objects) {
+  Json out = Json::array();
+  for (const MeshObject& one : objects) {
+    out.push_back(
+        {{"name", one.name}, {"vertices", one.vertices.size()}, {"faces", one.faces}, {"lines", one.lines}});
+  }
+  return out;
+}
+
+void answer_body(const std::string& bytes, const std::string& name, const nlohmann::json& request) {
+  const MeshFile file = parse_mesh_file(
+      bytes, name, {request.value("skin", false), request.value("objects", std::vector<std::string>()), ""});
+  const TriangleMesh& mesh = file.mesh;
   Arrays arrays;
   arrays.add("points", mesh.vertices.data(), static_cast<std::size_t>(mesh.n_vertices()), 3);
   arrays.add("triangles", mesh.triangles);
   arrays.add("segments", mesh.segments);
   arrays.add("tetrahedra", mesh.tetrahedra);
-  arrays.write({{"notes", notes}});
+  arrays.write({{"notes", file.notes}, {"objects", objects_json(file.objects)}});
 }
 
 void answer_frame(const std::string& bytes, const std::string& name,
@@ -80,14 +92,14 @@ void answer_frame(const std::string& bytes, const std::string& name,
     if (wanted.contains(field.name))
       arrays.add("field " + field.name, field.values.data(), field.values.size() / width, width);
   }
-  arrays.write({{"notes", mesh.notes}, {"fields", fields}});
+  arrays.write({{"notes", mesh.notes}, {"fields", fields}, {"objects", objects_json(mesh.objects)}});
 }
 
 void answer(const std::string& line) {
   const nlohmann::json request = parse_json(line, "a request");
   const std::string path = request.at("path"), name = request.value("name", path);
   const std::string bytes = read_input_file(path, mesh_file);
-  if (request.value("as", "frame") == "body") return answer_body(bytes, name, request.value("skin", false));
+  if (request.value("as", "frame") == "body") return answer_body(bytes, name, request);
   answer_frame(bytes, name, request.value("fields", std::set<std::string, std::less<>>()));
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -35,6 +36,7 @@ std::string crossings_text(const RunRecord& record) {
   return record.audit.enabled ? fmt::format("{}", record.audit.crossings + record.audit.violations) : "-";
 }
 
+constexpr std::size_t reason_indent = 4;
 constexpr std::size_t label_width = 44, least_label_width = 24;
 const SummaryColumn summary_columns[] = {
     {"outcome", 18, true, [](const RunRecord& r) { return std::string(to_string(r.status.outcome)); }},
@@ -83,6 +85,27 @@ std::string summary_header() {
 
 std::string summary_row(const RunRecord& record) {
   return summary_line(record.labels.note, [&](const SummaryColumn& column) { return column.cell(record); });
+}
+
+std::string comparability_table(const std::vector<ComparedRow>& rows, std::size_t columns) {
+  const ComparedRow heading{"run", "outcome", "comparability", ""};
+  std::size_t run = heading.run.size(), outcome = heading.outcome.size();
+  for (const ComparedRow& row : rows) {
+    run = std::max(run, row.run.size());
+    outcome = std::max(outcome, row.outcome.size());
+  }
+  const auto line = [&](const ComparedRow& row) {
+    const std::string head =
+        fmt::format("{:<{}}  {:<{}}  {}", row.run, run, row.outcome, outcome, row.verdict);
+    return wrapped(head, columns, reason_indent) + '\n';
+  };
+  std::string out = line(heading);
+  for (const ComparedRow& row : rows) {
+    out += line(row);
+    if (!row.why.empty())
+      out += wrapped(std::string(reason_indent, ' ') + row.why, columns, reason_indent) + '\n';
+  }
+  return out;
 }
 
 }  // namespace bb::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/record/run_record.hpp"
 
@@ -13,5 +14,13 @@ std::string number_text(const Number& number, const char* format);
 /// One row about a finished run, and what stands above it. A terminal that is too narrow has fewer columns and shorter labels.
 std::string summary_row(const RunRecord& record);
 std::string summary_header();
+
+/// What is said of a run of a sweep when all are over.
+struct ComparedRow {
+  std::string run, outcome, verdict, why;  // why: empty of a comparable run
+};
+/// The runs with their verdicts, a heading above them; the reason stands in lines of its own below its run. No line is longer than
+/// so many characters but for a word that is, and every word is there.
+std::string comparability_table(const std::vector<ComparedRow>& rows, std::size_t columns);
 
 }  // namespace bb::cli

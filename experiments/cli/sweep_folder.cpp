@@ -1,6 +1,7 @@
 #include "experiments/cli/sweep_folder.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -13,6 +14,8 @@
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/summary_table.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/run/comparability.hpp"
 
 namespace bb::cli {
@@ -20,7 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double lock_wait_s = 60;  // another process writes the same files, or judges
+constexpr std::size_t usual_columns = 80;  // where there is no terminal
+constexpr double lock_wait_s = 60;         // another process writes the same files, or judges
 
 /// i and N of "i/N". Errors: ConfigError.
 std::pair<std::size_t, std::size_t> read_shard(const std::string& text) {
@@ -161,15 +165,17 @@ void compare_cases(const Sweep& sweep, const std::vector<bool>& refused) {
     members.push_back({sweep.folder(i), one.reference, one.group, !refused[i]});
   }
   write_comparability(members);
-  fmt::print("\n{:<44} {:<18} {:<15} {}\n", "run", "outcome", "comparability", "why");
+  std::vector<ComparedRow> rows;
   for (std::size_t i = 0; i < sweep.spec.cases.size(); ++i) {
     if (refused[i]) continue;
     const auto record = read_run(sweep.folder(i) / "run.json");
     if (!record) continue;
-    fmt::print("{:<44} {:<18} {:<15} {}\n", sweep.note(i), to_string(record->status.outcome),
-               record->comparability.verdict,
-               record->comparability.verdict == "comparable" ? "" : record->comparability.reason);
+    const Comparability& judged = record->comparability;
+    rows.push_back({sweep.note(i), std::string(to_string(record->status.outcome)), judged.verdict,
+                    judged.verdict == "comparable" ? "" : judged.reason});
   }
+  const std::size_t columns = terminal_columns(STDOUT_FILENO);
+  fmt::print("\n{}", comparability_table(rows, columns == 0 ? usual_columns : columns));
   std::fflush(stdout);
 }
 

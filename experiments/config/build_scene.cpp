@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 #include <random>
+#include <span>
 #include <utility>
 
 #include "core/bodies/scene_builder.hpp"
@@ -22,10 +23,10 @@ namespace bb {
 namespace {
 
 /// The mesh of a body; a file has to be the one whose hash the config has.
-TriangleMesh make_mesh(const MeshSource& source, const std::string& where) {
+MeshFile make_mesh(const MeshSource& source, const std::string& where) {
   if (source.file.empty()) {
     try {
-      return mesh_generators().require(source.generator, "mesh/generator").make(source.parameters);
+      return {mesh_generators().require(source.generator, "mesh/generator").make(source.parameters), {}, {}};
     } catch (const ConfigError& error) {
       std::vector<Violation> violations = error.violations();
       for (Violation& v : violations) v.where = where + ": " + v.where;
@@ -37,7 +38,19 @@ TriangleMesh make_mesh(const MeshSource& source, const std::string& where) {
     throw ConfigError(source.file, "a file that has changed since the config was read",
                       "SHA-256 " + source.sha256);
   }
-  return parse_mesh(bytes, source.file);
+  return parse_mesh_file(bytes, source.file, {false, source.objects, where + "/objects"});
+}
+
+/// The vertices of the objects that pins name.
+void take_pinned_objects(std::span<const MeshObject> objects, const std::string& file,
+                         const std::string& where, std::vector<PinSpec>& pins) {
+  for (std::size_t p = 0; p < pins.size(); ++p) {
+    for (std::size_t i = 0; i < pins[p].objects.size(); ++i) {
+      const MeshObject& object = require_object(objects, pins[p].objects[i], file,
+                                                fmt::format("{}/pins/{}/objects/{}", where, p, i));
+      pins[p].indices.insert(pins[p].indices.end(), object.vertices.begin(), object.vertices.end());
+    }
+  }
 }
 
 void apply(const TransformConfig& transform, Positions& x) {
@@ -51,7 +64,7 @@ void apply(const TransformConfig& transform, Positions& x) {
 
 /// The rest shape takes the vertices of another mesh of the same elements; where the body was is where it starts.
 void take_rest_shape(const BodyConfig& body, const std::string& where, BodySpec& spec) {
-  TriangleMesh rest = make_mesh(body.rest_mesh, where);
+  TriangleMesh rest = make_mesh(body.rest_mesh, where).mesh;
   const auto require_same = [&](const char* what, auto& found, auto& allowed) {
     if (found == allowed) return;
     if (found.size() != allowed.size()) {
@@ -83,10 +96,13 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
   for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
     const BodyConfig& body = config.scene.bodies[i];
     BodySpec spec = body.spec;
-    spec.mesh = make_mesh(body.mesh, fmt::format("{}#/scene/bodies/{}/mesh", config.source, i));
+    const std::string where = fmt::format("{}#/scene/bodies/{}", config.source, i);
+    MeshFile made = make_mesh(body.mesh, where + "/mesh");
+    spec.mesh = std::move(made.mesh);
+    take_pinned_objects(made.objects, body.mesh.file, where, spec.pins);
     apply(body.transform, spec.mesh.vertices);
     if (body.rest_mesh.given()) {
-      take_rest_shape(body, fmt::format("{}#/scene/bodies/{}/rest_mesh", config.source, i), spec);
+      take_rest_shape(body, where + "/rest_mesh", spec);
     }
     if (body.limited) spec.material.limit = limit;
     spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);

@@ -39,7 +39,7 @@ ParameterList method_list() {
           ""};
 }
 
-Texts texts(const json& object, const std::string& where, std::vector<Violation>& violations) {
+Texts texts_of(const json& object, const std::string& where, std::vector<Violation>& violations) {
   Texts out;
   for (const auto& [key, value] : object.items()) {
     out[key] = value.is_string() ? value.get<std::string>() : "";
@@ -114,8 +114,8 @@ PublishedMethod load_method(const std::string& name) {
   PublishedMethod out{file["name"], file["doc"], file["source"], file["set"], {}, {}};
   if (out.name != name)
     violations.push_back({where + "/name", file["name"].dump(), '"' + name + "\", as its file"});
-  out.because = texts(file["because"], where + "/because", violations);
-  out.differs = texts(file["differs"], where + "/differs", violations);
+  out.because = texts_of(file["because"], where + "/because", violations);
+  out.differs = texts_of(file["differs"], where + "/differs", violations);
   check_settings(out, where, violations);
   if (!violations.empty()) throw ConfigError(std::move(violations));
   return out;

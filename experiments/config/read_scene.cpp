@@ -22,6 +22,7 @@ const json& given(const json& scene, const char* key, std::size_t i) { return sc
 
 void read_mesh_file(const json& object, const std::string& pointer, const Reader& reader, MeshSource& mesh) {
   mesh.file = object["file"].get<std::string>();
+  if (object.contains("objects")) mesh.objects = object["objects"].get<std::vector<std::string>>();
   try {
     mesh.sha256 = sha256_hex(read_input_file(mesh.file, mesh_file));
   } catch (const ConfigError& error) {
@@ -140,8 +141,8 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
     check_times(pin.pull_factors, where + "/pull_factors", reader);
     check_span(pin, where, reader);
     check_pull(pin, where, reader);
-    if (pin.indices.empty() && !pin.box && !pin.top_row && !pin.all) {
-      reader.missing(where, "at least one of indices, box_m, top_row, all");
+    if (pin.indices.empty() && pin.objects.empty() && !pin.box && !pin.top_row && !pin.all) {
+      reader.missing(where, "at least one of indices, objects, box_m, top_row, all");
     }
   }
 }

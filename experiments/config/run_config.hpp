@@ -42,10 +42,11 @@ inline const char* to_string(MatchingRule rule) {
 
 /// Where a mesh comes from: a generator with its parameters, or a file with its SHA-256.
 struct MeshSource {
-  std::string generator;    // empty when `file` is set
-  ParameterMap parameters;  // of the generator, complete
-  std::string file;         // absolute path
-  std::string sha256;       // of the file's bytes, hex
+  std::string generator;             // empty when `file` is set
+  ParameterMap parameters;           // of the generator, complete
+  std::string file;                  // absolute path
+  std::string sha256;                // of the file's bytes, hex
+  std::vector<std::string> objects;  // of the file, these alone; none: all of it
 
   bool given() const { return !generator.empty() || !file.empty(); }
 };

@@ -14,7 +14,11 @@ using nlohmann::json;
 
 json mesh_json(const MeshSource& mesh) {
   if (!mesh.given()) return {};
-  if (!mesh.file.empty()) return json{{"file", mesh.file}, {"sha256", mesh.sha256}};
+  if (!mesh.file.empty()) {
+    json out = {{"file", mesh.file}, {"sha256", mesh.sha256}};
+    if (!mesh.objects.empty()) out["objects"] = mesh.objects;
+    return out;
+  }
   json made = to_json(mesh.parameters);
   made["generator"] = mesh.generator;
   return made;
@@ -128,11 +132,16 @@ ParameterList mesh_list(const json& mesh) {
                             "A mesh generator (`bench list generators`)."};
   const Parameter file{"file", text_up_to(0), no_default, "Path of a mesh file."};
   const Parameter sha256{"sha256", any_text(), no_default, "Expected SHA-256 of the file (hex)."};
+  const Parameter objects{
+      "objects", texts(), no_default,
+      "Names of objects (o) and groups (g) of an OBJ file: the body has their faces and lines "
+      "alone, with the vertices of these, numbered in the order of the file. Left out: all of "
+      "the file."};
   const std::string doc =
       "{\"generator\": NAME, parameters...} or {\"file\": PATH} (.obj, .ply, .stl, .msh, .vtk, .vtu, .vtp, "
       "relative to the config).";
   ParameterList list{
-      doc, {generator, file, sha256}, true, {{"generator"}, {"file"}}, "either file or generator"};
+      doc, {generator, file, sha256, objects}, true, {{"generator"}, {"file"}}, "either file or generator"};
   if (mesh.contains("file") && !mesh.contains("generator")) list.rows.erase(list.rows.begin());
   list.open = !mesh.contains("file");
   const bool named = mesh.contains("generator") && mesh["generator"].is_string() && !mesh.contains("file");

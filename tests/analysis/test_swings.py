@@ -54,6 +54,10 @@ def test_the_cycle_of_a_run_is_a_band_that_the_caption_names(tmp_path):
     assert "(gap, contacts, quadratic from iteration 1 on, 0.1 to 0.6 at the end)" in said
 
 
+def test_numbers_of_a_caption_tell_the_ends_apart():
+    assert "from 0.11 s on, 612 to 613 at the end" in swings.sentence([("cond", swings.Band("quadratic", 0.11, 612.2, 612.9))], "{:g} s")
+
+
 @pytest.mark.usefixtures("unpainted")
 def test_other_runs_stand_in_their_step_of_the_same_time(tmp_path):
     """The cycle is in step 3, 0.03 to 0.04 s; a run with other steps is there in its step 2."""

@@ -114,6 +114,39 @@ def test_check_says_how_large_a_scene_its_edges_and_d_hat_are(program, tmp_path)
     assert "more than the shortest edge" in wide and "more than" not in said
 
 
+TWO_SQUARES = """v 0 0 1
+v 1 0 1
+v 2 0 1
+v 0 1 1
+v 1 1 1
+v 2 1 1
+f 1 2 5 4
+o right half
+f 2 3 6 5
+g rim
+l 3 6
+"""
+
+
+def test_names_of_an_obj_are_said_and_make_bodies_and_pins(program, tmp_path):
+    (tmp_path / "squares.obj").write_text(TWO_SQUARES)
+    mesh = {"file": str(tmp_path / "squares.obj")}
+    body = {"name": "cloth", "mesh": mesh, "pins": [{"objects": ["rim"]}]}
+    config = {**CLOTH_ON_BALL, "scene": {"bodies": [body]}, "formulation": {"name": "log", "d_hat_m": 0.01}}
+    said = bench(program, "check", write(tmp_path / "a.json", config)).stdout
+    assert "body cloth: 6 vertices" in said and "objects and groups of its file: right half (4 vertices), rim (2 vertices)\n" in said
+    half = bench(program, "check", tmp_path / "a.json", "--set", '/scene/bodies/0/mesh/objects=["right half"]').stdout
+    assert "body cloth: 4 vertices" in half and "right half (4 vertices)" in half
+    unknown = bench(program, "check", tmp_path / "a.json", "--set", '/scene/bodies/0/pins/0/objects=["hem"]')
+    refused(unknown, "/scene/bodies/0/pins/0/objects/0: found \"hem\"", "allowed: one of right half, rim")
+
+    for kind in ("body", "frame"):
+        asked = json.dumps({"path": mesh["file"], "as": kind})
+        answer = subprocess.run([program, "meshes"], input=asked.encode(), capture_output=True, check=True).stdout
+        names = json.loads(answer.split(b"\n", 1)[0])["objects"]
+        assert names == [{"name": "right half", "vertices": 4, "faces": 1, "lines": 1}, {"name": "rim", "vertices": 2, "faces": 0, "lines": 1}]
+
+
 def test_the_start_is_written_as_a_frame_also_where_it_is_refused(program, tmp_path):
     file = write(tmp_path / "a.json", CLOTH_ON_BALL)
     assert bench(program, "check", file, "--start-frame", tmp_path / "one").returncode == 0
@@ -173,10 +206,30 @@ def test_a_wide_terminal_and_none_have_every_column(program, tmp_path):
 
 def test_rows_of_a_sweep_in_processes_fit_too(program, tmp_path):
     lines = shown_lines(on_terminal(program, 80, "sweep", sweep_spec(tmp_path, [3, 4]), "--jobs", "2", "--out", tmp_path / "out"))
-    table = lines[: next(k for k, line in enumerate(lines) if "comparability" in line)]  # below it: what may be compared
+    below = next(k for k, line in enumerate(lines) if "comparability" in line)  # from there on: what may be compared
+    table = lines[:below]
     rows = [line for line in table if line.startswith(("run ", "steps: "))]
     assert sum(line.startswith("run ") for line in rows) == 1 and sum(" ok " in line for line in rows) == 2
-    assert max(map(len, rows)) <= 80
+    assert max(map(len, rows)) <= 80 and len(lines) > below + 2
+
+
+@pytest.mark.parametrize("columns", [0, 60, 80, 200])
+def test_what_may_be_compared_fits_the_terminal_and_loses_no_word(program, tmp_path, columns):
+    """0: no terminal, and 80 columns."""
+    kappa = "/formulation/stiffness_policy/kappa_N_per_m"
+    cases = [{"label": label, "set": {kappa: value}} for label, value in (("stiff", 1000), ("as soft as a cushion", 10))]
+    few = {"/matching/rule": "as_given", "/time/steps": 30, "/time/dt_s": 0.01}
+    spec = {"schema": "barrierbench.sweep/1", "name": "two", "base": BLOCK, "set": few, "axes": [{"cases": cases}]}
+    words = ["sweep", write(tmp_path / "two.json", spec), "--out", tmp_path / "out"]
+    said = on_terminal(program, columns, *words) if columns else bench(program, *words).stdout
+    lines = shown_lines(said)
+    below = lines[next(k for k, line in enumerate(lines) if "comparability" in line) :]
+    assert max(map(len, below)) <= (columns or 80)
+    text = " ".join(" ".join(below).split())
+    records = [json.loads(file.read_text()) for file in (tmp_path / "out").glob("*/run.json")]
+    reasons = [record["comparability"]["reason"] for record in records if record["comparability"]["verdict"] != "comparable"]
+    assert len(records) == 2 and reasons and all(reason in text for reason in reasons)
+    assert all(record["labels"]["note"] in text for record in records)
 
 
 def test_help_list_and_explain_are_broken_at_the_terminal_and_nowhere_else(program):

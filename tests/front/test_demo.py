@@ -1,6 +1,7 @@
 """The demonstration: every sweep of the README once, with several runs at a time, and figures only of a whole demonstration."""
 
 import json
+import sys
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -18,9 +19,11 @@ def calls(monkeypatch):
     """Sweeps that are no runs: what was asked of each; `codes` says how each ends."""
     made, codes = [], {}
 
-    def run_sweep(file: Path, out: Path, *words: str) -> CompletedProcess:
+    def run_sweep(file: Path, out: Path, *words: str, stdout: None) -> CompletedProcess:
         made.append((file, out, words))
-        return CompletedProcess([], codes.get(out.name, 0), f"table of {out.name}\n", "no more disk\n" if out.name in codes else "")
+        print(f"table of {out.name}\n")  # the program's own, on the terminal that it keeps to
+        print("no more disk\n" if out.name in codes else "", file=sys.stderr)
+        return CompletedProcess([], codes.get(out.name, 0))
 
     monkeypatch.setattr(demo, "run_sweep", run_sweep)
     monkeypatch.setattr(figures, "make", lambda runs, out: made.append((runs, out)) or 1)

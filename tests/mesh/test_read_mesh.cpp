@@ -73,15 +73,15 @@ TEST(read_mesh, leaves_out_the_sides_of_tetrahedra_in_files_of_gmsh_and_says_so)
       "9\n$EndNodes\n";
   const std::string elements =
       "$Elements\n4\n1 15 0 1\n2 1 0 1 2\n3 2 0 1 3 2\n4 4 0 1 2 3 4\n$EndElements\n";
-  std::vector<std::string> notes;
 
-  const TriangleMesh mesh = parse_mesh(nodes + elements, "a.msh", false, &notes);
-  const TriangleMesh with_skin = parse_mesh(nodes + elements, "a.msh", true);
+  const auto [mesh, objects, notes] = parse_mesh_file(nodes + elements, "a.msh");
+  const TriangleMesh with_skin = parse_mesh_file(nodes + elements, "a.msh", {true, {}, ""}).mesh;
 
   EXPECT_EQ(mesh.n_vertices(), 4);
   EXPECT_EQ(mesh.tetrahedra.size(), 1u);
   EXPECT_TRUE(mesh.triangles.empty() && mesh.segments.empty());
   EXPECT_EQ(with_skin.triangles.size(), 1u);
+  EXPECT_TRUE(objects.empty());
   EXPECT_EQ(notes.size(), 4u);
   EXPECT_EQ(notes[0], "a line that is a side of another cell: 1 left out, the first at a.msh: element 2");
 }

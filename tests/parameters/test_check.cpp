@@ -58,6 +58,8 @@ TEST(Check, EachFormNamesPlaceValueAndWhatIsAllowed) {
       {words({"a", "b"}), "[\"a\", \"a\"]",
        "found [\"a\",\"a\"]; allowed: an array of at least 1 elements, each once and one of a, b"},
       {ints, "3", "found 3; allowed: an array of integers >= 0 and <= 9"},
+      {texts(), "[]", "found []; allowed: an array of one or more strings, none of them empty"},
+      {texts(), "\"a\"", "found \"a\"; allowed: an array of one or more strings, none of them empty"},
       {vector, "[1, 2]", "found [1,2]; allowed: an array of 3 numbers (m)"},
       {direction(), "[0, 0, 0.0]", "found [0,0,0.0]; allowed: an array of 3 numbers, not all 0"},
       {box, "[[0, 0, 0]]", "found [[0,0,0]]; allowed: an array of 2 arrays of 3 numbers (m)"},
@@ -70,6 +72,7 @@ TEST(Check, EachFormNamesPlaceValueAndWhatIsAllowed) {
 
 TEST(Check, ElementsAreNamedByTheirIndex) {
   EXPECT_EQ(said(words({"a", "b"}), "[\"a\", \"c\"]"), "a.json#/row/1: found \"c\"; allowed: one of a, b");
+  EXPECT_EQ(said(texts(), "[\"a\", \"\"]"), "a.json#/row/1: found \"\"; allowed: a string that is not empty");
   EXPECT_EQ(said(any_vector("m"), "[1, null, 2]"),
             "a.json#/row/1: found null; allowed: a number >= -1e+15 and <= 1e+15 (m)");
 }
