@@ -70,6 +70,13 @@ TEST(EnergySum, keeps_a_small_change_among_large_parts_that_cancel) {
   EXPECT_EQ(sums.change.magnitude, 2e17);
 }
 
+/// The parts of one term are summed in blocks: what rounding took of a block belongs to the whole.
+TEST(EnergySum, keeps_a_small_change_among_large_parts_of_one_term) {
+  const Sums sums = sums_of(
+      list_of(std::make_unique<Given>(std::vector{0.0, 0.0, 1e17}, std::vector{1e17, 1.0, 0.0}, false)));
+  EXPECT_EQ(sums.change.change, 1);
+}
+
 /// 1e17 and 1 are added before their vertex's -1e17 and not after the other vertex's: seen in the plain sum
 /// of magnitudes, in which the order decides what is rounded away.
 TEST(EnergySum, takes_terms_on_vertices_vertex_by_vertex_before_the_others) {
