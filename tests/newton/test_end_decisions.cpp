@@ -55,6 +55,17 @@ TEST(EndDecisions, TheToleranceIsThatOfTheEstimateAndNotOfTheDirection) {
   EXPECT_DOUBLE_EQ(ScriptedStep(falling({.dx = 98 * tol})).report.end_error_tolerances.value, 98.0 / 99);
 }
 
+/// A last direction that its bound cuts leaves the rest of itself: 0.8 of the bound is taken.
+TEST(EndDecisions, TheRestOfALastDirectionCountsInTheError) {
+  for (const double bound : {1.0, 0.5, 0.25}) {
+    const double taken = bound < 1 ? 0.8 * bound : 1;
+    const ScriptedStep step(falling({.dx = 0.5 * tol, .bound = bound}));
+    ASSERT_EQ(step.report.status, StepStatus::converged);
+    ASSERT_EQ(step.report.newton_iterations, 3);
+    EXPECT_DOUBLE_EQ(step.report.end_error_tolerances.value, 0.5 / 99 + 0.5 * (1 - taken)) << bound;
+  }
+}
+
 TEST(EndDecisions, AVertexShortOfItsPoseIsNoEnd) {
   ScriptedIteration last{.dx = 1e-3 * tol};
   EXPECT_EQ(ended_after(far_before(last)), 3);
