@@ -44,30 +44,37 @@ def left_out(factorial: Factorial, factor: int, bound: bool) -> Iterator[tuple[P
         yield from combinations(others, n)
 
 
-def direct(
+def told_by(
     allowed: Contexts,
     part: Part,
     levels: list[tuple[int, ...]],
     y: list[float],
     others: dict[Part, float] | None,
-    out: tuple[Part, ...] = (),
+) -> list[tuple[tuple[int, ...], float | None]]:
+    """Of the runs of one scene those that both a level of a factor and the first one may have: levels, and
+    the value less the effects of all other factors, None where one of these is not known. others: (factor,
+    level) -> fitted effect; None: nothing is taken off.
+    """
+    f, level = part
+    both, found = allowed[part] & allowed[f, 0], []
+    for one, value in zip(levels, y, strict=True):
+        if one[f] in (0, level) and one[:f] + one[f + 1 :] in both:
+            taken = [] if others is None else [others.get((g, k)) for g, k in enumerate(one) if g != f and k]
+            found.append((one, None if None in taken else value - sum(taken)))
+    return found
+
+
+def direct(
+    part: Part, told: list[tuple[tuple[int, ...], float | None]], out: tuple[Part, ...] = ()
 ) -> float | None:
-    """Mean of the level less mean of the first one, of the runs of one scene that both may have and that have
-    no level of `out`. others: (factor, level) -> fitted effect, which is taken off; None: nothing is. None
+    """Mean of the level less mean of the first one, of what is told by runs that have no level of `out`. None
     where either has no run, or an effect that is needed has no value.
     """
     f, level = part
-    both = allowed[part] & allowed[f, 0]
     arms: dict[int, list[float]] = {0: [], level: []}
-    for one, value in zip(levels, y, strict=True):
-        if any(one[g] == k for g, k in out):
-            continue
-        if one[f] in arms and one[:f] + one[f + 1 :] in both:
-            if others is None:
-                arms[one[f]].append(value)
-                continue
-            taken = [others.get((g, k)) for g, k in enumerate(one) if g != f and k]
-            if None in taken:
+    for one, value in told:
+        if not any(one[g] == k for g, k in out):
+            if value is None:
                 return None
-            arms[one[f]].append(value - sum(taken))
+            arms[one[f]].append(value)
     return float(np.mean(arms[level]) - np.mean(arms[0])) if all(arms.values()) else None

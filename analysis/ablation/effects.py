@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 
 from ..claims.estimate import sign_test, student
-from .bound import Contexts, Part, contexts, direct, is_bound, left_out
+from .bound import Contexts, Part, contexts, direct, is_bound, left_out, told_by
 from .factors import Factorial
 from .flips import sign_flip
 from .table import METRICS, Table, got_through, levels_of
@@ -172,9 +172,9 @@ def _beside(factorial: Factorial, table: Table, allowed: Contexts, effect: Effec
         pairs = values_of(table, scene, effect.metric)
         levels, y = [levels_of(factorial, row) for row, _ in pairs], [value for _, value in pairs]
         others = {term.parts[0]: value for term, value in fitted(levels, y, mains, mains).items()}
-        scenes[scene] = levels, y, None if effect.metric in SHARES else others
+        scenes[scene] = told_by(allowed, part, levels, y, None if effect.metric in SHARES else others)
     for out in left_out(factorial, part[0], is_bound(allowed, part)):
-        found = {scene: direct(allowed, part, *of, out) for scene, of in scenes.items()}
+        found = {scene: direct(part, of, out) for scene, of in scenes.items()}
         told = {scene: value for scene, value in found.items() if value is not None}
         one = over_scenes(effect.metric, effect.term, told)
         if not effect.same(one) and (one.p is not None or not out):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import io
 import json
 import os
 import re
@@ -15,7 +17,7 @@ from pathlib import Path
 
 from .. import input_file
 from ..errors import UserError
-from ..front import verbs
+from ..front import door, verbs
 from ..places import ROOT
 from ..program import in_shell, started
 from ..spec_file import read_spec
@@ -79,7 +81,15 @@ def _helped(verb: str) -> subprocess.CompletedProcess:
     """VERB --help, of the program or of this package."""
     if not verbs.find(verb):
         return started(verb, "--help", timeout=SECONDS)
-    command = [sys.executable, str(ROOT / "analysis"), verb, "--help"]
+    said, told = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
+        try:
+            code = door.main([verb, "--help"])
+        except SystemExit as ended:  # of argparse
+            code = ended.code
+    if said.getvalue() or told.getvalue():
+        return subprocess.CompletedProcess([verb, "--help"], code, said.getvalue(), told.getvalue())
+    command = [sys.executable, str(ROOT / "analysis"), verb, "--help"]  # a process of its own answers
     return subprocess.run(command, check=False, capture_output=True, text=True, timeout=SECONDS)
 
 

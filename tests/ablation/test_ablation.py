@@ -161,14 +161,14 @@ def test_what_is_bound_is_what_the_exclusions_name(small):
 
 def test_a_direct_effect_takes_off_the_others(small):
     allowed, levels = bound.contexts(small), [(0, 0, 0), (0, 0, 1), (2, 0, 1)]
-    assert bound.direct(allowed, (0, 2), levels, [1.0, 3.0, 7.0], {(2, 1): 2.0}) == 4.0
-    assert bound.direct(allowed, (0, 2), levels, [1.0, 3.0, 7.0], {}) is None
+    assert bound.direct((0, 2), bound.told_by(allowed, (0, 2), levels, [1.0, 3.0, 7.0], {(2, 1): 2.0})) == 4.0
+    assert bound.direct((0, 2), bound.told_by(allowed, (0, 2), levels, [1.0, 3.0, 7.0], {})) is None
 
 
 def test_a_direct_effect_needs_runs_of_both_levels(small):
     allowed, levels = bound.contexts(small), [(0, 0, 0), (2, 0, 0), (0, 1, 0)]
-    assert bound.direct(allowed, (0, 2), levels, [1.0, 4.0, 9.0], {(1, 1): 0.0}) == 3.0
-    assert bound.direct(allowed, (0, 2), levels[:1], [1.0], {}) is None
+    assert bound.direct((0, 2), bound.told_by(allowed, (0, 2), levels, [1.0, 4.0, 9.0], {(1, 1): 0.0})) == 3.0
+    assert bound.direct((0, 2), bound.told_by(allowed, (0, 2), levels[:1], [1.0], {})) is None
 
 
 def test_an_effect_of_the_size_of_rounding_has_no_sign():

@@ -1,0 +1,67 @@
+"""A verb in Python in a process of its own that need not import its libraries again: they take most of its time.
+
+The process is forked from that of pytest. What belongs to the start of a process (streams that a shell has closed, the locale, what is
+imported) is judged by tests that start Python.
+"""
+
+import importlib
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+from analysis.front import streams, verbs
+from analysis.front.door import main
+
+
+def _child(words: list[str], cwd: Path, environment: dict[str, str], files: tuple, limits: Callable[[], None]) -> int:
+    for number, file in enumerate(files):
+        os.dup2(file.fileno(), number)
+    sys.stdin, sys.stdout, sys.stderr = (open(number, mode, closefd=False) for number, mode in enumerate("rww"))
+    sys.__stdout__, sys.__stderr__ = sys.stdout, sys.stderr
+    os.chdir(cwd)
+    os.environ.clear()
+    os.environ.update(environment)
+    limits()
+    try:
+        streams.prepare()
+        return main(words)
+    except SystemExit as ended:
+        return ended.code if isinstance(ended.code, int) else 1
+    except BaseException:  # noqa: BLE001 (as Python ends a process)
+        traceback.print_exc()
+        return 1
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+
+
+def forked(words: list[str], cwd: Path, environment: dict[str, str], timeout: float, limits: Callable[[], None] = lambda: None) -> subprocess.CompletedProcess:
+    """As subprocess.run of python analysis WORDS, with nothing to read. Errors: TimeoutExpired."""
+    if row := verbs.find(words[0]):
+        importlib.import_module(f"analysis.{row.module}")
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, open(os.devnull) as nothing:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # threads of numpy wait for work, and are not asked in the child
+            child = os.fork()
+        if child == 0:
+            code = 1
+            try:
+                code = _child(words, cwd, environment, (nothing, out, err), limits)
+            finally:
+                os._exit(code)
+        end = time.monotonic() + timeout
+        while not (done := os.waitpid(child, os.WNOHANG))[0]:
+            if time.monotonic() > end:
+                os.kill(child, signal.SIGKILL)
+                os.waitpid(child, 0)
+                raise subprocess.TimeoutExpired(words, timeout)
+            time.sleep(0.005)
+        out.seek(0), err.seek(0)
+        return subprocess.CompletedProcess(words, os.waitstatus_to_exitcode(done[1]), out.read(), err.read())
