@@ -176,6 +176,10 @@ TEST(Retries, end_a_step_that_never_converges_after_the_last_one) {
   EXPECT_EQ(step.newton_iterations, 4);
   EXPECT_EQ(simulation.time(), dt / 8);
   EXPECT_EQ(watch.motions.size(), 1U);
+  for (int part = 2; part <= 4; ++part) {  // neither the first nor the last of eight
+    EXPECT_EQ(simulation.step(watch).dt_s, dt / 8);
+    EXPECT_EQ(simulation.time(), part * dt / 8);
+  }
 }
 
 /// The load of quasi_static grows with the parts, and is whole at the end: a particle on three springs.
