@@ -7,9 +7,8 @@
 
 namespace bb::test {
 
-/// Gradient [3 n_vertices] of B with the cubic shape of the tests, and with a place for it its unprojected Hessian.
-inline VecXd gradient_of(ContactSystem& contacts, const Positions& x, Eigen::MatrixXd* hessian = nullptr) {
-  Rows rows = rows_at(contacts, x);
+/// Gradient [3 n_vertices] of B of rows at x whose barriers are evaluated, and with a place for it its unprojected Hessian.
+inline VecXd gradient_of(const Rows& rows, const Positions& x, Eigen::MatrixXd* hessian = nullptr) {
   VecXd out = VecXd::Zero(x.size());
   std::vector<double> grad, hess;
   const auto scatter = [&](const std::vector<int>& vertex, std::size_t n) {
@@ -26,13 +25,19 @@ inline VecXd gradient_of(ContactSystem& contacts, const Positions& x, Eigen::Mat
       }
     }
   };
-  evaluate(rows.table, 3.5, TestShape::cubic);
-  evaluate(rows.mollified, 3.5, TestShape::cubic);
   contact_terms(rows.table, x, HessianMode::projected_full, Projection::none, grad, hess);
   scatter(rows.table.vertex, rows.table.size());
   mollified_terms(rows.mollified, x, Projection::none, grad, hess);
   scatter(rows.mollified.free_vertex, rows.mollified.size());
   return out;
+}
+
+/// The same of the rows at x with the cubic shape of the tests.
+inline VecXd gradient_of(ContactSystem& contacts, const Positions& x, Eigen::MatrixXd* hessian = nullptr) {
+  Rows rows = rows_at(contacts, x);
+  evaluate(rows.table, 3.5, TestShape::cubic);
+  evaluate(rows.mollified, 3.5, TestShape::cubic);
+  return gradient_of(rows, x, hessian);
 }
 
 }  // namespace bb::test

@@ -150,20 +150,25 @@ void evaluate(Table& t, double kappa, TestShape shape = TestShape::quadratic) {
   }
 }
 
+/// B of rows at x whose barriers are evaluated.
+inline double energy_of(const Rows& rows, const Positions& x) {
+  std::vector<double> energy, mollified;
+  contact_energies(rows.table, energy);
+  mollified_energies(rows.mollified, x, mollified);
+  double sum = 0;
+  for (double e : energy) sum += e;
+  for (double e : mollified) sum += e;
+  return sum;
+}
+
 /// B at x with a given shape; also counts rows into *n_rows.
 inline double barrier(ContactSystem& contacts, const Positions& x, double kappa,
                       TestShape shape = TestShape::quadratic, std::size_t* n_rows = nullptr) {
   Rows rows = rows_at(contacts, x);
   evaluate(rows.table, kappa, shape);
   evaluate(rows.mollified, kappa, shape);
-  std::vector<double> energy, mollified;
-  contact_energies(rows.table, energy);
-  mollified_energies(rows.mollified, x, mollified);
-  if (n_rows != nullptr) *n_rows = energy.size() + mollified.size();
-  double sum = 0;
-  for (double e : energy) sum += e;
-  for (double e : mollified) sum += e;
-  return sum;
+  if (n_rows != nullptr) *n_rows = rows.table.size() + rows.mollified.size();
+  return energy_of(rows, x);
 }
 
 /// A 4 x 4 grid of unit cells and a free vertex (25) at p.

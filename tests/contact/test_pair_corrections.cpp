@@ -35,24 +35,10 @@ Sum sum_at(ContactSystem& contacts, const Positions& x) {
   Rows rows = rows_at(contacts, x);
   evaluate_shares(rows.table);
   evaluate_shares(rows.mollified);
-  Sum out;
-  out.gradient = VecXd::Zero(x.size());
+  Sum out{energy_of(rows, x), gradient_of(rows, x)};
   out.rows = rows.table.size();
   out.mollified = rows.mollified.size();
   for (const double share : rows.table.share) out.below_zero += share < 0 ? 1 : 0;
-  std::vector<double> energy, grad, hess;
-  const auto add = [&](const std::vector<int>& vertex) {
-    for (const double e : energy) out.energy += e;
-    for (std::size_t i = 0; i < vertex.size(); ++i) {
-      if (vertex[i] >= 0) out.gradient.segment<3>(3 * vertex[i]) += Vec3d::Map(&grad[3 * i]);
-    }
-  };
-  contact_energies(rows.table, energy);
-  contact_terms(rows.table, x, HessianMode::projected_full, Projection::none, grad, hess);
-  add(rows.table.vertex);
-  mollified_energies(rows.mollified, x, energy);
-  mollified_terms(rows.mollified, x, Projection::none, grad, hess);
-  add(rows.mollified.free_vertex);
   return out;
 }
 

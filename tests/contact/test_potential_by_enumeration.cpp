@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "tests/contact/contact_scenes.hpp"
+#include "tests/contact/barrier_gradient.hpp"
 #include "tests/geometry/closest_oracle.hpp"
 
 namespace bb::test::potential_by_enumeration_test {
@@ -184,23 +184,7 @@ Found found(const Scene& scene, const Positions& x, ContactWeighting weighting) 
   evaluate(rows.mollified, 1, TestShape::cubic);
   if (weighting != ContactWeighting::none)
     rows.table.kappa = rows.table.share, rows.mollified.kappa = rows.mollified.share;
-  Found out;
-  out.rows = rows.table.size(), out.mollified = rows.mollified.size();
-  out.gradient = VecXd::Zero(x.size());
-  std::vector<double> energy, grad, hess;
-  const auto add = [&](const std::vector<int>& vertex) {
-    for (const double e : energy) out.energy += e;
-    for (std::size_t i = 0; i < vertex.size(); ++i) {
-      if (vertex[i] >= 0) out.gradient.segment<3>(3 * vertex[i]) += Vec3d::Map(&grad[3 * i]);
-    }
-  };
-  contact_energies(rows.table, energy);
-  contact_terms(rows.table, x, HessianMode::gauss_newton, Projection::none, grad, hess);
-  add(rows.table.vertex);
-  mollified_energies(rows.mollified, x, energy);
-  mollified_terms(rows.mollified, x, Projection::none, grad, hess);
-  add(rows.mollified.free_vertex);
-  return out;
+  return {energy_of(rows, x), gradient_of(rows, x), rows.table.size(), rows.mollified.size()};
 }
 
 constexpr ContactWeighting weightings[] = {ContactWeighting::none, ContactWeighting::area,
