@@ -65,6 +65,22 @@ Ran run(const Scene& scene, Method method, double dt, int steps) {
   return out;
 }
 
+/// A thick particle, however fast it comes, stays above the floor by its thickness, and rests at the standoff from there.
+TEST(AlFree, a_thick_particle_is_stopped_by_its_thickness) {
+  const double thick = 5 * d_hat;
+  for (const double speed : {0.0, 1.0, 100.0}) {
+    Scene scene = test::particle_over_plane(mass, thick + 0.9 * d_hat, d_hat);
+    scene.offset = {thick};
+    scene.v0(2, 0) = -speed;
+    const Ran ran = run(scene, method_of(), 0.05, 20);
+    EXPECT_GT(ran.lowest.height, thick) << speed;
+    EXPECT_GT(ran.lowest.motions, 0);
+    if (speed == 0) {
+      EXPECT_NEAR(ran.x(2, 0), thick + standoff, 1e-8);
+    }
+  }
+}
+
 /// It rests at the standoff with its weight as the multiplier, whatever the penalty is, and that is found in the step in which it
 /// comes there.
 TEST(AlFree, a_weight_rests_at_the_standoff_and_its_multiplier_is_the_weight) {
