@@ -10,7 +10,8 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from .. import style
-from ..records import Records, condition_of, places_in_time
+from ..records import LARGEST_COND, Records, condition_of, places_in_time
+from .condition import BOUNDS
 
 SCALINGS = (("none", "raw"), ("block_jacobi", "block-Jacobi-scaled"))
 FORMS = (("clamped", "every element clamped", "-"), ("solved", "solved", ":"))
@@ -18,7 +19,8 @@ SHOWN = (
     "{group}, run {series}: condition number of two matrices of the same Newton iterations. Clamped: negative"
     " eigenvalues of every element set to 0, the matrix that papers compare. Solved: the one that was"
     " factorised, the exact Hessian or as far from it as positive definiteness asks; drawn where it is"
-    " another. The Newton iterations of a step stand evenly within it. Left: as it is; right: scaled by block"
+    " another. Forks without a line are bounds: the true condition number is at least as large. The Newton"
+    " iterations of a step stand evenly within it. Left: as it is; right: scaled by block"
     " Jacobi."
 )
 
@@ -42,8 +44,10 @@ def _draw(records: Records, group: str, row: pd.Series, both: dict, out: Path) -
     color = style.look(row["formulation"]).color
     for axis, (scaling, title) in zip(axes, SCALINGS):
         for form, name, dash in FORMS:
-            part = both[form, scaling]
-            part = part[part["status"] == "ok"].assign(at=lambda p: places_in_time(records, row["run"], p))
+            part = both[form, scaling].assign(at=lambda p: places_in_time(records, row["run"], p))
+            part.loc[part["status"] == "singular", "cond"] = LARGEST_COND
+            bound = part[part["status"].isin(BOUNDS) & part["cond"].notna()]
+            part = part[part["status"] == "ok"]
             axis.plot(
                 part["at"],
                 part["cond"],
@@ -53,6 +57,14 @@ def _draw(records: Records, group: str, row: pd.Series, both: dict, out: Path) -
                 markersize=2.5,
                 linewidth=0.9,
                 label=name,
+            )
+            axis.plot(
+                bound["at"],
+                bound["cond"],
+                "2",
+                color=color if form == "clamped" else "#000000",
+                markersize=5,
+                markeredgewidth=0.9,
             )
             numbers.append(part)
         axis.set(xlabel="time (s)", ylabel="condition number")

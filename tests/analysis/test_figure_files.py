@@ -146,5 +146,23 @@ def test_clamped_and_solved_matrices_are_drawn_apart_and_never_mixed(tmp_path):
     assert len(plain) == 4 * 6 * 2  # the other figures keep to the clamped ones
 
 
+def test_a_bound_of_a_clamped_matrix_is_a_fork_and_the_run_is_named(tmp_path, monkeypatch):
+    write_set(tmp_path / "runs")
+    trace = tmp_path / "runs" / "log" / "trace.jsonl"
+    lines = [json.loads(line) for line in trace.read_text().splitlines()]
+    for line in lines:
+        clamped = [{**sample, "matrix": "clamped", "status": "lower_bound", "cond": 1e14} for sample in line["cond"]]
+        line["cond"] = clamped + [{**sample, "matrix": "solved", "status": "ok", "cond": 70.0} for sample in line["cond"]]
+    trace.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    bind(trace.parent)
+    drawn = []
+    monkeypatch.setattr(style, "save", lambda fig, *_: drawn.append(fig) or [])
+    matrix_forms.figure(load(tmp_path / "runs"), "strip", tmp_path)
+    [fig] = drawn
+    assert "run log" in fig.get_suptitle()
+    forks = [line for axis in fig.axes for line in axis.lines if line.get_marker() == "2" and len(line.get_ydata())]
+    assert len(forks) == 2 and all(set(line.get_ydata()) == {1e14} for line in forks)
+
+
 def test_records_without_solved_matrices_have_no_such_figure(records, tmp_path):
     assert matrix_forms.figure(records, "strip", tmp_path) == []
