@@ -6,11 +6,11 @@ imported) is judged by tests that start Python.
 
 import importlib
 import os
+import select
 import signal
 import subprocess
 import sys
 import tempfile
-import time
 import traceback
 import warnings
 from collections.abc import Callable
@@ -56,12 +56,13 @@ def forked(words: list[str], cwd: Path, environment: dict[str, str], timeout: fl
                 code = _child(words, cwd, environment, (nothing, out, err), limits)
             finally:
                 os._exit(code)
-        end = time.monotonic() + timeout
-        while not (done := os.waitpid(child, os.WNOHANG))[0]:
-            if time.monotonic() > end:
-                os.kill(child, signal.SIGKILL)
-                os.waitpid(child, 0)
-                raise subprocess.TimeoutExpired(words, timeout)
-            time.sleep(0.005)
+        ended = os.pidfd_open(child)
+        in_time = bool(select.select([ended], [], [], timeout)[0])
+        os.close(ended)
+        if not in_time:
+            os.kill(child, signal.SIGKILL)
+        _, status = os.waitpid(child, 0)
+        if not in_time:
+            raise subprocess.TimeoutExpired(words, timeout)
         out.seek(0), err.seek(0)
-        return subprocess.CompletedProcess(words, os.waitstatus_to_exitcode(done[1]), out.read(), err.read())
+        return subprocess.CompletedProcess(words, os.waitstatus_to_exitcode(status), out.read(), err.read())
