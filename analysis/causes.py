@@ -191,6 +191,8 @@ def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list
         return given if given.is_dir() else given.parent
     folder = out or ROOT / "results/runs" / f"causes-{given.stem}"
     words = ["run", str(given), "--out", str(folder)]
+    if out is None:
+        words.append("--replace")  # that folder is named after the config's file alone, whatever is set
     for option in [*OPTIONS, *settings]:
         words += ["--set", option]
     code = started(*words, plugins=plugins, stdout=subprocess.DEVNULL).returncode

@@ -90,7 +90,7 @@ def make(picture: Picture, runs: Path, docs: Path) -> str:
     ok, a picture that is too large.
     """
     folder = runs / picture.name
-    done = started(*command_of(picture, folder))
+    done = started(*command_of(picture, folder), "--replace")
     if done.returncode != 0:
         raise UserError(f"{picture.name}: {done.stderr.strip()}")
     record = read_record(folder / "run.json")

@@ -76,7 +76,7 @@ Answer ask(const std::string& kind, const std::string& text) {
   return {load_plugin(answer.at("library")),
           formula,
           {std::string(formula_prefix) + formula, answer.at("label"), answer.at("library"),
-           answer.at("library_sha256")},
+           answer.at("library_sha256"), answer.value("unproven", "")},
           {},
           {},
           answer.value("at_zero", ""),

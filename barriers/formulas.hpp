@@ -20,10 +20,11 @@ inline constexpr std::size_t most_formula_bytes = 400;  // as grammar.py has it
 
 /// The plugin that was made of a formula.
 struct FormulaLibrary {
-  std::string name;    // formula_prefix and the one spelling of the formula
-  std::string label;   // formula-HASH, for folders and legends
-  std::string file;    // that was compiled and loaded
-  std::string sha256;  // of the file
+  std::string name;           // formula_prefix and the one spelling of the formula
+  std::string label;          // formula-HASH, for folders and legends
+  std::string file;           // that was compiled and loaded
+  std::string sha256;         // of the file
+  std::string unproven = {};  // of a shape whose signs are only sampled in places: where
 };
 
 struct FormulaShape {

@@ -107,6 +107,10 @@ def entries(asked: list[str], folder: Path = FOLDER) -> list[Entry]:
     return [read_entry(name, folder) for name in asked or names(folder)]
 
 
-def write_config(entry: Entry, file: Path, size: str = MINI) -> None:
+def config_text(entry: Entry, size: str = MINI) -> str:
     """An ordinary config, as the program reads it."""
-    write_whole(file, json.dumps(entry.config(size), indent=1) + "\n")
+    return json.dumps(entry.config(size), indent=1) + "\n"
+
+
+def write_config(entry: Entry, file: Path, size: str = MINI) -> None:
+    write_whole(file, config_text(entry, size))

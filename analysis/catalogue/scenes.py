@@ -7,16 +7,18 @@ Exit codes: 0, 1 a size is not the one that the scene states of its source, 2 ba
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from .. import input_file
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..progress import counted
 from ..text_table import fitted
 from .counts import counts_of
-from .entry import FULL, MINI, Entry, entries, write_config
+from .entry import FULL, MINI, Entry, config_text, entries, write_config
 
 LARGE = 500_000  # vertices, from which on a scene is built only where it is named
 
@@ -69,6 +71,16 @@ def _print_one(entry: Entry) -> None:
         print(f"expects   {expected['check']}{f' ({own})' if own else ''}: {expected['because']}")
 
 
+def _is_written(entry: Entry, file: Path, size: str) -> bool:
+    """The file is this very config already. Errors: UserError: it is another one, or cannot be read."""
+    if not os.path.lexists(file):
+        return False
+    with contextlib.suppress(UserError, UnicodeDecodeError):
+        if input_file.read_text(file) == config_text(entry, size):
+            return True
+    raise UserError(f"--write: {file} is there, with other contents; allowed: a name that is free")
+
+
 @tells("scenes")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
@@ -76,9 +88,9 @@ def main(argv: list[str]) -> int:
     if args.write:
         if len(args.names) != 1:
             raise UserError("--write: one NAME is needed")
-        if os.path.lexists(args.write):
-            raise UserError(f"--write: {args.write} is there; a name that is free is needed")
-        write_config(asked[0], args.write, FULL if args.full else MINI)
+        size = FULL if args.full else MINI
+        if not _is_written(asked[0], args.write, size):
+            write_config(asked[0], args.write, size)
         print(args.write)
         return 0
     if args.full:

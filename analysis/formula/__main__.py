@@ -1,7 +1,8 @@
 """What the program starts when it meets a formula: a JSON object {"kind", "formula"} from the standard input,
-one to the standard output. Of kind shape and policy: formula, label, library, library_sha256, of a shape
-at_zero too, of a policy reads_gap and slope_error_rel. Of kind device, which is asked with a layout, the
-kernel of a shape: entry, ptx (a file), ptx_sha256. Or found and allowed of what is wrong.
+one to the standard output. Of kind shape and policy: formula, label, library, library_sha256; of a shape
+at_zero too and, where its signs are not proven, unproven (a text); of a policy reads_gap and
+slope_error_rel. Of kind device, which is asked with a layout, the kernel of a shape: entry, ptx (a file),
+ptx_sha256. Or found and allowed of what is wrong.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import json
 import sys
 
 from .cache import Compiled
-from .compiled import compiled, compiled_policy
+from .compiled import compiled, compiled_policy, signs_of
 from .device import device_code
 from .grammar import FormulaError
 
@@ -19,6 +20,8 @@ TOLD = ("formula", "label", "at_zero", "reads_gap", "slope_error_rel", "library_
 
 def _library(made: Compiled) -> dict:
     known = {key: made.about[key] for key in TOLD if key in made.about}
+    if unproven := made.about.get("unproven"):
+        known["unproven"] = signs_of(unproven)
     return {**known, "library": str(made.library)}
 
 

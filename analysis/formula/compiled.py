@@ -24,6 +24,14 @@ def compiled(text: str, declared: str | None = None) -> cache.Compiled:
     return found
 
 
+def signs_of(unproven: list[str]) -> str:
+    """How b > 0, b' < 0 and b'' >= 0 are known."""
+    if not unproven:
+        return "b > 0, b' < 0, b'' >= 0 are proven for d/d_hat from 1e-15 to 1 - 1e-15 (interval arithmetic)"
+    more = f", and in {len(unproven) - 3} more ranges" if len(unproven) > 3 else ""
+    return f"not proven, only sampled, for {'; '.join(unproven[:3])}{more}"
+
+
 def compiled_policy(text: str) -> cache.Compiled:
     """The same of a stiffness, kappa in N/m of a contact."""
     return _kept(read(text, POLICY), _made_policy)

@@ -8,7 +8,7 @@ import json
 from .. import input_file
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
-from .compiled import compiled, compiled_policy
+from .compiled import compiled, compiled_policy, signs_of
 from .grammar import POLICY, SHAPE, FormulaError
 
 DOC = f"""
@@ -76,14 +76,6 @@ def _potential_line(about: dict) -> str:
         "potential   -int kappa(s) b'(s) ds, with \"potential\": \"derived\" in a config; d kappa/dd to"
         f" {about['slope_error_rel']:.1e} of kappa/d"
     )
-
-
-def signs_of(unproven: list[str]) -> str:
-    """How b > 0, b' < 0 and b'' >= 0 are known."""
-    if not unproven:
-        return "b > 0, b' < 0, b'' >= 0 are proven for d/d_hat from 1e-15 to 1 - 1e-15 (interval arithmetic)"
-    more = f", and in {len(unproven) - 3} more ranges" if len(unproven) > 3 else ""
-    return f"not proven, only sampled, for {'; '.join(unproven[:3])}{more}"
 
 
 def card(about: dict) -> str:

@@ -9,6 +9,7 @@
 #include "experiments/ccd/read_queries.hpp"
 #include "experiments/ccd/score.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/say.hpp"
 
 namespace bb::cli {
 namespace {
@@ -81,7 +82,7 @@ int ccd(const CcdVerb& verb) {
   bool sound = true;
   if (verb.head_on != 0) {
     const auto rows = ccd::head_on_sweeps(verb.head_on, verb.seed);
-    fmt::print("{}", ccd::head_on_table(rows));
+    show("{}", ccd::head_on_table(rows));
     out["seed"] = verb.seed;
     out["head_on"] = to_json(rows);
     sound = !ccd::any_crossed(rows);
@@ -89,7 +90,7 @@ int ccd(const CcdVerb& verb) {
     const bool random = verb.random != 0;
     const auto scores = ccd::score_queries(random ? ccd::random_queries(verb.random, verb.seed)
                                                   : ccd::read_queries(verb.folder));
-    fmt::print("{}", ccd::score_table(scores));
+    show("{}", ccd::score_table(scores));
     if (random) out["seed"] = verb.seed;
     out["scores"] = to_json(scores);
     sound = !ccd::any_false_negative(scores);

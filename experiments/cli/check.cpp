@@ -14,6 +14,7 @@
 #include "core/record/run_folder.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/terminal.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/artifacts.hpp"
@@ -82,7 +83,7 @@ void print_sizes(const RunConfig& config, const Scene& scene) {
   const auto start = scene.x0.leftCols(scene.n_body_vertices());
   if (start.cols() == 0) return;
   const Vec3d low = start.rowwise().minCoeff(), high = start.rowwise().maxCoeff(), size = high - low;
-  fmt::print(
+  show(
       "  bounding box {:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) "
       "m\n",
       size.x(), size.y(), size.z(), low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
@@ -90,12 +91,11 @@ void print_sizes(const RunConfig& config, const Scene& scene) {
   for (std::size_t i = 0; i < std::min(most_bodies, scene.bodies.size()); ++i) {
     const Body& body = scene.bodies[i];
     const auto first = static_cast<std::size_t>(body.first_vertex);
-    fmt::print("  body {}: {} vertices, {}\n", body.name, body.n_vertices,
-               edges_text(edges[i], scene.d_hat[first], scene.offset[first]));
+    show("  body {}: {} vertices, {}\n", body.name, body.n_vertices,
+         edges_text(edges[i], scene.d_hat[first], scene.offset[first]));
     if (i < config.scene.bodies.size()) print_objects(config.scene.bodies[i].mesh);
   }
-  if (scene.bodies.size() > most_bodies)
-    fmt::print("  and {} more bodies\n", scene.bodies.size() - most_bodies);
+  if (scene.bodies.size() > most_bodies) show("  and {} more bodies\n", scene.bodies.size() - most_bodies);
 }
 
 /// The start as the files of a frame that a run leaves. Errors: ConfigError where there are frames already; RecordError.
@@ -121,7 +121,7 @@ int check(const RunVerb& verb) {
   if (const auto failure = start_failure(config, scene, {&interrupted()})) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
-  fmt::print("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));
+  show("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));
   print_sizes(config, scene);
   return exit_ok;
 }

@@ -8,6 +8,7 @@
 
 #include "core/cuda/copy_rates.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/say.hpp"
 
 namespace bb::cli {
 namespace {
@@ -43,19 +44,17 @@ nlohmann::json as_json(const DeviceProbe& probe, const std::optional<cuda::CopyR
 }
 
 void print(const DeviceProbe& probe, const std::optional<cuda::CopyRates>& rates) {
-  fmt::print("built with CUDA   {}\n",
-             probe.built ? "yes, run time " + cuda::version_text(probe.runtime) : std::string("no"));
-  if (probe.built) fmt::print("driver            {}\n", version_or_none(probe.driver));
+  show("built with CUDA   {}\n",
+       probe.built ? "yes, run time " + cuda::version_text(probe.runtime) : std::string("no"));
+  if (probe.built) show("driver            {}\n", version_or_none(probe.driver));
   if (!probe.card.empty()) {
-    fmt::print("card              {}, compute capability {}.{}, {} of {} free\n", probe.card,
-               probe.capability / 10, probe.capability % 10, exec::bytes_text(probe.free),
-               exec::bytes_text(probe.memory));
+    show("card              {}, compute capability {}.{}, {} of {} free\n", probe.card, probe.capability / 10,
+         probe.capability % 10, exec::bytes_text(probe.free), exec::bytes_text(probe.memory));
   }
-  fmt::print("usable            {}\n", probe.usable ? std::string("yes") : "no: " + probe.why);
+  show("usable            {}\n", probe.usable ? std::string("yes") : "no: " + probe.why);
   if (!rates) return;
-  fmt::print(
-      "copies of {}: {:.0f} GB/s on the card (read and written), {:.1f} GB/s to it, {:.1f} GB/s from it\n",
-      exec::bytes_text(rates->bytes), 1e-9 * rates->copy, 1e-9 * rates->upload, 1e-9 * rates->download);
+  show("copies of {}: {:.0f} GB/s on the card (read and written), {:.1f} GB/s to it, {:.1f} GB/s from it\n",
+       exec::bytes_text(rates->bytes), 1e-9 * rates->copy, 1e-9 * rates->upload, 1e-9 * rates->download);
 }
 
 /// The card that this build can use. exit_no_card without one. Errors: as measure_copies.

@@ -14,6 +14,7 @@
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/terminal.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/enum_words.hpp"
@@ -41,8 +42,8 @@ std::string stiffness_text(const PolicyConfig& policy) {
 void print_method(const RunConfig& config) {
   if (config.method.empty()) return;
   const MethodUse use = method_use(config);
-  fmt::print("method    {}: {}\n", use.title(), use.method.source);
-  for (const std::string& pointer : use.overridden) fmt::print("  overridden: {}\n", pointer);
+  show("method    {}: {}\n", use.title(), use.method.source);
+  for (const std::string& pointer : use.overridden) show("  overridden: {}\n", pointer);
   for (const auto& [subject, text] : use.method.differs)
     print_wrapped(fmt::format("  differs, {}: {}", subject, text), 10);
 }
@@ -60,27 +61,27 @@ std::set<std::string> of_method(const RunConfig& config) {
 void print_formulation(const RunConfig& config, const Scene& scene) {
   const FormulationConfig& contact = config.formulation;
   const StrainLimitConfig& limit = config.strain_limit;
-  fmt::print("contact   {} on {}, d_hat {:g} m, {}\n", contact.shape, to_string(contact.argument),
-             contact.d_hat, stiffness_text(contact.stiffness_policy));
+  show("contact   {} on {}, d_hat {:g} m, {}\n", contact.shape, to_string(contact.argument), contact.d_hat,
+       stiffness_text(contact.stiffness_policy));
   if (limit.enabled) {
-    fmt::print("limit     {} on {}, onset {:g}, width {:g}, {}{}\n", limit.shape, to_string(limit.argument),
-               limit.onset, limit.width, stiffness_text(limit.stiffness_policy),
-               limit.solids.value_or(false) ? ", of triangles and tetrahedra" : "");
+    show("limit     {} on {}, onset {:g}, width {:g}, {}{}\n", limit.shape, to_string(limit.argument),
+         limit.onset, limit.width, stiffness_text(limit.stiffness_policy),
+         limit.solids.value_or(false) ? ", of triangles and tetrahedra" : "");
   }
   const char* head = "guarantee";
   for (const Guarantee& each :
        guarantees(step_solvers().require(config.step_solver.name, "/step_solver/name"), scene)) {
-    fmt::print("{:<9} {}: {}\n", head, each.of, each.text);
+    show("{:<9} {}: {}\n", head, each.of, each.text);
     head = "";
   }
   if (scene.planar)
-    fmt::print(
+    show(
         "          in the plane contact is of boundaries: a triangle that turns inside out is kept from "
         "nothing\n");
-  fmt::print("matching  {}{}\n\n", to_string(config.matching.rule),
-             config.matching.rule == MatchingRule::as_given
-                 ? ""
-                 : fmt::format(", theta {:g}: a given stiffness is replaced", config.matching.theta));
+  show("matching  {}{}\n\n", to_string(config.matching.rule),
+       config.matching.rule == MatchingRule::as_given
+           ? ""
+           : fmt::format(", theta {:g}: a given stiffness is replaced", config.matching.theta));
 }
 
 /// One line a number, word or list of the resolved config: pointer, value, and where the value is from.
@@ -91,7 +92,7 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
       make_document(read_input_file(verb.config, config_file), verb.config, folder, verb.set, ignored);
   const nlohmann::json flat = nlohmann::json::parse(resolved_json(config)).flatten();
   const std::set<std::string> by_method = of_method(config);
-  fmt::print(
+  show(
       "\nevery setting of the run (* given by the config or --set, m as its method has it; the others are "
       "defaults)\n");
   for (const auto& [pointer, value] : flat.items()) {
@@ -105,39 +106,37 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
 void print_card(std::size_t total) {
   const cuda::DeviceProbe probe = cuda::probe_device();
   if (!probe.usable) {
-    fmt::print("  no card to ask: {}; local memory of kernels comes on top (docs/device.md, Memory)\n",
-               probe.why);
+    show("  no card to ask: {}; local memory of kernels comes on top (docs/device.md, Memory)\n", probe.why);
     return;
   }
   const std::size_t local = cuda::local_memory_of_kernels();
-  fmt::print("  {:<40} {:>12}\n", "local memory of kernels, at most", exec::bytes_text(local));
+  show("  {:<40} {:>12}\n", "local memory of kernels, at most", exec::bytes_text(local));
   total += local;
-  fmt::print(
-      "  {}: {} free of {}: {}\n", probe.card, exec::bytes_text(probe.free), exec::bytes_text(probe.memory),
-      total <= probe.free ? "it fits"
-                          : "it does not fit, " + exec::bytes_text(total - probe.free) + " are missing");
+  show("  {}: {} free of {}: {}\n", probe.card, exec::bytes_text(probe.free), exec::bytes_text(probe.memory),
+       total <= probe.free ? "it fits"
+                           : "it does not fit, " + exec::bytes_text(total - probe.free) + " are missing");
 }
 
 void print_memory(const DeviceMemory& memory, const ContactDemand& demand) {
-  fmt::print("\nmemory of the device at the peak of a step, buffer by buffer\n");
-  fmt::print("  {:.6g} contacts ({}), each with {:.4g} candidates and {:.4g} stored blocks\n",
-             memory.contacts, memory.source, demand.candidates_a_contact, demand.upper_blocks_a_contact);
+  show("\nmemory of the device at the peak of a step, buffer by buffer\n");
+  show("  {:.6g} contacts ({}), each with {:.4g} candidates and {:.4g} stored blocks\n", memory.contacts,
+       memory.source, demand.candidates_a_contact, demand.upper_blocks_a_contact);
   std::size_t rest = 0;
   for (const auto& [name, bytes] : memory.buffers) {
     if (200 * bytes < memory.total) {
       rest += bytes;
       continue;
     }
-    fmt::print("  {:<40} {:>12}", name, exec::bytes_text(bytes));
-    fmt::print("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact",
-                                                         static_cast<double>(bytes) / memory.contacts)
-                                           : "");
+    show("  {:<40} {:>12}", name, exec::bytes_text(bytes));
+    show("{}\n", memory.contacts > 0
+                     ? fmt::format(" {:>8.2f} B a contact", static_cast<double>(bytes) / memory.contacts)
+                     : "");
   }
-  fmt::print("  {:<40} {:>12}\n", "all others, below 0.5 % each", exec::bytes_text(rest));
-  fmt::print("  {:<40} {:>12}", "total", exec::bytes_text(memory.total));
-  fmt::print("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact, {:g} B a contact row",
-                                                       memory.bytes_a_contact(), memory.bytes_a_row)
-                                         : "");
+  show("  {:<40} {:>12}\n", "all others, below 0.5 % each", exec::bytes_text(rest));
+  show("  {:<40} {:>12}", "total", exec::bytes_text(memory.total));
+  show("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact, {:g} B a contact row",
+                                                 memory.bytes_a_contact(), memory.bytes_a_row)
+                                   : "");
   print_card(memory.total);
 }
 
@@ -155,25 +154,24 @@ void print_collisions(const Scene& scene) {
   constexpr std::size_t most = 200;
   const std::vector<CollisionLine> lines = collision_lines(scene);
   if (lines.empty()) return;
-  fmt::print("\npairs of bodies\n");
+  show("\npairs of bodies\n");
   for (std::size_t i = 0; i < std::min(most, lines.size()); ++i) {
-    fmt::print("  {:<40} {:<10} {}\n", lines[i].pair, word_of(lines[i].kind), lines[i].reason);
+    show("  {:<40} {:<10} {}\n", lines[i].pair, word_of(lines[i].kind), lines[i].reason);
   }
-  if (lines.size() > most) fmt::print("  and {} more\n", lines.size() - most);
+  if (lines.size() > most) show("  and {} more\n", lines.size() - most);
 }
 
 int explain(const RunVerb& verb, const ContactDemand& demand) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
   const Plan plan = plan_of(config, scene);
-  fmt::print("{}\n  {} vertices ({} prescribed), {}{} steps of {} s\n", run_label(config), scene.n_vertices(),
-             scene.pins.size(), elements_text(scene), config.time.steps, config.time.dt);
-  fmt::print("  surface: {} triangles, {} edges\n\n", scene.surface_triangles.size(),
-             scene.surface_edges.size());
+  show("{}\n  {} vertices ({} prescribed), {}{} steps of {} s\n", run_label(config), scene.n_vertices(),
+       scene.pins.size(), elements_text(scene), config.time.steps, config.time.dt);
+  show("  surface: {} triangles, {} edges\n\n", scene.surface_triangles.size(), scene.surface_edges.size());
   print_method(config);
   print_formulation(config, scene);
   for (const bool needed : {true, false}) {
-    fmt::print("{}\n", needed ? "runs" : "skipped");
+    show("{}\n", needed ? "runs" : "skipped");
     for (const auto& [name, item] : plan.items()) {
       if (item->needed == needed) print_wrapped(fmt::format("  {:<18} {}", name, item->reason), 21);
     }

@@ -10,6 +10,7 @@
 #include "core/parameters/registry.hpp"
 #include "core/record/schema.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/terminal.hpp"
 #include "experiments/config/config_list.hpp"
 
@@ -81,11 +82,11 @@ void print_at(const std::string& format, ParameterList list, const std::string& 
     if (at < pointer.size())
       throw ConfigError("help " + format + " " + pointer, pointer.substr(at),
                         "nothing below " + place + ", which is one setting");
-    fmt::print("{} of a {}: default, what is allowed; below it what it means\n", place, format);
+    show("{} of a {}: default, what is allowed; below it what it means\n", place, format);
     return print_setting(*row);
   }
-  fmt::print("settings of a {} from {} on: name, default, what is allowed; below it what it means\n", format,
-             place);
+  show("settings of a {} from {} on: name, default, what is allowed; below it what it means\n", format,
+       place);
   print_list(place, list);
 }
 
@@ -113,7 +114,7 @@ int help(const std::string& format, const std::string& pointer, bool schema) {
     fmt::print("{}\n", schema_document(format).dump(1));
     return exit_ok;
   }
-  fmt::print("every setting of a {}: name, default, what is allowed; below it what it means\n", format);
+  show("every setting of a {}: name, default, what is allowed; below it what it means\n", format);
   print_list("", known->list());
   return exit_ok;
 }

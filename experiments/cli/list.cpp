@@ -14,6 +14,7 @@
 #include "core/parameters/registry.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/terminal.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/methods.hpp"
@@ -38,7 +39,7 @@ void print_parameters(const std::vector<Parameter>& parameters) {
 
 template <class Entries>
 void print_entries(const char* title, const Entries& entries) {
-  fmt::print("{}\n", title);
+  show("{}\n", title);
   for (const auto& entry : entries) {
     print_wrapped(fmt::format("  {:<22} {}", entry.name, entry.doc), doc_column);
     if constexpr (requires { entry.guarantee; })
@@ -50,7 +51,7 @@ void print_entries(const char* title, const Entries& entries) {
 constexpr const char* parameter_columns = "parameter, default, allowed values, meaning";
 
 void print_scenes() {
-  fmt::print("scenes (/scene/name; below each: {})\n", parameter_columns);
+  show("scenes (/scene/name; below each: {})\n", parameter_columns);
   for (const ProceduralScene& scene : procedural_scenes()) {
     const SceneDefaults& d = scene.defaults;
     print_wrapped(fmt::format("  {:<22} {}", scene.name, scene.doc), doc_column);
@@ -67,7 +68,7 @@ void print_scenes() {
 }
 
 void print_generators() {
-  fmt::print("generators (/scene/bodies/N/mesh/generator; below each: {})\n", parameter_columns);
+  show("generators (/scene/bodies/N/mesh/generator; below each: {})\n", parameter_columns);
   for (const MeshGenerator& generator : mesh_generators()) {
     print_wrapped(fmt::format("  {:<22} {}", generator.name, generator.doc), doc_column);
     print_parameters(generator.parameters);
@@ -75,7 +76,7 @@ void print_generators() {
 }
 
 void print_parts() {
-  fmt::print("parts (/scene/bodies/N/material; below each: {})\n", parameter_columns);
+  show("parts (/scene/bodies/N/material; below each: {})\n", parameter_columns);
   for (const PartEntry& entry : part_entries()) {
     print_wrapped(fmt::format("  {:<22} {}", entry.name, entry.doc), doc_column);
     Settings<Material> keys("");
@@ -85,7 +86,7 @@ void print_parts() {
 }
 
 void print_methods() {
-  fmt::print("methods (/method; below each: its settings, why, and what this program does otherwise)\n");
+  show("methods (/method; below each: its settings, why, and what this program does otherwise)\n");
   for (const PublishedMethod& method : published_methods()) {
     print_wrapped(fmt::format("  {:<22} {} Source: {}.", method.name, method.doc, method.source), doc_column);
     for (const auto& [pointer, value] : method.set.items()) {
@@ -98,7 +99,7 @@ void print_methods() {
 }
 
 void print_verbs() {
-  fmt::print("verbs (verb, group, what it is for)\n");
+  show("verbs (verb, group, what it is for)\n");
   for (const Verb& verb : verbs())
     print_wrapped(fmt::format("  {:<22} {:<8} {}", verb.name, verb.group, verb.doc), doc_column);
 }

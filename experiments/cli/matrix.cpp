@@ -6,6 +6,7 @@
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/matrix/replay_text.hpp"
 
 namespace bb::cli {
@@ -46,7 +47,7 @@ int matrix(const MatrixVerb& verb, const CommonOptions& common) {
   out["matrices"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < systems.size(); ++i) {
     const Replay result = replay(systems[i], options);
-    fmt::print("{}{}", i > 0 ? "\n" : "", replay_table(verb.files[i], systems[i], result));
+    show("{}{}", i > 0 ? "\n" : "", replay_table(verb.files[i], systems[i], result));
     out["matrices"].push_back(replay_json(verb.files[i], systems[i], result));
   }
   if (!verb.json.empty()) write_atomically(verb.json, out.dump(1) + "\n");

@@ -6,6 +6,7 @@
 
 #include "core/math/error.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/sweep_cost.hpp"
 #include "experiments/cli/sweep_folder.hpp"
 
@@ -33,21 +34,20 @@ struct Total {
 
 void print_total(const Sweep& sweep, const Total& total) {
   const SweepSpec& spec = sweep.spec;
-  fmt::print("\n{}: {} runs ({}{}){}, {} there in {}, {} to make\n", spec.name, spec.cases.size(), spec.shape,
-             spec.excluded > 0 ? fmt::format(", {} left out", spec.excluded) : "",
-             sweep.whole() ? "" : fmt::format(", {} of them in this shard", sweep.chosen.size()),
-             sweep.chosen.size() - total.runs, sweep.out.string(), total.runs);
+  show("\n{}: {} runs ({}{}){}, {} there in {}, {} to make\n", spec.name, spec.cases.size(), spec.shape,
+       spec.excluded > 0 ? fmt::format(", {} left out", spec.excluded) : "",
+       sweep.whole() ? "" : fmt::format(", {} of them in this shard", sweep.chosen.size()),
+       sweep.chosen.size() - total.runs, sweep.out.string(), total.runs);
   if (total.runs == 0) return;
-  fmt::print("expected: {:.3g} core s, the longest run {:.3g}\n", total.core_s, total.longest_s);
+  show("expected: {:.3g} core s, the longest run {:.3g}\n", total.core_s, total.longest_s);
   for (std::size_t s = 0; s < source_texts.size(); ++s) {
-    if (total.of_source[s] > 0) fmt::print("  {} {}\n", total.of_source[s], source_texts[s]);
+    if (total.of_source[s] > 0) show("  {} {}\n", total.of_source[s], source_texts[s]);
   }
   const double budget = spec.budget.core_s;
   if (budget > 0) {
-    fmt::print("budget: {:g} core s, {}\n", budget,
-               total.core_s <= budget
-                   ? "enough"
-                   : fmt::format("{:.0f} % of what is expected", 100 * budget / total.core_s));
+    show("budget: {:g} core s, {}\n", budget,
+         total.core_s <= budget ? "enough"
+                                : fmt::format("{:.0f} % of what is expected", 100 * budget / total.core_s));
   }
 }
 
@@ -71,7 +71,7 @@ Total print_cases(const Sweep& sweep, const CostBook& book, const std::vector<Ru
   Total total;
   std::error_code none;
   const bool any_there = std::filesystem::exists(sweep.out, none);
-  fmt::print("{:>6} {:<16} {:>9} {:<8} {}\n", "index", "config_id", "core_s", "by", "run");
+  show("{:>6} {:<16} {:>9} {:<8} {}\n", "index", "config_id", "core_s", "by", "run");
   for (const std::size_t i : sweep.chosen) {
     const SweepCase& one = sweep.spec.cases[i];
     std::error_code unreachable;
@@ -79,8 +79,8 @@ Total print_cases(const Sweep& sweep, const CostBook& book, const std::vector<Ru
     const bool done = has_record && why_to_run(sweep, i, resolved(sweep.spec, one)).empty();
     const ExpectedCost cost = book.expected(sizes[i]);
     const auto source = static_cast<std::size_t>(cost.source);
-    fmt::print("{:>6} {:<16} {:>9.3g} {:<8} {}\n", i, one.config_id.substr(0, 16), cost.core_s,
-               done ? "there" : source_words[source], one.label);
+    show("{:>6} {:<16} {:>9.3g} {:<8} {}\n", i, one.config_id.substr(0, 16), cost.core_s,
+         done ? "there" : source_words[source], one.label);
     if (done) continue;
     ++total.runs;
     ++total.of_source[source];

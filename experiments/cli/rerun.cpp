@@ -9,6 +9,7 @@
 #include "core/math/error.hpp"
 #include "core/record/provenance.hpp"
 #include "experiments/cli/progress.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
@@ -76,7 +77,7 @@ int compare(const StoredRun& stored, const RunRecord& record) {
   if (!same && reasons.empty()) verdict += ", and nothing that the records name explains it";
   if (!same && !reasons.empty()) verdict += ", as it may: " + reasons;
   if (same && !reasons.empty()) verdict += ", although it need not be: " + reasons;
-  fmt::print("rerun of {}: {}\n", stored.file.string(), verdict);
+  show("rerun of {}: {}\n", stored.file.string(), verdict);
   return same || !reasons.empty() ? exit_ok : exit_no_repeat;
 }
 
@@ -100,6 +101,7 @@ int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& com
   decide_linear_solver(config);
   options.folder = verb.out.empty() ? fresh_folder(run_label(config)) : fs::path(verb.out);
   options.keep_inputs = verb.keep_inputs;
+  options.replace = verb.replace;
   options.time_limit_s = verb.limits.time_limit_s;
   options.note = stored.record.labels.note;
   options.rerun_of = stored.record.ids.run_id;

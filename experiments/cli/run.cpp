@@ -28,9 +28,9 @@ RunRecord run_and_show(const RunConfig& config, RunOptions options, const Common
   options.tell = [&line](const std::string& text) { line.clear(), say(text + "\n"); };
   RunRecord record = run_config(config, options);
   line.clear();
-  fmt::print("{}\n{}\n", summary_header(), summary_row(record));
-  if (!record.status.detail.empty()) fmt::print("  {}\n", record.status.detail);
-  fmt::print("{}\n", (options.folder / "run.json").string());
+  show("{}\n{}\n", summary_header(), summary_row(record));
+  if (!record.status.detail.empty()) show("  {}\n", record.status.detail);
+  show("{}\n", (options.folder / "run.json").string());
   return record;
 }
 
@@ -55,11 +55,12 @@ int run(const RunVerb& verb, const CommonOptions& common) {
   RunOptions options = run_options(common);
   options.folder = verb.out.empty() ? "results/runs/" + run_label(config) : verb.out;
   options.keep_inputs = verb.keep_inputs;
+  options.replace = verb.replace;
   options.resume = verb.limits.resume ? Resume::yes : Resume::no;
   options.time_limit_s = verb.limits.time_limit_s;
   if (verb.limits.resume && is_over(config, options)) {
     remove_dead_lock(options.folder);  // of a process that was killed with its record in place
-    fmt::print("already there\n{}\n", (options.folder / "run.json").string());
+    show("already there\n{}\n", (options.folder / "run.json").string());
     return exit_ok;
   }
   run_and_show(config, options, common);
@@ -72,6 +73,10 @@ Action verb::run(CLI::App& app) {
   const auto verb = std::make_shared<RunVerb>();
   config_arguments(app, *verb);
   app.add_option("--out", verb->out, "folder of run.json (default results/runs/<label>)");
+  app.add_flag(
+      "--replace", verb->replace,
+      "whatever has the name run.json in that folder goes, with the files of its record; without it, a "
+      "record of the same config alone");
   app.add_flag("--keep-inputs", verb->keep_inputs, "copy meshes and plugins beside the record");
   limit_arguments(app, verb->limits);
   return [verb](const CommonOptions& common) { return install_interrupt(), cli::run(*verb, common); };

@@ -30,6 +30,8 @@ void write_out(std::string_view text) {
 
 void say(std::string_view text) { write_out(printable(text)); }
 
+void show_text(std::string_view text) { fmt::print("{}", printable(text)); }
+
 void rewrite_line(std::string_view text) { write_out("\r\033[K" + printable(text)); }
 
 void prepare_streams() {

@@ -4,6 +4,7 @@
 #include "core/record/writer.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/step_study.hpp"
@@ -27,14 +28,14 @@ int steps(const StepsVerb& verb, const CommonOptions& common) {
   const RunConfig config = load_run(verb.config, verb.set);
   RunOptions options = run_options(common);
   const std::vector<StepTrial> trials = study_steps(config, verb.at, options);
-  fmt::print("{:>5} {:<17} {:>10} {:>7} {:>7} {:>10} {:>10}  {}\n", "step", "hessian", "iterations", "solves",
-             "failed", "estimate", "error", "status");
+  show("{:>5} {:<17} {:>10} {:>7} {:>7} {:>10} {:>10}  {}\n", "step", "hessian", "iterations", "solves",
+       "failed", "estimate", "error", "status");
   for (const StepTrial& t : trials) {
-    fmt::print("{:>5} {:<17} {:>10} {:>7} {:>7} {:>10} {:>10}  {}\n", t.step, t.hessian, t.newton_iterations,
-               t.linear_solves, t.hessian_fallbacks, in_tolerances(t.error_estimate_m, t.tolerance_m),
-               in_tolerances(t.error_true_m, t.tolerance_m), to_string(t.status));
+    show("{:>5} {:<17} {:>10} {:>7} {:>7} {:>10} {:>10}  {}\n", t.step, t.hessian, t.newton_iterations,
+         t.linear_solves, t.hessian_fallbacks, in_tolerances(t.error_estimate_m, t.tolerance_m),
+         in_tolerances(t.error_true_m, t.tolerance_m), to_string(t.status));
   }
-  fmt::print(
+  show(
       "estimate and error in tolerances of {:.3g} m; error: against the step at a thousandth of it, from the "
       "same state\n",
       trials.front().tolerance_m);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/input/names.hpp"
 #include "experiments/cli/terminal.hpp"
 
 namespace bb::cli {
@@ -84,7 +85,8 @@ std::string summary_header() {
 }
 
 std::string summary_row(const RunRecord& record) {
-  return summary_line(record.labels.note, [&](const SummaryColumn& column) { return column.cell(record); });
+  return summary_line(printable(record.labels.note),
+                      [&](const SummaryColumn& column) { return column.cell(record); });
 }
 
 std::string comparability_table(const std::vector<ComparedRow>& rows, std::size_t columns) {

@@ -55,8 +55,8 @@ RecordError in_use_text(const Sweep& sweep, const SweepTally& tally) {
 /// The exit code, or the error that says it: wrong input before what failed, that before what may be tried again.
 int ended_as(const Sweep& sweep, const SweepTally& tally) {
   if (tally.beyond_budget > 0) {
-    fmt::print("{} of {} runs were not begun: the budget of {:g} core s is spent\n", tally.beyond_budget,
-               sweep.chosen.size(), sweep.spec.budget.core_s);
+    show("{} of {} runs were not begun: the budget of {:g} core s is spent\n", tally.beyond_budget,
+         sweep.chosen.size(), sweep.spec.budget.core_s);
   }
   say(tally.complaints);
   if (!tally.violations.empty()) throw ConfigError(tally.violations);
@@ -73,12 +73,12 @@ int ended_as(const Sweep& sweep, const SweepTally& tally) {
 int sweep(const SweepVerb& verb, const CommonOptions& common) {
   Sweep sweep = open_sweep(verb, common);
   if (verb.dry_run) {
-    for (const std::size_t i : sweep.chosen) fmt::print("{}\n", sweep.folder(i).string());
+    for (const std::size_t i : sweep.chosen) show("{}\n", sweep.folder(i).string());
     return exit_ok;
   }
   sweep.options = run_options(common);
   write_sweep_files(sweep);
-  fmt::print("{}\n", summary_header());
+  show("{}\n", summary_header());
   std::fflush(stdout);
   const SweepTally tally = run_sweep_cases(sweep);
   const bool is_over = tally.in_use.empty() && !tally.try_again && !tally.failed && tally.beyond_budget == 0;

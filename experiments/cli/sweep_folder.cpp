@@ -14,6 +14,7 @@
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/options.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/summary_table.hpp"
 #include "experiments/cli/terminal.hpp"
 #include "experiments/run/comparability.hpp"
@@ -110,6 +111,8 @@ RunOptions case_options(const Sweep& sweep, std::size_t i) {
   options.sweep_id = sweep.spec.name;
   options.swept = sweep.spec.cases[i].swept;
   options.keep_inputs = sweep.verb.keep_inputs;
+  options.replace =
+      true;  // the folder is that of this config: why_to_run says what is wrong with the record in it
   options.resume = sweep.verb.limits.resume ? Resume::yes
                    : sweep.verb.again       ? Resume::no
                                             : Resume::if_this_run;
@@ -175,7 +178,7 @@ void compare_cases(const Sweep& sweep, const std::vector<bool>& refused) {
                     judged.verdict == "comparable" ? "" : judged.reason});
   }
   const std::size_t columns = terminal_columns(STDOUT_FILENO);
-  fmt::print("\n{}", comparability_table(rows, columns == 0 ? usual_columns : columns));
+  show("\n{}", comparability_table(rows, columns == 0 ? usual_columns : columns));
   std::fflush(stdout);
 }
 

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 #include <thread>
 
 #include "core/record/folder_lock.hpp"
@@ -75,8 +76,15 @@ class SweepRun {
   /// A line of the table.
   void print(const std::string& text) {
     line_.clear();
-    fmt::print("{}\n", text);
+    show("{}\n", text);
     std::fflush(stdout);
+  }
+
+  /// Once in a sweep what holds for many of its cases.
+  void tell(const std::string& text) {
+    if (!told_.insert(text).second) return;
+    line_.clear();
+    say(text + "\n");
   }
 
   void keep(double core_s) {
@@ -94,7 +102,8 @@ class SweepRun {
   /// Whether case i has to be run now. One that cannot be is refused.
   bool begins(std::size_t i) {
     try {
-      const std::string why = why_to_run(sweep_, i, resolved(sweep_.spec, sweep_.spec.cases[i]));
+      const RunConfig config = resolved(sweep_.spec, sweep_.spec.cases[i]);
+      const std::string why = why_to_run(sweep_, i, config);
       if (why.empty()) {
         const auto record =
             sweep_.spec.budget.core_s > 0 ? read_run(sweep_.folder(i) / "run.json") : std::nullopt;
@@ -107,6 +116,7 @@ class SweepRun {
         ++tally_.beyond_budget;
         return false;
       }
+      for (const std::string& caveat : formula_caveats(config)) tell(caveat);
       if (why != "nothing") print(fmt::format("{:<44} runs again: {}", sweep_.note(i), why));
       return true;
     } catch (const ConfigError& error) {
@@ -135,7 +145,7 @@ class SweepRun {
   void run(std::size_t i) {
     RunOptions options = case_options(sweep_, i);
     options.progress = [this](const Progress& progress) { line_.show(progress); };
-    options.tell = [this](const std::string& text) { line_.clear(), say(text + "\n"); };
+    options.tell = [this](const std::string& text) { tell(text); };
     try {
       const RunRecord record = run_config(resolved(sweep_.spec, sweep_.spec.cases[i]), options);
       ++n_run_;
@@ -216,6 +226,7 @@ class SweepRun {
 
   const Sweep& sweep_;
   SweepTally tally_;
+  std::set<std::string> told_;
   ProgressLine line_;
   Jobs jobs_;
   double begin_s_, spent_core_s_ = 0;

@@ -1,4 +1,5 @@
 #include "experiments/cli/terminal.hpp"
+#include "experiments/cli/say.hpp"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -65,7 +66,7 @@ std::string wrapped(std::string_view text, std::size_t columns, std::size_t inde
 }
 
 void print_wrapped(std::string_view line, std::size_t indent) {
-  fmt::print("{}\n", wrapped(line, terminal_columns(STDOUT_FILENO), indent));
+  show("{}\n", wrapped(line, terminal_columns(STDOUT_FILENO), indent));
 }
 
 }  // namespace bb::cli

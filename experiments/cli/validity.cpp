@@ -31,20 +31,19 @@ namespace {
 int validity(bool as_json, const CommonOptions& common) {
   const StoredBlock block = block_of_this_build(validity_folder(), common.loaded);
   if (as_json) {
-    fmt::print("{}", block.report);
+    show("{}", block.report);
   } else {
     const nlohmann::json report = nlohmann::json::parse(block.report);
-    fmt::print("{:6} {:22} {:>8} {:>9} {:>9}  {}\n", "", "check", "subjects", "worst", "allowed", "what");
+    show("{:6} {:22} {:>8} {:>9} {:>9}  {}\n", "", "check", "subjects", "worst", "allowed", "what");
     for (const auto& check : report["checks"]) {
-      fmt::print("{:6} {:22} {:>8} {:>9} {:>9}  {}\n", check["pass"] ? "passed" : "FAILED",
-                 check["name"].get<std::string>(), check["subjects"].get<long long>(), number(check["value"]),
-                 number(check["bound"]), check["meaning"].get<std::string>());
+      show("{:6} {:22} {:>8} {:>9} {:>9}  {}\n", check["pass"] ? "passed" : "FAILED",
+           check["name"].get<std::string>(), check["subjects"].get<long long>(), number(check["value"]),
+           number(check["bound"]), check["meaning"].get<std::string>());
       if (const auto detail = check["detail"].get<std::string>(); !detail.empty())
-        fmt::print("       {}\n", detail);
+        show("       {}\n", detail);
     }
-    fmt::print("{} checks, {}; {}\n", block.validity.checks,
-               block.validity.valid ? "all passed" : "not valid",
-               block.kept ? block.file.string() : "not kept: the folder of the program cannot be written");
+    show("{} checks, {}; {}\n", block.validity.checks, block.validity.valid ? "all passed" : "not valid",
+         block.kept ? block.file.string() : "not kept: the folder of the program cannot be written");
   }
   return block.validity.valid ? exit_ok : exit_wrong_answer;
 }

@@ -42,6 +42,7 @@ struct RunVerb {
   std::vector<std::string> set;  // "/pointer=value"
   std::string out;               // folder; empty: results/runs/<label>
   bool keep_inputs = false;      // copies of meshes and plugins beside the record
+  bool replace = false;          // what another config left in the folder goes
   RunLimits limits;
 };
 /// Runs the config inside a record in a folder of its own (empty `out`: results/runs/<label>-rerun, numbered

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "core/bodies/part.hpp"
@@ -41,6 +42,20 @@ void read_mesh(const json& object, const std::string& pointer, const Reader& rea
   if (object.contains("file")) return read_mesh_file(object, pointer, reader, mesh);
   mesh.generator = object["generator"].get<std::string>();
   mesh.parameters = to_map(mesh_generators().require(mesh.generator, pointer).parameters, object);
+}
+
+/// A schedule without a key says nothing. Resolved configs give every key, so an empty list may stand beside the constant that
+/// acts in its place; the other lists of keys are left out there, and their rules want one key.
+void check_empty_schedules(const json& value, const std::string& pointer, const Reader& reader) {
+  static const std::map<std::string, std::string> constants = {{"wind_schedule", "wind_m_per_s"},
+                                                               {"keyframes", "scale"}};
+  for (const auto& item : value.items()) {
+    const std::string at = pointer + "/" + item.key();
+    const auto constant = constants.find(item.key());
+    if (constant != constants.end() && item.value() == json::array() && !value.contains(constant->second))
+      reader.complain(at, "[]", "an array of at least 1 and at most 10000 elements");
+    if (item.value().is_structured()) check_empty_schedules(item.value(), at, reader);
+  }
 }
 
 /// Times of keys.
@@ -187,6 +202,7 @@ void read_bodies(const json& object, const Reader& reader, SceneConfig& scene) {
   scene.gravity = scene.planar ? Vec3d(0, -9.81, 0) : Vec3d(0, 0, -9.81);
   settings_of<SceneConfig>().read(object, scene);
   scene.name = "bodies";
+  check_empty_schedules(object, "/scene", reader);
   read_schedules(object, reader, scene);
   if (object.contains("pairs") && !scene.planar) {
     reader.complain("/scene/pairs", object["pairs"].dump(), "nothing: the scene is not planar");

@@ -18,6 +18,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/comparability.hpp"
 #include "experiments/run/device_run.hpp"
+#include "experiments/run/earlier_run.hpp"
 #include "experiments/run/fill_record.hpp"
 #include "experiments/run/input_files.hpp"
 #include "experiments/run/linear_choice.hpp"
@@ -29,13 +30,16 @@
 namespace bb {
 namespace {
 
-/// Libraries of formulas are made again from the config where they are missing, so no plugin has to be kept for them.
-std::vector<PluginFile> with_formulas(const RunConfig& config, std::vector<PluginFile> plugins) {
+std::vector<FormulaLibrary> formulas_in(const RunConfig& config) {
   std::vector<std::string> policies;
   const ParameterMap& parameters = config.formulation.stiffness_policy.parameters;
   if (parameters.contains("formula")) policies.push_back(text(parameters, "formula"));
-  for (const FormulaLibrary& library :
-       formula_libraries({config.formulation.shape, config.strain_limit.shape}, policies)) {
+  return formula_libraries({config.formulation.shape, config.strain_limit.shape}, policies);
+}
+
+/// Libraries of formulas are made again from the config where they are missing, so no plugin has to be kept for them.
+std::vector<PluginFile> with_formulas(const RunConfig& config, std::vector<PluginFile> plugins) {
+  for (const FormulaLibrary& library : formulas_in(config)) {
     plugins.push_back({library.name, library.file, library.sha256});
   }
   if (const DeviceCode* code = device_code_in(config)) {
@@ -195,6 +199,15 @@ void put_record(const RunConfig& config, const RunOptions& options, bool resumed
 
 }  // namespace
 
+std::vector<std::string> formula_caveats(const RunConfig& config) {
+  std::vector<std::string> out;
+  for (const FormulaLibrary& library : formulas_in(config)) {
+    if (library.unproven.empty()) continue;
+    out.push_back(fmt::format("{}: the signs of b, b' and b'' are {}", library.name, library.unproven));
+  }
+  return out;
+}
+
 std::string run_label(const RunConfig& config) {
   return fmt::format("{}-{}-{}", config.scene.name, label_of(config.formulation),
                      config_id(config).substr(0, 8));
@@ -248,6 +261,10 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   Checkpoint checkpoint(options.folder, asked_for.ids.build_id);
   put_finished_in_place(options.folder, checkpoint);
   if (auto record = recorded(asked_for, options)) return *record;
+  if (options.tell) {
+    for (const std::string& caveat : formula_caveats(config)) options.tell(caveat);
+  }
+  require_replaceable(options.folder, asked_for, options.replace, options.tell);
   std::optional<Resumed> resumed = resumed_from(checkpoint, asked_for, options);
   resumed ? remove_temporaries(options.folder) : remove_unfinished(options.folder);
   check_writable(options.folder);

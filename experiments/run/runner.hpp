@@ -36,7 +36,8 @@ enum class Resume {
 };
 
 struct RunOptions {
-  std::filesystem::path folder;   // run.json, trace.jsonl; must not exist or is overwritten
+  std::filesystem::path folder;   // run.json, trace.jsonl; what may be there already: earlier_run.hpp
+  bool replace = false;           // a record of another config, or a file of that name, in the folder goes
   std::vector<std::string> argv;  // for the record
   std::string note;               // how the row of a table differs
   std::string sweep_id;
@@ -63,12 +64,15 @@ struct EarlierStays : Interrupted {
 /// What is known before the run: config with its files named from options.folder, provenance, machine, ids.
 RunRecord identified(const RunConfig& config, const RunOptions& options);
 
+/// What a run that uses a formula should say of it: signs of its derivatives that are only sampled. One text a formula.
+std::vector<std::string> formula_caveats(const RunConfig& config);
+
 /// Runs and writes. The outcome is in the record, whatever it is. The folder is locked meanwhile; an earlier
 /// run in it stays as it is until this one is over, and then goes with its trace, frames and matrices. A run that time or
 /// memory ends leaves its record and its checkpoint; the record of more steps of the same run stays in its place.
 /// With options.resume a run whose record is in the folder already is not run: the record is returned.
-/// Errors: ConfigError for what config and files can tell, as build_scene (nothing is written); RecordError
-///   (output, or another process has the folder); Interrupted.
+/// Errors: ConfigError for what config and files can tell, as build_scene and require_replaceable (nothing is written);
+///   RecordError (output, or another process has the folder); Interrupted.
 RunRecord run_config(const RunConfig& config, const RunOptions& options);
 
 /// scene-formulation-id8: the folder name of a run.

@@ -15,6 +15,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/comparability.hpp"
 #include "experiments/run/device_run.hpp"
+#include "experiments/run/earlier_run.hpp"
 #include "experiments/run/fill_record.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
@@ -96,6 +97,8 @@ SteppedRun::~SteppedRun() {
 void SteppedRun::prepare() {
   if (options_.note.empty()) options_.note = own_note(config_);
   RunOptions named = options_;
+  if (!has_folder()) named.folder = ".";
+  record_ = identified(config_, named);
   if (has_folder()) {
     lock_.emplace(options_.folder);
     if (Checkpoint(options_.folder, "").exists()) {
@@ -103,12 +106,10 @@ void SteppedRun::prepare() {
                         "another folder, or bench run --resume");
     }
     put_in_place(options_.folder);
+    require_replaceable(options_.folder, record_, options_.replace, options_.tell);
     remove_unfinished(options_.folder);
     check_writable(options_.folder);
-  } else {
-    named.folder = ".";
   }
-  record_ = identified(config_, named);
   fill_method(config_, record_);
   record_.status.started_utc = utc_now();
   record_.validity.build = options_.build;

@@ -31,7 +31,8 @@ class SteppedRun {
   /// the config may ask for no frames or matrices. options.resume and limits are not read.
   /// While it lives the process computes with at most the threads of the config: to limit them anew in each step costs
   /// milliseconds. A scene that cannot start is an outcome: the run is over before its first step.
-  /// Errors: those of run_config; ConfigError for a run on a card, or a folder with a checkpoint.
+  /// Errors: those of run_config; ConfigError for a run on a card, or a folder with a checkpoint;
+  /// those of require_replaceable.
   SteppedRun(const RunConfig& asked, RunOptions options);
   /// Without finish() what was written goes.
   ~SteppedRun();

@@ -28,7 +28,8 @@ class Simulation:
     """A config, advanced one time step at a time: the scene, matching, steps and record of `bench run`.
 
     config: a dict, JSON text or the path of a config; overrides: {"/time/steps": 5} or ["/time/steps=5"].
-    out: folder of the record, its trace, frames and matrices, which `finish` puts in place; None: nothing is written.
+    out: folder of the record, its trace, frames and matrices, which `finish` puts in place; None: nothing is written. A
+    record of the same config there is replaced; one of another config, or a file of that name, only with `replace`.
 
     It is one pass. A config that asks for times and for the audit (the default does) is run by the program twice, once
     for each; here the observed pass alone is made, and the config of the record says so (/passes/time false). The
@@ -52,10 +53,11 @@ class Simulation:
         overrides: Sequence[str] | Mapping[str, Any] = (),
         out: str | os.PathLike | None = None,
         on_iteration: Callable[[dict[str, Any]], None] | None = None,
+        replace: bool = False,
     ):
         record = folder(out)
         given = _given(config, overrides, record)
-        self._run = _core.Run(*given, record, sys.argv[:], _brought(given), True)
+        self._run = _core.Run(*given, record, sys.argv[:], _brought(given), True, replace)
         self.on_iteration = on_iteration
         """Called after every Newton iteration with the fields of a line of the trace (`./bench help trace`)."""
         self._scene: Scene | None = None
@@ -163,14 +165,16 @@ def run(
     out: str | os.PathLike | None = None,
     on_step: Callable[[dict[str, Any]], None] | None = None,
     resume: bool = False,
+    replace: bool = False,
 ) -> dict[str, Any]:
     """A whole run as `bench run` makes it, both passes and times with it; returns the record that it wrote.
 
     out: folder of the record (default results/runs/LABEL). on_step: called after every step with what a progress line
-    shows. resume: go on from the checkpoint of this very run. Ctrl-C leaves a checkpoint, as in the program.
+    shows. resume: go on from the checkpoint of this very run. replace: the record of another config in the folder, or
+    another file of its name, goes. Ctrl-C leaves a checkpoint, as in the program.
     Errors: ConfigError; RecordError; what on_step raises, with a checkpoint left.
     """
     record = folder(out)
     given = _given(config, overrides, record)
-    written = _core.run_whole(*given, record, sys.argv[:], _brought(given), on_step, resume)
+    written = _core.run_whole(*given, record, sys.argv[:], _brought(given), on_step, resume, replace)
     return json.loads((Path(written) / "run.json").read_text())

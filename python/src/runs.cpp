@@ -50,10 +50,11 @@ class PythonRun {
  public:
   PythonRun(const std::string& text, const std::string& source, const std::string& config_folder,
             const std::vector<std::string>& overrides, const std::string& folder,
-            const std::vector<std::string>& argv, const Brought& brought, bool checked) {
+            const std::vector<std::string>& argv, const Brought& brought, bool checked, bool replace) {
     const nb::gil_scoped_release unlocked;
     const RunConfig config = parse_config(text, source, config_folder, overrides);
     RunOptions options = options_of(folder, argv, brought);
+    options.replace = replace;
     if (checked) options.build = build_validity(options.plugins);
     run_ = std::make_unique<SteppedRun>(config, std::move(options));
     x_ = run_->x();
@@ -146,7 +147,7 @@ class Listener {
 std::string run_whole(const std::string& text, const std::string& source, const std::string& config_folder,
                       const std::vector<std::string>& overrides, const std::string& folder,
                       const std::vector<std::string>& argv, const Brought& brought, const nb::object& on_step,
-                      bool resume) {
+                      bool resume, bool replace) {
   Listener listener(on_step);
   std::string out;
   try {
@@ -155,6 +156,7 @@ std::string run_whole(const std::string& text, const std::string& source, const 
     RunOptions options =
         options_of(folder.empty() ? "results/runs/" + run_label(config) : folder, argv, brought);
     options.build = build_validity(options.plugins);
+    options.replace = replace;
     options.resume = resume ? Resume::yes : Resume::no;
     options.interrupted = &listener.stop;
     options.progress = [&listener](const Progress& progress) { listener.hear(progress); };
@@ -174,9 +176,9 @@ void bind_runs(nb::module_& m) {
   nb::class_<PythonRun>(m, "Run", "A run by single steps.")
       .def(nb::init<const std::string&, const std::string&, const std::string&,
                     const std::vector<std::string>&, const std::string&, const std::vector<std::string>&,
-                    const Brought&, bool>(),
+                    const Brought&, bool, bool>(),
            nb::arg("text"), nb::arg("source"), nb::arg("config_folder"), nb::arg("overrides"),
-           nb::arg("folder"), nb::arg("argv"), nb::arg("brought"), nb::arg("checked"))
+           nb::arg("folder"), nb::arg("argv"), nb::arg("brought"), nb::arg("checked"), nb::arg("replace"))
       .def("step", &PythonRun::step, nb::arg("on_iteration").none())
       .def("close", &PythonRun::close)
       .def("over", [](const PythonRun& r) { return r.run().over(); })
@@ -197,7 +199,8 @@ void bind_runs(nb::module_& m) {
       });
   m.def("run_whole", &run_whole, nb::arg("text"), nb::arg("source"), nb::arg("config_folder"),
         nb::arg("overrides"), nb::arg("folder"), nb::arg("argv"), nb::arg("brought"),
-        nb::arg("on_step").none(), nb::arg("resume"), "Runs and writes; returns the folder of the record.");
+        nb::arg("on_step").none(), nb::arg("resume"), nb::arg("replace"),
+        "Runs and writes; returns the folder of the record.");
 }
 
 }  // namespace bb::python

@@ -162,7 +162,7 @@ def test_frames_and_matrices_of_an_earlier_run_go_and_nothing_else(program, tmp_
     mine = write(out / "frames/notes.txt", "mine")
     changed = write(out / "frames/step_000002.ply", "edited by hand")
     stranger = write(out / "matrices/step_000099_iteration_000.mtx", "of no run")
-    assert bench(program, "run", HANG, "--out", out, "--set", "/time/steps=1", *FRAMES).returncode == 0
+    assert bench(program, "run", HANG, "--out", out, "--set", "/time/steps=1", *FRAMES, "--replace").returncode == 0
     record = json.loads((out / "run.json").read_text())
     assert [a["path"] for a in record["artifacts"]] == ["frames/scene.json", "frames/start.ply", "frames/step_000000.ply", "trace.jsonl"]
     assert names(out / "frames") == ["notes.txt", "scene.json", "start.ply", "step_000000.ply", "step_000002.ply"]
@@ -176,7 +176,7 @@ def test_an_earlier_run_stays_whole_until_the_next_is_over(program, tmp_path):
     assert bench(program, *short).returncode == 0
     before = {p: p.read_bytes() for p in out.rglob("*") if p.is_file()}
     assert len(before) == 6
-    with started(program, *long_run(tmp_path)) as run:
+    with started(program, *long_run(tmp_path), "--replace") as run:
         wait_until(frame(tmp_path, 1).exists, run)
         run.terminate()
         run.communicate(timeout=30)
@@ -210,7 +210,7 @@ def test_what_is_in_the_way_is_named_before_the_first_step(program, tmp_path, na
         in_the_way.mkdir()
     else:
         in_the_way.write_text("mine")
-    done = bench(program, "run", BLOCK, "--out", tmp_path, *FRAMES)
+    done = bench(program, "run", BLOCK, "--out", tmp_path, *FRAMES, *(["--replace"] if earlier else []))
     refused(done, str(in_the_way), "in the way")
     assert "step" not in done.stdout
     assert earlier is None or earlier.read_text() == "{}"

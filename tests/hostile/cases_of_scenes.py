@@ -110,6 +110,8 @@ EMPTY_LISTS = {
     "keyframes": (moved(keyframes=[]), "motion/keyframes: found []; allowed: an array of at least 1 and at most 10000 elements"),
     "then": (moved(velocity_m_per_s=[0, 0, 1], then=[]), "motion/then: found []"),
     "keyframes-of-a-pin": (bodies(body(grid(), pins=[{"indices": [0], "motion": {"keyframes": []}}])), "pins/0/motion/keyframes: found []"),
+    "keyframes-in-then": (moved(velocity_m_per_s=[0, 0, 1], then=[{"keyframes": []}]), "motion/then/0/keyframes: found []; allowed: an array of at least 1 and at most 10000 elements"),
+    "wind-schedule": (config({"bodies": [body(grid())], "air": {"normal_N_s_per_m3": 1, "wind_schedule": []}}), "/scene/air/wind_schedule: found []; allowed: an array of at least 1 and at most 10000 elements"),
     "pressure-schedule": (bodies(body(grid(), pressure_schedule=[])), "pressure_schedule: found []"),
     "gravity-schedule": (config({"bodies": [body(grid())], "gravity_schedule": []}), "gravity_schedule: found []"),
     "pull-factors": (bodies(body(grid(), pins=[{"indices": [0], "pull_N_per_m": 1, "pull_factors": []}])), "pull_factors: found []"),
