@@ -9,7 +9,6 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -18,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from . import input_file
+from . import input_file, processes
 from .captions import caption
 from .coloring import annotate, top_of
 from .errors import UserError
@@ -71,7 +70,7 @@ def _still(film: Film, record: dict, step: int) -> Image.Image:
 
 def _stills(film: Film, record: dict, steps: list[int]) -> Iterator[Image.Image]:
     """In the order of the steps, drawn on all cores."""
-    with ProcessPoolExecutor(min(len(steps), len(os.sched_getaffinity(0)))) as pool:
+    with processes.pool(min(len(steps), len(os.sched_getaffinity(0)))) as pool:
         yield from counted(pool.map(partial(_still, film, record), steps), len(steps), "render: frame")
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import errno
 import functools
+import os
 import sys
 import tempfile
 from collections.abc import Callable
@@ -30,19 +31,42 @@ class UserError(ValueError):
         self.code = code
 
 
+def _temporary() -> str:
+    """The folder of temporary files, or that which the user names for it where none can be written to."""
+    try:
+        return tempfile.gettempdir()
+    except OSError:
+        return os.environ.get("TMPDIR", "/tmp")
+
+
+def _cause(error: OSError) -> OSError:
+    """Of what tempfile says where it finds no folder, which has no file and the same number for each cause:
+    what a file in the folder of temporary files meets.
+    """
+    if error.errno != errno.ENOENT or error.filename:
+        return error
+    try:
+        with tempfile.TemporaryFile(dir=_temporary()) as probe:
+            probe.write(b"a byte")
+    except OSError as cause:
+        return OSError(cause.errno, cause.strerror, f"a temporary file ({_temporary()})")
+    return error
+
+
 def code_of(error: UserError | OSError) -> int:
     """The exit code: a full disk, a file too many and their like may be over when it is called again."""
     if isinstance(error, UserError):
         return error.code
-    return BAD_INPUT if error.errno is None or error.errno in LASTING else TRY_AGAIN
+    number = _cause(error).errno
+    return BAD_INPUT if number is None or number in LASTING else TRY_AGAIN
 
 
 def text_of(error: UserError | OSError) -> str:
     """What is said: of a file its name and what the system said."""
     if isinstance(error, UserError) or error.errno is None:
         return str(error)
-    unnamed = f"a temporary file ({tempfile.gettempdir()}) or a stream"
-    return f"{error.filename or unnamed}: {error.strerror}"
+    error = _cause(error)
+    return f"{error.filename or f'a temporary file ({_temporary()}) or a stream'}: {error.strerror}"
 
 
 def tells(verb: str) -> Callable:

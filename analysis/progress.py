@@ -6,13 +6,17 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
+from .front.streams import command
+
 T = TypeVar("T")
+ERASE = "\r\033[K"
 
 
 def say_where(text: str) -> None:
     """A line that is rewritten, and goes with an empty text; nothing where stderr is no terminal."""
     if sys.stderr.isatty():
-        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+        command(ERASE, sys.stderr)
+        print(text, end="", file=sys.stderr, flush=True)
 
 
 def counted(items: Iterable[T], total: int, what: str) -> Iterator[T]:

@@ -7,9 +7,9 @@ import multiprocessing
 import os
 import sys
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+from .. import processes
 from ..records import Records, load
 from ..table import as_text, summary_table
 from ..whole_file import write_whole
@@ -67,8 +67,8 @@ def make_all_of(records: Records, out: Path) -> str:
     """The same of records that are loaded."""
     groups = sorted(records.runs["group"].unique())
     of, draw = zip(*itertools.product(groups, OF_A_GROUP), strict=True)
-    with ProcessPoolExecutor(
-        len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _share, (records, out)
+    with processes.pool(
+        len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _share, records, out
     ) as pool:
         shapes = pool.submit(barrier_shapes.figure, out, records.runs)
         paths = [path for made in pool.map(_picture, draw, of) for path in made]

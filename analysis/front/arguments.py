@@ -28,10 +28,19 @@ class Parser(argparse.ArgumentParser):
 
     def parse_args(self, args: list[str] | None = None, namespace=None) -> argparse.Namespace:
         """A word that is empty would be the folder that this is called from, or no number."""
-        for before, word in zip([None, *(args or [])], args or []):
-            if word == "" or re.fullmatch("--[a-z-]+=", word):
-                self.error(f"argument {before if word == '' else word[:-1]}: found nothing; allowed: a value")
+        options = self._option_string_actions
+        for number, (before, word) in enumerate(zip(["", *(args or [])], args or []), 1):
+            if before == "--":
+                options = {}  # behind it there are none
+            takes_one = before in options and options[before].nargs != 0
+            if word == "":
+                self._found_nothing(before if takes_one else str(number))
+            if options and re.fullmatch("--[a-z-]+=", word):
+                self._found_nothing(word[:-1])
         return super().parse_args(args, namespace)
+
+    def _found_nothing(self, argument: str) -> NoReturn:
+        self.error(f"argument {argument}: found nothing; allowed: a value")
 
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message} (./{self.prog} --help says what there is)")

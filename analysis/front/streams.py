@@ -7,7 +7,7 @@ from __future__ import annotations
 import sys
 import warnings
 
-SENT = "\n\t\r"
+SENT = "\n\t"
 SHOWN = {code: f"\\x{code:02x}" for code in (*range(0x20), *range(0x7F, 0xA0)) if chr(code) not in SENT}
 
 
@@ -30,12 +30,15 @@ class Shown:
         self._stream.write(text)
 
     def __getattr__(self, name: str):
+        if name in ("buffer", "detach"):  # bytes would pass as they are
+            raise AttributeError(name)
         return getattr(self._stream, name)
 
 
-def command(text: str) -> None:
-    """Sends a command to the terminal of the standard output."""
-    getattr(sys.stdout, "command", sys.stdout.write)(text)
+def command(text: str, stream=None) -> None:
+    """Sends a command to the terminal of a stream, or of the standard output."""
+    stream = stream or sys.stdout
+    getattr(stream, "command", stream.write)(text)
 
 
 def _say_warning(message, category, filename, lineno, file=None, line=None) -> None:
@@ -43,8 +46,10 @@ def _say_warning(message, category, filename, lineno, file=None, line=None) -> N
 
 
 def prepare() -> None:
-    """For the whole process, which is a verb of the front door. A stream that is closed stays so."""
+    """For the whole process, which is a verb of the front door or one that it starts (processes.pool); a
+    second call does nothing. A stream that is closed stays so.
+    """
     for name in ("stdout", "stderr"):
-        if (stream := getattr(sys, name)) is not None:
+        if (stream := getattr(sys, name)) is not None and not isinstance(stream, Shown):
             setattr(sys, name, Shown(stream))
     warnings.showwarning = _say_warning

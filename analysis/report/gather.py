@@ -5,11 +5,11 @@ sweeps that have no record.
 from __future__ import annotations
 
 import os
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from .. import processes
 from ..errors import UserError
 from ..input_file import below
 from ..record_file import RecordError, leaves, named_files, read_record, read_trace
@@ -183,7 +183,7 @@ def gathered(root: Path) -> Folder:
     if len(paths) < PARALLEL_FROM or workers == 1:
         read = [_entry(path, root) for path in paths]
     else:
-        with ProcessPoolExecutor(workers) as pool:
+        with processes.pool(workers) as pool:
             read = list(pool.map(_entry, paths, [root] * len(paths), chunksize=32))
     found.entries = [one for one in read if isinstance(one, Entry)]
     found.unreadable += [one for one in read if isinstance(one, str)] + _half_written(root)

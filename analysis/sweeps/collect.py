@@ -13,11 +13,11 @@ import importlib.util
 import io
 import os
 import sys
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import pandas as pd
 
+from .. import processes
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..record_file import RecordError, read_record
@@ -72,7 +72,7 @@ def read_rows(folder: Path) -> tuple[list[dict], list[str]]:
     if len(paths) < PARALLEL_FROM or workers == 1:
         found = [_row(path, folder) for path in paths]
     else:
-        with ProcessPoolExecutor(workers) as pool:
+        with processes.pool(workers) as pool:
             found = list(pool.map(_row, paths, [folder] * len(paths), chunksize=64))
     rows = [row for row in found if isinstance(row, dict)]
     unreadable = [text for text in found if isinstance(text, str)]
