@@ -23,8 +23,7 @@ Character first_of(std::string_view text) {
                         : lead < 0xF0 ? 3
                         : lead < 0xF5 ? 4
                                       : 0;
-  bool whole = n > 0 && n <= text.size();
-  for (std::size_t i = 1; whole && i < n; ++i) whole = (byte(i) & 0xC0) == 0x80;
+  const bool whole = n == 1 || (n > 1 && n <= text.size() && is_utf8(text.substr(0, n)));
   const bool control = whole && (lead < 0x20 || lead == 0x7F || (lead == 0xC2 && byte(1) < 0xA0));
   return {text.substr(0, whole ? n : 1), whole, control};
 }

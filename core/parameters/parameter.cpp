@@ -158,8 +158,9 @@ Rule name_in(std::function<std::vector<std::string>()> names) {
 }
 
 Rule open_low(Rule rule) {
-  if (rule.low == 0) {
-    rule.low = sizes_of(rule.unit).least;
+  const double least = sizes_of(rule.unit).least;
+  if (rule.low == 0 && least > std::numeric_limits<double>::denorm_min()) {
+    rule.low = least;
   } else {
     rule.low_open = true;
   }

@@ -16,6 +16,7 @@ Json bound(double value) {
 }
 
 void put_range(const Rule& rule, Json& out) {
+  if (rule.least > 0) out["not"] = {{"exclusiveMinimum", 0}, {"exclusiveMaximum", rule.least}};
   if (std::isfinite(rule.low)) out[rule.low_open ? "exclusiveMinimum" : "minimum"] = bound(rule.low);
   if (std::isfinite(rule.high)) out[rule.high_open ? "exclusiveMaximum" : "maximum"] = bound(rule.high);
 }
@@ -50,8 +51,9 @@ Json rule_schema(const Rule& rule) {
     case Kind::text:
       out["type"] = "string";
       put_size(rule, "minLength", "maxLength", out);
-      out["pattern"] = rule.several_lines ? "^[^\\u0000-\\u0008\\u000B-\\u001F\\u007F-\\u009F]*$"
-                                          : "^[^\\u0000-\\u001F\\u007F-\\u009F]*$";
+      out["not"]["pattern"] = rule.several_lines
+                                  ? "[\\u0000-\\u0008\\u000B\\u000C\\u000E-\\u001F\\u007F-\\u009F]"
+                                  : "[\\u0000-\\u001F\\u007F-\\u009F]";
       return out;
     case Kind::word:
       if (rule.list) break;

@@ -6,7 +6,8 @@
 
 namespace bb {
 
-/// Wide enough for anything physical, and so narrow that products and squares of what a config holds stay within double.
+/// Wide enough for what cells, fibres and buildings are made of, and so narrow that products and squares of two of them stay
+/// within double.
 struct Sizes {
   double least, most;  // of a value that is not 0
 };

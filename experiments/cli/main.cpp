@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
@@ -23,9 +24,10 @@ namespace {
 
 using namespace bb::cli;
 
-/// Nobody can read what was answered; an error that happened before stays what it is. Said once.
+/// Nobody can read what was answered; an error that happened before stays what it is. Said once, and not of a reader that has had
+/// enough (head).
 int unwritable_output(int code) {
-  static bool said = false;
+  static bool said = errno == EPIPE;
   if (!std::exchange(said, true)) say("the standard output cannot be written\n");
   return code == exit_ok ? exit_try_again : code;
 }

@@ -107,14 +107,18 @@ bool is_another(const json& formulation, const json& preset) {
   return policy(formulation) != policy(preset);
 }
 
-/// Which keys a formulation of the user's own making lacks, in words.
+/// What a formulation of the user's own making, with a name of its own, lacks, in words; nothing where it has none of the keys.
 std::string missing_of(const json& formulation) {
-  std::string out;
+  std::string lacks;
+  bool has = false;
   for (const char* key : {"shape", "argument", "stiffness_policy"}) {
-    if (!formulation.contains(key))
-      out += (out.empty() ? ", of which there is no " : ", ") + std::string(key);
+    if (formulation.contains(key)) {
+      has = true;
+    } else {
+      lacks += (lacks.empty() ? "" : ", ") + std::string(key);
+    }
   }
-  return out;
+  return has ? "; or any name beside shape, argument and stiffness_policy (missing: " + lacks + ")" : "";
 }
 
 }  // namespace
@@ -143,8 +147,7 @@ void expand_preset(json& formulation, const std::string& source, std::vector<Vio
   }
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     violations.push_back(unknown_name(source + "#/formulation/name", name, names).violations().front());
-    violations.back().allowed +=
-        "; or, as a label, any name beside shape, argument and stiffness_policy" + missing_of(formulation);
+    violations.back().allowed += missing_of(formulation);
     return;
   }
   json base = load_preset(name)["formulation"];

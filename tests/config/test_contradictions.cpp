@@ -126,7 +126,7 @@ TEST(Contradictions, MatchingWithoutWhatItAsksFor) {
   config["matching"] = {{"rule", "equal_force"}};
   EXPECT_EQ(parsed(config).matching.rule, MatchingRule::equal_force);
   config["matching"]["limit_load_N_per_m"] = 1e308;
-  expect_violation(config, "/matching/limit_load_N_per_m", "1e+308", "a number >= 1e-18 and <= 1e+18 (N/m)");
+  expect_violation(config, "/matching/limit_load_N_per_m", "1e+308", "a number >= 1e-36 and <= 1e+18 (N/m)");
 }
 
 TEST(Contradictions, APilotWithoutWeight) {

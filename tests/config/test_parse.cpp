@@ -50,14 +50,14 @@ TEST(Parse, UnknownKeysSuggestTheNearest) {
 
 TEST(Parse, WrongTypesAndRangesAreNamedWithTheirUnit) {
   const std::vector<Wrong> cases = {
-      {"/time/dt_s", 0, "a number >= 1e-12 and <= 1e+09 (s)"},
-      {"/time/dt_s", "0.01", "a number >= 1e-12 and <= 1e+09 (s)"},
+      {"/time/dt_s", 0, "a number >= 1e-18 and <= 1e+09 (s)"},
+      {"/time/dt_s", "0.01", "a number >= 1e-18 and <= 1e+09 (s)"},
       {"/time/steps", 2.5, "an integer >= 1"},
       {"/time/steps", 0, "an integer >= 1"},
       {"/time", json::array(), "an object"},
       {"/formulation/d_hat_m", -0.01, "a number >= 1e-15 and <= 1e+15 (m)"},
-      {"/formulation/stiffness_policy/kappa_N_per_m", 0, "a number >= 1e-18 and <= 1e+18 (N/m)"},
-      {"/strain_limit/limit", 0, "a number >= 1e-18 and <= 10"},
+      {"/formulation/stiffness_policy/kappa_N_per_m", 0, "a number >= 1e-36 and <= 1e+18 (N/m)"},
+      {"/strain_limit/limit", 0, "a number >= 1e-36 and <= 10"},
       {"/threads", -1, "an integer >= 0"},
       {"/passes/audit", "yes", "true or false"},
       {"/diagnose/scalings/0", "jacoby", "(did you mean jacobi?)"},

@@ -85,9 +85,9 @@ OVERRIDES = [
     override("the-empty-key", "/=1", "unknown key"),
     override("whole-document", "=1", "/pointer=value"),
     *(override(f"size-{pointer.split('/')[-1]}-{value}", f"{pointer}={value}", f"{pointer}: found {value.replace('e308', 'e+308')}; allowed: a number >= {allowed}")
-      for pointer, allowed in (("/time/dt_s", "1e-12 and <= 1e+09 (s)"), ("/formulation/d_hat_m", "1e-15 and <= 1e+15 (m)"),
-                               ("/formulation/stiffness_policy/kappa_N_per_m", "1e-18 and <= 1e+18 (N/m)"), ("/friction/eps_v_m_per_s", "1e-15 and <= 1e+12 (m/s)"),
-                               ("/step_solver/tol_velocity_m_per_s", "1e-15 and <= 1e+12 (m/s)"), ("/matching/load_N", "1e-18 and <= 1e+18 (N)"), ("/scene/mass_kg", "1e-18 and <= 1e+18 (kg)"))
+      for pointer, allowed in (("/time/dt_s", "1e-18 and <= 1e+09 (s)"), ("/formulation/d_hat_m", "1e-15 and <= 1e+15 (m)"),
+                               ("/formulation/stiffness_policy/kappa_N_per_m", "1e-36 and <= 1e+18 (N/m)"), ("/friction/eps_v_m_per_s", "1e-15 and <= 1e+12 (m/s)"),
+                               ("/step_solver/tol_velocity_m_per_s", "1e-15 and <= 1e+12 (m/s)"), ("/matching/load_N", "1e-36 and <= 1e+18 (N)"), ("/scene/mass_kg", "1e-36 and <= 1e+18 (kg)"))
       for value in ("1e308", "5e-324")),
     override("size-jitter", "/seeds/jitter_m=1e308", "found 1e+308; allowed: 0, or a number >= 1e-15 and <= 1e+15 (m)"),
     override("long", "/time/" + "x" * 100_000 + "=1", "unknown key"),

@@ -31,6 +31,10 @@ TEST(Names, ControlCharactersAreShownAsText) {
   EXPECT_EQ(printable("a\x1b[31mb\x07"), "a\\x1b[31mb\\x07");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
   EXPECT_EQ(printable("\r\x7f"), "\\x0d\\x7f");
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a pair
+  EXPECT_EQ(printable("\xe0\x80\x80"), "\\xe0\\x80\\x80");           // longer than it has to be
+  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond U+10FFFF
+  EXPECT_EQ(printable("\xf4\x8f\xbf\xbf"), "\xf4\x8f\xbf\xbf");
   EXPECT_EQ(printable("\xc2\x9b"
                       "1m"),
             "\\x9b1m");

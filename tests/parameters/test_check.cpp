@@ -42,10 +42,10 @@ TEST(Check, EachFormNamesPlaceValueAndWhatIsAllowed) {
       {count(1, 9), "0", "found 0; allowed: an integer >= 1 and <= 9"},
       {count(1, 9), "2.5", "found 2.5; allowed: an integer >= 1 and <= 9"},
       {any, "\"1\"", "found \"1\"; allowed: a number"},
-      {positive("s"), "0", "found 0; allowed: a number >= 1e-12 and <= 1e+09 (s)"},
-      {non_negative("1"), "-1", "found -1; allowed: 0, or a number >= 1e-18 and <= 1e+18"},
+      {positive("s"), "0", "found 0; allowed: a number >= 1e-18 and <= 1e+09 (s)"},
+      {non_negative("1"), "-1", "found -1; allowed: 0, or a number >= 1e-36 and <= 1e+18"},
       {open_low(number_in(-1, 0.5, "1")), "-1", "found -1; allowed: a number > -1 and <= 0.5"},
-      {open_high(open_low(number_in(0, 0.5, "1"))), "0.5", "found 0.5; allowed: a number >= 1e-18 and < 0.5"},
+      {open_high(open_low(number_in(0, 0.5, "1"))), "0.5", "found 0.5; allowed: a number >= 1e-36 and < 0.5"},
       {any_text(), "3", "found 3; allowed: a string"},
       {text_up_to(3), "\"\"", "found \"\"; allowed: a string of at least 1 and at most 3 bytes"},
       {text_up_to(3), "\"abcd\"", "found \"abcd\"; allowed: a string of at least 1 and at most 3 bytes"},
@@ -107,7 +107,9 @@ TEST(Check, TextsHaveNoControlCharacters) {
     EXPECT_NE(said(any_text(), bad), "") << bad;
   EXPECT_EQ(said(any_text(), "\"\u00e9\u4e2d \u00a0\""), "");
   EXPECT_EQ(said(free_text(), R"("a\n\tb")"), "");
-  EXPECT_NE(said(free_text(), R"("a\n\u001b")"), "");
+  EXPECT_EQ(said(free_text(), R"("a\r\nb")"), "");
+  EXPECT_NE(said(free_text(), R"("a\n\u001b")").find("without control characters but line ends and tabs"),
+            std::string::npos);
 }
 
 std::string said_of(const char* text, const ParameterList& list) {

@@ -33,8 +33,10 @@ TEST(Schema, KeywordsOfARow) {
   EXPECT_EQ(
       schema(positive("s")),
       json::parse(
-          R"({"description": "what", "type": "number", "minimum": 1e-12, "maximum": 1e9, "unit": "s"})"));
-  EXPECT_EQ(schema(any_text())["pattern"], R"(^[^\u0000-\u001F\u007F-\u009F]*$)");
+          R"({"description": "what", "type": "number", "minimum": 1e-18, "maximum": 1e9, "unit": "s"})"));
+  EXPECT_EQ(schema(any_text())["not"]["pattern"], R"([\u0000-\u001F\u007F-\u009F])");
+  EXPECT_EQ(schema(non_negative("m"))["not"],
+            json::parse(R"({"exclusiveMinimum": 0, "exclusiveMaximum": 1e-15})"));
   EXPECT_FALSE(schema(computed(positive("s"), "the scene's"), 1).contains("default"));
 }
 
