@@ -8,6 +8,7 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/summary_table.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
 
@@ -29,7 +30,7 @@ RunRecord run_and_show(const RunConfig& config, RunOptions options, const Common
   RunRecord record = run_config(config, options);
   line.clear();
   show("{}\n{}\n", summary_header(), summary_row(record));
-  if (!record.status.detail.empty()) show("  {}\n", record.status.detail);
+  if (!record.status.detail.empty()) print_wrapped("  " + record.status.detail, 4);
   show("{}\n", (options.folder / "run.json").string());
   return record;
 }

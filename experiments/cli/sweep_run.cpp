@@ -151,7 +151,8 @@ class SweepRun {
       ++n_run_;
       keep(core_seconds(record));
       print(summary_row(record));
-      if (record.status.outcome != Outcome::ok) print("  " + record.status.detail);
+      const std::size_t columns = terminal_columns(STDOUT_FILENO);
+      if (record.status.outcome != Outcome::ok) print(wrapped("  " + record.status.detail, columns, 4));
     } catch (const EarlierStays& stays) {
       keep(0);
       print(fmt::format("{:<44} {}", sweep_.note(i), stays.kept));
