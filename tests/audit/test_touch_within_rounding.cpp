@@ -14,10 +14,12 @@ enum class Side { beside, exactly, through };
 
 /// What is nearer than that many bits of the size of a pair may be left open, but is never taken for the other.
 constexpr int decided_bits = 48;
+/// Of coordinates: products of them are rounded.
+constexpr double tail = 0x1p-30;
 
 /// Shears, rotates coordinates, mirrors some and scales by a power of two: all exact. A shear takes digits.
-Vec3d seen(Vec3d x, unsigned how, int bits) {
-  if (bits <= decided_bits - 4) {
+Vec3d seen(Vec3d x, unsigned how, bool sheared) {
+  if (sheared) {
     x[0] += (static_cast<int>(how % 5) - 2) * x[1] + (static_cast<int>(how % 3) - 1) * x[2];
     x[1] += (static_cast<int>(how % 4) - 1) * x[2];
     x[2] += (static_cast<int>(how % 2) * 2 - 1) * x[0];
@@ -50,13 +52,13 @@ void expect_verdicts(const std::function<void(double by, double up, double down,
   for (unsigned how = 0; how < 24; ++how) {
     for (int bits = 40; bits <= 60; ++bits) {
       for (const Side side : {Side::beside, Side::exactly, Side::through}) {
-        for (const auto& [up, down] : {std::pair{1.0, 1.0}, {1.0, 2.0}, {0.25, 3.0}}) {
+        for (const auto& [up, down] : {std::pair{1 + tail, 1.0}, {1.0, 2 - tail}, {0.25 - tail, 3.0}}) {
           const double by = side == Side::exactly ? 0 : std::ldexp(side == Side::through ? 1.0 : -1.0, -bits);
           Motion<Pair> motion;
           make(by, up, down, motion);
           for (auto* end : {&motion.x0, &motion.x1}) {
             for (auto& x : *end) {
-              const Vec3d turned = seen(Vec3d(x), how, bits);
+              const Vec3d turned = seen(Vec3d(x), how, bits <= decided_bits - 4);
               x = turned;
             }
           }
@@ -75,7 +77,8 @@ TEST(TouchWithinRounding, OfAVertexBesideTheSideOfATriangle) {
   int judged = 0;
   expect_verdicts<VertexTriangle>(
       [](double by, double up, double down, auto& motion) {
-        motion.x0 = {Vec3d(by, 0.25, up), Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)};
+        motion.x0 = {Vec3d(by, 0.25 + tail, up), Vec3d(0, -3 * tail, 0), Vec3d(1 - tail, 0, 0),
+                     Vec3d(0, 1 + 5 * tail, 0)};
         motion.x1 = motion.x0;
         motion.x1[0][2] = -down;
       },
@@ -87,7 +90,8 @@ TEST(TouchWithinRounding, OfAnEdgeBesideTheEndOfAnother) {
   int judged = 0;
   expect_verdicts<EdgeEdge>(
       [](double by, double up, double down, auto& motion) {
-        motion.x0 = {Vec3d(by, -1, up), Vec3d(by, 1, up), Vec3d(0, 0, 0), Vec3d(1, 0, 0)};
+        motion.x0 = {Vec3d(by, -1 - tail, up), Vec3d(by, 1 - tail, up), Vec3d(0, 0, 0),
+                     Vec3d(1 + 3 * tail, 0, 0)};
         motion.x1 = motion.x0;
         motion.x1[0][2] = motion.x1[1][2] = -down;
       },
@@ -115,15 +119,16 @@ TEST(TouchWithinRounding, OfAVertexThatStopsShortOfAPlane) {
 
 /// States: an edge through a triangle, or beside it, by as little.
 TEST(TouchWithinRounding, OfAnEdgeAndATriangleThatStandStill) {
+  constexpr double y = 0.25 + tail / 2, low = -1 - tail, high = 2 + 2 * tail;
   for (unsigned how = 0; how < 24; ++how) {
     for (int bits = 40; bits <= 60; ++bits) {
       for (const double sign : {1.0, 0.0, -1.0}) {
         const double by = std::ldexp(sign, -bits);
         Positions x(3, 6);
-        x << 0, 1, 0, by, by, by - 1,   //
-            0, 0, 1, 0.25, 0.25, 0.25,  //
-            0, 0, 0, -1, 2, 0.5;
-        for (int v = 0; v < 6; ++v) x.col(v) = seen(x.col(v), how, bits);
+        x << 0, 1 - tail, 0, by, by, by - 1,         //
+            -3 * tail, tail, 1 + 5 * tail, y, y, y,  //
+            0, 0, 0, low, high, 0.5;
+        for (int v = 0; v < 6; ++v) x.col(v) = seen(x.col(v), how, bits <= decided_bits);
         const StateAudit found = audit_state(two_triangles(), x, true);
         EXPECT_EQ(found.crossings > 0, sign > 0) << bits << " " << how;
         EXPECT_EQ(found.touches > 0, sign == 0) << bits << " " << how;

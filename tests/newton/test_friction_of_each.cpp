@@ -42,23 +42,32 @@ Scene sliding(const std::vector<Slider>& sliders, const Method& method) {
   return scene;
 }
 
+Method rubbing(double mu, int renewals) {
+  Method method = test::fixed_method("cubic", kappa);
+  method.friction.mu = mu;
+  method.friction.lag_iterations = renewals;
+  method.step_solver.tol_velocity = 1e-9;
+  return method;
+}
+
+StepReport converged_step(Simulation& simulation) {
+  StepObserver nobody;
+  StepReport report = simulation.step(nobody);
+  EXPECT_EQ(report.status, StepStatus::converged) << report.detail;
+  return report;
+}
+
 TEST(FrictionOfEach, IsThatOfItsOwnLoadWhereOthersHaveNone) {
   constexpr double dt = 0.005;
   std::vector<Slider> sliders = {{0.2, 0.3}, {1.0, 0.0}, {3.0, 0.5}, {0.5, 0.0}, {0.05, std::nullopt}};
   for (std::size_t turn = 0; turn < sliders.size(); ++turn) {
     std::rotate(sliders.begin(), sliders.begin() + 1, sliders.end());
     for (const int renewals : {1, 3}) {
-      Method method = test::fixed_method("cubic", kappa);
-      method.friction.mu = 0.4;  // of the floor, and of the one that says nothing
-      method.friction.lag_iterations = renewals;
-      method.step_solver.tol_velocity = 1e-9;
+      const Method method = rubbing(0.4, renewals);  // of the floor, and of the one that says nothing
       const Scene scene = sliding(sliders, method);
       Simulation simulation(scene, method, dt, 8);
-      StepObserver nobody;
       for (int step = 1; step <= 8; ++step) {
-        const StepReport report = simulation.step(nobody);
-        ASSERT_EQ(report.status, StepStatus::converged) << report.detail;
-        ASSERT_EQ(report.contacts.obstacle, sliders.size());
+        ASSERT_EQ(converged_step(simulation).contacts.obstacle, sliders.size());
         for (std::size_t v = 0; v < sliders.size(); ++v) {
           const double mu = std::min(0.4, sliders[v].friction.value_or(0.4));
           EXPECT_NEAR(simulation.history().v(0, static_cast<int>(v)), 1 - mu * g * step * dt, 1e-6)
@@ -96,17 +105,12 @@ Scene on_a_table(double omega, const Method& method) {
 TEST(FrictionOfEach, TakesWhatSticksAroundWithATableThatTurns) {
   constexpr double dt = 0.02, omega = 2;
   for (const int renewals : {1, 2, 4}) {
-    Method method = test::fixed_method("cubic", kappa);
-    method.friction.mu = 0.9;
+    Method method = rubbing(0.9, renewals);
     method.friction.eps_v = 1e-5;
-    method.friction.lag_iterations = renewals;
-    method.step_solver.tol_velocity = 1e-9;
     const Scene scene = on_a_table(omega, method);
     Simulation simulation(scene, method, dt, 20);
-    StepObserver nobody;
     for (int step = 1; step <= 20; ++step) {
-      const StepReport report = simulation.step(nobody);
-      ASSERT_EQ(report.status, StepStatus::converged) << report.detail;
+      const StepReport report = converged_step(simulation);
       ASSERT_EQ(report.contacts.obstacle, 3U);
       ASSERT_EQ(report.friction_sticking, 3) << step;
     }
