@@ -63,7 +63,7 @@ TEST(FrictionOfEach, IsThatOfItsOwnLoadWhereOthersHaveNone) {
   for (std::size_t turn = 0; turn < sliders.size(); ++turn) {
     std::rotate(sliders.begin(), sliders.begin() + 1, sliders.end());
     for (const int renewals : {1, 3}) {
-      const Method method = rubbing(0.4, renewals);  // of the floor, and of the one that says nothing
+      Method method = rubbing(0.4, renewals);  // of the floor, and of the one that says nothing
       const Scene scene = sliding(sliders, method);
       Simulation simulation(scene, method, dt, 8);
       for (int step = 1; step <= 8; ++step) {
