@@ -15,7 +15,12 @@ from .python_sources import is_name, remember
 from .shape import Shape
 
 Terms3 = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
-LEAST_GROWTH = 0.6  # of b over three decades, against the three before: -log(d) has 1, a bounded power of d at most 0.5
+# Gaps over d_hat, 10^-k, at which b is asked whether it is infinite at 0: from each to the next log(d) doubles.
+_DECADES = (9, 18, 36, 72, 144, 288)
+# Of b from one of them to the next, against that before: 2 for -log(d), 1.41 for its root, 1 for log(-log(d)), 0.5 for
+# 2 - 1/(1 - log(d)), and next to 0 for 2 - d^0.05. What ends more slowly passes for infinite: 2 - d^p with p of at
+# most 0.0036, or 2 - (1 - log(d))^-p with p of at most 0.23.
+LEAST_GROWTH = 0.85
 _NEAR = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 0.95])  # gaps over d_hat at which a declaration is tested
 
 
@@ -34,8 +39,8 @@ def _callable_of(shape: Any, name: str) -> Callable[[np.ndarray, np.ndarray], Te
     )
 
 
-def _columns(name: str, terms: Callable, d: np.ndarray, d_hat: np.ndarray) -> list[np.ndarray]:
-    """b, b', b'' of gaps in (0, d_hat). Errors: what terms raises; ConfigError with the gap where one is not finite."""
+def _three(name: str, terms: Callable, d: np.ndarray, d_hat: np.ndarray) -> list[np.ndarray]:
+    """b, b', b'' of gaps in (0, d_hat), finite or not. Errors: what terms raises; ConfigError for no three columns."""
     found = terms(d, d_hat)
     if not isinstance(found, tuple) or len(found) != 3:
         raise _error(name, type(found).__name__, "a tuple of b, b', b''")
@@ -43,15 +48,26 @@ def _columns(name: str, terms: Callable, d: np.ndarray, d_hat: np.ndarray) -> li
     for what, column in zip(("b", "b'", "b''"), found):
         numbers = reals(column, f"shape {name}: {what}")
         try:
-            column = np.broadcast_to(numbers, d.shape)
+            out.append(np.broadcast_to(numbers, d.shape))
         except ValueError:
             raise _error(name, f"{what} of shape {numbers.shape}", f"shape {d.shape}, that of d") from None
-        if not np.isfinite(column).all():
-            at = int(np.flatnonzero(~np.isfinite(column))[0])
+    return out
+
+
+def _columns(name: str, terms: Callable, d: np.ndarray, d_hat: np.ndarray, infinite=False) -> list[np.ndarray]:
+    """The same where they are finite; where b is beyond the largest double and may be, all three are as at d = 0.
+    Errors: those of _three; ConfigError with the gap where one is not finite.
+    """
+    out = _three(name, terms, d, d_hat)
+    beyond = infinite & (out[0] == np.inf)
+    for k, (what, limit) in enumerate((("b", np.inf), ("b'", -np.inf), ("b''", np.inf))):
+        wrong = np.flatnonzero(~np.isfinite(out[k]) & ~beyond)
+        if len(wrong):
+            at = wrong[0]
             raise _error(
-                name, f"{what} = {column[at]} at d = {d[at]:.6g} m, d_hat = {d_hat[at]:.6g} m", "finite numbers"
+                name, f"{what} = {out[k][at]} at d = {d[at]:.6g} m, d_hat = {d_hat[at]:.6g} m", "finite numbers"
             )
-        out.append(column)
+        out[k] = np.where(beyond, limit, out[k])
     return out
 
 
@@ -64,7 +80,7 @@ def _filler(name: str, terms: Callable, infinite: bool) -> Callable:
                 at_zero = d <= 0
                 b[at_zero], db[at_zero], d2b[at_zero] = np.inf, -np.inf, np.inf
             if inside.any():
-                b[inside], db[inside], d2b[inside] = _columns(name, terms, d[inside], d_hat[inside])
+                b[inside], db[inside], d2b[inside] = _columns(name, terms, d[inside], d_hat[inside], infinite)
 
     return fill
 
@@ -109,20 +125,40 @@ def _check(name: str, terms: Callable, smoothness: int) -> None:
             )
 
 
+def _towards_zero(name: str, terms: Callable) -> list[float]:
+    """b at the gaps of _DECADES, as far as it is a number or +inf: squares of the last ones are 0 in doubles."""
+    found = []
+    for k in _DECADES:
+        try:
+            b = float(_three(name, terms, np.array([0.01 * 10.0**-k]), np.array([0.01]))[0][0])
+        except ArithmeticError:
+            break
+        if not b > -np.inf:
+            break
+        found.append(b)
+    return found
+
+
 def _check_zero(name: str, terms: Callable, infinite: bool) -> None:
-    """What b does as d -> 0, by its growth over decades of the gap. Errors: ConfigError where it is the other thing."""
+    """What b does as d -> 0, by its growth. Errors: ConfigError where it is the other thing."""
     with np.errstate(all="ignore"):
         if not infinite:
             _columns(name, terms, np.array([0.0]), np.array([0.01]))
             return
-        b = _columns(name, terms, 0.01 * np.array([1e-6, 1e-9, 1e-12]), np.full(3, 0.01))[0]
-    before, then = b[1] - b[0], b[2] - b[1]
+        b = _towards_zero(name, terms)
+    if np.inf in b:
+        return
+    if len(b) < 3:
+        raise _error(name, f"no number b at d = 1e-{_DECADES[len(b)]} d_hat", "numbers, or +inf, as d -> 0")
+    before, then = b[-2] - b[-3], b[-1] - b[-2]
     if not then > LEAST_GROWTH * before > 0:
+        first, second, third = _DECADES[len(b) - 3 : len(b)]
         raise _error(
             name,
-            f"infinite_at_zero True of a b that grows by {before:.3g} m^2 from d = 1e-6 to 1e-9 d_hat and by"
-            f" {then:.3g} m^2 from there to 1e-12 d_hat (d_hat = 0.01 m)",
-            "False, or a b without bound as d -> 0: from decade to decade it grows as much or more",
+            f"infinite_at_zero True of a b that grows by {before:.3g} m^2 from d = 1e-{first} to 1e-{second} d_hat and"
+            f" by {then:.3g} m^2 from there to 1e-{third} d_hat (d_hat = 0.01 m)",
+            f"False, or a b without bound as d -> 0: each time that log(d) doubles it grows by {LEAST_GROWTH} of the"
+            " growth before, or more",
         )
 
 

@@ -146,6 +146,46 @@ def test_what_a_shape_does_at_zero_is_what_it_declares(bb):
     assert not bb.register_shape(make()).infinite_at_zero
 
 
+def of_three(b, db, d2b):
+    return lambda self, d, d_hat: tuple(d_hat**n * x for n, x in zip((2, 1, 0), (b(d / d_hat), db(d / d_hat), d2b(d / d_hat))))
+
+
+def bounded(power):
+    """(1 - u)^3 (2 - u^p)."""
+    p = power
+    return of_three(lambda u: (1 - u) ** 3 * (2 - u**p), lambda u: -3 * (1 - u) ** 2 * (2 - u**p) - (1 - u) ** 3 * p * u ** (p - 1),
+                    lambda u: 6 * (1 - u) * (2 - u**p) + 6 * (1 - u) ** 2 * p * u ** (p - 1) - (1 - u) ** 3 * p * (p - 1) * u ** (p - 2))
+
+
+def exponential():
+    """(1 - u)^3 exp(1/u), which is beyond the largest double at u = 0.0014."""
+    e = lambda u: np.exp(1 / u)  # noqa: E731
+    return of_three(lambda u: (1 - u) ** 3 * e(u), lambda u: -((1 - u) ** 2) * e(u) * (3 + (1 - u) / u**2),
+                    lambda u: (1 - u) * e(u) * (6 + 6 * (1 - u) / u**2 + (1 - u) ** 2 * (1 / u**4 + 2 / u**3)))
+
+
+@pytest.mark.parametrize("power", [0.5, 0.05, 0.01, 0.004])
+def test_a_bounded_power_is_not_infinite_however_slowly_it_ends(bb, power):
+    assert "infinite_at_zero True of a b that grows by" in refused(bb, lambda: bb.register_shape(make(terms=bounded(power), infinite_at_zero=True)))
+
+
+def test_what_grows_without_bound_is_infinite_however_slowly_or_fast(bb):
+    """The logarithm of a logarithm, and what overflows doubles, whose values there are those at d = 0."""
+    w = lambda u: 1 - np.log(u)  # noqa: E731
+    slow = of_three(lambda u: (1 - u) ** 3 * (1 + np.log(w(u))), lambda u: -3 * (1 - u) ** 2 * (1 + np.log(w(u))) - (1 - u) ** 3 / (u * w(u)),
+                    lambda u: 6 * (1 - u) * (1 + np.log(w(u))) + 6 * (1 - u) ** 2 / (u * w(u)) + (1 - u) ** 3 * (w(u) - 1) / (u * w(u)) ** 2)
+    assert bb.register_shape(make(name="slow_of_test", terms=slow, infinite_at_zero=True)).infinite_at_zero
+    with np.errstate(all="ignore"):
+        fast = bb.register_shape(make(name="fast_of_test", terms=exponential(), infinite_at_zero=True))
+        assert tuple(fast(1e-8, 0.01)) == tuple(fast(0.0, 0.01)) == (np.inf, -np.inf, np.inf)
+        assert np.isfinite(tuple(fast(1e-4, 0.01))).all()
+
+
+def test_not_a_number_near_zero_is_refused(bb):
+    wrong = lambda self, d, d_hat: tuple(np.where(d < 1e-7, np.nan, x) for x in logarithm(self, d, d_hat))  # noqa: E731
+    assert "no number b at d = 1e-9 d_hat; allowed: numbers, or +inf" in refused(bb, lambda: bb.register_shape(make(terms=wrong, infinite_at_zero=True)))
+
+
 def test_numbers_of_python_shapes_and_policies_are_real(bb):
     imaginary = lambda self, d, d_hat: tuple(x + 0j for x in (d, d, d))  # noqa: E731
     assert "complex numbers" in refused(bb, lambda: bb.register_shape(make(terms=imaginary)))
