@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import importlib.util
 import io
 import os
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,17 +17,17 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from . import input_file, processes
+from . import processes
 from .captions import caption
 from .coloring import annotate, top_of
-from .errors import UserError
+from .errors import BAD_INPUT, TRY_AGAIN, UserError
 from .frame_pixels import Look, Shared, drawn_of_run, focus_of
 from .frames import frame_of, frame_paths, read_scene, scene_at
 from .progress import counted
 from .record_file import read_record
 from .run_rows import run_row
-from .still_picture import save_annotated, shown, title_of, when
-from .whole_file import check_can_be_written, write_whole, write_whole_bytes
+from .still_picture import annotated, shown, title_of, when
+from .whole_file import check_can_be_written, whole, write_whole
 
 SUFFIXES = (".gif", ".mp4")
 SAMPLED = 24  # frames that decide what the camera has to hold
@@ -62,10 +62,9 @@ def _still(film: Film, record: dict, step: int) -> Image.Image:
     pixels, scale, frame, scene = drawn_of_run(record, film.run, step, film.look, film.shared)
     if film.look.bare:
         return Image.fromarray(np.uint8(np.round(255 * pixels)))
-    file = io.BytesIO()
     legend = partial(annotate, scene=scene, frame=frame, color=film.look.color, scale=scale)
-    save_annotated(file, pixels, f"{film.title}, {when(record, step)}", legend)
-    return Image.open(file).convert("RGB")
+    made = annotated(pixels, f"{film.title}, {when(record, step)}", legend)
+    return Image.open(io.BytesIO(made)).convert("RGB")
 
 
 def _stills(film: Film, record: dict, steps: list[int]) -> Iterator[Image.Image]:
@@ -109,7 +108,10 @@ def _write_mp4(file: Path, stills: Iterator[Image.Image], rate: float) -> None:
     said = child.communicate()[1].decode(errors="replace").strip()
     if child.returncode != 0:
         why = said[-300:] or "without a word"
-        raise UserError(f"--out FILE.mp4: {command} ended with {child.returncode}: {why}")
+        raise UserError(
+            f"--out FILE.mp4: {command} ended with {child.returncode}: {why}",
+            TRY_AGAIN if os.strerror(errno.ENOSPC) in said or child.returncode < 0 else BAD_INPUT,
+        )
 
 
 def animate(run: Path, out: Path, look: Look, rate: float | None = None) -> Path:
@@ -128,10 +130,8 @@ def animate(run: Path, out: Path, look: Look, rate: float | None = None) -> Path
     film = Film(run, look, _shared(record, run, steps, look), title_of(record))
     write = _write_gif if out.suffix.lower() == ".gif" else _write_mp4
     check_can_be_written(out)
-    with tempfile.TemporaryDirectory() as scratch:
-        part = Path(scratch) / f"film{out.suffix}"
+    with whole(out) as part:
         write(part, _stills(film, record, steps), rate)
-        write_whole_bytes(out, input_file.read_bytes(part, input_file.LARGE))
     text = f"{film.title}, {len(steps)} frames from {when(record, steps[0])} to {when(record, steps[-1])}."
     write_whole(out.with_suffix(".txt"), caption(f"{text} {shown(look)}", [run_row(record)]))
     return out

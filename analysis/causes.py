@@ -12,7 +12,7 @@ import math
 import subprocess
 from pathlib import Path
 
-from .errors import UserError, tells
+from .errors import UserError, passed_on, tells
 from .front.arguments import parser_of, plugin_argument, set_argument
 from .places import ROOT
 from .program import started
@@ -197,7 +197,7 @@ def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list
         words += ["--set", option]
     code = started(*words, plugins=plugins, stdout=subprocess.DEVNULL).returncode
     if code != 0:
-        raise UserError(f"{given}: the run ended with exit code {code}")
+        raise UserError(f"{given}: the run ended with exit code {code}", passed_on(code))
     return folder
 
 

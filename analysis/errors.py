@@ -61,6 +61,11 @@ def code_of(error: UserError | OSError) -> int:
     return BAD_INPUT if number is None or number in LASTING else TRY_AGAIN
 
 
+def passed_on(code: int) -> int:
+    """The exit code of a verb whose program has failed: what may be tried again stays so."""
+    return TRY_AGAIN if code == TRY_AGAIN else BAD_INPUT
+
+
 def text_of(error: UserError | OSError) -> str:
     """What is said: of a file its name and what the system said."""
     if isinstance(error, UserError) or error.errno is None:

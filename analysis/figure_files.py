@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterable
 from pathlib import Path
+
+from .whole_file import copy_whole
 
 ON_PAGE = (".png", ".txt")  # the picture and its caption; the others stay beside the records
 
 
 def copy_to_page(paths: Iterable[Path], docs: Path) -> None:
     """Copies picture and caption of the files of a figure (style.save) into docs, which is made."""
-    docs.mkdir(parents=True, exist_ok=True)
     for path in paths:
         if path.suffix in ON_PAGE:
-            shutil.copyfile(path, docs / path.name)
+            copy_whole(path, docs / path.name)

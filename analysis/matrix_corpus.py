@@ -22,7 +22,7 @@ from .places import ROOT
 from .program import started
 from .spec_file import read_spec
 from .text_table import markdown as table_lines
-from .whole_file import write_whole
+from .whole_file import copy_whole, write_whole
 
 MOST_BYTES = 8 << 20
 DIRECT = ["cholmod", "lagged_cholesky"]
@@ -95,7 +95,7 @@ def pick(system: dict, matrices: Path) -> Path:
 
 
 def keep(system: dict, side_car: Path, out: Path) -> None:
-    shutil.copyfile(side_car.with_suffix(".mtx"), out / f"{system['name']}.mtx")
+    copy_whole(side_car.with_suffix(".mtx"), out / f"{system['name']}.mtx")
     kept = read_object(side_car)
     kept["matrix"]["file"] = f"{system['name']}.mtx"
     kept["cause"] = f"{system['cause']}: {system['why']}"

@@ -5,18 +5,19 @@ from __future__ import annotations
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 
 from .captions import caption
 from .coloring import annotate
-from .errors import UserError
+from .errors import UserError, passed_on
 from .frame_pixels import Look, drawn
 from .frames import read_frame, scene_at, without_bodies
 from .json_file import read_object
 from .picture_file import picture_file
 from .program import started
-from .still_picture import save_annotated, save_bare, shown
-from .whole_file import write_whole
+from .still_picture import png, shown
+from .whole_file import write_whole, write_whole_bytes
 
 
 def _start(config: Path, overrides: list[str], scratch: Path) -> subprocess.CompletedProcess:
@@ -24,7 +25,8 @@ def _start(config: Path, overrides: list[str], scratch: Path) -> subprocess.Comp
     words = [word for one in overrides for word in ("--set", one)]
     done = started("check", str(config), *words, "--start-frame", str(scratch))
     if not (scratch / "frames" / "start.ply").is_file():
-        raise UserError(done.stderr.strip() or f"{config}: the program ended with {done.returncode}")
+        said = done.stderr.strip() or f"{config}: the program ended with {done.returncode}"
+        raise UserError(said, passed_on(done.returncode))
     return done
 
 
@@ -42,12 +44,9 @@ def preview(config: Path, out: Path | None, look: Look, overrides: list[str]) ->
     if done.returncode != 0:
         print(done.stderr.strip(), file=sys.stderr)
     pixels, scale = drawn(without_bodies(frame, scene, look.hidden), scene, look, None)
-    path.parent.mkdir(parents=True, exist_ok=True)
     title = f"{config.stem}, start"
-    if look.bare:
-        save_bare(path, pixels)
-    else:
-        save_annotated(path, pixels, title, lambda fig: annotate(fig, scene, frame, look.color, scale))
+    legend = partial(annotate, scene=scene, frame=frame, color=look.color, scale=scale)
+    write_whole_bytes(path, png(look, pixels, title, legend))
     said = "as the program checks it: " + (done.stdout if done.returncode == 0 else done.stderr).strip()
     write_whole(path.with_suffix(".txt"), caption(f"{title}, {said} {shown(look)}", []))
     return path

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -21,7 +21,7 @@ from .progress import say_where
 from .record_file import read_record
 from .run_rows import run_row
 from .titles import broken
-from .whole_file import write_whole, write_whole_bytes
+from .whole_file import bytes_of, write_whole, write_whole_bytes
 
 BAR_IN = 1.2  # inches beside a picture that a bar of colours takes
 
@@ -67,15 +67,14 @@ def when(record: dict, step: int) -> str:
     )
 
 
-def save_bare(path: Path, pixels: np.ndarray) -> None:
-    """Errors: OSError. Whole or not there."""
-    out = io.BytesIO()
-    plt.imsave(out, pixels, format="png", metadata={"Software": None}, pil_kwargs={"optimize": True})
-    write_whole_bytes(path, out.getvalue())
+def bare(pixels: np.ndarray) -> bytes:
+    """A PNG of the picture alone."""
+    options = {"format": "png", "metadata": {"Software": None}, "pil_kwargs": {"optimize": True}}
+    return bytes_of(lambda out: plt.imsave(out, pixels, **options))
 
 
-def save_annotated(file, pixels: np.ndarray, title: str, annotate: Callable) -> None:
-    """A PNG, into a file by name or open. A title that is wider than the picture is broken."""
+def annotated(pixels: np.ndarray, title: str, annotate: Callable) -> bytes:
+    """A PNG with title and legend. A title that is wider than the picture is broken."""
     height, width = pixels.shape[:2]
     fig, axis = plt.subplots(figsize=(style.WIDE_IN, style.WIDE_IN * height / width), layout="constrained")
     axis.imshow(pixels, interpolation="antialiased")
@@ -85,8 +84,14 @@ def save_annotated(file, pixels: np.ndarray, title: str, annotate: Callable) -> 
     text = broken(fig, title, room, plt.rcParams["axes.titlesize"])
     fig.set_figheight(fig.get_figheight() + 0.2 + 0.15 * text.count("\n"))
     axis.set_title(text)
-    fig.savefig(file, format="png", metadata={"Software": None})
+    made = bytes_of(lambda out: fig.savefig(out, format="png", metadata={"Software": None}))
     plt.close(fig)
+    return made
+
+
+def png(look: Look, pixels: np.ndarray, title: str, annotate: Callable) -> bytes:
+    """As the look has it."""
+    return bare(pixels) if look.bare else annotated(pixels, title, annotate)
 
 
 def shown(look: Look) -> str:
@@ -130,13 +135,8 @@ def render(
     pixels, scale, frame, scene = drawn_of_run(record, run, step, look)
     say_where("")
     what = f"{title or title_of(record)}, {when(record, step)}"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if look.bare:
-        save_bare(path, pixels)
-    else:
-        out = io.BytesIO()
-        save_annotated(out, pixels, what, lambda fig: annotate(fig, scene, frame, look.color, scale))
-        write_whole_bytes(path, out.getvalue())
+    legend = partial(annotate, scene=scene, frame=frame, color=look.color, scale=scale)
+    write_whole_bytes(path, png(look, pixels, what, legend))
     text = f"{what}. {shown(look)} {_at_obstacles(frame, scene)}".rstrip()
     write_whole(path.with_suffix(".txt"), caption(text, [run_row(record)]))
     return path

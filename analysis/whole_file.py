@@ -5,60 +5,95 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import BinaryIO
 
-from .errors import UserError
+from . import input_file
+from .errors import UserError, code_of
 
 
 @contextlib.contextmanager
-def named(path: Path) -> Iterator[None]:
-    """An error inside of it that names no file gets this one: the system names none where a disk is full."""
+def whole(path: Path) -> Iterator[Path]:
+    """A name beside the file, for what is written; it takes the place of the file at the end: a full disk or
+    an interrupt leaves what was there. Makes the folder. An error of the system names the file: it names none
+    where a disk is full.
+    """
+    part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
     try:
-        yield
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield part
+        part.replace(path)
     except OSError as error:
-        error.filename = error.filename or str(path)
+        if error.filename in (None, str(part)):
+            error.filename, error.filename2 = str(path), None
         raise
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def write_whole(path: Path, text: str) -> None:
-    """write_whole_bytes of a text."""
+    """A text as such a file."""
     write_whole_bytes(path, text.encode())
+
+
+def write_whole_bytes(path: Path, content: bytes) -> None:
+    """Bytes as such a file."""
+    with whole(path) as part:
+        part.write_bytes(content)
+
+
+def copy_whole(source: Path, path: Path) -> None:
+    """A file as such a file. Errors of the source: UserError."""
+    write_whole_bytes(path, input_file.read_bytes(source, input_file.LARGE))
+
+
+def write_figure(figure, path: Path, **options) -> None:
+    """A figure of matplotlib in the format of the ending; options of savefig."""
+    write_whole_bytes(path, bytes_of(lambda out: figure.savefig(out, format=path.suffix[1:], **options)))
+
+
+def bytes_of(write: Callable[[BinaryIO], object]) -> bytes:
+    """What `write` writes into an open file."""
+    out = io.BytesIO()
+    write(out)
+    return out.getvalue()
+
+
+def append_line(path: Path, text: str) -> None:
+    """One line more, or none where the disk is full. Makes the folder."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    content = f"{text}\n".encode()
+    with path.open("ab", buffering=0) as out:
+        before = os.fstat(out.fileno()).st_size
+        try:
+            while content:
+                content = content[out.write(content) :]
+        except OSError as error:
+            out.truncate(before)
+            error.filename = str(path)
+            raise
 
 
 def check_can_be_written(path: Path) -> None:
     """Before long work whose result goes there: makes the folder, writes into it, and takes that back.
     Errors: UserError that names what is in the way.
     """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
-        part.write_bytes(b"")
-        part.unlink()
-    except OSError as fault:
-        raise UserError(
-            f"{path.parent}: {fault.strerror}; a folder that can be written to is needed"
-        ) from None
+    check_folder(path.parent)
     if path.is_dir():
         raise UserError(f"{path}: is a folder; a file, or nothing, is needed there")
 
 
-def write_whole_bytes(path: Path, content: bytes) -> None:
-    """Writes beside the file and puts that in its place: a full disk or an interrupt leaves what was there.
-    Makes the folder.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
+def check_folder(folder: Path) -> None:
+    """The same of a folder for several files."""
+    part = folder / f".written.tmp.{os.getpid()}"
     try:
-        with named(path):
-            part.write_bytes(content)
-            part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def write_figure(figure, path: Path, **options) -> None:
-    """A figure of matplotlib in the format of the ending; options of savefig."""
-    out = io.BytesIO()
-    figure.savefig(out, format=path.suffix[1:], **options)
-    write_whole_bytes(path, out.getvalue())
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            part.write_bytes(b"a byte")
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as fault:
+        raise UserError(
+            f"{folder}: {fault.strerror}; a folder that can be written to is needed", code_of(fault)
+        ) from None

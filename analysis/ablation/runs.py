@@ -7,7 +7,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from ..errors import UserError
+from ..errors import UserError, passed_on
 from ..program import run_sweep
 from ..record_file import RecordError, read_record
 from ..sweeps.cases import read_cases
@@ -44,7 +44,10 @@ def run_shard(factorial: Factorial, scene: str, shard: int, folder: Path) -> Non
     done = run_sweep(file, folder / scene, "--shard", f"{shard}/{shards}", "--progress", "none")
     if done.returncode != 0:
         first = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
-        raise UserError(f"{file}: shard {shard}/{shards} ended with {done.returncode}: {first}")
+        raise UserError(
+            f"{file}: shard {shard}/{shards} ended with {done.returncode}: {first}",
+            passed_on(done.returncode),
+        )
     print(f"ablation: {scene}, shard {shard} of {shards}", file=sys.stderr, flush=True)
 
 

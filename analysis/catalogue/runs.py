@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..errors import UserError
+from ..errors import UserError, passed_on
 from ..matching.runs import sweep
 from ..places import ROOT
 from ..program import run_sweep
@@ -48,7 +48,9 @@ def run_scene(
     done = run_sweep(file, out, *said)
     if done.returncode != 0:
         first = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
-        raise UserError(f"{entry.path}: the program ended with {done.returncode}: {first}")
+        raise UserError(
+            f"{entry.path}: the program ended with {done.returncode}: {first}", passed_on(done.returncode)
+        )
     planned = run_sweep(file, out, *said, "--dry-run").stdout.splitlines()
     keys = [(label, seed) for label in labels for seed in seeds or [None]]
     try:

@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 from .. import input_file
-from ..errors import UserError, tells
+from ..errors import UserError, passed_on, tells
 from ..figure_files import copy_to_page
 from ..front.arguments import parser_of, plugin_argument
 from ..program import built_program, run_sweep
@@ -53,7 +53,9 @@ def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
         print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
         done = run_sweep(ROOT / sweep.file, runs / name, plugins=plugins, stdout=subprocess.DEVNULL)
         if done.returncode != 0:
-            raise UserError(f"{sweep.file}: the program ended with {done.returncode}")
+            raise UserError(
+                f"{sweep.file}: the program ended with {done.returncode}", passed_on(done.returncode)
+            )
         print(f"claims: {name}: {time.monotonic() - start:.0f} s", file=sys.stderr)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from .. import input_file
 from ..errors import UserError
 from ..places import ROOT
+from ..whole_file import write_whole
 from .card import Card
 
 ENVIRONMENTS = ROOT / "build/engines"  # git ignores it
@@ -60,5 +61,5 @@ def setup(card: Card) -> str:
     pip = [str(python(card)), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     _said([*pip, "-r", str(card.requirements)], log)
     _said([str(python(card)), "-c", f"import {card.data['module']}"], log)
-    (folder(card) / "recipe").write_text(_recipe(card))
+    write_whole(folder(card) / "recipe", _recipe(card))
     return f"{card.name}: installed in {folder(card)}"

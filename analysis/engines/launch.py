@@ -58,7 +58,7 @@ def _ended(card: Card, jobs: dict[Path, dict], out: Path, variant: str, sets: di
     """
     log = out / "log.txt"
     if why := environment.why_not(card):
-        log.write_text(f"{why}\n")
+        write_whole(log, f"{why}\n")
         return {"outcome": "not_installed", "detail": why}
     words = ["--variant", variant, *(f"--set={name}={_word(value)}" for name, value in sets.items())]
     for folder, scene in jobs.items():

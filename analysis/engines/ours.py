@@ -14,7 +14,7 @@ from ..errors import UserError
 from ..frames import frames_of, read_scene
 from ..program import started
 from ..record_file import read_record
-from ..whole_file import write_whole
+from ..whole_file import bytes_of, write_whole, write_whole_bytes
 
 
 @dataclass(frozen=True)
@@ -77,9 +77,9 @@ def _write_frames(record: dict, folder: Path, scene: dict, out: Path, parts: int
         raise UserError(f"{folder}: an obstacle moves")
     steps = [-1, *range(parts - 1, scene["steps"] * parts, parts)]
     states = np.array([frame.vertices for frame in frames_of(record, folder, steps)], float)
-    np.savez_compressed(
-        out / "frames.npz",
-        positions=states,
-        triangles=np.array(scene["triangles"], int).reshape(-1, 3),
-        times_s=scene["dt_s"] * np.arange(len(states)),
-    )
+    arrays = {
+        "positions": states,
+        "triangles": np.array(scene["triangles"], int).reshape(-1, 3),
+        "times_s": scene["dt_s"] * np.arange(len(states)),
+    }
+    write_whole_bytes(out / "frames.npz", bytes_of(lambda file: np.savez_compressed(file, **arrays)))

@@ -22,6 +22,7 @@ from ..front.arguments import parser_of
 from ..front.building import job_count
 from ..places import ROOT
 from ..text_table import fitted
+from ..whole_file import check_folder
 from . import sources
 from .drawing import Drawing
 from .spec import FOLDER, Spec, chosen, known, read_spec
@@ -56,17 +57,6 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
-def check_writable(out: Path) -> None:
-    """Before runs are made for figures that cannot be written. Errors: UserError."""
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        probe = out / f".writable.tmp.{os.getpid()}"
-        probe.write_bytes(b"")
-        probe.unlink()
-    except OSError as fault:
-        raise UserError(f"{out}: figures cannot be written there: {fault.strerror}") from None
-
-
 def listed(folder: Path = FOLDER) -> str:
     """Name, width, and what a figure is drawn of with and without --quick."""
 
@@ -95,7 +85,7 @@ def main(argv: list[str]) -> int:
         return 0
     specs = chosen(args.names)
     out = args.out or RUNS / ("quick" if args.quick else "full")
-    check_writable(out)
+    check_folder(out)
     place = Place(args.runs, args.quick and not args.no_run, args.jobs)
     refused = []
     for spec in specs:

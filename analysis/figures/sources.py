@@ -16,7 +16,7 @@ import pandas as pd
 
 from .. import input_file
 from ..digests import of_text
-from ..errors import UserError
+from ..errors import UserError, passed_on
 from ..gate.matrices import read_matrix
 from ..json_file import read_object
 from ..matching.runs import Sweep, inputs_sha256
@@ -66,7 +66,9 @@ def sweep(wanted: Wanted, place: Place) -> SweepRecords:
         done = run_sweep(file, folder, "--progress", "none", "--jobs", str(jobs))
         if done.returncode != 0:
             said = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
-            raise UserError(f"{file}: the program ended with {done.returncode}: {said}")
+            raise UserError(
+                f"{file}: the program ended with {done.returncode}: {said}", passed_on(done.returncode)
+            )
     if missing := _missing(folder):
         raise UserError(
             f"{folder}: {missing}; this makes them: ./bench sweep {_shown(file)} --out {_shown(folder)}"

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from .. import digests, input_file
+from ..errors import code_of
 from ..places import ROOT
 from .grammar import Formula, FormulaError
 
@@ -135,7 +136,9 @@ def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[
 
 def not_written(place: Path, error: OSError) -> FormulaError:
     return FormulaError(
-        f"the folder {place} ({error})", "a folder to write to, or another in BARRIERBENCH_CACHE"
+        f"the folder {place} ({error.strerror})",
+        "a folder to write to, or another in BARRIERBENCH_CACHE",
+        code_of(error),
     )
 
 

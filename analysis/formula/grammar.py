@@ -10,7 +10,7 @@ import re
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..errors import UserError
+from ..errors import BAD_INPUT, UserError
 
 FUNCTIONS = ("log", "exp", "sqrt", "sin", "cos", "tan", "atan", "sinh", "cosh", "tanh")
 SAME = {"ln": "log"}
@@ -64,8 +64,8 @@ POLICY = Quantity(
 class FormulaError(UserError):
     """What is wrong with a formula: what was found, with its place, and what is allowed."""
 
-    def __init__(self, found: str, allowed: str):
-        super().__init__(f"found {found}; allowed: {allowed}")
+    def __init__(self, found: str, allowed: str, code: int = BAD_INPUT):
+        super().__init__(f"found {found}; allowed: {allowed}", code)
         self.found, self.allowed = found, allowed
 
 

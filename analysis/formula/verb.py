@@ -44,7 +44,7 @@ def main(argv: list[str]) -> int:
     try:
         made = compiled_policy(args.formula) if args.policy else compiled(args.formula, args.at_zero)
     except FormulaError as error:
-        raise UserError(f"{args.formula!r}: {error}") from None
+        raise UserError(f"{args.formula!r}: {error}", error.code) from None
     if args.source:
         print(input_file.read_text(made.library.with_suffix(".cpp")), end="")
     elif args.json:

@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 import meshio
 import numpy as np
 
-from ..whole_file import named, write_whole, write_whole_bytes
+from ..whole_file import whole, write_whole, write_whole_bytes
 from .sequence import Mesh, Sequence, State
 
 
@@ -110,7 +110,7 @@ def write_pc2(sequence: Sequence, folder: Path) -> None:
     if not sequence.moves:
         return write_obj(sequence, folder)
     path = folder / f"{sequence.stem}.pc2"
-    with named(path), path.open("wb") as out:
+    with whole(path) as part, part.open("wb") as out:
         out.write(pc2_header(len(sequence.mesh.of_points), len(sequence.steps)))
         for number, state in enumerate(sequence.states()):
             out.write(state.points.astype("<f4").tobytes())
@@ -140,8 +140,8 @@ def _vtu(mesh: Mesh, state: State) -> meshio.Mesh:
 def write_vtu(sequence: Sequence, folder: Path) -> None:
     for number, state in enumerate(sequence.states()):
         path = folder / _name(sequence, number, "vtu")
-        with named(path):
-            meshio.vtu.write(str(path), _vtu(sequence.mesh, state))
+        with whole(path) as part:
+            meshio.vtu.write(str(part), _vtu(sequence.mesh, state))
 
 
 def pvd_text(sequences: list[Sequence]) -> str:

@@ -96,6 +96,9 @@ def export(run: Run, parts: list[Binding], kind: str, out: Path) -> str:
         part.mkdir()
         write(sequences, kind, part)
         part.rename(out)
+    except OSError as error:
+        error.filename = str(error.filename or out).replace(str(part), str(out))
+        raise
     finally:
         shutil.rmtree(part, ignore_errors=True)
     mesh = sequences[0].mesh

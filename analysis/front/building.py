@@ -14,6 +14,7 @@ from .. import input_file
 from ..errors import BUILD_FAILED, UserError
 from ..places import ROOT
 from ..program import RELEASE
+from ..whole_file import write_whole
 
 KIB_A_JOB = 2097152  # 2 GiB: g++ on many files at once
 MINUTE = 60  # seconds between two words about a build off the terminal
@@ -103,7 +104,7 @@ def configure(preset: str, options: dict[str, str] | None = None) -> None:
     words = ["cmake", "--preset", preset, *(f"-D{name}={value}" for name, value in options.items())]
     if subprocess.run(words, cwd=ROOT, stdout=sys.stderr, check=False).returncode != 0:
         raise UserError("configuration failed")
-    (folder(preset) / "cuda_asked").write_text(_cuda_here())
+    write_whole(folder(preset) / "cuda_asked", _cuda_here())
 
 
 def _last_line(log: Path) -> str:

@@ -8,7 +8,7 @@ import sys
 import textwrap
 from typing import NoReturn
 
-from ..errors import TRY_AGAIN, UserError
+from ..errors import TRY_AGAIN, UserError, tells
 from ..program import RELEASE, become, built_program, require_program
 from . import verbs
 from .arguments import text_width
@@ -81,7 +81,8 @@ def run(verb: verbs.Verb, arguments: list[str]) -> int:
     if not verb.module:  # setup, which the script answers itself
         return building.of_script(verb.name, *arguments)
     os.environ.setdefault("BARRIERBENCH_PROGRAM", str(RELEASE))
-    return importlib.import_module(f"analysis.{verb.module}").main(arguments)
+    module = f"analysis.{verb.module}"  # even to load it may take a temporary file
+    return tells(verb.name)(lambda words: importlib.import_module(module).main(words))(arguments)
 
 
 def open_streams() -> None:

@@ -7,7 +7,7 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..errors import UserError
+from ..errors import UserError, passed_on
 from ..places import ROOT
 from ..program import started
 from ..spec_file import read_spec
@@ -94,7 +94,8 @@ def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
     if done.returncode != 0:
         raise UserError(
             f"{case.name}: the program ended with {done.returncode}:"
-            f" {done.stderr.strip() or done.stdout.strip()}"
+            f" {done.stderr.strip() or done.stdout.strip()}",
+            passed_on(done.returncode),
         )
     return read_run(out, allow_not_finite=True)
 

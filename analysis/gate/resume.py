@@ -7,7 +7,7 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-from ..errors import UserError
+from ..errors import UserError, passed_on
 from ..program import begun, started
 from .cases import Case, run_case, words_of
 from .finding import Finding
@@ -50,7 +50,10 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     killed = kill_after_checkpoint(words, out)
     done = started(*words, "--resume")
     if done.returncode != 0:
-        raise UserError(f"{case.name}: --resume ended with {done.returncode}: {done.stderr.strip()}")
+        raise UserError(
+            f"{case.name}: --resume ended with {done.returncode}: {done.stderr.strip()}",
+            passed_on(done.returncode),
+        )
     resumed = read_run(out, allow_not_finite=True)
     from_step = resumed.section("status").get("resumed_from_step")
     steps, wanted = resumed.record["steps"], alone.record["steps"]

@@ -20,6 +20,7 @@ from .. import input_file
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..text_table import aligned
+from ..whole_file import append_line
 from .finding import Finding
 
 SCHEMA = "barrierbench.history/1"
@@ -84,9 +85,7 @@ def line_of(findings: list[Finding], commit: str, utc: str) -> dict:
 
 
 def append(path: Path, line: dict) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("a") as out:
-        out.write(json.dumps(line) + "\n")
+    append_line(path, json.dumps(line))
 
 
 def read(path: Path) -> list[dict]:

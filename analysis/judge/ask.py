@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import UserError
+from ..errors import UserError, passed_on
 from ..program import piped
 from .about import About
 from .trajectory import MOST_METRES, Trajectory, surface_of
@@ -79,7 +79,9 @@ def audited(
                     thread.join()
     if child.returncode not in (CLEAN, CROSSED):
         why = said["stderr"].decode().strip().replace(str(path), f"what was handed on of {trajectory.source}")
-        raise UserError(f"the program's audit ended with {child.returncode}: {why}")
+        raise UserError(
+            f"the program's audit ended with {child.returncode}: {why}", passed_on(child.returncode)
+        )
     lines = [json.loads(line) for line in said["stdout"].splitlines()]
     return lines[:-1], lines[-1]["total"], reading
 

@@ -37,7 +37,7 @@ def _label_of_formula(name: str) -> str:
     try:
         return compiled(name.removeprefix(FORMULA)).about["label"]
     except FormulaError as error:
-        raise UserError(f"{name!r}: {error}") from None
+        raise UserError(f"{name!r}: {error}", error.code) from None
 
 
 def known() -> list[str]:

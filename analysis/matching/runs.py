@@ -12,7 +12,7 @@ from pathlib import Path
 from .. import input_file
 from ..claims import entry
 from ..claims.metrics import METRICS
-from ..errors import UserError
+from ..errors import UserError, passed_on
 from ..gate.configs import differences
 from ..json_file import read_object
 from ..program import run_sweep
@@ -126,7 +126,8 @@ def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: lis
         first = first.removeprefix(f"{file} ")
         raise UserError(
             f"the program ended with {done.returncode}: {first}"
-            + (f" (and {len(more)} more lines)" if more else "")
+            + (f" (and {len(more)} more lines)" if more else ""),
+            passed_on(done.returncode),
         )
 
 

@@ -5,10 +5,10 @@ readers to.
 from __future__ import annotations
 
 import re
-import shutil
 from pathlib import Path
 
 from .. import input_file
+from ..whole_file import copy_whole
 
 LINK = re.compile(r"!\[[^\]]*\]\((?:docs/)?(\w+)\.png\)")
 COMPANY = re.compile(r"\b(\w+_more)\b")  # names of further figures in captions
@@ -29,7 +29,7 @@ def copy(pages: list[str], made: Path, docs: Path) -> list[str]:
             continue
         found.append(name)
         for suffix in (".png", ".txt"):
-            shutil.copyfile(made / f"{name}{suffix}", docs / f"{name}{suffix}")
+            copy_whole(made / f"{name}{suffix}", docs / f"{name}{suffix}")
         todo += COMPANY.findall(input_file.read_text(made / f"{name}.txt"))
     return sorted(found)
 

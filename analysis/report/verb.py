@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..errors import UserError, tells
+from ..errors import UserError, code_of, tells
 from ..front.arguments import parser_of
 from ..whole_file import write_whole
 from . import figures, players
@@ -27,7 +27,8 @@ def write_page(out: Path, text: str) -> None:
     except OSError as error:
         raise UserError(
             f"{out}: cannot be written: {error.strerror}; allowed: a file in a folder that may be written to"
-            " (--out FILE)"
+            " (--out FILE)",
+            code_of(error),
         ) from None
 
 

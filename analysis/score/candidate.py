@@ -54,7 +54,7 @@ def candidate(text: str) -> Candidate:
     try:
         made = compiled(text.removeprefix("formula:"))
     except FormulaError as error:
-        raise UserError(f"{text!r}: {error}") from None
+        raise UserError(f"{text!r}: {error}", error.code) from None
     label = made.about["label"]
     return Candidate(label, fixed(label, f"formula:{made.about['formula']}"), card(made.about), (), (text,))
 

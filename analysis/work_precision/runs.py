@@ -13,7 +13,7 @@ from pathlib import Path
 from ..accuracy.errors import NotFinite
 from ..accuracy.reference import CLOSED_FORMS, NoReference, Reference, measure, refined
 from ..accuracy.state import Motion, read_motion
-from ..errors import UserError
+from ..errors import UserError, passed_on
 from ..origin import ID_DIGITS, origin, seconds_of_run
 from ..places import ROOT
 from ..program import built_program, run_sweep
@@ -39,7 +39,8 @@ def _sweep(spec: Spec, scene: Scene, runs: Path, *words: str) -> str:
     if done.returncode != 0:
         raise UserError(
             f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}:"
-            f" {done.stderr.strip()[-2000:]}"
+            f" {done.stderr.strip()[-2000:]}",
+            passed_on(done.returncode),
         )
     return done.stdout
 

@@ -214,5 +214,5 @@ def test_a_writer_that_fails_leaves_nothing(run, tmp_path, monkeypatch, capsys):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setitem(formats.WRITERS, "obj", full)
-    assert verb.main([str(run), str(tmp_path / "out"), "--format", "obj"]) == 2
-    assert "No space left" in capsys.readouterr().err and list(tmp_path.iterdir()) == []
+    assert verb.main([str(run), str(tmp_path / "out"), "--format", "obj"]) == 75
+    assert f"{tmp_path}/out: No space left on device" in capsys.readouterr().err and list(tmp_path.iterdir()) == []

@@ -116,7 +116,7 @@ def test_kept_numbers_of_a_study_that_are_missing(tmp_path):
 def test_a_folder_that_cannot_be_written_is_said_before_anything_is_run(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     assert rebuild.main(["gaps", "--quick", "--runs", str(tmp_path / "runs"), "--out", str(tmp_path / "file/below")]) == 2
-    assert f"{tmp_path}/file/below: figures cannot be written there: Not a directory" in capsys.readouterr().err
+    assert f"{tmp_path}/file/below: Not a directory; a folder that can be written to is needed" in capsys.readouterr().err
     assert not (tmp_path / "runs").exists()
 
 

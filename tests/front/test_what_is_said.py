@@ -1,126 +1,21 @@
-"""What verbs in Python say: files that a full disk keeps from being written, by name and with the code that means "again"; control characters
-of names as text; warnings of libraries without their source; nothing where a reader has seen enough."""
+"""What verbs in Python say: control characters of names as text; warnings of libraries without their source; nothing where a reader has seen enough."""
 
 import argparse
-import errno
 import json
 import os
 import pty
 import re
-import resource
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-from analysis import errors, whole_file
 from analysis.front import streams
 from analysis.front.arguments import finite_number
+from analysis.places import ROOT
+from tests.bench_call import bench
 
-TRIANGLE = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
-            "$Elements\n1\n1 2 0 1 2 3\n$EndElements\n")
 SCENE = {"schema": "barrierbench.config/1", "scene": {"name": "drape2d"}, "formulation": "log", "time": {"steps": 2}, "output": {"frames_every": 1}}
-ROOT = Path(__file__).resolve().parents[2]
-
-
-def bench(*words, program=sys.executable, **options):
-    """A verb in a process of its own, which builds nothing. program: what it starts, if it comes to that."""
-    return subprocess.run([sys.executable, str(ROOT / "analysis"), *map(str, words)], env={**os.environ, "BARRIERBENCH_PROGRAM": str(program)},
-                          capture_output=True, text=True, check=False, timeout=120, **options)
-
-
-def few_bytes() -> None:
-    """As a full disk: every file of this process ends after 20 bytes."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20, 20))
-
-
-def no_bytes() -> None:
-    """As a machine whose only disk is full: nor is there a folder for temporary files. Python ignores the signal that goes with it."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
-
-
-# --- a full disk
-
-
-def test_the_codes_are_those_of_the_program():
-    text = (ROOT / "core/record/atomic_write.cpp").read_text()
-    lasting = re.findall(r"case (E[A-Z]+):", text[text.index("bool lasts(") :].split("default")[0])
-    assert len(lasting) >= 10 and {getattr(errno, name) for name in lasting} == errors.LASTING
-    for number, code in ((errno.ENOSPC, 75), (errno.EFBIG, 75), (errno.EDQUOT, 75), (errno.EMFILE, 75), (errno.EIO, 75), (errno.ENOENT, 2), (errno.EACCES, 2)):
-        assert errors.code_of(OSError(number, "text")) == code
-    assert errors.code_of(errors.UserError("a", 70)) == 70 and errors.code_of(OSError("of a library")) == 2
-
-
-@pytest.mark.parametrize("limit", [few_bytes, no_bytes])
-def test_a_full_disk_names_the_file_and_may_be_tried_again(program, tmp_path, limit):
-    (tmp_path / "in.msh").write_text(TRIANGLE)
-    done = bench("mesh", "in.msh", "out.ply", cwd=tmp_path, program=program, preexec_fn=limit)
-    assert (done.returncode, done.stderr) == (75, "bench mesh: out.ply: File too large\n")
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["in.msh"]
-
-
-def test_a_full_disk_without_a_folder_for_temporary_files_is_said_as_such(program, tmp_path):
-    (tmp_path / "a.json").write_text("{}")
-    done = bench("render", "a.json", cwd=tmp_path, program=program, preexec_fn=no_bytes)
-    said = done.stderr.splitlines()[-1]  # matplotlib, too, says that it cannot write
-    assert done.returncode == 75 and re.fullmatch(r"bench render: a temporary file \([^)]*\): File too large", said), done.stderr
-    unnamed = "from analysis import errors; print(errors.text_of(OSError(28, 'No space left on device')))"
-    done = subprocess.run([sys.executable, "-c", unnamed], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False,
-                          preexec_fn=no_bytes)
-    assert done.returncode == 0 and re.fullmatch(r"a temporary file \([^)]*\) or a stream: No space left on device\n", done.stdout), done.stderr
-
-
-def test_a_folder_for_temporary_files_that_is_not_there_is_no_full_disk(tmp_path, monkeypatch):
-    error = FileNotFoundError(errno.ENOENT, "No usable temporary directory found in [...]")
-
-    def none_found():
-        raise error
-
-    monkeypatch.setenv("TMPDIR", str(tmp_path / "none"))
-    monkeypatch.setattr("tempfile.gettempdir", none_found)
-    assert errors.code_of(error) == 2 and errors.text_of(error) == f"a temporary file ({tmp_path}/none): No such file or directory"
-    assert errors.text_of(FileNotFoundError(errno.ENOENT, "not there", "a.txt")) == "a.txt: not there"
-
-
-def test_every_writer_names_its_file(tmp_path):
-    """Where nobody catches it, the name stands in the error: of texts, bytes, figures, and of what others write."""
-    code = """
-import sys
-from pathlib import Path
-from analysis import whole_file
-from matplotlib.figure import Figure
-def write_rows(path):
-    with whole_file.named(path):
-        with open(path, "w") as out:
-            out.write("x" * 100)
-for k, write in enumerate((lambda p: whole_file.write_whole(p, "x" * 100), lambda p: whole_file.write_whole_bytes(p, b"x" * 100),
-                           lambda p: whole_file.write_figure(Figure(), p), write_rows)):
-    path = Path(f"file_{k}.png")
-    try:
-        write(path)
-    except OSError as error:
-        print(error.filename, error.strerror)
-"""
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False,
-                          preexec_fn=few_bytes)
-    assert done.stdout.splitlines() == [f"file_{k}.png File too large" for k in range(4)], done.stderr
-    assert [p.name for p in tmp_path.iterdir()] == ["file_3.png"]  # not whole_file's
-
-
-def test_nothing_else_writes_what_a_user_asked_for():
-    """Others write scratch files, or what another program reads at once."""
-    writes = re.compile(r"\.write_text\(|\.write_bytes\(|\.savefig\(|\.to_csv\([^)]|open\([^)]*\"wb?\"")
-    found = {}
-    for path in (ROOT / "analysis").rglob("*.py"):
-        lines = [line for line in path.read_text().splitlines() if writes.search(line) and "index=False" not in line]
-        if lines:
-            found[path.relative_to(ROOT / "analysis").as_posix()] = len(lines)
-    assert found == {"whole_file.py": 3, "still_picture.py": 1, "judge/page.py": 1, "score/page.py": 1,  # pictures in memory
-                     "judge/ask.py": 1, "matching/runs.py": 1, "condition_table.py": 1, "matrix_corpus.py": 1, "readme/snippets.py": 1, "toolkit_meshes.py": 1,
-                     "figures/rebuild.py": 1, "formula/cache.py": 2, "formula/device.py": 2,  # which name their folder
-                     "front/building.py": 2, "front/python_module.py": 1, "front/test.py": 1, "front/tidy.py": 1, "engines/environment.py": 1, "engines/launch.py": 2,
-                     "frames_out/formats.py": 1}  # under whole_file.named
 
 
 # --- control characters
@@ -244,10 +139,3 @@ def test_an_empty_word_is_named_by_its_option_or_its_number(program, tmp_path, w
     verb = words.split("|")[0]
     done = bench(*words.split("|"), cwd=tmp_path, program=program)
     assert (done.returncode, done.stderr) == (2, f"bench {verb}: argument {where}: found nothing; allowed: a value (./bench {verb} --help says what there is)\n")
-
-
-def test_whole_file_is_what_it_was(tmp_path):
-    whole_file.write_whole(tmp_path / "a.txt", "before")
-    with pytest.raises(UnicodeEncodeError):
-        whole_file.write_whole(tmp_path / "a.txt", "\ud800")
-    assert (tmp_path / "a.txt").read_text() == "before"
