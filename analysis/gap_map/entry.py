@@ -20,8 +20,8 @@ from ..matching.formulations import ROOT
 from ..whole_file import write_whole
 from . import figure, plan, report
 from .judge import counts
-from .kept import about, digests, kept_rows, read_for, sort_out, source_of
-from .rows import CANNOT, NOT_RUN, add_rho, cannot_reach, records_in, row
+from .kept import Kept, about, digests, kept_rows, read_for, sort_out, source_of
+from .rows import CANNOT, NOT_RUN, PLACE, add_rho, cannot_reach, records_in, row
 from .runs import folder_of, run_missing
 from .spec import LIMITS, PARTS, Cell, Spec, cells, limit_settings, part, read_spec
 from .table import Map, read, write
@@ -103,7 +103,7 @@ def collect(
 
 def write_page(found: Map, spec: Spec, results: Path, docs: Path, figures: Path) -> None:
     copy_to_page(figure.draw_all(found, figures), docs)
-    write_whole(results / "GAP_MAP.md", report.markdown(found, sort_out(found, spec).why))
+    write_whole(results / "GAP_MAP.md", report.markdown(found, sort_out(found, spec)))
 
 
 def what_arguments(parser: argparse.ArgumentParser) -> None:
@@ -126,8 +126,16 @@ def what_arguments(parser: argparse.ArgumentParser) -> None:
         "--anew",
         action="store_true",
         help=(
-            "run again what gap_map.json keeps from other machines or sessions; what was not run again by the"
-            " end stays"
+            "run again what gap_map.json keeps from earlier calls or other machines; what was not run again"
+            " by the end stays"
+        ),
+    )
+    parser.add_argument(
+        "--drop",
+        action="store_true",
+        help=(
+            "write gap_map.json without its runs that do not count for the spec any more; without this option"
+            " such a call is refused"
         ),
     )
     parser.add_argument(
@@ -141,7 +149,7 @@ def what_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--no-run",
         action="store_true",
-        help="run nothing: judge the records that are there, or the numbers in gap_map.json",
+        help="run nothing: judge the records that are there, or without any the numbers in gap_map.json",
     )
 
 
@@ -203,18 +211,35 @@ def check_store(kept: Path, spec: Spec) -> None:
         )
 
 
-def counted_rows(kept: Path, spec: Spec) -> dict[tuple, tuple[dict, dict]]:
-    """Of the runs that gap_map.json keeps those that count; what is refused is said, and why."""
+def told_rows(kept: Path, spec: Spec) -> Kept:
+    """The runs that gap_map.json keeps; what is refused of them is said, and why."""
     found = kept_rows(kept, spec)
     if found.refused:
         print(f"gap-map: {kept} has runs that do not count for {spec.path}: {found.why}", file=sys.stderr)
-    return found.counted
+    return found
+
+
+def check_kept(kept: Path, places: set[tuple], rows: list[dict]) -> None:
+    """Errors: UserError where the file that would be written has fewer of its runs (places: PLACE of each)
+    than now. It may be all that is left of them.
+    """
+    written = {tuple(r[column] for column in PLACE) for r in rows if r["source"] is not None}
+    if lost := len(places - written):
+        raise UserError(
+            f"{kept}: found {len(places)} runs, of which {lost} would be gone, since they do not count for"
+            " the spec any more and no record replaces them: make the new map in a folder of its own with"
+            " --results DIR, or allow it with --drop"
+        )
 
 
 def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
-    """Runs what may be run and has no row, and writes gap_map.json. Errors: UserError, RecordError."""
-    beyond, before = cannot_reach(spec), counted_rows(kept, spec)
-    check_store(kept, spec)
+    """Runs what may be run and has no row, and writes gap_map.json. Errors: UserError, RecordError; nothing
+    is run where the file would lose runs.
+    """
+    beyond, earlier = cannot_reach(spec), told_rows(kept, spec)
+    before = earlier.counted
+    if not args.drop and earlier.places - (before.keys() & {cell.key for cell in cells(spec)}):
+        check_kept(kept, earlier.places, collect(spec, beyond, args.runs, before)[0])
     if not args.no_run:
         asked = part(spec, args.part) if args.part else spec
         run_missing(
@@ -247,10 +272,10 @@ def main(argv: list[str]) -> int:
     spec = read_spec(args.spec)
     if args.plan:
         beyond = cannot_reach(spec)
-        return show_plan(spec, collect(spec, beyond, args.runs, counted_rows(kept, spec))[0], beyond)
-    # The page from the kept numbers, without the program; figures of an earlier such call are no records.
-    made = [path.name for path in args.runs.iterdir()] if args.runs.is_dir() else ["figures"]
-    alone = args.no_run and kept.is_file() and made == ["figures"]
+        return show_plan(spec, collect(spec, beyond, args.runs, told_rows(kept, spec).counted)[0], beyond)
+    check_store(kept, spec)
+    # The page from the kept numbers, without the program.
+    alone = args.no_run and kept.is_file() and next(args.runs.rglob("run.json"), None) is None
     write_page(
         read_for(kept, spec) if alone else make_map(args, spec, kept),
         spec,

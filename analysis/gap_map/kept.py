@@ -1,6 +1,6 @@
 """Rows of earlier calls. A whole map takes many hours of one core, so that results/gap_map.json keeps what
-other sessions and machines ran; a row counts as long as its settings are those that the spec asks for now,
-and its record means the same.
+earlier calls, here or on other machines, ran; a row counts as long as its settings are those that the spec
+asks for now, and its record means the same.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..matching.runs import inputs_sha256
 from ..origin import ID_DIGITS, machine_of
 from ..record_file import other_meanings
-from .rows import PLACE
+from .rows import PLACE, READ
 from .spec import Spec, make_sweep
 from .table import Map, read
 
@@ -54,17 +54,22 @@ def source_of(record: dict) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Kept:
-    """counted: PLACE -> row and its source, of the kept runs that count for a spec. refused: why not ->
-    how many of the others; a run that is refused for two reasons has both in one."""
+    """counted: PLACE -> row and its source, of the kept runs that count for a spec. refused: why not -> PLACE
+    of the others; a run that is refused for two reasons has both in one."""
 
     counted: dict[tuple, tuple[dict, dict]]
-    refused: dict[str, int]
+    refused: dict[str, list[tuple]]
+
+    @property
+    def places(self) -> set[tuple]:
+        """PLACE of every kept run, whether it counts or not."""
+        return {*self.counted, *(place for places in self.refused.values() for place in places)}
 
     @property
     def why(self) -> str:
         """`2 of 3 kept runs, ...`; empty where all count."""
-        n = sum(self.refused.values())
-        reasons = "; ".join(f"{some} {reason}" for reason, some in self.refused.items())
+        n = sum(map(len, self.refused.values()))
+        reasons = "; ".join(f"{len(places)} {reason}" for reason, places in self.refused.items())
         return f"{n} of {n + len(self.counted)} kept runs: {reasons}" if n else ""
 
 
@@ -86,9 +91,10 @@ def _reasons(found: Map, spec: Spec) -> Callable[[dict, dict], str]:
             reasons.append(f"whose shape the spec has no more or gives otherwise ({row['shape']})")
         if changed := other_meanings(source["version"]):
             since = ", ".join(sorted({change["since"] for change in changed.values()}))
+            read = ", ".join(f"`{field}`" for field in READ if field in changed)
             reasons.append(
                 f"with records {source['version']}, in which {len(changed)} fields mean something else than"
-                f" in records from {since} on, {', '.join(sorted(changed)[-3:])} among them"
+                f" in records from {since} on; of these fields the map reads {read or 'none'}"
             )
         return ", and ".join(reasons)
 
@@ -101,10 +107,11 @@ def sort_out(found: Map, spec: Spec) -> Kept:
     for row in found.rows:
         if row["source"] is not None:
             source = found.about["sources"][row["source"]]
+            place = tuple(row[column] for column in PLACE)
             if reason := why(row, source):
-                kept.refused[reason] = kept.refused.get(reason, 0) + 1
+                kept.refused.setdefault(reason, []).append(place)
             else:
-                kept.counted[tuple(row[column] for column in PLACE)] = (row, source)
+                kept.counted[place] = (row, source)
     return kept
 
 

@@ -7,6 +7,7 @@ from . import size_page
 from .compare import METRICS, Beside, Common, at_gap, at_theta, deepest, gaps_at, middles
 from .figure import TITLES, law_sentence
 from .judge import FAR, MADE, counts, exceptions, extent, failures, made_by_contact, pairs, reason, unreached
+from .kept import Kept
 from .rows import CANNOT, NO_CONTACT, NOT_RUN, UNKNOWN
 from .spec import LIMITS, REFERENCE
 from .table import Map
@@ -201,7 +202,7 @@ def _of(found: Map, key: str) -> str:
     return ", ".join(sorted({source[key] for source in found.about["sources"]}))
 
 
-def _not_run(found: Map, n: dict, refused: str) -> list[str]:
+def _not_run(found: Map, n: dict, refused: bool) -> list[str]:
     """How much of the map is not there yet; n: counts of its rows."""
     if not n[NOT_RUN]:
         return []
@@ -215,26 +216,30 @@ def _not_run(found: Map, n: dict, refused: str) -> list[str]:
     ]
 
 
-def _refused(refused: str) -> list[str]:
+def _refused(refused: Kept | None) -> list[str]:
     """What another call would make of the runs of this page."""
-    if not refused:
+    if refused is None or not refused.refused:
         return []
+    counts = "no longer counts all of these" if refused.counted else "counts none of these"
     return [
         (
-            "**A call that collects runs no longer counts all of these**: it refuses, and runs again,"
-            f" {refused}. The numbers of this page are of the programs that are named below;"
-            " `./bench gap-map --no-run` writes it anew from what is kept."
+            f"**A call that collects runs {counts}**: it refuses {refused.why}. It does not write over them"
+            " unless it is told so (`--drop`); with `--results DIR` it makes a map of its own. The numbers of"
+            " this page are of the programs that are named below; `./bench gap-map --no-run` writes it anew"
+            " from what is kept, where no record of a run of the map is there."
         ),
         "",
     ]
 
 
-def _head(found: Map, refused: str) -> list[str]:
+def _head(found: Map, sorted_out: Kept | None) -> list[str]:
     """What was run, by what, and what the numbers are."""
     about, n = found.about, counts(found.rows)
+    refused = sorted_out is not None and bool(sorted_out.refused)
     hours = sum(r["seconds"] or 0 for r in found.rows) / 3600
     low, high = about["unknowns"]
-    lines = ["# Gap map", "", f"{about['doc']}.", "", *_not_run(found, n, refused), *_refused(refused)]
+    lines = ["# Gap map", "", f"{about['doc']}.", "", *_not_run(found, n, refused)]
+    lines += _refused(sorted_out)
     lines += [
         (
             f"{n['cells']} cells, {about['runs']} runs of {low} to {high} unknowns, {hours:.2g} h of one core"
@@ -260,7 +265,7 @@ def _head(found: Map, refused: str) -> list[str]:
     return lines + _company(about, refused)
 
 
-def _company(about: dict, refused: str) -> list[str]:
+def _company(about: dict, refused: bool) -> list[str]:
     """Other studies of the same, and the builds of this one."""
     lines = [
         "Claims and ablation measure some of these ratios under other conditions: [One quantity, several"
@@ -310,9 +315,9 @@ def _tail(found: Map) -> list[str]:
     return lines
 
 
-def markdown(found: Map, refused: str = "") -> str:
-    """refused: which of its runs no longer count for its spec, and why (kept.Kept.why)."""
-    lines = _head(found, refused)
+def markdown(found: Map, sorted_out: Kept | None = None) -> str:
+    """sorted_out: which of its runs count for the spec as it is now; None: all."""
+    lines = _head(found, sorted_out)
     lines += ["## What a reader keeps", "", *(f"{k}. {s}" for k, s in enumerate(sentences(found), 1)), ""]
     lines += ["![the gap map](../docs/gap_map.png)", ""]
     for title, head, beside in (

@@ -43,6 +43,14 @@ INFINITE = (
     "not_pd",
 )  # statuses of these; one that is not known (not_converged) is no number at all, as in the program's summary
 
+# What a row is made of: fields of a record, and of the lines of its trace. Names as in record_file.CHANGED.
+READ = (
+    *("status.outcome", "status.valid", "scene.free_dofs", "summary.newton_iterations"),
+    *("summary.contact_gaps", "steps[].contact_load_max_N", "trace step", "trace iteration"),
+    *("trace contacts", "trace cond", "trace cond[].matrix", "trace cond[].stage", "trace cond[].scaling"),
+    *("trace cond[].status", "trace cond[].cond", "trace probe_pcg_iterations"),
+)
+
 NOT_RUN = "not run"
 CANNOT = "cannot reach"  # theta lies beyond the peak of the force: no contact rests there
 NO_CONTACT = "no contact"
