@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from . import input_file
-from .errors import UserError, tells
+from .errors import UserError, passed_on, tells
 from .front.arguments import parser_of
 from .input_file import below
 from .json_file import read_object
@@ -40,7 +40,7 @@ class Pair:
 def run(words: list[str]) -> None:
     done = started(*words)
     if done.returncode != 0:
-        raise UserError(f"{' '.join(words)}: {done.stderr.strip()}")
+        raise UserError(f"{' '.join(words)}: {done.stderr.strip()}", passed_on(done.returncode))
 
 
 def samples(folder: Path) -> dict[tuple, dict]:

@@ -15,7 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from .errors import UserError, tells
+from .errors import UserError, passed_on, tells
 from .front.arguments import parser_of
 from .json_file import read_object
 from .places import ROOT
@@ -66,7 +66,7 @@ def run(system: dict, common: dict, folder: Path, out: Path) -> None:
         words += ["--set", f"{pointer}={json.dumps(value)}"]
     done = started(*words)
     if done.returncode != 0:
-        raise UserError(f"{system['name']}: {done.stderr.strip()}")
+        raise UserError(f"{system['name']}: {done.stderr.strip()}", passed_on(done.returncode))
 
 
 def unscaled_cond(side_car: dict) -> float:
@@ -132,7 +132,7 @@ def replay(out: Path) -> list[dict]:
         answer = Path(scratch) / "replay.json"
         done = started("matrix", *map(str, files), "--json", str(answer))
         if done.returncode != 0:
-            raise UserError(done.stderr.strip())
+            raise UserError(done.stderr.strip(), passed_on(done.returncode))
         return read_object(answer)["matrices"]
 
 

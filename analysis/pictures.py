@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from . import input_file
-from .errors import UserError, tells
+from .errors import UserError, passed_on, tells
 from .frame_pixels import Look
 from .front.arguments import parser_of
 from .places import ROOT
@@ -92,7 +92,7 @@ def make(picture: Picture, runs: Path, docs: Path) -> str:
     folder = runs / picture.name
     done = started(*command_of(picture, folder), "--replace")
     if done.returncode != 0:
-        raise UserError(f"{picture.name}: {done.stderr.strip()}")
+        raise UserError(f"{picture.name}: {done.stderr.strip()}", passed_on(done.returncode))
     record = read_record(folder / "run.json")
     if record["status"]["outcome"] != "ok":
         raise UserError(f"{folder}: found the outcome {record['status']['outcome']}; allowed: ok")

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
-from ..errors import UserError
+from ..errors import BAD_INPUT, TRY_AGAIN, UserError, passed_on
 from ..gap_map.rows import row
 from ..gap_map.spec import COMMON, Cell, Scene, Spec, cells
 from ..matching.runs import Sweep, sweep
@@ -98,8 +98,9 @@ def run(made: Sweep, of: Candidate, out: Path, jobs: int) -> dict[str, tuple[dic
     write_whole(file, made.text)
     words = ("--progress", "none", "--time-limit", str(LIMIT_S), "--jobs", str(jobs))
     done = run_sweep(file, out / made.name, *words, plugins=list(of.plugins))
-    if done.returncode == 2:
-        raise UserError((done.stderr.strip() or done.stdout.strip()).splitlines()[0])
+    if done.returncode in (BAD_INPUT, TRY_AGAIN):
+        said = (done.stderr.strip() or done.stdout.strip()).splitlines()[0]
+        raise UserError(said, passed_on(done.returncode))
     found: dict[str, tuple[dict, Path] | None] = dict.fromkeys(made.notes)
     for path in sorted((out / made.name).glob("*/run.json")):
         try:

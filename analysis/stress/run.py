@@ -13,7 +13,7 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import UserError
+from ..errors import TRY_AGAIN, UserError
 from ..program import built_program, run_sweep, started
 from ..record_file import RecordError, read_record
 from ..whole_file import write_whole
@@ -206,6 +206,8 @@ def run_case(
         return blank("timeout", f"not over after {math.ceil(limit_s)} s of processor time")
     if done.returncode == 2:
         return blank("refused", _told(done.stderr))
+    if done.returncode == TRY_AGAIN:  # of the machine, and no result
+        raise UserError(f"{place}: {_told(done.stderr)}", TRY_AGAIN)
     if done.returncode != 0:
         return blank("crash", f"the program ended with {done.returncode}: {_told(done.stderr)}")
     try:
