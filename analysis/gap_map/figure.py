@@ -15,7 +15,7 @@ from .. import style
 from ..program import evaluated
 from ..ticks import log_ticks
 from . import size_figure
-from .compare import Lines, lines
+from .compare import Lines, counted_once, lines
 from .judge import FAR, MADE, Pair, counts, extent, pairs, scatter
 from .rows import NOT_RUN
 from .size import drawn_sizes
@@ -33,10 +33,10 @@ TITLES = {"on": "limit on", "contact": "limit the same in every run", "off": "no
 SHOWN = (
     "What a run takes against the gap that its contacts reach: the load-weighted median of d/d_hat at step"
     " ends, deeper to the right. A marker is a target theta ({gaps}), geometric mean over scenes ({scenes}),"
-    " their resolutions averaged. All markers of a column are of the same places (a scene at a resolution):"
-    " those in which every shape drawn here got through at every target of its line, {places}; lines end"
-    " where less than half of the places would be left, or at the last target that a shape can reach. Thin"
-    " lines: each place alone, as far as it was reached. Markers of the same number along two lines carry the"
+    " their resolutions averaged.{once} All markers of a column are of the same places (a scene at a"
+    " resolution): those in which every shape drawn here got through at every target of its line, {places};"
+    " lines end where less than half of the places would be left, or at the last target that a shape can"
+    " reach. Thin lines: each place alone, as far as it was reached. Markers of the same number along two lines carry the"
     " same loads. All numbers are over those of the log at its first target in the same place. Dotted, in the"
     " first row, where the limit does not follow theta: the area law, C rho(u) but not below 1, with one C in"
     " a panel, from the deepest point of the log. cond: 95th percentile over iterations in contact; PCG:"
@@ -187,7 +187,8 @@ def _shown(found: Map, numbers: list[dict]) -> str:
     of = {n["limit"]: (n["places"], n["places_run"]) for n in numbers}
     places = "; ".join(f"{n} of {run} ({TITLES[limit]})" for limit, (n, run) in of.items())
     gaps = ", ".join(f"{g:g}" for g in found.gaps)
-    return SHOWN.format(scenes=", ".join(scenes), gaps=gaps, modes=modes, places=places or "none")
+    once = counted_once(scenes)
+    return SHOWN.format(once=once, scenes=", ".join(scenes), gaps=gaps, modes=modes, places=places or "none")
 
 
 def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None = None) -> list[Path]:

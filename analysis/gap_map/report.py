@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..text_table import markdown as table_lines
 from . import size_page
-from .compare import METRICS, Beside, Common, at_gap, at_theta, deepest, gaps_at, middles
+from .compare import METRICS, Beside, Common, at_gap, at_theta, counted_once, deepest, gaps_at, middles
 from .figure import TITLES, law_sentence
 from .judge import FAR, MADE, counts, exceptions, extent, failures, made_by_contact, pairs, reason, unreached
 from .kept import Kept
@@ -255,10 +255,10 @@ def _head(found: Map, sorted_out: Kept | None) -> list[str]:
             " load-weighted median of d/d_hat at converged step ends; theta, the target, is where the"
             " largest load of the pilot would rest. Raw and block Jacobi are 95th percentiles of cond over"
             " iterations in contact. A number is a geometric mean over scenes, the resolutions of a scene"
-            " averaged first, with its 95% interval (Student's t over scenes). A place is a scene at a"
-            " resolution. Rows that stand together are of the same places: those in which every shape of"
-            " them, and the log, got through; a shape that did so in half of its places or fewer is named and"
-            " not compared."
+            " averaged first, with its 95% interval (Student's t over scenes)."
+            f"{counted_once(about['scenes'])} A place is a scene at a resolution. Rows that stand together"
+            " are of the same places: those in which every shape of them, and the log, got through; a shape"
+            " that did so in half of its places or fewer is named and not compared."
         ),
         "",
     ]

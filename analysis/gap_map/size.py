@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..claims.estimate import student
-from .compare import METRICS, Place, Ratio, over_scenes
+from .compare import METRICS, Place, Ratio, over_scenes, samples
 from .rows import NOT_RUN
 from .spec import REFERENCE
 
@@ -98,12 +98,20 @@ def drawn_sizes(rows: list[dict]) -> list[Size]:
 @dataclass(frozen=True)
 class Slope:
     """d ln(ratio)/d ln(unknowns): of each scene the least-squares line through its meshes, and the mean over
-    scenes with its 95% interval (Student's t over scenes), which one scene does not have."""
+    scenes, those of a FAMILY averaged first, with its 95% interval (Student's t over scenes), which one scene
+    does not have."""
 
     value: float
     lower: float | None
     upper: float | None
     by_scene: dict[str, float]
+
+    @property
+    def word(self) -> str:
+        """What the interval decides; empty where 0 lies in it, or there is none."""
+        if self.lower is None or self.lower <= 0 <= self.upper:
+            return ""
+        return "falls" if self.upper < 0 else "grows"
 
     def __str__(self) -> str:
         ends = "" if self.lower is None else f" [{self.lower:.3g}, {self.upper:.3g}]"
@@ -122,6 +130,16 @@ def slope(sizes: list[Size], metric: str) -> Slope | None:
     }
     if not of:
         return None
-    values = list(of.values())
-    ends = map(float, student(values)) if len(of) > 1 else (None, None)
+    values = samples(of)
+    ends = map(float, student(values)) if len(values) > 1 else (None, None)
     return Slope(float(np.mean(values)), *ends, of)
+
+
+def slopes(rows: list[dict]) -> dict[float, dict[str, Slope]]:
+    """Target of the figure -> metric -> slope, where every metric has one; the largest target first."""
+    sizes, found = drawn_sizes(rows), {}
+    for theta in sorted({s.theta for s in sizes}, reverse=True):
+        of = {metric: slope([s for s in sizes if s.theta == theta], metric) for metric in METRICS}
+        if all(of.values()):
+            found[theta] = of
+    return found

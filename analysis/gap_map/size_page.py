@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from ..claims.estimate import CONFIDENCE
 from ..text_table import markdown as table_lines
-from .compare import METRICS, at_theta
-from .size import BORDER, LIMIT, SHAPE, Halves, by_size, drawn_sizes, halves, slope
+from .compare import METRICS, at_theta, count
+from .size import BORDER, LIMIT, SHAPE, Halves, by_size, drawn_sizes, halves, slopes
 from .table import Map
 
 NAMES = {"cond_p95": "raw cond", "bj_p95": "block Jacobi", "pcg": "PCG", "newton": "Newton"}
@@ -21,6 +22,30 @@ def _span(both: Halves, side: int) -> str:
     return f"{low} to {high} unknowns"
 
 
+def _listed(thetas: list[float]) -> str:
+    *first, last = (f"{theta:g}" for theta in thetas)
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _with_size(found: Map) -> str:
+    """What falls and what grows, by the intervals of the slopes alone; empty without any."""
+    of = slopes(found.rows)
+    if not of:
+        return ""
+    parts = []
+    for metric in METRICS:
+        words = [
+            f"{word} at theta {_listed(thetas)}"
+            for word in ("falls", "grows")
+            if (thetas := [theta for theta, slope in of.items() if slope[metric].word == word])
+        ]
+        parts.append(f"{NAMES[metric]} {' and '.join(words) or 'is decided at none'}")
+    return (
+        f" Against the number of unknowns the slope of this ratio, at theta {_listed(list(of))}, is decided"
+        f" where its 95% interval leaves 0 out: {'; '.join(parts)}; elsewhere it is not decided."
+    )
+
+
 def sentences(found: Map) -> list[str]:
     """What falls with size and what grows; nothing where no scene was run on both sides of the border."""
     told = [(theta, both) for theta, both in _both(found).items() if theta in TOLD]
@@ -29,13 +54,12 @@ def sentences(found: Map) -> list[str]:
     parts = []
     for theta, both in told:
         ends = (f"{NAMES[m]} {small} and {large}" for m, (small, large) in both.ratios.items())
-        parts.append(f"at theta {theta:g} ({len(both.scenes)} scenes) {', '.join(ends)}")
+        parts.append(f"at theta {theta:g} ({count(both.scenes)} scenes) {', '.join(ends)}")
     first = told[0][1]
     return [
-        "The difference between the two barriers falls with the size of a system, and in Newton iterations"
-        f" it does not: without a strain limit the log's numbers over the {SHAPE}'s are, with"
-        f" {_span(first, 0)} and with {_span(first, 1)} of the same scenes, {'; '.join(parts)}. No finer"
-        " mesh was run."
+        f"By the size of a system: without a strain limit the log's numbers over the {SHAPE}'s are, with"
+        f" {_span(first, 0)} and with {_span(first, 1)} of the same scenes, {'; '.join(parts)}."
+        f"{_with_size(found)} No finer mesh was run."
     ]
 
 
@@ -64,22 +88,23 @@ def pair_section(found: Map) -> list[str]:
 
 def _slopes(found: Map) -> list[str]:
     """A row a target of the figure, of what the figure draws."""
-    rows, sizes = [], drawn_sizes(found.rows)
-    for theta in dict.fromkeys(s.theta for s in sorted(sizes, key=lambda s: -s.theta)):
-        mine = [s for s in sizes if s.theta == theta]
-        of = {metric: slope(mine, metric) for metric in METRICS}
-        if all(of.values()):
-            scenes = of["newton"].by_scene
-            unknowns = [s.unknowns for s in mine if s.scene in scenes]
-            span = f"{min(unknowns)} to {max(unknowns)}"
-            rows.append([f"{theta:g}", str(len(scenes)), span, *(str(of[metric]) for metric in METRICS)])
+    rows, sizes, every = [], drawn_sizes(found.rows), slopes(found.rows)
+    for theta, of in every.items():
+        scenes = of["newton"].by_scene
+        unknowns = [s.unknowns for s in sizes if s.theta == theta and s.scene in scenes]
+        span = f"{min(unknowns)} to {max(unknowns)}"
+        rows.append([f"{theta:g}", str(count(scenes)), span, *(str(of[metric]) for metric in METRICS)])
     if not rows:
         return []
+    intervals = sum(slope.lower is not None for of in every.values() for slope in of.values())
+    decided = sum(bool(slope.word) for of in every.values() for slope in of.values())
     heads = [f"{NAMES[m]}, slope of log over {SHAPE}" for m in METRICS]
     return [
-        "Slopes d ln(ratio)/d ln(unknowns) of the lines of the figure: the least-squares line of each scene"
-        " through its meshes, and the mean over scenes with its 95% interval (Student's t; scenes are the"
-        " samples). Below 0 the ratio falls as the mesh gets finer: -1 halves it when unknowns double.",
+        "Slopes d ln(ratio)/d ln(unknowns) of the markers of the figure: the least-squares line through the"
+        " markers of each scene (the figure joins them and draws no such line), and the mean over scenes with"
+        " its 95% interval (Student's t; scenes are the samples). Below 0 the ratio falls as the mesh gets"
+        f" finer: -1 halves it when unknowns double. Of these {intervals} intervals {decided} leave 0 out; by"
+        f" chance alone {(1 - CONFIDENCE) * intervals:.1f} would, and none is corrected for their number.",
         "",
         *table_lines(["theta", "scenes", "unknowns", *heads], rows),
         "",
@@ -91,7 +116,7 @@ def section(found: Map) -> list[str]:
     if not both:
         return []
     rows = [
-        [f"{theta:g}", side, _span(of, k), str(len(of.scenes)), *(str(of.ratios[m][k]) for m in METRICS)]
+        [f"{theta:g}", side, _span(of, k), str(count(of.scenes)), *(str(of.ratios[m][k]) for m in METRICS)]
         for theta, of in both.items()
         for k, side in enumerate((f"below {BORDER}", f"{BORDER} and more"))
     ]

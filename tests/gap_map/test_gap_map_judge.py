@@ -1,6 +1,7 @@
 """What the rows of a gap map say, on made-up rows and traces whose answers are known by hand."""
 
 import math
+import re
 
 import pytest
 from barrierbench_analysis.gap_map import compare, judge, plan, report, rows, size, size_page
@@ -187,19 +188,71 @@ def test_sizes_are_compared_in_the_same_scenes():
     assert size_page.sentences(page_of(by_sizes()[:2])) == [] and "c 1 at theta 0.01 (cubic: stall_overload)" in "\n".join(size_page.section(page_of(by_sizes())))
 
 
+POWERS = {"cond_p95": 1.0, "bj_p95": 0.5, "pcg": -0.25, "newton": -2.0}  # metric -> its slope over that of cond
+
+
+def with_slopes(slopes_of_scenes, theta=0.01, shift=0.0):
+    """Rows in which the log's number over the cubic's is n^((slope of the scene + shift) times the power of the metric)."""
+    found = []
+    for scene, resolution, unknowns, power in slopes_of_scenes:
+        for shape in ("log", "cubic"):
+            ratio = {m: 100.0 * (unknowns ** ((power + shift) * of) if shape == "log" else 1.0) for m, of in POWERS.items()}
+            found.append(made(shape, theta, 0.1, scene, resolution, unknowns=unknowns, **ratio))
+    return found
+
+
+SLOPES = (("a", "1", 100, -1.0), ("a", "2", 400, -1.0), ("b", "1", 100, -0.5), ("b", "2", 900, -0.5), ("b", "3", 2500, -0.5), ("c", "1", 100, 3.0))
+
+
+def test_every_column_of_slopes_has_the_metric_of_its_head_and_every_row_its_target():
+    rows_of = with_slopes(SLOPES) + with_slopes(SLOPES, 0.5, shift=0.125)
+    first, second = [line.strip("| ").split(" | ") for line in size_page._slopes(page_of(rows_of)) if line.startswith("| 0.")]
+    [heads] = [line.strip("| ").split(" | ") for line in size_page._slopes(page_of(rows_of)) if line.startswith("| theta")]
+    assert [head.partition(",")[0] for head in heads[3:]] == [size_page.NAMES[metric] for metric in POWERS]
+    for row, theta, middle in ((first, "0.5", -0.625), (second, "0.01", -0.75)):
+        assert row[:3] == [theta, "2", "100 to 2500"]
+        for cell, power in zip(row[3:], POWERS.values()):
+            half = abs(power) * 0.25 * 12.7062047
+            value, low, high = map(float, re.findall(r"[-.\d]+", cell))
+            assert (value, low, high) == pytest.approx((middle * power, middle * power - half, middle * power + half), rel=5e-3)
+    assert len({*first[3:], *second[3:]}) == 8
+
+
 def test_slopes_are_of_what_the_figure_draws_and_their_interval_is_over_scenes():
     """Scene a has the ratio n^-1, b n^-0.5 with a mesh more; c has one size and no slope. By hand: -0.75 and 0.25 t(0.975, 1)."""
-    found = []
-    for scene, resolution, unknowns, power in (("a", "1", 100, -1.0), ("a", "2", 400, -1.0), ("b", "1", 100, -0.5), ("b", "2", 900, -0.5), ("b", "3", 2500, -0.5), ("c", "1", 100, 3.0)):
-        found += [made(shape, 0.01, 0.1, scene, resolution, unknowns=unknowns, cond_p95=100.0 * (unknowns**power if shape == "log" else 1.0)) for shape in ("log", "cubic")]
+    found = with_slopes(SLOPES)
     of = size.slope(size.drawn_sizes(found), "cond_p95")
     assert of.by_scene == pytest.approx({"a": -1.0, "b": -0.5}) and of.value == pytest.approx(-0.75)
     assert (of.lower, of.upper) == pytest.approx((-0.75 - 0.25 * 12.7062047, -0.75 + 0.25 * 12.7062047))
     assert size.slope([s for s in size.by_size(found) if s.scene == "c"], "cond_p95") is None
     [alone] = [size.slope([s for s in size.by_size(found) if s.scene == "a"], "cond_p95")]
     assert str(alone) == "-1" and alone.lower is None
-    [row] = [line for line in size_page._slopes(page_of(found)) if line.startswith("| 0.01")]
-    assert row.startswith(f"| 0.01 | 2 | 100 to 2500 | {of} | 0 [0, 0] |")
+
+
+def test_one_sheet_over_a_sphere_of_two_kinds_is_one_sample():
+    """a has -1, cloth and cloth_mesh -0.5 and 0: two samples of -1 and -0.25, by hand -0.625 and 0.375 t(0.975, 1)."""
+    scenes = [(scene, mesh, n, power) for scene, power in (("a", -1.0), ("cloth", -0.5), ("cloth_mesh", 0.0)) for mesh, n in (("1", 100), ("2", 2000))]
+    found = with_slopes(scenes)
+    of = size.slope(size.drawn_sizes(found), "cond_p95")
+    assert of.value == pytest.approx(-0.625) and (of.lower, of.upper) == pytest.approx((-0.625 - 0.375 * 12.7062047, -0.625 + 0.375 * 12.7062047))
+    assert len(of.by_scene) == 3 and "| 0.01 | 2 | 100 to 2000 |" in "\n".join(size_page._slopes(page_of(found)))
+    ratio = compare.at_theta(found, "off", 0.01, ["cubic"])
+    logs = [power * (math.log(100) + math.log(2000)) / 2 for power in (-1.0, -0.25)]
+    assert ratio.ratios["cubic"]["cond_p95"].turned().value == pytest.approx(math.exp(sum(logs) / 2)) and ratio.ratios["cubic"]["cond_p95"].scenes == 2
+    assert ratio.cut.words == "6 places of 2 scenes"
+    alone = size.slope([s for s in size.drawn_sizes(found) if s.scene != "a"], "cond_p95")
+    assert alone.lower is None and alone.value == pytest.approx(-0.25)  # one sample has no interval
+
+
+def test_the_sentence_decides_what_the_intervals_of_the_slopes_decide():
+    """-1 in two scenes and -0.9 in a third: cond falls, Newton (times -2) grows. With -1, 0 and 1 nothing is decided."""
+    def said(powers):
+        scenes = [(scene, mesh, n, power) for scene, power in zip("abc", powers) for mesh, n in (("1", 100), ("2", 2000))]
+        [sentence] = size_page.sentences(page_of(with_slopes(scenes)))
+        return sentence
+
+    assert "leaves 0 out: raw cond falls at theta 0.01; block Jacobi falls at theta 0.01; PCG grows at theta 0.01; Newton grows at theta 0.01; elsewhere" in said((-1.0, -1.0, -0.9))
+    assert "raw cond is decided at none; block Jacobi is decided at none; PCG is decided at none; Newton is decided at none" in said((-1.0, 0.0, 1.0))
 
 
 def test_how_often_contact_makes_the_largest_eigenvalue_counts_each_run_once():
