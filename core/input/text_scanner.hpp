@@ -31,6 +31,11 @@ class TextScanner {
   }
 
   const std::vector<std::string_view>& words() const { return words_; }
+  /// The line as it stands, without the blanks round it.
+  std::string_view text() const {
+    if (words_.empty()) return {};
+    return {words_.front().data(), words_.back().data() + words_.back().size()};
+  }
   std::string_view word(std::size_t i) const { return i < words_.size() ? words_[i] : std::string_view(); }
   long long line() const { return line_; }
   /// Bytes consumed, the last line's end included.

@@ -28,7 +28,6 @@ class FrameBuilder {
     for (PointField& field : raw_.fields) {
       mesh_.fields.push_back({std::move(field.name), field.components, std::move(field.values)});
     }
-    mesh_.objects = objects_of(raw_);
     mesh_.notes = notes_of(raw_);
     for (const auto& [what, kind] : crossed_) {
       mesh_.notes.push_back(note_of(raw_, what, kind, "cut into triangles from the first corner"));

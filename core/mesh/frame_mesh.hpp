@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/mesh_objects.hpp"
 #include "core/mesh/triangle_mesh.hpp"
 
 namespace bb {
@@ -24,8 +23,7 @@ struct FrameMesh {
   std::vector<std::array<int, 3>> triangles;  // the polygons, cut
   std::vector<std::array<int, 2>> segments;
   std::vector<std::array<int, 4>> tetrahedra;
-  std::vector<MeshObject> objects;  // of an OBJ, in the order of the file
-  std::vector<FrameField> fields;   // of the vertices, as VTK files have them
+  std::vector<FrameField> fields;  // of the vertices, as VTK files have them
   std::vector<std::string>
       notes;  // what was left out or could not be cut, counted, with the place of the first
 };

@@ -44,8 +44,9 @@ struct RawMesh {
   std::vector<long long> segment_place;
   std::vector<std::array<long long, 4>> tetrahedra;
   std::vector<long long> tetrahedron_place;
-  std::vector<std::string> object_names;              // of objects and groups, each once
-  std::vector<std::vector<std::size_t>> object_sets;  // what polygons and segments are of, together
+  std::vector<std::string> object_names;  // of objects and groups, each once
+  std::vector<std::vector<std::size_t>>
+      object_sets;  // names that polygons and segments have together, each set once
   std::vector<std::size_t> polygon_objects,
       segment_objects;  // the set of each; empty: no names in the format
   std::vector<PointField> fields;
@@ -94,9 +95,10 @@ RawMesh without_sides(RawMesh raw, bool skin);
 RawMesh without_loose_vertices(RawMesh raw);
 
 /// Objects in the order in which the file names them first, those without faces and lines left out.
-std::vector<MeshObject> objects_of(const RawMesh& raw);
-/// The faces and lines of the objects that are chosen, with their vertices. Errors: ConfigError for an unknown name.
-RawMesh only_objects(RawMesh raw, const MeshChoice& choice);
+MeshObjects objects_of(const RawMesh& raw);
+/// The faces and lines of those of the objects that are chosen, with their vertices; `objects` stay those of the file and learn
+/// which vertices the mesh has. Errors: ConfigError for an unknown name.
+RawMesh only_objects(RawMesh raw, const MeshChoice& choice, MeshObjects& objects);
 
 /// By the extension of the name. Errors: ConfigError, see read_mesh.
 RawMesh parse_raw(const std::string& bytes, const std::string& name, const FieldNames& wanted = {});

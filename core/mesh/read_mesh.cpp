@@ -40,8 +40,13 @@ RawMesh parse_raw(const std::string& bytes, const std::string& name, const Field
 MeshFile parse_mesh_file(const std::string& bytes, const std::string& name, const MeshChoice& choice) {
   RawMesh raw = parse_raw(bytes, name);
   if (has_sides(extension_of(name))) raw = without_sides(std::move(raw), choice.skin);
-  if (!choice.objects.empty()) raw = only_objects(std::move(raw), choice);
-  return {assemble_mesh(raw), objects_of(raw), notes_of(raw)};
+  MeshObjects objects = objects_of(raw);
+  if (!choice.objects.empty()) raw = only_objects(std::move(raw), choice, objects);
+  return {assemble_mesh(raw), std::move(objects), notes_of(raw)};
+}
+
+MeshObjects parse_mesh_objects(const std::string& bytes, const std::string& name) {
+  return objects_of(parse_raw(bytes, name));
 }
 
 TriangleMesh parse_mesh(const std::string& bytes, const std::string& name) {

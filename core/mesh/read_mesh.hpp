@@ -37,16 +37,19 @@ struct MeshChoice {
   bool skin = false;  // triangles that are faces of one tetrahedron stay
   std::vector<std::string>
       objects;  // names of OBJ objects (o) and groups (g), with their vertices alone; none: the whole file
-  std::string where;  // where the objects were asked for, for messages; none: the file
+  std::string where;  // where the list of objects were asked for, for messages; none: the file
 };
 
 struct MeshFile {
   TriangleMesh mesh;
-  std::vector<MeshObject> objects;  // in the order of the file; empty where no face or line has a name
-  std::vector<std::string> notes;   // what was left out, a sentence a kind of thing
+  MeshObjects objects;             // of the whole file, also where some are chosen
+  std::vector<std::string> notes;  // what was left out, a sentence a kind of thing
 };
 
 /// Errors: those of read_mesh; ConfigError for an object that the file has not.
 MeshFile parse_mesh_file(const std::string& bytes, const std::string& name, const MeshChoice& choice = {});
+
+/// The objects of a file alone; the rules of a body are not asked for. Errors: those of the format.
+MeshObjects parse_mesh_objects(const std::string& bytes, const std::string& name);
 
 }  // namespace bb

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@
 namespace bb::cli {
 namespace {
 
-constexpr std::size_t most_bodies = 20, most_objects = 20;
+constexpr std::size_t most_bodies = 20;
 
 /// Edges of one body's surface and rods at the start, m.
 struct EdgeLengths {
@@ -61,24 +62,26 @@ std::string edges_text(const EdgeLengths& edges, double d_hat, double offset) {
   return out;
 }
 
-/// The objects and groups of a body's mesh file, which a config can name.
-void print_objects(const MeshSource& source) {
-  if (source.file.empty()) return;
-  const MeshFile file = parse_mesh_file(read_input_file(source.file, mesh_file), source.file,
-                                        {false, source.objects, source.file});
-  if (file.objects.empty()) return;
-  std::string line = "    objects and groups of its file: ";
-  for (std::size_t i = 0; i < std::min(most_objects, file.objects.size()); ++i) {
-    const MeshObject& object = file.objects[i];
-    line +=
-        fmt::format("{}{} ({} vertices)", i == 0 ? "" : ", ", printable(object.name), object.vertices.size());
+/// The objects and groups of the mesh files of the first bodies, once for each file, which a config can name.
+void print_objects(const RunConfig& config) {
+  std::set<std::string> files;
+  for (std::size_t i = 0; i < std::min(most_bodies, config.scene.bodies.size()); ++i) {
+    const std::string& file = config.scene.bodies[i].mesh.file;
+    if (file.empty() || !files.insert(file).second) continue;
+    const MeshObjects objects = parse_mesh_objects(read_input_file(file, mesh_file), file);
+    if (objects.empty()) continue;
+    std::vector<std::string> names;
+    for (const MeshObject& one : objects.list) {
+      names.push_back(
+          fmt::format("{} ({} vertices)", printable(shortened(one.name)), objects.file_vertices(one).size()));
+    }
+    print_wrapped(fmt::format("  objects and groups of {}: {}{}", printable(file), listed(names),
+                              names.size() > most_listed ? "; the verb meshes has all of their names" : ""),
+                  4);
   }
-  if (file.objects.size() > most_objects)
-    line += fmt::format(", and {} more", file.objects.size() - most_objects);
-  print_wrapped(line, 6);
 }
 
-/// Box of all bodies at the start, the edges of each, and what its file has names for.
+/// Box of all bodies at the start, the edges of each, and what the files have names for.
 void print_sizes(const RunConfig& config, const Scene& scene) {
   const auto start = scene.x0.leftCols(scene.n_body_vertices());
   if (start.cols() == 0) return;
@@ -93,9 +96,9 @@ void print_sizes(const RunConfig& config, const Scene& scene) {
     const auto first = static_cast<std::size_t>(body.first_vertex);
     show("  body {}: {} vertices, {}\n", body.name, body.n_vertices,
          edges_text(edges[i], scene.d_hat[first], scene.offset[first]));
-    if (i < config.scene.bodies.size()) print_objects(config.scene.bodies[i].mesh);
   }
   if (scene.bodies.size() > most_bodies) show("  and {} more bodies\n", scene.bodies.size() - most_bodies);
+  print_objects(config);
 }
 
 /// The start as the files of a frame that a run leaves. Errors: ConfigError where there are frames already; RecordError.

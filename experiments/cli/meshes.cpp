@@ -1,10 +1,10 @@
 // The verb meshes: mesh files as the program reads them, for the front end and for other programs.
 // A request is a line of JSON on the standard input:
-//   {"path": FILE, "name": what messages call it and whose extension decides (default: path),
+//   {"path": FILE, "names": answer with the objects and groups of the file, all of them, "name": what messages call it and whose extension decides (default: path),
 //    "as": "frame" (default: any positions, as frames are judged) or "body" (the rules of a body's mesh),
 //    "skin": of a body, keep triangles that are faces of one tetrahedron, "objects": of a body, [names of OBJ objects and groups] alone,
 //    "fields": [names of fields of points]}
-// An answer is a line of JSON, {"error": ...} or notes, objects and groups and the list of arrays, and then the numbers of these arrays, one after
+// An answer is a line of JSON, {"error": ...} or notes, objects and groups where they are asked for, and the list of arrays, and then the numbers of these arrays, one after
 // the other, little-endian and by rows.
 #include <fmt/format.h>
 
@@ -53,17 +53,20 @@ class Arrays {
   std::vector<std::string_view> parts_;
 };
 
-/// Names of objects and groups, and how much of the mesh they are.
-Json objects_json(const std::vector<MeshObject>& objects) {
+/// Names of objects and groups, and how much of the file they are.
+Json objects_json(const MeshObjects& objects) {
   Json out = Json::array();
-  for (const MeshObject& one : objects) {
-    out.push_back(
-        {{"name", one.name}, {"vertices", one.vertices.size()}, {"faces", one.faces}, {"lines", one.lines}});
+  for (const MeshObject& one : objects.list) {
+    out.push_back({{"name", one.name},
+                   {"vertices", objects.file_vertices(one).size()},
+                   {"faces", one.faces},
+                   {"lines", one.lines}});
   }
   return out;
 }
 
-void answer_body(const std::string& bytes, const std::string& name, const nlohmann::json& request) {
+void answer_body(const std::string& bytes, const std::string& name, const nlohmann::json& request,
+                 Json head) {
   const MeshFile file = parse_mesh_file(
       bytes, name, {request.value("skin", false), request.value("objects", std::vector<std::string>()), ""});
   const TriangleMesh& mesh = file.mesh;
@@ -72,11 +75,12 @@ void answer_body(const std::string& bytes, const std::string& name, const nlohma
   arrays.add("triangles", mesh.triangles);
   arrays.add("segments", mesh.segments);
   arrays.add("tetrahedra", mesh.tetrahedra);
-  arrays.write({{"notes", file.notes}, {"objects", objects_json(file.objects)}});
+  head["notes"] = file.notes;
+  arrays.write(std::move(head));
 }
 
 void answer_frame(const std::string& bytes, const std::string& name,
-                  const std::set<std::string, std::less<>>& wanted) {
+                  const std::set<std::string, std::less<>>& wanted, Json head) {
   const FrameMesh mesh = parse_frame(bytes, name, wanted);
   Arrays arrays;
   arrays.add("points", mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.cols()), 3);
@@ -92,15 +96,19 @@ void answer_frame(const std::string& bytes, const std::string& name,
     if (wanted.contains(field.name))
       arrays.add("field " + field.name, field.values.data(), field.values.size() / width, width);
   }
-  arrays.write({{"notes", mesh.notes}, {"fields", fields}, {"objects", objects_json(mesh.objects)}});
+  head["notes"] = mesh.notes;
+  head["fields"] = fields;
+  arrays.write(std::move(head));
 }
 
 void answer(const std::string& line) {
   const nlohmann::json request = parse_json(line, "a request");
   const std::string path = request.at("path"), name = request.value("name", path);
   const std::string bytes = read_input_file(path, mesh_file);
-  if (request.value("as", "frame") == "body") return answer_body(bytes, name, request);
-  answer_frame(bytes, name, request.value("fields", std::set<std::string, std::less<>>()));
+  Json head = Json::object();
+  if (request.value("names", false)) head["objects"] = objects_json(parse_mesh_objects(bytes, name));
+  if (request.value("as", "frame") == "body") return answer_body(bytes, name, request, std::move(head));
+  answer_frame(bytes, name, request.value("fields", std::set<std::string, std::less<>>()), std::move(head));
 }
 
 int answer_all() {

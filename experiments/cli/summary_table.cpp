@@ -89,23 +89,30 @@ std::string summary_row(const RunRecord& record) {
                       [&](const SummaryColumn& column) { return column.cell(record); });
 }
 
-std::string comparability_table(const std::vector<ComparedRow>& rows, std::size_t columns) {
-  const ComparedRow heading{"run", "outcome", "comparability", ""};
-  std::size_t run = heading.run.size(), outcome = heading.outcome.size();
-  for (const ComparedRow& row : rows) {
-    run = std::max(run, row.run.size());
+std::string comparability_table(std::vector<ComparedRow> rows, std::size_t columns) {
+  rows.insert(rows.begin(), {"run", "outcome", "comparability", ""});
+  std::size_t outcome = 0, verdict = 0, run = 0;
+  for (ComparedRow& row : rows) {
+    row.run = printable(row.run);
     outcome = std::max(outcome, row.outcome.size());
+    verdict = std::max(verdict, row.verdict.size());
   }
-  const auto line = [&](const ComparedRow& row) {
-    const std::string head =
-        fmt::format("{:<{}}  {:<{}}  {}", row.run, run, row.outcome, outcome, row.verdict);
-    return wrapped(head, columns, reason_indent) + '\n';
+  const std::size_t others = outcome + verdict + 4;  // two blanks before each
+  const auto fits = [&](const std::string& text) {
+    return columns == 0 || characters(text) + others <= columns;
   };
-  std::string out = line(heading);
   for (const ComparedRow& row : rows) {
-    out += line(row);
-    if (!row.why.empty())
-      out += wrapped(std::string(reason_indent, ' ') + row.why, columns, reason_indent) + '\n';
+    if (fits(row.run)) run = std::max(run, characters(row.run));
+  }
+  std::string out;
+  const auto add = [&](const std::string& line) { out += wrapped(line, columns, reason_indent) + '\n'; };
+  for (const ComparedRow& row : rows) {
+    const bool is_beside = fits(row.run);
+    if (!is_beside) add(row.run);
+    const std::string name = is_beside ? row.run : "";
+    out += name + std::string(run - characters(name), ' ') +
+           fmt::format("  {:<{}}  {}\n", row.outcome, outcome, row.verdict);
+    if (!row.why.empty()) add(std::string(reason_indent, ' ') + row.why);
   }
   return out;
 }

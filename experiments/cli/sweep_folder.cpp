@@ -24,8 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t usual_columns = 80;  // where there is no terminal
-constexpr double lock_wait_s = 60;         // another process writes the same files, or judges
+constexpr double lock_wait_s = 60;  // another process writes the same files, or judges
 
 /// i and N of "i/N". Errors: ConfigError.
 std::pair<std::size_t, std::size_t> read_shard(const std::string& text) {
@@ -177,8 +176,7 @@ void compare_cases(const Sweep& sweep, const std::vector<bool>& refused) {
     rows.push_back({sweep.note(i), std::string(to_string(record->status.outcome)), judged.verdict,
                     judged.verdict == "comparable" ? "" : judged.reason});
   }
-  const std::size_t columns = terminal_columns(STDOUT_FILENO);
-  show("\n{}", comparability_table(rows, columns == 0 ? usual_columns : columns));
+  show("\n{}", comparability_table(std::move(rows), terminal_columns(STDOUT_FILENO)));
   std::fflush(stdout);
 }
 

@@ -13,12 +13,6 @@
 namespace bb::cli {
 namespace {
 
-/// Characters of UTF-8: bytes that continue none.
-std::size_t characters(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
 /// Bytes of the first n characters.
 std::size_t bytes_of(std::string_view text, std::size_t n) {
   std::size_t at = 0;
@@ -29,6 +23,11 @@ std::size_t bytes_of(std::string_view text, std::size_t n) {
 }
 
 }  // namespace
+
+std::size_t characters(std::string_view text) {
+  return static_cast<std::size_t>(  // bytes that continue none
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
 
 std::size_t terminal_columns(int descriptor) {
   if (const char* told = std::getenv("BENCH_COLUMNS"); told && descriptor == STDOUT_FILENO) {

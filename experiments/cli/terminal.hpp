@@ -11,6 +11,9 @@ namespace bb::cli {
 /// BENCH_COLUMNS stands for that of the standard output: a sweep tells it to the processes of its runs.
 std::size_t terminal_columns(int descriptor);
 
+/// How many characters of UTF-8 a text has.
+std::size_t characters(std::string_view text);
+
 /// At most so many characters, a longer text with an ellipsis at its end; 0: all of them.
 std::string shortened_to(std::string_view text, std::size_t columns);
 

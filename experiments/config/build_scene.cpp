@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <numbers>
 #include <random>
-#include <span>
 #include <utility>
 
 #include "core/bodies/scene_builder.hpp"
 #include "core/bodies/scene_checks.hpp"
+#include "core/input/names.hpp"
 #include "core/input/read_file.hpp"
 #include "core/mesh/bounds.hpp"
 #include "core/mesh/read_mesh.hpp"
@@ -41,14 +41,22 @@ MeshFile make_mesh(const MeshSource& source, const std::string& where) {
   return parse_mesh_file(bytes, source.file, {false, source.objects, where + "/objects"});
 }
 
-/// The vertices of the objects that pins name.
-void take_pinned_objects(std::span<const MeshObject> objects, const std::string& file,
-                         const std::string& where, std::vector<PinSpec>& pins) {
+/// The vertices of the objects that pins name, those of them that the body has.
+void take_pinned_objects(const MeshObjects& objects, const MeshSource& mesh, const std::string& where,
+                         std::vector<PinSpec>& pins) {
   for (std::size_t p = 0; p < pins.size(); ++p) {
     for (std::size_t i = 0; i < pins[p].objects.size(); ++i) {
-      const MeshObject& object = require_object(objects, pins[p].objects[i], file,
-                                                fmt::format("{}/pins/{}/objects/{}", where, p, i));
-      pins[p].indices.insert(pins[p].indices.end(), object.vertices.begin(), object.vertices.end());
+      const std::string place = fmt::format("{}/pins/{}/objects/{}", where, p, i);
+      const MeshObject& object = objects.require(pins[p].objects[i], mesh.file, place);
+      const std::vector<int> vertices = objects.mesh_vertices(object);
+      if (vertices.empty()) {
+        throw ConfigError(
+            place,
+            fmt::format("\"{}\", an object of {} of which the body has no vertex", shortened(object.name),
+                        mesh.file),
+            "an object that has vertices in common with those of mesh/objects: " + listed(mesh.objects));
+      }
+      pins[p].indices.insert(pins[p].indices.end(), vertices.begin(), vertices.end());
     }
   }
 }
@@ -99,7 +107,7 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     const std::string where = fmt::format("{}#/scene/bodies/{}", config.source, i);
     MeshFile made = make_mesh(body.mesh, where + "/mesh");
     spec.mesh = std::move(made.mesh);
-    take_pinned_objects(made.objects, body.mesh.file, where, spec.pins);
+    take_pinned_objects(made.objects, body.mesh, where, spec.pins);
     apply(body.transform, spec.mesh.vertices);
     if (body.rest_mesh.given()) {
       take_rest_shape(body, where + "/rest_mesh", spec);

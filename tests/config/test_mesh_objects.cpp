@@ -83,10 +83,21 @@ TEST_F(MeshObjectsOfABody, ArePinned) {
   EXPECT_EQ(pinned(build_scene(config_of(body))), (std::vector<int>{1, 3}));  // numbered anew
 }
 
+TEST_F(MeshObjectsOfABody, ArePinnedWhereThePartThatTheBodyTakesHasTheirVertices) {
+  json body = {{"mesh", mesh_of({"right"})}, {"pins", json::array({{{"objects", {"left"}}}})}};
+  EXPECT_EQ(pinned(build_scene(config_of(body))), (std::vector<int>{0, 2}));  // of the edge that both have
+  body["mesh"] = mesh_of({"left"});
+  body["pins"][0]["objects"] = {"edge"};
+  EXPECT_EQ(refused(body), "test#/scene/bodies/0/pins/0/objects/0: found \"edge\", an object of " +
+                               file_.string() +
+                               " of which the body has no vertex; allowed: an object that has vertices in "
+                               "common with those of mesh/objects: left");
+}
+
 TEST_F(MeshObjectsOfABody, AreRefusedWhereTheFileHasNoSuchName) {
   const std::string names = "; allowed: one of left, right, edge";
   EXPECT_EQ(refused({{"mesh", mesh_of({"left", "up"})}}),
-            "test#/scene/bodies/0/mesh/objects: found \"up\", which no face or line of " + file_.string() +
+            "test#/scene/bodies/0/mesh/objects/1: found \"up\", which no face or line of " + file_.string() +
                 " has" + names);
   EXPECT_EQ(refused({{"mesh", mesh_of({})}, {"pins", json::array({{{"objects", {"left", "Left"}}}})}}),
             "test#/scene/bodies/0/pins/0/objects/1: found \"Left\", which no face or line of " +

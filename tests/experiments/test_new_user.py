@@ -134,17 +134,29 @@ def test_names_of_an_obj_are_said_and_make_bodies_and_pins(program, tmp_path):
     body = {"name": "cloth", "mesh": mesh, "pins": [{"objects": ["rim"]}]}
     config = {**CLOTH_ON_BALL, "scene": {"bodies": [body]}, "formulation": {"name": "log", "d_hat_m": 0.01}}
     said = bench(program, "check", write(tmp_path / "a.json", config)).stdout
-    assert "body cloth: 6 vertices" in said and "objects and groups of its file: right half (4 vertices), rim (2 vertices)\n" in said
+    assert "body cloth: 6 vertices" in said and f"objects and groups of {mesh['file']}: right half (4 vertices), rim (2 vertices)\n" in said
     half = bench(program, "check", tmp_path / "a.json", "--set", '/scene/bodies/0/mesh/objects=["right half"]').stdout
-    assert "body cloth: 4 vertices" in half and "right half (4 vertices)" in half
+    assert "body cloth: 4 vertices" in half and "right half (4 vertices), rim (2 vertices)\n" in half  # all of the file
     unknown = bench(program, "check", tmp_path / "a.json", "--set", '/scene/bodies/0/pins/0/objects=["hem"]')
     refused(unknown, "/scene/bodies/0/pins/0/objects/0: found \"hem\"", "allowed: one of right half, rim")
 
     for kind in ("body", "frame"):
-        asked = json.dumps({"path": mesh["file"], "as": kind})
+        asked = json.dumps({"path": mesh["file"], "as": kind, "names": True})
         answer = subprocess.run([program, "meshes"], input=asked.encode(), capture_output=True, check=True).stdout
         names = json.loads(answer.split(b"\n", 1)[0])["objects"]
         assert names == [{"name": "right half", "vertices": 4, "faces": 1, "lines": 1}, {"name": "rim", "vertices": 2, "faces": 0, "lines": 1}]
+
+
+def test_names_of_an_obj_are_said_once_for_a_file_and_briefly(program, tmp_path):
+    long = "o " + "x" * 5000 + "\nl 1 4\n"
+    (tmp_path / "many.obj").write_text(TWO_SQUARES + long + "".join(f"o part {i}\nl 2 5\n" for i in range(30)))
+    mesh = {"file": str(tmp_path / "many.obj"), "objects": ["right half"]}
+    bodies = [{"name": name, "mesh": mesh, "transform": {"translate_m": [0, 0, z]}} for name, z in (("low", 0), ("high", 1))]
+    config = {**CLOTH_ON_BALL, "scene": {"bodies": bodies}, "formulation": {"name": "log", "d_hat_m": 0.01}}
+    said = bench(program, "check", write(tmp_path / "a.json", config)).stdout
+    [line] = [line for line in said.splitlines() if "objects and groups of" in line]
+    assert line.endswith("part 16 (2 vertices), and 13 more; the verb meshes has all of their names")
+    assert "x" * 100 + "... (5000 bytes) (2 vertices)" in line and "x" * 101 not in line
 
 
 def test_the_start_is_written_as_a_frame_also_where_it_is_refused(program, tmp_path):
@@ -215,21 +227,25 @@ def test_rows_of_a_sweep_in_processes_fit_too(program, tmp_path):
 
 @pytest.mark.parametrize("columns", [0, 60, 80, 200])
 def test_what_may_be_compared_fits_the_terminal_and_loses_no_word(program, tmp_path, columns):
-    """0: no terminal, and 80 columns."""
+    """0: no terminal, and lines of any length."""
     kappa = "/formulation/stiffness_policy/kappa_N_per_m"
-    cases = [{"label": label, "set": {kappa: value}} for label, value in (("stiff", 1000), ("as soft as a cushion", 10))]
+    cases = [{"label": label, "set": {kappa: value}} for label, value in (("stiff", 1000), ("as soft as a cushion, and a name of sixty characters or some more: é", 10))]
     few = {"/matching/rule": "as_given", "/time/steps": 30, "/time/dt_s": 0.01}
     spec = {"schema": "barrierbench.sweep/1", "name": "two", "base": BLOCK, "set": few, "axes": [{"cases": cases}]}
     words = ["sweep", write(tmp_path / "two.json", spec), "--out", tmp_path / "out"]
     said = on_terminal(program, columns, *words) if columns else bench(program, *words).stdout
     lines = shown_lines(said)
     below = lines[next(k for k, line in enumerate(lines) if "comparability" in line) :]
-    assert max(map(len, below)) <= (columns or 80)
+    assert all(line == line.rstrip() and (not columns or len(line) <= columns) for line in below)
+    assert below[0].split() == ["run", "outcome", "comparability"]
     text = " ".join(" ".join(below).split())
     records = [json.loads(file.read_text()) for file in (tmp_path / "out").glob("*/run.json")]
     reasons = [record["comparability"]["reason"] for record in records if record["comparability"]["verdict"] != "comparable"]
     assert len(records) == 2 and reasons and all(reason in text for reason in reasons)
     assert all(record["labels"]["note"] in text for record in records)
+    verdicts = {record["comparability"]["verdict"] for record in records}
+    places = [line.index(line.split()[-1]) for line in below[1:] if line.strip() and line.split()[-1] in verdicts]
+    assert places == 2 * [below[0].index("comparability")]
 
 
 def test_why_a_run_of_a_sweep_failed_is_broken_at_the_terminal(program, tmp_path):
