@@ -50,12 +50,13 @@ def fitted(head: Sequence[str], rows: Sequence[Sequence[str]], right: Set[int] =
 
 
 def markdown(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Lines of a table in Markdown. A bar in a cell would end it: it is written as a slash. Errors:
-    ValueError for a row that does not fit the head.
+    """Lines of a table in Markdown. A bar in a cell would end it: it is escaped. Errors: ValueError for a
+    row that does not fit the head.
     """
     _check_rows(head, rows)
 
     def line(cells: Sequence[str]) -> str:
-        return "|" + "".join(f" {cell.replace('|', '/')} |" if cell else " |" for cell in cells)
+        escaped = [cell.replace("|", r"\|") for cell in cells]
+        return "|" + "".join(f" {cell} |" if cell else " |" for cell in escaped)
 
     return [line(head), "|" + "---|" * len(head), *map(line, rows)]

@@ -20,6 +20,14 @@ from analysis.front import streams, verbs
 from analysis.front.door import main
 
 
+def _status(code: object) -> int:
+    """As Python ends a process: nothing is 0, and what is no number is said and 1."""
+    if code is None or isinstance(code, int):
+        return code or 0
+    print(code, file=sys.stderr)
+    return 1
+
+
 def _child(words: list[str], cwd: Path, environment: dict[str, str], files: tuple, limits: Callable[[], None]) -> int:
     for number, file in enumerate(files):
         os.dup2(file.fileno(), number)
@@ -31,9 +39,9 @@ def _child(words: list[str], cwd: Path, environment: dict[str, str], files: tupl
     limits()
     try:
         streams.prepare()
-        return main(words)
+        return _status(main(words))
     except SystemExit as ended:
-        return ended.code if isinstance(ended.code, int) else 1
+        return _status(ended.code)
     except BaseException:  # noqa: BLE001 (as Python ends a process)
         traceback.print_exc()
         return 1

@@ -23,9 +23,8 @@ class TemporaryFolder {
     path_ = name;
   }
   ~TemporaryFolder() {
+    give_rights_back();
     std::error_code error;
-    std::filesystem::permissions(path_, std::filesystem::perms::owner_all,
-                                 error);  // a test may have taken them
     std::filesystem::remove_all(path_, error);
     EXPECT_FALSE(error) << path_ << " is left: " << error.message();
   }
@@ -37,6 +36,19 @@ class TemporaryFolder {
   std::filesystem::path operator/(const std::filesystem::path& below) const { return path_ / below; }
 
  private:
+  /// A test may have taken the rights of this folder, or of a folder in it; what is in such a folder could not be removed.
+  void give_rights_back() const {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    fs::permissions(path_, fs::perms::owner_all, error);
+    // The rights of a folder are given back before the iterator goes into it.
+    for (fs::recursive_directory_iterator at(path_, error), end; !error && at != end; at.increment(error)) {
+      if (at->symlink_status(error).type() == fs::file_type::directory) {
+        fs::permissions(at->path(), fs::perms::owner_all, error);
+      }
+    }
+  }
+
   std::filesystem::path path_;
 };
 

@@ -36,11 +36,11 @@ SHOWN = (
     " their resolutions averaged.{once} All markers of a column are of the same places (a scene at a"
     " resolution): those in which every shape drawn here got through at every target of its line, {places};"
     " lines end where less than half of the places would be left, or at the last target that a shape can"
-    " reach. Thin lines: each place alone, as far as it was reached. Markers of the same number along two lines carry the"
-    " same loads. All numbers are over those of the log at its first target in the same place. Dotted, in the"
-    " first row, where the limit does not follow theta: the area law, C rho(u) but not below 1, with one C in"
-    " a panel, from the deepest point of the log. cond: 95th percentile over iterations in contact; PCG:"
-    " median of block-Jacobi PCG to 1e-6 on one right-hand side. {modes}"
+    " reach. Thin lines: each place alone, as far as it was reached. Markers of the same number along two"
+    " lines carry the same loads. All numbers are over those of the log at its first target in the same"
+    " place. Dotted, in the first row, where the limit does not follow theta: the area law, C rho(u) but not"
+    " below 1, with one C in a panel, from the deepest point of the log. cond: 95th percentile over"
+    " iterations in contact; PCG: median of block-Jacobi PCG to 1e-6 on one right-hand side. {modes}"
 )
 LAW = (
     "The area law against what was measured. A point is a run beside that of the log in the same scene,"

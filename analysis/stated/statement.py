@@ -19,7 +19,9 @@ class Statement:
 
 
 def cells_of(line: str) -> list[str]:
-    return [cell.strip() for cell in line.strip().strip("|").split("|")]
+    """Of a row of a table; an escaped bar is a part of its cell."""
+    found = re.split(r"(?<!\\)\|", line.strip().removeprefix("|").removesuffix("|"))
+    return [cell.strip().replace(r"\|", "|") for cell in found]
 
 
 def tables(text: str) -> Iterator[tuple[str, list[str], list[str]]]:

@@ -60,7 +60,7 @@ def check(test: Test, entry: dict, k: int) -> None:
 
 def _says(entry: dict) -> str:
     metric, kind = entry["metric"], entry["kind"]
-    among = "; ".join(" | ".join(group) for group in entry.get("groups", [])) or "every run"
+    among = "; ".join(", then ".join(group) for group in entry.get("groups", [])) or "every run"
     rule = {
         "equal": lambda: "equal" if entry["within"] == 0 else f"equal within {entry['within']:g}",
         "differs": lambda: f"differs by more than {entry['beyond']:g}",
@@ -155,4 +155,4 @@ def _judge(
         found.judged += 1
         numbers.append((number, label))
         if not good:
-            found.broken.append(f"{label}, {' | '.join(group)}: {number:.4g}")
+            found.broken.append(f"{label}, {', then '.join(group)}: {number:.4g}")

@@ -2,6 +2,7 @@
 
 import pytest
 
+from analysis.stated.statement import cells_of
 from analysis.text_table import aligned, markdown
 
 
@@ -13,6 +14,13 @@ def test_columns_are_as_wide_as_their_widest_cell_and_numbers_end_at_their_right
 
 def test_a_table_in_markdown_has_one_blank_in_an_empty_cell():
     assert markdown(["a", "b"], [["1", ""], ("", "2")]) == ["| a | b |", "|---|---|", "| 1 | |", "| | 2 |"]
+
+
+def test_a_bar_in_a_cell_is_text_and_is_read_back_as_it_was():
+    cells = ["a | b", "|", "end|"]
+    lines = markdown(["x", "y", "z|"], [cells])
+    assert lines == [r"| x | y | z\| |", "|---|---|---|", r"| a \| b | \| | end\| |"]
+    assert cells_of(lines[2]) == cells and cells_of("| 1 | |") == ["1", ""]
 
 
 @pytest.mark.parametrize("row", [["1"], ["1", "2", "3"]])

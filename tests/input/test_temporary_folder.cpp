@@ -1,6 +1,8 @@
 // The folder in which tests make their files.
 #include "tests/temporary_folder.hpp"
 
+#include <unistd.h>
+
 #include <fstream>
 #include <stdexcept>
 
@@ -19,10 +21,26 @@ TEST(TemporaryFolder, goes_with_all_that_it_holds) {
     EXPECT_EQ(one.path().parent_path(), another.path().parent_path());
     fs::create_directories(one / "a/b");
     std::ofstream(one / "a/b/file") << "text";
-    fs::permissions(another, fs::perms::none);
   }
   EXPECT_FALSE(fs::exists(first));
   EXPECT_FALSE(fs::exists(second));
+}
+
+TEST(TemporaryFolder, goes_where_a_test_has_taken_rights) {
+  if (::geteuid() == 0) {
+    GTEST_SKIP() << "rights do not bind root";
+  }
+  fs::path left;
+  {
+    const test::TemporaryFolder folder;
+    left = folder;
+    fs::create_directories(folder / "a/b");
+    std::ofstream(folder / "a/b/file") << "text";
+    fs::permissions(folder / "a/b", fs::perms::none);
+    fs::permissions(folder / "a", fs::perms::none);
+    fs::permissions(folder, fs::perms::none);
+  }
+  EXPECT_FALSE(fs::exists(left));
 }
 
 TEST(TemporaryFolder, goes_where_a_test_ends_early) {

@@ -45,7 +45,7 @@ def test_zeros_that_are_equal_differ_by_nothing():
     none = rows((0.0, 0.0, 0.0))
     assert related({"kind": "equal", "within": 0}, none).holds
     differs = related({"kind": "differs", "beyond": 0.1}, none)
-    assert differs.judged == 2 and differs.broken[0] == "log, d_hat | one ulp less | one ulp more: 0"
+    assert differs.judged == 2 and differs.broken[0] == "log, d_hat, then one ulp less, then one ulp more: 0"
     some = rows((0.0, 0.0, 0.5))
     assert related({"kind": "differs", "beyond": 0.1}, some).holds and not related({"kind": "equal", "within": 10}, some).holds
 
