@@ -173,7 +173,9 @@ def text(row: dict, count: int, scaling: str) -> str:
     return "\n".join(lines)
 
 
-def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list[str]) -> Path:
+def run_folder(
+    given: Path, out: Path | None, settings: list[str], plugins: list[str], replace: bool = False
+) -> Path:
     """The folder of a record, or of the run that is made of a config with everything diagnosed. Raises
     UserError for what a record, whose run is over, cannot take: settings, plugins, another folder.
     """
@@ -182,6 +184,7 @@ def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list
             [f"--set {text}" for text in settings]
             + [f"--plugin {file}" for file in plugins]
             + ([f"--out {out}"] if out else [])
+            + (["--replace"] if replace else [])
         )
         if asked:
             raise UserError(
@@ -191,8 +194,10 @@ def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list
         return given if given.is_dir() else given.parent
     folder = out or ROOT / "results/runs" / f"causes-{given.stem}"
     words = ["run", str(given), "--out", str(folder)]
-    if out is None:
-        words.append("--replace")  # that folder is named after the config's file alone, whatever is set
+    if out is None or replace:
+        words.append(
+            "--replace"
+        )  # the default folder is named after the config's file alone, whatever is set
     for option in [*OPTIONS, *settings]:
         words += ["--set", option]
     code = started(*words, plugins=plugins, stdout=subprocess.DEVNULL).returncode
@@ -221,6 +226,11 @@ def main(words: list[str]) -> int:
     parser.add_argument("--at", metavar="STEP,ITERATION", help="that iteration in place of the worst")
     set_argument(parser, "override of a config", "/time/steps=5")
     parser.add_argument("--out", type=Path, help="folder of that run (default results/runs/causes-NAME)")
+    parser.add_argument(
+        "--replace",
+        action="store_true",
+        help="the record of another config in the folder of --out goes, as in ./bench run",
+    )
     plugin_argument(parser)
     given = parser.parse_args(words)
     try:
@@ -229,7 +239,7 @@ def main(words: list[str]) -> int:
             raise ValueError
     except ValueError:
         raise UserError(f"--at {given.at!r}: allowed: STEP,ITERATION, both from 0") from None
-    folder = run_folder(given.run, given.out, given.overrides, given.plugin)
+    folder = run_folder(given.run, given.out, given.overrides, given.plugin, given.replace)
     record, rows = diagnosed(folder)
     row = pick(rows, given.scaling, at)
     print(

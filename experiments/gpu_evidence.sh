@@ -171,7 +171,7 @@ same_run() {
   shift 2
   for device in cuda host; do
     part "same_$name.$device" 100 "$bench" run "$config" --set "/device=\"$device\"" --set '/linear_solver={"name": "pcg_resident"}' \
-      --set '/passes={"time": true, "audit": true}' --set /threads=2 --out "$out/same/$name.$device" --progress none "$@"
+      --set '/passes={"time": true, "audit": true}' --set /threads=2 --out "$out/same/$name.$device" --replace --progress none "$@"
   done
 }
 if wanted same; then
@@ -206,7 +206,7 @@ fi
 run_scene() {
   local name="$1" limit="$2"
   shift 2
-  part "$name" "$((limit + 10))" "$bench" run "$root/configs/gpu/${name%%.*}.json" --set '/device="cuda"' --out "$out/$name" \
+  part "$name" "$((limit + 10))" "$bench" run "$root/configs/gpu/${name%%.*}.json" --set '/device="cuda"' --out "$out/$name" --replace \
     --time-limit "$limit" --progress none "$@"
 }
 on_cpu() { run_scene "$1.cpu" "$2" --set '/device="cpu"' --set "/linear_solver={\"name\": \"$3\"}"; }
@@ -225,7 +225,7 @@ if wanted kernels; then
   unset BARRIERBENCH_KERNEL_TIMES
   if ncu="$(tool ncu)"; then
     part kernels 60 "$ncu" --csv --print-units base --clock-control none --metrics gpu__time_duration.sum,dram__bytes.sum --launch-count 500 \
-      "$bench" run "$root/configs/gpu/drape_82k.json" --set '/device="cuda"' --set /time/steps=1 --out "$out/drape_82k.ncu" --progress none
+      "$bench" run "$root/configs/gpu/drape_82k.json" --set '/device="cuda"' --set /time/steps=1 --out "$out/drape_82k.ncu" --replace --progress none
   else
     without kernels "ncu was not found"
   fi

@@ -77,6 +77,7 @@ def words_of(case: Case, out: Path, threads: int, more: dict) -> list[str]:
         str(case.config),
         "--out",
         str(out),
+        "--replace",  # the folder is the gate's, whatever an earlier call left there
         *(
             word
             for pointer, value in settings.items()

@@ -56,7 +56,7 @@ int run(const RunVerb& verb, const CommonOptions& common) {
   RunOptions options = run_options(common);
   options.folder = verb.out.empty() ? "results/runs/" + run_label(config) : verb.out;
   options.keep_inputs = verb.keep_inputs;
-  options.replace = verb.replace;
+  options.replace = verb.replace ? Replace::all : Replace::own;
   options.resume = verb.limits.resume ? Resume::yes : Resume::no;
   options.time_limit_s = verb.limits.time_limit_s;
   if (verb.limits.resume && is_over(config, options)) {
@@ -74,10 +74,10 @@ Action verb::run(CLI::App& app) {
   const auto verb = std::make_shared<RunVerb>();
   config_arguments(app, *verb);
   app.add_option("--out", verb->out, "folder of run.json (default results/runs/<label>)");
-  app.add_flag(
-      "--replace", verb->replace,
-      "whatever has the name run.json in that folder goes, with the files of its record; without it, a "
-      "record of the same config alone");
+  app.add_flag("--replace", verb->replace,
+               "a record, a checkpoint, or another file of their names in that folder goes, with the files "
+               "of the record; "
+               "without it, those of the same config alone");
   app.add_flag("--keep-inputs", verb->keep_inputs, "copy meshes and plugins beside the record");
   limit_arguments(app, verb->limits);
   return [verb](const CommonOptions& common) { return install_interrupt(), cli::run(*verb, common); };

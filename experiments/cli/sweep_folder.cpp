@@ -110,8 +110,7 @@ RunOptions case_options(const Sweep& sweep, std::size_t i) {
   options.sweep_id = sweep.spec.name;
   options.swept = sweep.spec.cases[i].swept;
   options.keep_inputs = sweep.verb.keep_inputs;
-  options.replace =
-      true;  // the folder is that of this config: why_to_run says what is wrong with the record in it
+  options.replace = Replace::torn;
   options.resume = sweep.verb.limits.resume ? Resume::yes
                    : sweep.verb.again       ? Resume::no
                                             : Resume::if_this_run;

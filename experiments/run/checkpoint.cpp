@@ -6,6 +6,8 @@
 
 #include <cerrno>
 #include <charconv>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "core/input/read_file.hpp"
@@ -18,14 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view format_line = "barrierbench.checkpoint/2";
+constexpr std::string_view format_line = "barrierbench.checkpoint/3";
+constexpr std::string_view config_word = "config ";
 constexpr InputKind checkpoint_file{"a checkpoint", std::uint64_t{64} << 30};
 constexpr double sync_every_s = 1;
 
 /// Takes a line off `text`; empty without one.
-std::string_view take_line(std::string_view& text) {
+std::string_view take_line(std::string_view& text, std::size_t longest = 200) {
   const std::size_t end = text.find('\n');
-  if (end == std::string_view::npos || end > 200) return {};
+  if (end == std::string_view::npos || end > longest) return {};
   const std::string_view line = text.substr(0, end);
   text.remove_prefix(end + 1);
   return line;
@@ -87,12 +90,13 @@ struct Checkpoint::Read {
   std::uint64_t number = 0;
 };
 
-Checkpoint::Checkpoint(const fs::path& folder, std::string program)
+Checkpoint::Checkpoint(const fs::path& folder, std::string program, const std::string& config)
     : folder_(folder),
       file_(folder / "checkpoint.bin"),
       next_(folder / "checkpoint.next.bin"),
       log_(folder / "checkpoint.log"),
-      program_(std::move(program)) {}
+      program_(std::move(program)),
+      config_(nlohmann::json::parse(config).dump()) {}
 
 Checkpoint::~Checkpoint() {
   if (log_fd_ >= 0) ::close(log_fd_);
@@ -120,6 +124,7 @@ std::optional<Checkpoint::Read> Checkpoint::read_one(const fs::path& file, bool 
                       fmt::format("{}, or no --resume", contents));
   }
   Read out;
+  take_line(rest, text.size());  // the config: the archive has it too
   const std::string_view number = take_line(rest), log = take_line(rest), trace = take_line(rest);
   const std::string_view digits = number.substr(number.find(' ') + 1);
   std::from_chars(digits.data(), digits.data() + digits.size(), out.number);
@@ -163,6 +168,16 @@ bool Checkpoint::exists() const {
   return fs::exists(file_, unreachable);
 }
 
+std::optional<std::string> Checkpoint::config_there() const {
+  std::ifstream in(file_, std::ios::binary);
+  std::string format, program, contents, config;
+  if (!std::getline(in, format) || format != format_line) return std::nullopt;
+  for (std::string* line : {&program, &contents, &config}) std::getline(in, *line);
+  if (!config.starts_with(config_word)) return std::nullopt;
+  config.erase(0, config_word.size());
+  return nlohmann::json::accept(config) ? std::optional(config) : std::nullopt;
+}
+
 // What an earlier process wrote behind the checkpoint that was read is written over, and cut.
 void Checkpoint::append_to_log(bool sync) {
   if (log_fd_ < 0) {
@@ -184,7 +199,7 @@ void Checkpoint::write_in_place(const std::string& text) {
 
 void Checkpoint::write(const Archive& archive, const FilePrefix& trace, bool sync) {
   append_to_log(sync);
-  const std::string rest = fmt::format("number {}\n{}\n{}\n", ++number_,
+  const std::string rest = fmt::format("{}{}\nnumber {}\n{}\n{}\n", config_word, config_, ++number_,
                                        prefix_line("log", log_hash_.so_far()), prefix_line("trace", trace)) +
                            archive.bytes();
   const std::string text = fmt::format("{}\nprogram {}\n{}\n", format_line, program_,

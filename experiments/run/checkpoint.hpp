@@ -16,12 +16,13 @@ namespace bb {
 ///   checkpoint.next.bin  the latest one, written over in place: one that was cut off is not read;
 ///   checkpoint.log       lists that grow with the steps (GrownLists), each item once.
 /// The first two begin with lines of text: the format, the program that wrote it, length and SHA-256 of all that follows:
-/// its number, length and SHA-256 of the log and of the trace that belong to it, and an archive, which only that program
+/// the config of the run, its number, length and SHA-256 of the log and of the trace that belong to it, and an archive, which only that program
 /// can read. A log or trace that is longer is cut. So a process that is killed loses nothing, and a power
 /// failure what came after the last whole second.
 class Checkpoint {
  public:
-  Checkpoint(const std::filesystem::path& folder, std::string program);
+  /// config: JSON of the run's resolved config.
+  Checkpoint(const std::filesystem::path& folder, std::string program, const std::string& config = "{}");
   ~Checkpoint();
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
@@ -45,6 +46,8 @@ class Checkpoint {
   /// The run is over.
   void remove();
   bool exists() const;
+  /// The config of the checkpoint that is there, whatever program wrote it; nothing where the file does not say it.
+  std::optional<std::string> config_there() const;
 
   const std::filesystem::path& file() const { return file_; }
 
@@ -55,7 +58,7 @@ class Checkpoint {
   void write_in_place(const std::string& text);
 
   std::filesystem::path folder_, file_, next_, log_;
-  std::string program_;
+  std::string program_, config_;
   GrownLists lists_;
   RunningHash log_hash_;
   FilePrefix trace_;

@@ -258,13 +258,14 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
   const RunRecord asked_for = identified(config, options);  // inputs where they are now
-  Checkpoint checkpoint(options.folder, asked_for.ids.build_id);
+  Checkpoint checkpoint(options.folder, asked_for.ids.build_id, asked_for.config.text);
   put_finished_in_place(options.folder, checkpoint);
   if (auto record = recorded(asked_for, options)) return *record;
   if (options.tell) {
     for (const std::string& caveat : formula_caveats(config)) options.tell(caveat);
   }
-  require_replaceable(options.folder, asked_for, options.replace, options.tell);
+  require_replaceable({options.folder, asked_for, options.replace, options.resume == Resume::yes, ""},
+                      options.tell);
   std::optional<Resumed> resumed = resumed_from(checkpoint, asked_for, options);
   resumed ? remove_temporaries(options.folder) : remove_unfinished(options.folder);
   check_writable(options.folder);

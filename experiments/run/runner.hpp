@@ -11,6 +11,7 @@
 
 #include "core/record/run_record.hpp"
 #include "experiments/config/run_config.hpp"
+#include "experiments/run/earlier_run.hpp"
 #include "experiments/run/run_limits.hpp"
 
 namespace bb {
@@ -36,8 +37,8 @@ enum class Resume {
 };
 
 struct RunOptions {
-  std::filesystem::path folder;   // run.json, trace.jsonl; what may be there already: earlier_run.hpp
-  bool replace = false;           // a record of another config, or a file of that name, in the folder goes
+  std::filesystem::path folder;  // run.json, trace.jsonl; what may be there already: earlier_run.hpp
+  Replace replace = Replace::own;
   std::vector<std::string> argv;  // for the record
   std::string note;               // how the row of a table differs
   std::string sweep_id;
@@ -71,7 +72,8 @@ std::vector<std::string> formula_caveats(const RunConfig& config);
 /// run in it stays as it is until this one is over, and then goes with its trace, frames and matrices. A run that time or
 /// memory ends leaves its record and its checkpoint; the record of more steps of the same run stays in its place.
 /// With options.resume a run whose record is in the folder already is not run: the record is returned.
-/// Errors: ConfigError for what config and files can tell, as build_scene and require_replaceable (nothing is written);
+/// Errors: ConfigError for what config and files can tell, as build_scene and require_replaceable (nothing of this run is written; what a
+///   run that was killed had finished has its names by then);
 ///   RecordError (output, or another process has the folder); Interrupted.
 RunRecord run_config(const RunConfig& config, const RunOptions& options);
 

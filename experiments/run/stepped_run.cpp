@@ -17,6 +17,7 @@
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/earlier_run.hpp"
 #include "experiments/run/fill_record.hpp"
+#include "experiments/run/input_files.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/start_check.hpp"
@@ -74,7 +75,8 @@ class ThreadLimit {
 };
 
 SteppedRun::SteppedRun(const RunConfig& asked, RunOptions options)
-    : config_(stepped(asked)),
+    : asked_time_(asked.passes.time),
+      config_(stepped(asked)),
       threads_(std::make_unique<ThreadLimit>(config_)),
       options_(std::move(options)) {
   set_one_blas_thread();
@@ -94,22 +96,27 @@ SteppedRun::~SteppedRun() {
   remove_unfinished(options_.folder);
 }
 
+void SteppedRun::take_folder() {
+  lock_.emplace(options_.folder);
+  put_in_place(options_.folder);
+  RunConfig asked = config_;
+  asked.passes.time = asked_time_;
+  const std::string asked_text = resolved_json(name_from(options_.folder, std::move(asked)));
+  require_replaceable({options_.folder, record_, options_.replace, false, asked_text}, options_.tell);
+  if (options_.replace != Replace::all && Checkpoint(options_.folder, "").exists()) {
+    throw ConfigError(options_.folder.string(), "the checkpoint of a run that is not over",
+                      "another folder, bench run --resume, or replace=True");
+  }
+  remove_unfinished(options_.folder);
+  check_writable(options_.folder);
+}
+
 void SteppedRun::prepare() {
   if (options_.note.empty()) options_.note = own_note(config_);
   RunOptions named = options_;
   if (!has_folder()) named.folder = ".";
   record_ = identified(config_, named);
-  if (has_folder()) {
-    lock_.emplace(options_.folder);
-    if (Checkpoint(options_.folder, "").exists()) {
-      throw ConfigError(options_.folder.string(), "the checkpoint of a run that is not over",
-                        "another folder, or bench run --resume");
-    }
-    put_in_place(options_.folder);
-    require_replaceable(options_.folder, record_, options_.replace, options_.tell);
-    remove_unfinished(options_.folder);
-    check_writable(options_.folder);
-  }
+  if (has_folder()) take_folder();
   fill_method(config_, record_);
   record_.status.started_utc = utc_now();
   record_.validity.build = options_.build;

@@ -65,12 +65,14 @@ class SteppedRun {
 
  private:
   void prepare();
+  void take_folder();  // locks it, and requires that what is there may be replaced
   void make_pass();
   void keep(Archive& archive);
   void go_back(const Archive& start);
   void close_record(Recorder& recorder, RunRecord& record) const;
   bool has_folder() const { return !options_.folder.empty(); }
 
+  const bool asked_time_;  // /passes/time, as the caller gave it
   const RunConfig config_;
   std::unique_ptr<ThreadLimit> threads_;
   RunOptions options_;

@@ -29,7 +29,8 @@ class Simulation:
 
     config: a dict, JSON text or the path of a config; overrides: {"/time/steps": 5} or ["/time/steps=5"].
     out: folder of the record, its trace, frames and matrices, which `finish` puts in place; None: nothing is written. A
-    record of the same config there is replaced; one of another config, or a file of that name, only with `replace`.
+    record of the same config there is replaced; a record or checkpoint of another config, or a file of their names,
+    only with `replace`.
 
     It is one pass. A config that asks for times and for the audit (the default does) is run by the program twice, once
     for each; here the observed pass alone is made, and the config of the record says so (/passes/time false). The
@@ -170,8 +171,8 @@ def run(
     """A whole run as `bench run` makes it, both passes and times with it; returns the record that it wrote.
 
     out: folder of the record (default results/runs/LABEL). on_step: called after every step with what a progress line
-    shows. resume: go on from the checkpoint of this very run. replace: the record of another config in the folder, or
-    another file of its name, goes. Ctrl-C leaves a checkpoint, as in the program.
+    shows. resume: go on from the checkpoint of this very run. replace: the record or checkpoint of another config in
+    the folder, or another file of their names, goes. Ctrl-C leaves a checkpoint, as in the program.
     Errors: ConfigError; RecordError; what on_step raises, with a checkpoint left.
     """
     record = folder(out)

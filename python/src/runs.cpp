@@ -26,11 +26,19 @@ namespace {
 /// name, file, sha256 of what Python brings to the run.
 using Brought = std::vector<std::tuple<std::string, std::string, std::string>>;
 
+/// A warning of Python, at the line that called the module.
+void warn(const std::string& text) {
+  const nb::gil_scoped_acquire locked;
+  constexpr int caller_of_the_module = 2;
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), caller_of_the_module) != 0) throw nb::python_error();
+}
+
 RunOptions options_of(const std::string& folder, const std::vector<std::string>& argv,
                       const Brought& brought) {
   RunOptions options;
   options.folder = folder;
   options.argv = argv;
+  options.tell = warn;
   for (const auto& [name, file, sha256] : brought) options.plugins.push_back({name, file, sha256});
   return options;
 }
@@ -54,7 +62,7 @@ class PythonRun {
     const nb::gil_scoped_release unlocked;
     const RunConfig config = parse_config(text, source, config_folder, overrides);
     RunOptions options = options_of(folder, argv, brought);
-    options.replace = replace;
+    options.replace = replace ? Replace::all : Replace::own;
     if (checked) options.build = build_validity(options.plugins);
     run_ = std::make_unique<SteppedRun>(config, std::move(options));
     x_ = run_->x();
@@ -156,7 +164,7 @@ std::string run_whole(const std::string& text, const std::string& source, const 
     RunOptions options =
         options_of(folder.empty() ? "results/runs/" + run_label(config) : folder, argv, brought);
     options.build = build_validity(options.plugins);
-    options.replace = replace;
+    options.replace = replace ? Replace::all : Replace::own;
     options.resume = resume ? Resume::yes : Resume::no;
     options.interrupted = &listener.stop;
     options.progress = [&listener](const Progress& progress) { listener.hear(progress); };

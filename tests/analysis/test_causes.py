@@ -1,6 +1,7 @@
 """The causes of a condition number, from made traces and from a run."""
 
 import json
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -85,3 +86,13 @@ def test_a_stiff_contact_of_a_run_is_named(tmp_path, capsys):
     out = capsys.readouterr().out
     largest = [line for line in out.splitlines() if line.startswith("full ") and " largest " in line and " none " in line]
     assert len(largest) == 1 and "contact 100%" in largest[0] and "plane" in largest[0]
+
+
+@pytest.mark.parametrize("out, replace, passed", [(None, False, True), ("out", False, False), ("out", True, True)])
+def test_replace_is_handed_to_the_run(monkeypatch, tmp_path, out, replace, passed):
+    asked = []
+    monkeypatch.setattr(causes, "started", lambda *words, **_: asked.append(words) or subprocess.CompletedProcess(words, 0))
+    causes.run_folder(tmp_path / "config.json", out and tmp_path / out, [], [], replace)
+    assert len(asked) == 1 and ("--replace" in asked[0]) == passed
+    with pytest.raises(causes.UserError, match="--replace: given with a record"):
+        causes.run_folder(tmp_path, None, [], [], True)

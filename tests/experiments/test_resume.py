@@ -148,9 +148,9 @@ def test_what_is_no_checkpoint_of_this_run_is_refused_and_stays(program, config,
         refused(bench(program, "run", config, "--out", folder, "--resume"), "checkpoint.bin", says)
         assert file.read_bytes() == data, name
     file.write_bytes(good)
-    for other in ("/time/steps=13", "/threads=2", "/formulation=\"cubic\""):
-        refused(bench(program, "run", config, "--out", folder, "--resume", "--set", other), "checkpoint.bin", "another run",
-                "threads" if "threads" in other else "config")
+    for other, says in {"/time/steps=13": "/time/steps is 12 there and 13 in this run", "/threads=2": "another number of threads (2, not 1)",
+                        "/formulation=\"cubic\"": "/formulation/name is \"log\" there and \"cubic\" in this run"}.items():
+        refused(bench(program, "run", config, "--out", folder, "--resume", "--set", other), "checkpoint.bin", "another run", says)
     trace = folder / "trace.jsonl.part"
     rows = trace.read_bytes()
     trace.write_bytes(rows[:100])

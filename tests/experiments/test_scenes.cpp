@@ -21,7 +21,7 @@ class Scenes : public ::testing::Test {
   RunRecord run(const std::string& text, std::vector<std::string> overrides = {}) const {
     RunOptions options;
     options.folder = folder_;
-    options.replace = true;  // the runs of a test follow one another there
+    options.replace = Replace::all;  // the runs of a test follow one another there
     return run_config(parse_config(text, "test", ".", overrides), options);
   }
   test::TemporaryFolder folder_;
@@ -62,7 +62,7 @@ TEST_F(Scenes, RestingBlockRestsAtTheClosedForm) {
         "test");
     RunOptions options;
     options.folder = folder_;
-    options.replace = true;  // the runs of a test follow one another there
+    options.replace = Replace::all;  // the runs of a test follow one another there
     const RunRecord record = run_config(config, options);
     ASSERT_EQ(record.status.outcome, Outcome::ok) << record.status.detail;
     const BarrierFunction barrier{require_shape(name), Argument::gap};
