@@ -1,4 +1,6 @@
-"""Two statements on one thing that disagree, over all pages."""
+"""Statements that disagree: numbers with the same words under the same heading of one page, quantities for
+which readers are made on any page, and these against the kept data.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from pathlib import Path
 
 from .. import input_file
 from ..errors import UserError
+from .kept import kept
 from .number import Number
 from .pages import NO_NUMBERS, NUMBER, by_page
 from .several import apart, shapes_of_table
@@ -19,7 +22,8 @@ PAGES = {"ablation": "results/ABLATION.md", "gap map": "results/GAP_MAP.md"}  # 
 
 
 def contradictions(found: Iterable[Statement]) -> list[str]:
-    """One line for every quantity that is stated with two numbers, or two verdicts, under one condition."""
+    """One line for every quantity that is stated with two numbers under one condition; verdicts stand beside
+    them and are not compared."""
     by: dict[tuple[str, str], dict[tuple[str, str | None], str]] = {}
     for one in found:
         by.setdefault((one.quantity, one.conditions), {}).setdefault((one.number, one.verdict), one.page)
@@ -106,7 +110,7 @@ def silent(found: dict[str, list[Statement]]) -> list[str]:
 def faults(root: Path, numbers: Iterable[Number]) -> list[str]:
     """All of it. Errors: UserError for a page in which a reader that is made for it finds nothing."""
     found, numbers = by_page(root), list(numbers)
-    every = [one for of in found.values() for one in of]
+    every = [one for of in found.values() for one in of] + list(kept(root / "results"))
     return (
         silent(found) + contradictions(every) + unreconciled(root, numbers) + unfounded(root, every, numbers)
     )

@@ -8,8 +8,18 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
+from ..errors import UserError
 from .statement import Statement, cells_of, section, tables
 
+STUDIES = {  # study in the table of costs -> what its runs are called
+    "claims": "claims runs",
+    "gap map": "gap map runs",
+    "Pareto fronts": "Pareto runs",
+    "work-precision": "work-precision runs",
+    "catalogue": "catalogue runs",
+    "stress suite": "stress runs",
+    "ablation": "ablation runs",
+}
 SAID = "as it is said"
 SHOWN = "as its tables add up"
 
@@ -205,15 +215,32 @@ def engines_in_words(text: str, page: str) -> Iterator[Statement]:
 
 
 def cluster(text: str, page: str) -> Iterator[Statement]:
-    """Runs of studies in the table of their cost."""
-    names = {
-        "stress suite": "stress runs",
-        "work-precision": "work-precision runs",
-        "catalogue": "catalogue runs",
-    }
-    for title, _, cells in tables(text):
-        if len(cells) > 3 and cells[0] in names:
-            yield Statement(f"{page}, {title}", names[cells[0]], "", cells[2])
+    """Runs of studies in the table of their cost. Errors: UserError for a study without a name."""
+    for title, heads, cells in tables(text):
+        if heads[0] == "study":
+            if cells[0] not in STUDIES:
+                raise UserError(
+                    f"{page}: found a row {cells[0]!r}, whose runs nothing is compared with; STUDIES of"
+                    f" analysis/stated/counted.py has {', '.join(STUDIES)}"
+                )
+            yield Statement(f"{page}, {title}", STUDIES[cells[0]], "", cells[2])
+
+
+CELLS = "gap map cells"
+OF_CELLS = tuple(
+    f"gap map cells: {what}" for what in ("gap", "cannot reach", "no contact", "failed", "not run")
+)
+
+
+def gap_map(text: str, page: str) -> Iterator[Statement]:
+    """Cells and runs of the gap map, on its page, in its captions and in docs/results.md."""
+    words, runs = " ".join(text.split()), STUDIES["gap map"]
+    yield from _said(r"(\d+) of (\d+) cells are not run", words, page, OF_CELLS[-1], CELLS)
+    yield from _said(r"(\d+) cells, (\d+) runs of", words, page, CELLS, runs)
+    ends = r"(\d+) reached a gap; (\d+) cannot reach .*?, (\d+) no contact, (\d+) failed, (\d+) not run"
+    yield from _said(ends, words, page, *OF_CELLS)
+    yield from _said(r"Of (\d+) cells \d+ are decided, with (\d+) runs", words, page, CELLS, runs)
+    yield from _said(r"unknowns; (\d+) are not run yet", words, page, OF_CELLS[-1])
 
 
 def mentions(text: str, page: str) -> Iterator[Statement]:

@@ -16,6 +16,7 @@ from .counted import (
     cluster,
     engines,
     engines_in_words,
+    gap_map,
     mentions,
     stress,
     work_precision,
@@ -79,12 +80,12 @@ def _map(text: str, page: str) -> Iterator[Statement]:
                 yield Statement(page, f"{head.split(' over')[0]}: {cells[1]} / `log`", conditions, cell)
 
 
-def _pair(text: str, page: str) -> Iterator[Statement]:
-    """The log over the cubic alone: by target and limit, and by size."""
+def pair(text: str, page: str) -> Iterator[Statement]:
+    """The log over the cubic alone: by target and limit, by size, and the slopes against size."""
     for title, heads, cells in tables(text):
         for head, cell in zip(heads, cells):
-            if ", log over " in head and NUMBER.fullmatch(cell):
-                conditions = "; ".join(c for h, c in zip(heads, cells) if ", log over " not in h)
+            if "log over " in head and NUMBER.fullmatch(cell):
+                conditions = "; ".join(c for h, c in zip(heads, cells) if "log over " not in h)
                 yield Statement(page, f"{title}: {head}", conditions, cell)
 
 
@@ -125,19 +126,21 @@ def _firsts(text: str, page: str) -> Iterator[Statement]:
 # Page -> its readers. Each has to find something: a page that is written otherwise would be read as silent.
 READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
     "results/CLAIMS.md": (_claims, _firsts, _verdicts),
-    "results/GAP_MAP.md": (_map, _pair, _law),
+    "results/GAP_MAP.md": (_map, pair, _law, gap_map),
     "results/PARETO.md": (_pareto,),
     "results/ABLATION.md": (_ablation,),
     "results/STRESS.md": (stress,),
     "results/CATALOGUE.md": (catalogue,),
     "results/WORK_PRECISION.md": (work_precision,),
     "results/ENGINES.md": (engines,),
-    "docs/results.md": (_verdicts,),
+    "docs/results.md": (_verdicts, gap_map),
     "docs/engines.md": (engines_in_words,),
     "docs/verbs.md": (mentions,),
     "docs/jobs/cluster.md": (cluster,),
-    "docs/gap_law.txt": (_law,),
-    "docs/gap_law_more.txt": (_law,),
+    "docs/gap_law.txt": (_law, gap_map),
+    "docs/gap_law_more.txt": (_law, gap_map),
+    "docs/gap_map.txt": (gap_map,),
+    "docs/gap_map_more.txt": (gap_map,),
 }
 CAPTIONS = {"docs/work_precision_*.txt": work_precision_caption}
 NO_NUMBERS = ()  # pages that state none, so that nothing can be read in them

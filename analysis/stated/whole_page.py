@@ -1,6 +1,7 @@
 """Every number of a page with what it is of, whatever the page: a cell of a table by its heads and the names
-of its row, a number in a sentence by its heading and the words around it. So a page that states one thing
-twice states it in the same way, or is told.
+of its row, a number in a sentence by its heading and the words around it. So a number
+that stands on one page twice, with the same words under the same heading, is the same number, or is told.
+What is said in other words, or elsewhere, needs a reader of its own (pages.py).
 """
 
 from __future__ import annotations
