@@ -63,7 +63,7 @@ def forked(words: list[str], cwd: Path, environment: dict[str, str], timeout: fl
             try:
                 code = _child(words, cwd, environment, (nothing, out, err), limits)
             finally:
-                os._exit(code)
+                os._exit(code if isinstance(code, int) else 1)  # whatever happens, the child is no second pytest
         ended = os.pidfd_open(child)
         in_time = bool(select.select([ended], [], [], timeout)[0])
         os.close(ended)
