@@ -21,12 +21,11 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 ConfigError refusal(const fs::path& file, const std::string& found, Replace replace) {
-  return {
-      file.string(), found,
-      replace == Replace::torn
-          ? "another folder of the sweep (--out), or one in which this file is not there"
-          : "another folder, or one with a record of this very config; --replace (in Python replace=True) "
-            "lets the record go with its files"};
+  return {file.string(), found,
+          replace == Replace::torn
+              ? "another folder of the sweep (--out), or one in which this file is not there"
+              : "another folder, or one with a run of this very config; --replace (in Python replace=True) "
+                "lets what is there go, with the files of a record"};
 }
 
 /// What two configs are compared by: neither where files lie nor the number of threads makes another run.
