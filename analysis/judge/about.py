@@ -35,7 +35,9 @@ def _cells(data: dict, path: Path, key: str, topology: Topology) -> np.ndarray:
 def _check_obstacle(one: dict, path: Path, place: str) -> None:
     """What the schema does not say. Errors: UserError."""
     point, axis, radius = one.get("point_m", [0]), one.get("axis", [1]), one.get("radius_m", 0.0)
-    for key, numbers in (("point_m", point), ("axis", axis), ("radius_m", [radius])):
+    if not np.isfinite(axis).all():
+        raise refused(path, f"{place}/axis", axis, "a direction of finite numbers")
+    for key, numbers in (("point_m", point), ("radius_m", [radius])):
         if max(map(abs, numbers)) > MOST_METRES:
             raise refused(path, f"{place}/{key}", one[key], f"at most {MOST_METRES:g} in size")
     if not any(axis):

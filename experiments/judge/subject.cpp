@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -61,13 +62,13 @@ class Keys {
     if (!value || !value->is_string()) throw ConfigError(at(key), value ? shown(*value) : "nothing", allowed);
     return value->get<std::string>();
   }
-  Vec3d vector(const char* key, const Vec3d& absent) {
+  Vec3d vector(const char* key, const Vec3d& absent, double most = most_metres) {
     const json* value = find(key);
     if (!value) return absent;
     if (!value->is_array() || value->size() != 3) throw ConfigError(at(key), shown(*value), "three numbers");
     Vec3d out;
     for (int k = 0; k < 3; ++k)
-      out[k] = number_of((*value)[static_cast<std::size_t>(k)], at(key), -most_metres, most_metres);
+      out[k] = number_of((*value)[static_cast<std::size_t>(k)], at(key), -most, most);
     return out;
   }
   /// Items of a list, none where it is absent: item(value, place).
@@ -144,7 +145,7 @@ void read_obstacles(Keys& keys, Subject& out) {
     audit::AuditObstacle obstacle;
     obstacle.kind = kinds.at(kind);
     obstacle.point = given.vector("point_m", Vec3d::Zero());
-    obstacle.axis = given.vector("axis", Vec3d::UnitZ());
+    obstacle.axis = given.vector("axis", Vec3d::UnitZ(), std::numeric_limits<double>::max());
     const bool round = obstacle.kind != audit::ObstacleKind::plane;
     obstacle.radius = given.number("radius_m", 0.0, most_metres, 0.0);
     obstacle.inside = given.flag("inside");

@@ -25,7 +25,7 @@ def run(program: str, out: Path, *arguments: str, **environment: str) -> dict:
     command = [program, "--progress", "none", "run", *DRAPE, "--out", str(out), *arguments]
     done = subprocess.run(command, capture_output=True, text=True, env=env, cwd=ROOT, timeout=300)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
+    assert "replaced" in done.stderr or done.stderr == ""  # of another kernel, in one folder
     return json.loads((out / "run.json").read_text())
 
 

@@ -53,7 +53,7 @@ def test_explain_says_what_is_of_the_method(program):
 
 @pytest.mark.parametrize("setting, where, allowed", [
     ("/method=ando", "#/method", "one of ando2024, ipc2020"), ("/method=ipc2021", "#/method", "did you mean ipc2020?"),
-    ("/time/duration_s=0", "#/time/duration_s", "a number >= 1e-12 and <= 1e+09 (s)"), ("/time/duration_s=1e9", "#/time/duration_s", "at most 1000000000 steps")])
+    ("/time/duration_s=0", "#/time/duration_s", "a number >= 1e-18 and <= 1e+09 (s)"), ("/time/duration_s=1e9", "#/time/duration_s", "at most 1000000000 steps")])
 def test_what_is_refused(program, setting, where, allowed):
     done = bench(program, "check", BLOCK, "--set", setting)
     assert done.returncode == 2 and BLOCK + where in done.stderr and allowed in done.stderr

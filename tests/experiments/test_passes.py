@@ -9,10 +9,10 @@ from test_cli import BLOCK, bench, write
 PASSES = {"time only": (True, False), "audit only": (False, True), "both": (True, True)}
 
 
-def run(program: str, out: Path, *passes: bool) -> dict:
+def run(program: str, out: Path, *passes: bool, more: tuple[str, ...] = ()) -> dict:
     timed, audited = passes
     settings = ["--set", f"/passes/time={json.dumps(timed)}", "--set", f"/passes/audit={json.dumps(audited)}"]
-    done = bench(program, "run", BLOCK, "--out", out, "--set", "/time/steps=3", *settings)
+    done = bench(program, "run", BLOCK, "--out", out, "--set", "/time/steps=3", *settings, *more)
     assert done.returncode == 0, done.stderr
     return json.loads((out / "run.json").read_text())
 
@@ -46,7 +46,7 @@ def test_a_trace_that_nobody_leaves_is_named_and_an_earlier_one_goes(program, tm
     assert len(trace(tmp_path)) == observed["summary"]["newton_iterations"]
     assert {"item": "trace", "active": True, "reason": "a run is observed"} in observed["plan"]
 
-    record = run(program, tmp_path, *PASSES["time only"])
+    record = run(program, tmp_path, *PASSES["time only"], more=("--replace",))
     assert not (tmp_path / "trace.jsonl").exists()
     assert {"metric": "trace", "reason": "not_requested"} in record["skipped"]
     assert [p["active"] for p in record["plan"] if p["item"] == "trace"] == [False]

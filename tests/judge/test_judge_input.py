@@ -1,5 +1,6 @@
 """`bench judge`: parts of one time, folders of PC2, times, numbers beyond double, faults of files by file and place."""
 
+import json
 import subprocess
 from pathlib import Path
 
@@ -200,10 +201,10 @@ REFUSED = {
     "a have cells of their own": lambda f: [written(f / "a", "obj", CLEAN)[0], "--topology", f / "a" / "frame_000.obj"],
     "nothing.obj: found No such file": lambda f: [written(f / "a", "pc2", CLEAN)[0], "--topology", f / "nothing.obj"],
     f"{ABOUT}obstacles/0/axis": lambda f: with_about(f, obstacles=[{"kind": "plane", "axis": [0, 0, 0]}]),
-    f"{ABOUT}bodies: found \"the cell [0, 1, 3] of `triangles` (one of 1) with vertices of 'left' and of 'right'\"": lambda f: with_about(
-        f, triangles=[[0, 1, 3]], bodies=[{"name": "left", "vertices": 3}, {"name": "right", "vertices": 3}]),
-    f"{ABOUT}bodies: found \"the cell [2, 3] of `segments`": lambda f: with_about(
-        f, segments=[[2, 3]], bodies=[{"name": "left", "vertices": 3}, {"name": "right", "vertices": 3}]),
+    f"{ABOUT}bodies: found \"the cell [6, 7, 8] of `triangles` (one of 1) with vertices of 'left' and of 'right'\"": lambda f: with_about(
+        f, triangles=[[6, 7, 8]], bodies=[{"name": "left", "vertices": 8}, {"name": "right", "vertices": 3}]),
+    f"{ABOUT}bodies: found \"the cell [2, 8] of `segments`": lambda f: with_about(
+        f, segments=[[2, 8]], bodies=[{"name": "left", "vertices": 8}, {"name": "right", "vertices": 3}]),
     f"{ABOUT}obstacles/0/radius_m: is missing": lambda f: with_about(f, obstacles=[{"kind": "sphere"}]),
     f"{ABOUT}obstacles/0/point_m: found [1e+60": lambda f: with_about(f, obstacles=[{"kind": "plane", "point_m": [1e60, 0, 0]}]),
     f"{ABOUT}segments/1: found [0, 99]": lambda f: with_about(f, segments=[[0, 1], [0, 99]]),
@@ -222,11 +223,13 @@ REFUSED = {
 
 @pytest.mark.parametrize("size", [1e-200, 5e-324, 1e200])
 def test_an_axis_of_any_size_is_a_direction(program, tmp_path, size):
-    """A floor at z = 4: the spear of the first frame ends 0.2 above it, that of the second goes through."""
-    path = write_parts(tmp_path, [5.2, 4.5])
+    """A floor at z = -0.5, below the triangle at z = 0: the spear of the first frame is above both, that of the second goes through both."""
+    path = write_parts(tmp_path, [5.2, -4])
     records = [judge(tmp_path, path, *about(tmp_path, obstacles=[{"kind": "plane", "name": "floor", "point_m": [0, 0, -0.5], "axis": axis}]))
                for axis in ([0, 0, 1], [0, 0, size])]
-    assert records[0][0] == records[1][0] and records[0][1]["total"] == records[1][1]["total"]
+    [[code, along], [code_of_another, of_another]] = records
+    assert code == code_of_another == 1 and any("floor" in json.dumps(row) for row in along["findings"])
+    assert {**along["total"], "audit_s": 0} == {**of_another["total"], "audit_s": 0}
 
 
 @pytest.mark.parametrize("words", REFUSED)
