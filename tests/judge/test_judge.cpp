@@ -100,6 +100,14 @@ TEST(Judge, what_is_inside_afterwards_has_passed_whatever_the_path) {
   EXPECT_GT(found.total["passages"], 0);
 }
 
+TEST(Judge, the_depth_is_that_of_what_has_come_in_since_the_first_frame) {
+  const Judged found = judged(cube_and_leaf(), frame(2) + frame(0.5) + frame(0.5) + frame(0.75) + frame(3));
+  EXPECT_EQ(found.total["changed_sides"], 6) << "into the cube, and out of it";
+  EXPECT_NEAR(found.frames[2]["depth_bodies_m"], 0.4, 1e-14) << "it stays where it is";
+  EXPECT_NEAR(found.frames[3]["depth_bodies_m"], 0.25, 1e-14);
+  EXPECT_EQ(found.frames[4]["depth_bodies_m"], 0.0);
+}
+
 TEST(Judge, a_frame_on_the_surface_hides_no_passage) {
   const Judged found = judged(cube_and_leaf(), frame(2) + frame(1) + frame(0.5));
   EXPECT_EQ(found.total["changed_sides"], 3);

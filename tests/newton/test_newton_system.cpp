@@ -144,6 +144,26 @@ TEST(NewtonSystem, stages_hold_the_terms_that_they_are_named_after) {
   EXPECT_EQ(rest.system.add_tikhonov(1e-12, 0.5), 0.5);
 }
 
+/// A shift is one of the matrix that is there: the next one has none, and its factor proves a minimum again.
+TEST(NewtonSystem, a_shift_ends_with_its_matrix) {
+  const Scene scene = test::particle_over_plane(0.2, 0.5 * d_hat, d_hat);
+  Method method = test::fixed_method("quadratic", 7);
+  method.hessian_mode = HessianMode::projected_full;
+  for (const HessianChoice& choice : hessian_choices()) method.step_hessian[choice.name] = StepHessian::blend;
+  AtRest rest(scene, std::move(method), scene.x0);
+  Positions dx;
+  const auto proven = [&](double shift) {
+    rest.system.assemble();
+    if (shift > 0) rest.system.add_tikhonov(0, shift);
+    EXPECT_EQ(test::solve(rest.system, scene.x0, dx).linear.status, LinearStatus::ok);
+    return rest.system.check_end();
+  };
+  EXPECT_EQ(proven(0).proof, EndProof::factor);
+  EXPECT_EQ(proven(0).factorizations, 0);
+  EXPECT_GT(proven(0.5).factorizations, 0) << "the factor that is there is of another matrix";
+  EXPECT_EQ(proven(0).factorizations, 0);
+}
+
 TEST(NewtonSystem, without_the_limit_a_stage_has_only_elasticity_and_inertia) {
   const Scene scene = limited_triangle();
   Method method = test::fixed_method("cubic", 1);

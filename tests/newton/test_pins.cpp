@@ -147,6 +147,43 @@ TEST(Pins, a_step_converges_at_its_pose_only) {
   EXPECT_GT(simulation.history().x(2, 9), 0.03);
 }
 
+/// A plate that rises under a particle over one of its corners. The bound of each vertex lets the other corners go all the way,
+/// and that one not: all of them go as far as that one.
+TEST(Pins, that_contact_holds_back_go_all_the_same_part_of_their_way) {
+  const double rise = 0.03, gap = 0.01;
+  for (const StepBoundRule rule :
+       {StepBoundRule::planar_truncation, StepBoundRule::planar_balanced, StepBoundRule::per_vertex}) {
+    Scene scene;
+    const auto [vertices, triangles] = test::grid(2, 2, 1.0);
+    test::add_body(scene, "plate", vertices, triangles, 0.001, true);
+    test::add_body(scene, "particle", {Vec3d(0.1, 0.1, gap)}, {}, 0.001);
+    Method method = test::fixed_method("log", 50);
+    method.contact_options.step_bound = rule;
+    NewtonSystem system(scene, method);
+    Prediction at_rest;
+    at_rest.x_tilde = scene.x0;
+    system.begin_step(scene.x0, at_rest, 0.01, 1);
+    system.assemble();
+    Positions target = scene.x0, dx;
+    for (const Pin& pin : scene.pins) target(2, pin.vertex) += rise;
+    ASSERT_EQ(test::solve(system, target, dx).linear.status, LinearStatus::ok);
+    system.prepare_motion(MotionEnd::on_target, true);
+    IterationReport report;
+    ASSERT_LT(system.bound_motion(report), 1);
+    const auto motion = system.truncate_motion(report);
+    ASSERT_TRUE(motion.has_value());
+    EXPECT_EQ(motion->bound, 1);
+    EXPECT_GT(motion->of_pins, 0);
+    ASSERT_LT(motion->of_pins * rise, gap) << "or nothing is held back";
+    ASSERT_TRUE(system.try_feasible(1));
+    system.accept();
+    const Positions x = system.view().x();
+    for (const Pin& pin : scene.pins)
+      EXPECT_NEAR(x(2, pin.vertex) - scene.x0(2, pin.vertex), motion->of_pins * rise, 1e-15)
+          << to_string(rule) << ", vertex " << pin.vertex;
+  }
+}
+
 /// x + (pose - x) is not always the pose: a full step puts a driven vertex on it all the same.
 TEST(Pins, one_full_step_reaches_a_pose_that_a_sum_would_miss) {
   Scene scene;
