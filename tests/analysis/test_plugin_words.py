@@ -89,5 +89,5 @@ def test_a_shape_of_a_plugin_has_no_kernels_and_is_refused_on_a_card(program, bu
     done = subprocess.run(on_host, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "#/strain_limit/shape: found inverse" in done.stderr, done.stderr
     for words in ([*on_host, "--set", "/strain_limit/enabled=false"], [*run, "--set", '/device="cpu"']):
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        done = subprocess.run([*words, "--replace"], capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr

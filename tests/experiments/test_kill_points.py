@@ -43,15 +43,15 @@ def kill_everywhere(program: str, shim: Path, config: Path, tmp_path: Path, ever
     words = [config, "--set", f"/output/checkpoint_every={every}"]
     assert run(program, shim, *words, "--out", tmp_path / "first").returncode == 0  # checks the build, which stays
     assert run(program, shim, *words, "--out", tmp_path / "whole", count=tmp_path / "count").returncode == 0
-    calls = int((tmp_path / "count").read_text())
+    calls, replaced = int((tmp_path / "count").read_text()), ["--replace"] if earlier else []
     assert calls > 30
     for n in range(1, calls + 20, stride):
         folder = tmp_path / f"killed-{n}"
         before = b""
-        if earlier:
+        if earlier:  # the record of another config
             assert run(program, shim, BLOCK, "--out", folder, "--set", "/time/steps=2", "--set", "/output/frames_every=1").returncode == 0
             before = (folder / "run.json").read_bytes()
-        done = run(program, shim, *words, "--out", folder, at=n)
+        done = run(program, shim, *words, "--out", folder, *replaced, at=n)
         if done.returncode == 0:
             assert n >= calls  # an earlier record takes calls of its own
             return
@@ -92,7 +92,7 @@ def test_an_earlier_record_is_whole_until_the_new_run_is_over(program, shim, tmp
             stayed += (folder / "run.json").read_bytes() == before
         else:
             assert pending, n  # the new run is over, and every file of it is on the disk
-        assert run(program, shim, *words, "--out", folder, "--resume").returncode == 0, n
+        assert run(program, shim, *words, "--out", folder, "--resume", "--replace").returncode == 0, n
         assert is_whole(folder) and (folder / "run.json").read_bytes() != before, n
         names = [p.name for p in folder.rglob("*")]
         assert not [name for name in names if ".part" in name or ".tmp" in name or "checkpoint" in name], (n, names)

@@ -10,7 +10,7 @@ import pytest
 from analysis import errors, whole_file
 from analysis.front import verbs
 from analysis.places import ROOT
-from tests.bench_call import at_most, bench, python
+from tests.bench_call import bench, python
 
 TRIANGLE = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
             "$Elements\n1\n1 2 0 1 2 3\n$EndElements\n")
@@ -84,7 +84,7 @@ def test_a_verb_names_the_file_and_leaves_what_was_there(program, inputs, tmp_pa
     if file.startswith("out.") and verb != "scenes":  # which replaces nothing
         (here / file).write_text("before")
     before = contents(here)
-    done = bench(verb, *more, cwd=here, program=program, environment={"BARRIERBENCH_CACHE": "cache"}, **at_most(size))
+    done = bench(verb, *more, cwd=here, program=program, environment={"BARRIERBENCH_CACHE": "cache"}, at_most=size)
     said = done.stderr.splitlines()[-1]
     assert done.returncode == 75 and said.startswith(f"bench {verb}: ") and "File too large" in done.stderr, done.stderr
     assert file in done.stderr and (".tmp." not in said or verb in PLANNED), done.stderr
@@ -147,7 +147,7 @@ def test_every_writer_names_its_file_and_leaves_none(tmp_path):
     for name in ("file_4.png", "file_5.png", "file_5.txt", "file_6.mtx"):
         (tmp_path / "source" / name).write_text("x" * 100)
     (tmp_path / "file_8").write_text("before\n")
-    done = python(WRITERS, tmp_path, **at_most(20))
+    done = python(WRITERS, tmp_path, at_most=20)
     names = ["file_0", "file_1", "file_2.png", "file_3", "file_4.png", "file_5.png", "file_6.mtx", "file_7/frames.npz", "file_8"]
     assert done.stdout.splitlines() == [f"{name} File too large" for name in names], done.stderr
     assert (tmp_path / "file_8").read_text() == "before\n"
@@ -173,11 +173,11 @@ def test_the_codes_are_those_of_the_program():
 
 def test_a_full_disk_without_a_folder_for_temporary_files_is_said_as_such(program, tmp_path):
     (tmp_path / "a.json").write_text("{}")
-    done = bench("render", "a.json", cwd=tmp_path, program=program, **at_most(0))
+    done = bench("render", "a.json", cwd=tmp_path, program=program, at_most=0)
     said = done.stderr.splitlines()[-1]  # matplotlib, too, says that it cannot write
     assert done.returncode == 75 and re.fullmatch(r"bench render: a temporary file \([^)]*\): File too large", said), done.stderr
     unnamed = "from analysis import errors; print(errors.text_of(OSError(28, 'No space left on device')))"
-    done = python(unnamed, tmp_path, **at_most(0))
+    done = python(unnamed, tmp_path, at_most=0)
     assert done.returncode == 0 and re.fullmatch(r"a temporary file \([^)]*\) or a stream: No space left on device\n", done.stdout), done.stderr
 
 
