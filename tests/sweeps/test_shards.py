@@ -82,6 +82,7 @@ def test_a_record_that_cannot_be_read_is_not_over_and_one_that_was_cut_off_is_ma
     assert bench(program, "plan", file, "--out", out).stdout.splitlines()[2].split()[3] != "there"
     if not cut_off:  # somebody else's file
         refused(bench(program, "sweep", file, "--out", out), "run.json", "that is no record of a run", "another folder of the sweep")
+        assert (out / planned(program, file)[1] / "run.json").read_text() == left
         return
     assert bench(program, "sweep", file, "--out", out).returncode == 0
     assert "2 over (2 ok)" in verb("status", out).stdout and verb("status", out).returncode == 0
