@@ -1,5 +1,5 @@
 # Script: reads every #include "..." line of the rooms and compares it with the rooms that are declared (bb_room). An error for a file that includes a room its own room does not name, for a room that is named and not
-# included, and for rooms that need each other in a circle.
+# included, for rooms that need each other in a circle, and for a room of core that includes a file from outside core.
 #   cmake -DROOMS=build/release/rooms.txt -DSOURCE_DIR=$PWD [-DPRINT=ON] -P cmake/RoomCheck.cmake
 # A line of ROOMS: name|folder|rooms it names|rooms it is linked with, separated by commas. PRINT: the graph, lowest room first. Behind a room
 # stand those that no #include of its own files shows: "linked", where its library is linked with another room's that it does not name (what
@@ -72,6 +72,9 @@ foreach(name IN LISTS names)
       math(EXPR n_includes "${n_includes} + 1")
       if(room STREQUAL "" AND included MATCHES "^(core|barriers|experiments|python|tests|\\.\\.?)/")
         string(APPEND faults "\n  ${file}: includes ${included}, which is in no room")
+      endif()
+      if(file MATCHES "^core/" AND included MATCHES "^(barriers|experiments|python|tests)/")
+        string(APPEND faults "\n  ${file}: includes ${included}; a file of core includes core alone")
       endif()
       if(room STREQUAL "" OR room STREQUAL name)
         continue()

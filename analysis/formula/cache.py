@@ -20,9 +20,9 @@ from .grammar import Formula, FormulaError
 
 HEADERS = (
     "barriers/shapes/builtin_shape.hpp",
-    "barriers/shapes/gap_potential.hpp",
+    "core/barrier/shape_potential.hpp",
     "barriers/shapes/lane_batch.hpp",
-    "barriers/shapes/normalized_gap.hpp",
+    "core/barrier/normalized_gap.hpp",
     "barriers/shapes/shape_family.hpp",
     "core/barrier/shape.hpp",
     "core/barrier/stiffness_sums.hpp",

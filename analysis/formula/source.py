@@ -1,4 +1,4 @@
-"""C++ of a formula: a struct that is made like a built-in shape, from u, e, l (barriers/shapes/normalized_gap.hpp), with
+"""C++ of a formula: a struct that is made like a built-in shape, from u, e, l (core/barrier/normalized_gap.hpp), with
 common subexpressions computed once; in a plugin (core/plugin/barrierbench_plugin.h), and in a kernel for a card.
 """
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "barriers/shapes/gap_potential.hpp"
 #include "barriers/shapes/shape_family.hpp"
 #include "core/barrier/shape.hpp"
+#include "core/barrier/shape_potential.hpp"
 
 namespace bb {
 
@@ -82,6 +82,7 @@ Shape member_of(Shape shape, std::string_view name, double exponent) {
   shape.batch_double = &exponent_batch<S, double>;
   shape.batch_float = &exponent_batch<S, float>;
   shape.self = std::bit_cast<void*>(exponent);
+  shape.launches = nullptr;  // kernels are those of the usual exponent
   return shape;
 }
 

@@ -4,7 +4,7 @@
 // Source: Ando 2024, "A Cubic Barrier with Elasticity-Inclusive Dynamic Stiffness".
 #pragma once
 
-#include "barriers/shapes/gap_potential.hpp"
+#include "core/barrier/shape_potential.hpp"
 
 namespace bb::shapes {
 

@@ -8,7 +8,7 @@
 // Source: ours, derived in this project (docs/design.md, Shapes and arguments).
 #pragma once
 
-#include "barriers/shapes/normalized_gap.hpp"
+#include "core/barrier/normalized_gap.hpp"
 
 namespace bb::shapes {
 

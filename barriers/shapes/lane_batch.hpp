@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "barriers/shapes/normalized_gap.hpp"
+#include "core/barrier/normalized_gap.hpp"
 #include "core/math/lanes_log.hpp"
 
 namespace bb {

@@ -4,7 +4,7 @@
 // Source: Li et al. 2020 (IPC), there on the squared gap; on the gap in Li et al. 2021 (C-IPC).
 #pragma once
 
-#include "barriers/shapes/normalized_gap.hpp"
+#include "core/barrier/normalized_gap.hpp"
 
 namespace bb::shapes {
 

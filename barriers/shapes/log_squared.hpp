@@ -5,7 +5,7 @@
 // Source: Huang et al. 2024 (GIPC), there on the squared gap.
 #pragma once
 
-#include "barriers/shapes/normalized_gap.hpp"
+#include "core/barrier/normalized_gap.hpp"
 
 namespace bb::shapes {
 

@@ -4,7 +4,7 @@
 // Source: Ando 2024 (cubic barrier), the quadratic it is compared with, in its corrected scale.
 #pragma once
 
-#include "barriers/shapes/gap_potential.hpp"
+#include "core/barrier/shape_potential.hpp"
 
 namespace bb::shapes {
 

@@ -6,7 +6,7 @@
 // Source: Chen et al. 2025 (offset geometric contact), activation function; twice the scale of IPC Toolkit's.
 #pragma once
 
-#include "barriers/shapes/normalized_gap.hpp"
+#include "core/barrier/normalized_gap.hpp"
 
 namespace bb::shapes {
 

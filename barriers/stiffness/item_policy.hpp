@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "barriers/stiffness/scaled_policy.hpp"
+#include "barriers/stiffness/policy_launches.hpp"
+#include "core/barrier/scaled_policy.hpp"
 #include "core/barrier/stiffness_policy.hpp"
-#include "core/math/error.hpp"
 
 namespace bb {
 
@@ -17,12 +17,8 @@ namespace bb {
 template <class P>
 class ItemPolicy final : public StiffnessPolicy {
  public:
-  static constexpr bool of_contacts = requires(const P& p, ContactSums<double> s) {
-    p.contact_kappa(s, 1.0, 1.0, StiffnessTime{});
-  };
-  static constexpr bool of_elements = requires(const P& p, ElementSums<double> s) {
-    p.element_parts(s, 1.0, StiffnessTime{});
-  };
+  using Values = P;
+  static constexpr bool of_contacts = ServesContacts<P>, of_elements = ServesLimits<P>;
 
   ItemPolicy(std::string name, const P& values, double multiplier)
       : name_(std::move(name)), scaled_{values, multiplier} {}
@@ -50,6 +46,11 @@ class ItemPolicy final : public StiffnessPolicy {
       const double kappa = scaled_.multiplier * scaled_.values.uniform_kappa();
       return {kappa, kappa, 0, false};
     }
+  }
+
+  const PolicyLaunches* launches() const override {
+    static const PolicyLaunches all = policy_launches<ItemPolicy>();
+    return &all;
   }
 
   void fill(const StiffnessBatch& rows, double* kappa) const override {
@@ -93,30 +94,6 @@ class ItemPolicy final : public StiffnessPolicy {
 
   std::string name_;
   ScaledPolicy<P> scaled_;
-};
-
-/// Policies that have kernels, as policy_list.hpp names them.
-template <class... P>
-struct PolicyStructs {
-  /// call(values) with the ScaledPolicy of a policy that is one of them; false where it is none.
-  template <class Call>
-  static bool with(const StiffnessPolicy& policy, const Call& call) {
-    return (with_struct<P>(policy, call) || ...);
-  }
-  /// Errors: ConfigError at `where` for a policy that is none of them: one of a plugin.
-  static void require(const StiffnessPolicy& policy, const std::string& where) {
-    if (with(policy, [](const auto&) {})) return;
-    throw ConfigError(where, std::string(policy.name()),
-                      "a policy with a device form; this one runs with device cpu only");
-  }
-
- private:
-  template <class Q, class Call>
-  static bool with_struct(const StiffnessPolicy& policy, const Call& call) {
-    const auto* of = dynamic_cast<const ItemPolicy<Q>*>(&policy);
-    if (of) call(of->scaled());
-    return of != nullptr;
-  }
 };
 
 }  // namespace bb

@@ -25,6 +25,8 @@ struct ShapeTerms {
 template <class T>
 using ShapeBatch = void (*)(void* self, std::size_t n, const T* d, const T* d_hat, T* b, T* db, T* d2b);
 
+struct ShapeLaunches;  // launches.hpp
+
 /// A shape as the registry hands it out; built-ins and plugins look the same. `self` is null for built-ins.
 struct Shape {
   std::string name;
@@ -38,6 +40,7 @@ struct Shape {
   ShapeBatch<double> potential_double = nullptr;
   ShapeBatch<float> potential_float = nullptr;
   void* self = nullptr;
+  const ShapeLaunches* launches = nullptr;  // of a shape that is a kernel of the program
   /// Of a shape that is no kernel of the program: its kernel (core/resident/contact/given_shape.hpp), made when it is
   /// asked for and there as long as the process. layout: given_shape_layout of the program. Null: there is none.
   /// Errors: ConfigError.

@@ -66,6 +66,7 @@ struct StiffnessGlobals {
 BB_HD constexpr bool closes(double gap, double gap_before) { return gap < gap_before; }
 
 class GapStiffness;
+struct PolicyLaunches;  // launches.hpp
 
 /// A stiffness policy of one run, of its contacts or of its strain limit. Not thread-safe: one object a run, called by the step driver only.
 class StiffnessPolicy {
@@ -106,6 +107,8 @@ class StiffnessPolicy {
     double park = 0;                 // m, ccd_park times the row's d_hat
     bool closing() const { return closes(gap, gap_before); }
   };
+  /// Kernels that do what fill and fill_elements do; null: there are none.
+  virtual const PolicyLaunches* launches() const { return nullptr; }
   /// Whether end_step has to be called: listing the pairs costs a sort a step.
   virtual bool adapts() const { return false; }
   /// Called after each step with all such pairs, by identity: lets a policy adapt between steps.

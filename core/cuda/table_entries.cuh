@@ -17,7 +17,7 @@ DeviceKernel blocks_kernel() {
 
 template <class F>
 void add_each(KernelTable& table) {
-  table.add(typeid(F), each_kernel<F>());
+  if constexpr (!std::is_same_v<F, exec::NoKernel>) table.add(typeid(F), each_kernel<F>());
 }
 template <class F>
 void add_blocks(KernelTable& table) {

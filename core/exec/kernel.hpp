@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "core/math/types.hpp"
 
@@ -17,6 +18,11 @@ namespace bb::exec {
 using Index = std::int64_t;
 using Key = std::uint64_t;
 constexpr int block_threads = 256;
+
+/// In a list of kernels: F where the condition holds, else a line that names no kernel.
+struct NoKernel {};
+template <bool condition, class F>
+using KernelWhere = std::conditional_t<condition, F, NoKernel>;
 
 /// One value a lane, on the host.
 template <class T, int W>

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "barriers/stiffness/registry.hpp"
-#include "barriers/stiffness/scaled_policy.hpp"
+#include "core/barrier/scaled_policy.hpp"
 #include "core/math/error.hpp"
 #include "core/math/types.hpp"
 

@@ -1,8 +1,8 @@
 // Every barrier shape of the registry.
 #pragma once
 
-#include "barriers/shapes/gap_potential.hpp"
-#include "barriers/shapes/shape_list.hpp"
+#include "core/barrier/shape_potential.hpp"
+#include "kernel_types.hpp"
 #include "tests/device_check/slots.hpp"
 
 namespace bb::device_check {

@@ -1,4 +1,4 @@
-"""What the build refuses: an include of a room that is not named, a room named for nothing, a circle."""
+"""What the build refuses: an include of a room that is not named, a room named for nothing, a circle, a file of core that includes one from outside."""
 import os
 import shutil
 import subprocess
@@ -38,7 +38,9 @@ def test_a_declared_include_passes_and_the_graph_is_printed(tmp_path):
     ("low|core/low|-\nhigh|core/high|-\n", LOW | {"core/high/list.inc": '#include "core/low/a.hpp"\n'},
      ["core/high/list.inc", "'low'"]),
     ("low|core/low|-\nnone|core/none|-\n", HIGH | LOW, ["core/none", "no files"]),
-], ids=["undeclared", "unused", "circle", "list", "empty"])
+    ("log|barriers|-\nhigh|core/high|log\n", {"barriers/log.hpp": "", "core/high/b.cpp": '#include "barriers/log.hpp"\n'},
+     ["core/high/b.cpp: includes barriers/log.hpp", "core alone"]),
+], ids=["undeclared", "unused", "circle", "list", "empty", "core"])
 def test_what_is_not_declared_is_refused(tmp_path, rooms, files, words):
     done = check(tmp_path, rooms, files)
     assert done.returncode != 0

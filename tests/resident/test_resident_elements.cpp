@@ -208,7 +208,7 @@ TEST(ResidentElements, RefuseWhatHasNoKernel) {
   const Scene scene = cloth_scene("arap", false, 3);
   test::TestedExecutor executor;
   TermOptions options = element_options();
-  options.limit.shape.name = "mine";
+  options.limit.shape.name = "mine", options.limit.shape.launches = nullptr;
   try {
     const OnExecutor resident(executor, scene, options);
     FAIL();

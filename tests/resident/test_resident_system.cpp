@@ -286,7 +286,9 @@ TEST(ResidentSystem, RefusesWhatHasNoDeviceForm) {
   EXPECT_EQ(message([](Method&) {}), "nothing");
   EXPECT_NE(message([](Method& m) { m.linear = {}; }).find("pcg_resident"), std::string::npos);
   // a shape without a kernel runs where the executor is the processor
-  EXPECT_EQ(message([](Method& m) { m.contact.shape.name = "of a plugin"; }), "nothing");
+  EXPECT_EQ(
+      message([](Method& m) { m.contact.shape.name = "of a plugin", m.contact.shape.launches = nullptr; }),
+      "nothing");
 }
 
 /// Steps of sheets between two planes, on the CPU and resident: the same word for the end, from both sides of it.

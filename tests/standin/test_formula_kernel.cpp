@@ -61,7 +61,7 @@ class FormulaKernel : public testing::TestWithParam<Argument> {
 #endif
     device = std::make_unique<cuda::DeviceExecutor>();
     barrier = {sample_shape(), GetParam()};
-    barrier.shape.name = "formula:" + std::string(sample_formula);
+    barrier.shape.name = "formula:" + std::string(sample_formula), barrier.shape.launches = nullptr;
     barrier.shape.device_code = of_the_sample;
   }
   std::unique_ptr<cuda::DeviceExecutor> device;
@@ -178,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(Gap, RefusedCode, testing::Values(Argument::gap));
 
 TEST(ResidentBarrier, RefusesAShapeThatHasNoKernelAndBringsNone) {
   BarrierFunction barrier{require_shape("cubic")};
-  barrier.shape.name = "from_a_plugin";
+  barrier.shape.name = "from_a_plugin", barrier.shape.launches = nullptr;
   EXPECT_THROW(ResidentBarrier(barrier, false), ConfigError);
   barrier.shape.device_code = of_the_sample;
   EXPECT_NO_THROW(ResidentBarrier(barrier, false));

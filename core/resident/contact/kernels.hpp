@@ -1,8 +1,6 @@
 // Every kernel of the room, for what instantiates them; their names are in kernels.inc.
 #pragma once
 
-#include "barriers/shapes/shape_list.hpp"
-#include "barriers/stiffness/policy_list.hpp"
 #include "core/resident/contact/bound_kernels.hpp"
 #include "core/resident/contact/candidate_kernels.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"

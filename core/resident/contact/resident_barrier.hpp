@@ -20,9 +20,8 @@ class ResidentBarrier {
   void prepare(exec::Executor& executor) const;
 
  private:
-  using Launch = void (*)(exec::Executor&, const RowView&, Argument);
-  Launch launch_ = nullptr;                  // null: by the calls of shape_, or
-  const exec::KernelInfo* given_ = nullptr;  // by its device code
+  bool potential_;
+  const exec::KernelInfo* given_ = nullptr;  // of a shape without launches: its device code; null: its calls
   Argument argument_;
   Shape shape_;
 };

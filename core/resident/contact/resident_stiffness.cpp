@@ -1,12 +1,13 @@
 #include "core/resident/contact/resident_stiffness.hpp"
 
-#include "barriers/stiffness/item_policy.hpp"
-#include "barriers/stiffness/policy_list.hpp"
+#include "core/barrier/launches.hpp"
+#include "core/math/error.hpp"
 
 namespace bb::resident {
 
 void require_kernel(const StiffnessPolicy& policy, const std::string& where) {
-  if (!policy.uniform()) ContactPolicies::require(policy, where);
+  if (policy.uniform() || (policy.launches() && policy.launches()->rows)) return;
+  throw ConfigError(where, std::string(policy.name()), host_policy_words);
 }
 
 ResidentStiffness::ResidentStiffness(exec::Executor& executor, const StiffnessPolicy& policy,
@@ -30,10 +31,9 @@ KnownPairs ResidentStiffness::memory() const {
 
 void ResidentStiffness::compute(ResidentRows& rows, const std::uint8_t* missing, bool at_d_hat,
                                 const MatrixPart& elastic) {
-  ContactPolicies::with(policy_, [&]<class P>(const ScaledPolicy<P>& policy) {
-    executor_.each(rows.size(), RowKappa<P>{rows.view(), missing, policy, policy_.needs_hessian(), time_,
-                                            at_d_hat, mass_.data(), elastic});
-  });
+  policy_.launches()->rows(
+      executor_, policy_,
+      {rows.view(), missing, policy_.needs_hessian(), time_, at_d_hat, mass_.data(), elastic});
 }
 
 void ResidentStiffness::recall_and_compute(ResidentRows& rows, const KnownPairs& known, bool at_d_hat,

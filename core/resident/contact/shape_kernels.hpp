@@ -1,8 +1,8 @@
 // Barrier shapes on rows: one kernel a shape of the registry, a second one where kappa depends on the gap.
 #pragma once
 
-#include "barriers/shapes/gap_potential.hpp"
 #include "core/barrier/shape.hpp"
+#include "core/barrier/shape_potential.hpp"
 #include "core/barrier/squared_gap.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 

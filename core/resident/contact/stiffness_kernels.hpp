@@ -2,25 +2,28 @@
 // kappa already.
 #pragma once
 
-#include "barriers/stiffness/scaled_policy.hpp"
 #include "core/barrier/relative_change.hpp"
+#include "core/barrier/scaled_policy.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 #include "core/resident/linear/sub_matrix.hpp"
 
 namespace bb::resident {
 
-/// kappa of rows by a policy of contacts, P a struct of barriers/stiffness.
-template <class P>
-struct RowKappa {
+struct RowKappaInputs {
   RowView rows;
   const std::uint8_t* missing;  // only rows marked here; null: all
-  ScaledPolicy<P> policy;
   bool with_hessian;
   StiffnessTime time;
   bool at_d_hat;       // the gap is d_hat
   const double* mass;  // [n_vertices] kg
   MatrixPart elastic;
+};
+
+/// kappa of rows by a policy of contacts, P its struct of values.
+template <class P>
+struct RowKappa : RowKappaInputs {
+  ScaledPolicy<P> policy;
 
   BB_HD void operator()(Index r) const {
     if (missing && missing[r] == 0) return;

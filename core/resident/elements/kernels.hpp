@@ -1,8 +1,6 @@
 // All kernels of this room.
 #pragma once
 
-#include "barriers/shapes/shape_list.hpp"
-#include "barriers/stiffness/policy_list.hpp"
 #include "core/resident/elements/cloth_spring_kernels.hpp"
 #include "core/resident/elements/element_kernels.hpp"
 #include "core/resident/elements/family_kernels.hpp"

@@ -4,10 +4,10 @@
 
 #include <type_traits>
 
-#include "barriers/shapes/gap_potential.hpp"
-#include "barriers/stiffness/scaled_policy.hpp"
 #include "core/barrier/barrier_row.hpp"
 #include "core/barrier/relative_change.hpp"
+#include "core/barrier/scaled_policy.hpp"
+#include "core/barrier/shape_potential.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/energy/strain_stiffness.hpp"
 #include "core/resident/elements/family_kernels.hpp"
@@ -114,6 +114,13 @@ struct LimitShape {
   }
 };
 
+/// Where kappa is known: the state x is measured, with its energies.
+struct MeasureAt {
+  const double* x;
+  double* energy;
+  Key* beyond;
+};
+
 /// Both, and energies and the first element at or beyond its limit, or without a number: of a state whose kappa is known.
 template <int R, int N, class S>
 struct MeasureLimit {
@@ -133,11 +140,9 @@ struct MeasureLimit {
   }
 };
 
-/// kappa_e at the measured pseudo-gaps by a policy of strain limits, P a struct of barriers/stiffness.
-template <int N, class P>
-struct ElementKappa {
+template <int N>
+struct ElementKappaInputs {
   LimitColumns<N> limit;
-  ScaledPolicy<P> policy;
   bool with_hessian;
   StiffnessTime time;
   const double* x_n;           // [3 n_vertices] m, start of the step
@@ -146,20 +151,29 @@ struct ElementKappa {
   MatrixPart elastic;          // read where the policy needs it
   KappaParts* parts;           // [n] J, written where kappa has a potential; else null
   double* before;              // [n] J, kappa before this refresh; null where the policy is uniform
+};
+
+/// kappa_e at the measured pseudo-gaps by a policy of strain limits, P its struct of values.
+template <int N, class P>
+struct ElementKappa {
+  ElementKappaInputs<N> of;
+  ScaledPolicy<P> policy;
   BB_HD void operator()(Index e) const {
+    const LimitColumns<N>& limit = of.limit;
     const ElementSums<double> sums = sums_of(e);
-    if (before) before[e] = limit.kappa[e];
-    if (parts) {
-      parts[e] = policy.element_parts(sums, limit.band_width[e], time);
+    if (of.before) of.before[e] = limit.kappa[e];
+    if (of.parts) {
+      of.parts[e] = policy.element_parts(sums, limit.band_width[e], of.time);
       limit.kappa[e] = 1;
       return;
     }
-    limit.kappa[e] = policy.element_kappa(sums, limit.smallest_gap(e), limit.band_width[e], time);
+    limit.kappa[e] = policy.element_kappa(sums, limit.smallest_gap(e), limit.band_width[e], of.time);
   }
 
  private:
   /// A policy of one stiffness reads the area or volume alone.
   BB_HD ElementSums<double> sums_of(Index e) const {
+    const LimitColumns<N>& limit = of.limit;
     if constexpr (requires { policy.values.uniform_kappa(); }) {
       ElementSums<double> out;
       out.measure = limit.rest.measure[e];
@@ -167,18 +181,18 @@ struct ElementKappa {
     } else {
       Vec3d p[N + 1];
       Vec<double, N + 1> mass;
-      limit.points(x_n, e, p);
-      for (int k = 0; k <= N; ++k) mass[k] = vertex_mass[limit.vertex(k, e)];
+      limit.points(of.x_n, e, p);
+      for (int k = 0; k <= N; ++k) mass[k] = of.vertex_mass[limit.vertex(k, e)];
       return element_sums<double>(
-          p, mass, element_mass ? element_mass[e] : 0.0, limit.rest.measure[e],
-          [&] { return elastic_block(e); }, with_hessian);
+          p, mass, of.element_mass ? of.element_mass[e] : 0.0, limit.rest.measure[e],
+          [&] { return elastic_block(e); }, of.with_hessian);
     }
   }
   BB_HD Mat<double, 3 * (N + 1), 3 * (N + 1)> elastic_block(Index e) const {
     constexpr int size = 3 * (N + 1);
     int vertices[N + 1];
-    for (int k = 0; k <= N; ++k) vertices[k] = limit.vertex(k, e);
-    const SubMatrix h(elastic, vertices, N + 1);
+    for (int k = 0; k <= N; ++k) vertices[k] = of.limit.vertex(k, e);
+    const SubMatrix h(of.elastic, vertices, N + 1);
     Mat<double, size, size> out;
     for (int j = 0; j < size; ++j) {
       for (int i = 0; i < size; ++i) out(i, j) = h(i, j);

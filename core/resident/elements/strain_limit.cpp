@@ -3,17 +3,25 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "barriers/stiffness/item_policy.hpp"
-#include "barriers/stiffness/policy_list.hpp"
+#include "core/barrier/launches.hpp"
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/elements/element_columns.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/limit_forms.hpp"
-#include "core/resident/elements/limit_launches.hpp"
+#include "core/resident/elements/limit_kernels.hpp"
 
 namespace bb::resident {
 namespace {
+
+template <int R, int N>
+const LimitLaunches<N>& launches_of(const ShapeLaunches& all) {
+  if constexpr (N == 3) {
+    return all.tetrahedra;
+  } else {
+    return R == 2 ? all.planar_triangles : all.triangles;
+  }
+}
 
 template <int N>
 using LimitPartOf = std::conditional_t<N == 2, StrainLimitPart, SolidLimitPart>;
@@ -97,7 +105,7 @@ class LimitTerm final : public TermOf<Limit<R, N>> {
   void say_state(const Numbers& found, Out& out) const;
   void measure_stretch(const Column& x) { executor_.each(size(), MeasureStretch<R, N>{elements_, x.data()}); }
   /// Barrier terms at the measured pseudo-gaps.
-  void fill_barrier() { launches_.shape(executor_, elements_, options_.limit, parts()); }
+  void fill_barrier() { launches_.terms(executor_, elements_, options_.limit, parts()); }
   void measure_iterate(const Column& x) {
     if (measured_ != State::iterate) measure(x, Base::energies(), State::iterate);
   }
@@ -111,7 +119,7 @@ class LimitTerm final : public TermOf<Limit<R, N>> {
 
   const TermOptions& options_;
   const Buffer<double>& vertex_mass_;
-  ShapeLaunches<N> launches_;
+  const LimitLaunches<N>& launches_;
   const bool adds_;  // triangles have said their part of what is reported before
   ElementColumns<LimitedRest<N>> columns_;
   Buffer<double> band_, mass_, state_, kappa_, before_;
@@ -133,7 +141,7 @@ LimitTerm<R, N>::LimitTerm(const ResidentInputs& inputs, const Batch& batch, con
     : Base(inputs, "strain_limit", batch.vertices(), TermGroup::limit, Phase::strain_limit),
       options_(inputs.options),
       vertex_mass_(inputs.mass),
-      launches_(shape_kernels<R, N>(options_.limit)),
+      launches_(launches_of<R, N>(*options_.limit.shape.launches)),
       adds_(of_solids && !inputs.scene.limit.triangles.empty()),
       columns_(executor_, of_solids ? "solid limit" : "limit", batch.vertices(), batch.rests()),
       band_(executor_, "limit bands"),
@@ -197,11 +205,21 @@ void LimitTerm<R, N>::refresh(const Column& x, const MatrixPart& elastic) {
 
 template <int R, int N>
 void LimitTerm<R, N>::fill_kappa(const MatrixPart& elastic) {
-  LimitPolicies::with(policy(), [&]<class P>(const ScaledPolicy<P>& values) {
-    executor_.each(size(),
-                   ElementKappa<N, P>{elements_, values, policy().needs_hessian(), time_, x_n_,
-                                      vertex_mass_.data(), mass_.data(), elastic, parts(), before_.data()});
-  });
+  const ElementKappaInputs<N> of{elements_,
+                                 policy().needs_hessian(),
+                                 time_,
+                                 x_n_,
+                                 vertex_mass_.data(),
+                                 mass_.data(),
+                                 elastic,
+                                 parts(),
+                                 before_.data()};
+  const PolicyLaunches& launches = *policy().launches();
+  if constexpr (of_solids) {
+    launches.tetrahedra(executor_, policy(), of);
+  } else {
+    launches.triangles(executor_, policy(), of);
+  }
 }
 
 // A second look: one element's bound may, by rounding alone, be beyond another's limit.
@@ -299,9 +317,13 @@ void add_limit(const ResidentInputs& inputs, std::span<const std::array<int, N +
 }  // namespace
 
 void require_limit_kernels(const TermOptions& options) {
-  shape_kernels<3, 2>(options.limit);
+  if (!options.limit.shape.launches) {
+    throw ConfigError("shape", options.limit.shape.name,
+                      "a shape of barriers/shapes: a plugin's and another exponent have no kernel");
+  }
   for (const auto* policy : {&options.limit_stiffness, &options.solid_limit_stiffness}) {
-    if (*policy) LimitPolicies::require(**policy, "stiffness_policy/name");
+    if (!*policy || ((*policy)->launches() && (*policy)->launches()->triangles)) continue;
+    throw ConfigError("stiffness_policy/name", std::string((*policy)->name()), host_policy_words);
   }
 }
 

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "barriers/shapes/normalized_gap.hpp"
+#include "core/barrier/normalized_gap.hpp"
 
 namespace bb::shapes {
 

@@ -6,6 +6,16 @@
 
 namespace bb {
 
+/// A policy that computes the kappa of contacts one by one, and one that serves strain limits.
+template <class P>
+concept ServesContacts = requires(const P& p, const ContactSums<double>& sums) {
+  p.contact_kappa(sums, 1.0, 1.0, StiffnessTime{});
+};
+template <class P>
+concept ServesLimits = requires(const P& p, const ElementSums<double>& sums) {
+  p.element_parts(sums, 1.0, StiffnessTime{});
+};
+
 template <class P>
 struct ScaledPolicy {
   P values;

@@ -1,0 +1,46 @@
+// Launches of the kernels of a shape, from its struct.
+#pragma once
+
+#include "core/barrier/launches.hpp"
+#include "core/exec/executor.hpp"
+#include "core/resident/contact/shape_kernels.hpp"
+#include "core/resident/elements/limit_kernels.hpp"
+
+namespace bb {
+
+/// Limited elements with N singular values, in R dimensions.
+template <int R, int N, class S>
+LimitLaunches<N> limit_launches() {
+  using Columns = resident::LimitColumns<N>;
+  return {[](exec::Executor& executor, const Columns& limit, const BarrierFunction& barrier,
+             const KappaParts* parts) {
+            executor.each(N * limit.n,
+                          resident::LimitShape<N, S>{limit, barrier.argument, barrier.literal, parts});
+          },
+          [](exec::Executor& executor, const Columns& limit, const BarrierFunction& barrier,
+             const KappaParts* parts, const resident::MeasureAt& at) {
+            executor.each(limit.n,
+                          resident::MeasureLimit<R, N, S>{
+                              {limit, barrier.argument, barrier.literal, parts}, at.x, at.energy, at.beyond});
+          }};
+}
+
+/// S is a struct of this folder.
+template <class S>
+ShapeLaunches shape_launches() {
+  ShapeLaunches out;
+  out.rows = [](exec::Executor& executor, const resident::RowView& rows, Argument argument) {
+    executor.each(rows.n, resident::EvaluateShape<S>{rows, argument});
+  };
+  if constexpr (shapes::HasPotential<S>) {
+    out.folded_rows = [](exec::Executor& executor, const resident::RowView& rows) {
+      executor.each(rows.n, resident::EvaluateFoldedShape<S>{rows});
+    };
+  }
+  out.planar_triangles = limit_launches<2, 2, S>();
+  out.triangles = limit_launches<3, 2, S>();
+  out.tetrahedra = limit_launches<3, 3, S>();
+  return out;
+}
+
+}  // namespace bb

@@ -1,0 +1,34 @@
+// Launches of the kernels of a policy, from its struct of values.
+#pragma once
+
+#include "core/barrier/launches.hpp"
+#include "core/exec/executor.hpp"
+#include "core/resident/contact/stiffness_kernels.hpp"
+#include "core/resident/elements/limit_kernels.hpp"
+
+namespace bb {
+
+/// Policy has scaled(), a ScaledPolicy of its Values.
+template <class Policy>
+PolicyLaunches policy_launches() {
+  using P = typename Policy::Values;
+  PolicyLaunches out;
+  if constexpr (ServesContacts<P>) {
+    out.rows = [](exec::Executor& executor, const StiffnessPolicy& policy,
+                  const resident::RowKappaInputs& of) {
+      executor.each(of.rows.n, resident::RowKappa<P>{of, static_cast<const Policy&>(policy).scaled()});
+    };
+  }
+  if constexpr (ServesLimits<P>) {
+    const auto launch = []<int N>(exec::Executor& executor, const StiffnessPolicy& policy,
+                                  const resident::ElementKappaInputs<N>& of) {
+      executor.each(of.limit.n,
+                    resident::ElementKappa<N, P>{of, static_cast<const Policy&>(policy).scaled()});
+    };
+    out.triangles = launch;
+    out.tetrahedra = launch;
+  }
+  return out;
+}
+
+}  // namespace bb
