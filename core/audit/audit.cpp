@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/audit/predicates.hpp"
+#include "core/audit/surface_edges.hpp"
 #include "core/math/error.hpp"
 
 namespace bb::audit {

@@ -7,7 +7,7 @@
 #include "core/audit/obstacle_tally.hpp"
 #include "core/audit/pair_verdict.hpp"
 #include "core/audit/rigid_reach.hpp"
-#include "core/audit/state_audit.hpp"
+#include "core/audit/surface_edges.hpp"
 #include "core/audit/tally.hpp"
 
 namespace bb::audit {

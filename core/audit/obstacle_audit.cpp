@@ -5,7 +5,6 @@
 
 #include "core/audit/obstacle_motion.hpp"
 #include "core/audit/obstacle_sign.hpp"
-#include "core/audit/state_audit.hpp"
 #include "core/audit/surface_edges.hpp"
 #include "core/audit/tally.hpp"
 

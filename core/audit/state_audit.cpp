@@ -171,14 +171,4 @@ StateAudit audit_state(const AuditMesh& mesh, const Positions& x, bool include_r
   return audit_state(mesh, obstacle_primitives(mesh), x, include_rigid);
 }
 
-std::vector<int> colliding_vertices(const AuditMesh& mesh) {
-  std::vector<int> out(mesh.points);
-  out.insert(out.end(), mesh.edges.data(), mesh.edges.data() + mesh.edges.size());
-  if (!mesh.planar)
-    out.insert(out.end(), mesh.triangles.data(), mesh.triangles.data() + mesh.triangles.size());
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
 }  // namespace bb::audit

@@ -38,7 +38,4 @@ StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitiv
                        bool include_rigid);
 StateAudit audit_state(const AuditMesh& mesh, const Positions& x, bool include_rigid);
 
-/// All vertices of edges and (in 3D) triangles and the listed points, ascending.
-std::vector<int> colliding_vertices(const AuditMesh& mesh);
-
 }  // namespace bb::audit

@@ -1,5 +1,6 @@
 #include "core/audit/surface_edges.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace bb::audit {
@@ -44,6 +45,16 @@ void set_points(const std::vector<int>& vertices, int n_vertices, AuditMesh& mes
   for (const int v : vertices) {
     if (!covered[static_cast<std::size_t>(v)]) mesh.points.push_back(v);
   }
+}
+
+std::vector<int> colliding_vertices(const AuditMesh& mesh) {
+  std::vector<int> out(mesh.points);
+  out.insert(out.end(), mesh.edges.data(), mesh.edges.data() + mesh.edges.size());
+  if (!mesh.planar)
+    out.insert(out.end(), mesh.triangles.data(), mesh.triangles.data() + mesh.triangles.size());
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
 }
 
 Eigen::Matrix3Xi as_columns(const std::vector<TriangleVertices>& triangles) {

@@ -1,4 +1,4 @@
-// The edges of a surface, made of its triangles and of what stands alone.
+// The edges and vertices of a surface, made of its triangles and of what stands alone.
 #pragma once
 
 #include <array>
@@ -20,6 +20,9 @@ void set_edges(const std::vector<TriangleVertices>& triangles, const std::vector
 
 /// Fills the points: those of `vertices` that are on no edge of the mesh.
 void set_points(const std::vector<int>& vertices, int n_vertices, AuditMesh& mesh);
+
+/// All vertices of edges and (in 3D) triangles and the listed points, ascending.
+std::vector<int> colliding_vertices(const AuditMesh& mesh);
 
 /// [3 n]
 Eigen::Matrix3Xi as_columns(const std::vector<TriangleVertices>& triangles);

@@ -8,6 +8,7 @@
 
 #include "core/audit/closest_point.hpp"
 #include "core/audit/state_audit.hpp"
+#include "core/audit/surface_edges.hpp"
 #include "tests/audit/small_scenes.hpp"
 
 namespace bb::audit::surface_gap_test {

@@ -9,6 +9,7 @@
 #include "core/audit/box_tree.hpp"
 #include "core/audit/obstacle_sign.hpp"
 #include "core/audit/pair_verdict.hpp"
+#include "core/audit/surface_edges.hpp"
 #include "tests/audit/small_scenes.hpp"
 #include "tests/contact/true_pairs.hpp"
 
