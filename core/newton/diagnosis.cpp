@@ -30,12 +30,6 @@ const ReducedSystem& Diagnosis::exact() {
   return potential_.blocks_->reduce(potential_.blocks_->values());
 }
 
-const ReducedSystem& Diagnosis::fixed_pattern() {
-  potential_.blocks_->set_contacts({});
-  potential_.blocks_->clear();
-  return potential_.blocks_->reduce(potential_.blocks_->values());
-}
-
 const BlockSystem::Values& Diagnosis::clamped_values(TermSet set) {
   potential_.sum_clamped(set);
   return potential_.blocks_->values();

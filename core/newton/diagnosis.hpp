@@ -38,8 +38,6 @@ class Diagnosis {
   const ReducedSystem& clamped(TermSet set = TermSet::all());
   /// That of all terms with the Hessian that each begins with: the exact one where its choice has it. Cost: an assembly.
   const ReducedSystem& exact();
-  /// That of the elements that every iterate has, all values 0.
-  const ReducedSystem& fixed_pattern();
   /// clamped() with eliminated degrees of freedom.
   const BlockSystem::Values& clamped_values(TermSet set);
   /// Calls visit for every family of the set's terms that has Hessians, with those that clamped(set) sums: lower blocks,

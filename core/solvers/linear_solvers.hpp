@@ -30,7 +30,7 @@ const LinearSolverEntry& linear_solver_at(MatrixPlace place);
 /// Errors: ConfigError for an unknown name, for what own_parameters refuses, and as require_usable.
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearOptions& options);
 
-/// In the place of a solver's name: a cost model chooses it (core/linear/cost_model.hpp).
+/// In the place of a solver's name: the number of unknowns chooses it (experiments/run/linear_choice.hpp).
 inline constexpr std::string_view linear_solver_auto = "auto";
 /// The names of the registry, and linear_solver_auto.
 std::vector<std::string> linear_solver_choices();

@@ -66,7 +66,6 @@ RunSize size_of(const RunConfig& config, const std::string& scene) {
   RunSize out;
   out.scene = config.scene.name;
   out.formulation = label_of(config.formulation);
-  out.linear_solver = config.linear_solver.name;
   out.of_scene = scene;
   out.steps = config.time.steps;
   out.passes = (config.passes.time ? 1 : 0) + (has_observed_run(config) ? 1 : 0) +
@@ -76,16 +75,9 @@ RunSize size_of(const RunConfig& config, const std::string& scene) {
 
 void CostBook::measure(RunSize& size, const std::function<RunConfig()>& config_of) {
   if (of_config_.contains(size.config_id)) return;
-  const auto [found, is_new] = of_scene_and_solver_.try_emplace(size.of_scene + size.linear_solver);
-  if (is_new) {
-    const RunConfig config = config_of();
-    const Scene scene = build_scene(config);
-    found->second.unknowns = (scene.planar ? 2.0 : 3.0) *
-                             static_cast<double>(scene.n_vertices() - static_cast<int>(scene.pins.size()));
-    found->second.solve_s = expected_solve_s(config).value_or(0);
-  }
-  size.unknowns = found->second.unknowns;
-  size.solve_s = found->second.solve_s;
+  const auto [found, is_new] = unknowns_.try_emplace(size.of_scene);
+  if (is_new) found->second = static_cast<double>(free_dofs(build_scene(config_of())));
+  size.unknowns = found->second;
 }
 
 ExpectedCost CostBook::expected(const RunSize& size) const {
@@ -101,7 +93,7 @@ ExpectedCost CostBook::expected(const RunSize& size) const {
     rates.push_back(core_s / (other.steps * other.unknowns));
   }
   if (!rates.empty()) return {median(rates) * size.steps * size.unknowns, CostSource::same_scene};
-  const double iteration_s = seconds_an_unknown * size.unknowns + size.solve_s;
+  const double iteration_s = seconds_an_unknown * size.unknowns;
   return {start_s + size.passes * size.steps * iterations_a_step * iteration_s, CostSource::model};
 }
 

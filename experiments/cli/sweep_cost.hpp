@@ -14,11 +14,10 @@ namespace bb::cli {
 
 /// What decides how long a run takes.
 struct RunSize {
-  std::string config_id, scene, formulation, linear_solver;
+  std::string config_id, scene, formulation;
   std::string of_scene;  // SHA-256 of the settings of the scene
   double steps = 0, unknowns = 0;
-  int passes = 1;      // with the pilot of a matching rule
-  double solve_s = 0;  // a linear solve, where this processor has a model; else 0
+  int passes = 1;  // with the pilot of a matching rule
 };
 
 /// What the config tells without its scene being built. scene: SHA-256 of the section `scene`.
@@ -32,14 +31,14 @@ struct ExpectedCost {
   CostSource source = CostSource::model;
 };
 
-/// Records of earlier runs, and a model where they say nothing: seconds = 0.03 + passes x steps x 8 iterations a step x (4.5e-6 s an
-/// unknown + a linear solve). Both numbers are medians over the runs of results/work_precision.json and results/baselines; the
+/// Records of earlier runs, and a model where they say nothing: seconds = 0.03 + passes x steps x 8 iterations a step x 4.5e-6 s an
+/// unknown. Both numbers are medians over the runs of results/work_precision.json and results/baselines; the
 /// seconds of an iteration are within a factor of 6 there. Condition estimates and audits are not in it.
 class CostBook {
  public:
   /// Every run.json below a folder; what cannot be read is passed over. Cost: reading them.
   void add_records(const std::filesystem::path& folder);
-  /// Fills in unknowns and solve_s, where no record of the config is known. Scenes of the same settings are built once.
+  /// Fills in the unknowns, where no record of the config is known. Scenes of the same settings are built once.
   /// config: makes the config that the size is of. Errors: ConfigError, as build_scene.
   void measure(RunSize& size, const std::function<RunConfig()>& config);
   /// A record of the same config as it stands; else the median over records of the same scene of their core seconds a step and
@@ -53,8 +52,8 @@ class CostBook {
     double core_s;
   };
   std::vector<Known> known_;
-  std::map<std::string, double> of_config_;             // config_id -> core s
-  std::map<std::string, RunSize> of_scene_and_solver_;  // unknowns, solve_s
+  std::map<std::string, double> of_config_;  // config_id -> core s
+  std::map<std::string, double> unknowns_;   // of_scene -> unknowns
 };
 
 }  // namespace bb::cli

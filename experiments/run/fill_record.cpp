@@ -10,6 +10,7 @@
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/run/calibration.hpp"
+#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/stored_run.hpp"
 
 namespace bb {
@@ -43,9 +44,7 @@ void fill_scene(const Scene& scene, RunRecord& record) {
   SceneSize& size = record.scene;
   const Eigen::Index of_bodies = scene.n_body_vertices();
   size.vertices = static_cast<std::size_t>(of_bodies);
-  const std::size_t per_vertex = scene.planar ? 2 : 3;
-  size.free_dofs =
-      per_vertex * (static_cast<std::size_t>(scene.n_vertices()) - holding_pins(scene, 0).size());
+  size.free_dofs = free_dofs(scene);
 #define PART(name, term, convex, where, field, ...) size.field = parts::name::part().size(scene);
 #include "core/scene/parts/registry.inc"
 #undef PART

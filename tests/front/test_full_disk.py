@@ -52,7 +52,7 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
 PLANNED = set("match causes gate calibrate pareto work-precision figure stress claims ablation robust catalogue pictures matrix-corpus".split())
 READ = set("status surface-gaps trend setup".split())  # which write nothing, or for the script ./bench
 DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop"}
-IN_THE_TREE = set("demo engine accept readme fit-linear".split())  # what they write is at a fixed place
+IN_THE_TREE = set("demo engine accept readme".split())  # what they write is at a fixed place
 
 
 def test_every_verb_is_run_or_named():
