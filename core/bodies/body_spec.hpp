@@ -16,8 +16,6 @@ namespace bb {
 struct StrainLimitSpec {
   double onset = 0.01, width = 0.01;  // 1
   bool solids = false;
-  /// A bare limit means onset = width = limit/2.
-  static StrainLimitSpec from_limit(double limit) { return {0.5 * limit, 0.5 * limit}; }
 };
 
 /// What a body says of all parts that it can be made of (core/scene/parts). Stiffness 0 switches elements off.

@@ -88,13 +88,4 @@ void HingeBatch::flow(const PositionsView& x, double dt, std::span<double> memor
   });
 }
 
-std::vector<double> hinge_angles(std::span<const std::array<int, 4>> hinges, const PositionsView& x) {
-  std::vector<double> angles;
-  for (const auto& [e0, e1, v0, v1] : hinges) {
-    const Vec3d points[4] = {x.col(e0), x.col(e1), x.col(v0), x.col(v1)};
-    angles.push_back(hinge_angle<double>(points));
-  }
-  return angles;
-}
-
 }  // namespace bb

@@ -44,7 +44,4 @@ class HingeBatch final : public EnergyBatch {
   Precision precision_;
 };
 
-/// Angles [n] (rad) of hinges e0 e1 v0 v1 at x: the rest angles when x is the rest shape.
-std::vector<double> hinge_angles(std::span<const std::array<int, 4>> hinges, const PositionsView& x);
-
 }  // namespace bb

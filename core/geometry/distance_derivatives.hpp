@@ -118,15 +118,4 @@ BB_HD inline DistanceDerivatives<T, N> distance_derivatives(const Mat<T, 3, N>& 
           detail::scaled_distance_hessian<T, N>(frame, closest) / closest.d};
 }
 
-/// Gradient (m) and Hessian (1) of d^2 in the region of `closest`; d = 0 is allowed.
-/// Parameters as above.   Errors: none.   Host-device, no allocation.
-template <class T, int N>
-BB_HD inline DistanceDerivatives<T, N> squared_distance_derivatives(const Mat<T, 3, N>& x,
-                                                                    const Closest<T, N>& closest) {
-  const detail::RegionFrame<T, N> frame = detail::region_frame<T, N>(x, closest);
-  const Vec<T, 3 * N> grad_d = detail::stack_weighted<T, N>(closest.weights, frame.n);
-  return {2 * closest.d * grad_d,
-          2 * (detail::scaled_distance_hessian<T, N>(frame, closest) + grad_d * grad_d.transpose())};
-}
-
 }  // namespace bb

@@ -130,19 +130,4 @@ ConditionEstimate ConditionEstimator::estimate(const ReducedSystem& system, cons
   return e;
 }
 
-std::array<ConditionEstimate, 3> ConditionEstimator::estimate_all(const ReducedSystem& system, int tier,
-                                                                  std::uint64_t seed) {
-  std::array<ConditionEstimate, 3> all;
-  Clock::time_point start = Clock::now();
-  const bool finite = data_->prepare(system, tier);
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    constexpr Scaling kScalings[] = {Scaling::none, Scaling::jacobi, Scaling::block_jacobi};
-    all[k] = finite ? data_->run({.tier = tier, .scaling = kScalings[k], .seed = seed})
-                    : unknown(ConditionStatus::not_converged, "entries that are not finite");
-    all[k].seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    start = Clock::now();  // the first scaling pays for the factorisation
-  }
-  return all;
-}
-
 }  // namespace bb

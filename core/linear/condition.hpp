@@ -2,7 +2,6 @@
 // that word is the contact stiffness.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -63,8 +62,6 @@ class ConditionEstimator {
   ConditionEstimator();
   ~ConditionEstimator();
   ConditionEstimate estimate(const ReducedSystem& system, const ConditionOptions& options);
-  /// The three scalings in the order none, jacobi, block_jacobi, from one factorisation of A.
-  std::array<ConditionEstimate, 3> estimate_all(const ReducedSystem& system, int tier, std::uint64_t seed);
 
  private:
   struct Data;

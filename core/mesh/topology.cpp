@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numeric>
 #include <tuple>
 
 #include "core/math/products.hpp"
@@ -33,15 +32,6 @@ std::vector<TriangleSide> sorted_sides(std::span<const std::array<int, 3>> trian
   }
   std::sort(sides.begin(), sides.end());
   return sides;
-}
-
-int root_of(std::vector<int>& parent, int i) {
-  while (parent[static_cast<std::size_t>(i)] != i) {
-    int& p = parent[static_cast<std::size_t>(i)];
-    p = parent[static_cast<std::size_t>(p)];
-    i = p;
-  }
-  return i;
 }
 
 using Edges = std::vector<std::array<int, 2>>;
@@ -181,25 +171,6 @@ SolidFaces solid_faces(std::span<const std::array<int, 4>> tetrahedra) {
     i = end;
   }
   return out;
-}
-
-std::vector<int> connected_components(const TriangleMesh& mesh, int* n_components) {
-  const auto n = static_cast<std::size_t>(mesh.n_vertices());
-  std::vector<int> parent(n);
-  std::iota(parent.begin(), parent.end(), 0);
-  for (const auto& edge : unique_edges(mesh)) {
-    const int a = root_of(parent, edge[0]), b = root_of(parent, edge[1]);
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  std::vector<int> component(n, -1);
-  int count = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto root = static_cast<std::size_t>(root_of(parent, static_cast<int>(i)));
-    if (component[root] < 0) component[root] = count++;
-    component[i] = component[root];
-  }
-  if (n_components) *n_components = count;
-  return component;
 }
 
 Vec3d area_vector(const Positions& x, const std::array<int, 3>& t) {

@@ -41,9 +41,6 @@ struct SolidFaces {
 };
 SolidFaces solid_faces(std::span<const std::array<int, 4>> tetrahedra);
 
-/// Component of each vertex, numbered from 0 in order of their smallest vertex; vertices joined by edges.
-std::vector<int> connected_components(const TriangleMesh& mesh, int* n_components = nullptr);
-
 /// Sum of triangle areas, m^2.
 double surface_area(const TriangleMesh& mesh);
 /// (x1 - x0) x (x2 - x0) / 2, m^2.

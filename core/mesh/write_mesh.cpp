@@ -1,34 +1,13 @@
 #include "core/mesh/write_mesh.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-
-#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
-
-/// Whole file or none: written beside its place, then renamed.
-void write_file(const std::string& path, const std::string& bytes) {
-  const std::string temporary = fmt::format("{}.tmp.{}", path, getpid());
-  std::ofstream file(temporary, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) {
-    const std::string cause = error ? error.message() : std::string(std::strerror(errno));
-    std::filesystem::remove(temporary, error);
-    throw ConfigError(path, "cannot be written: " + cause, "a place with room that may be written");
-  }
-}
 
 template <class T>
 void append(std::string& bytes, T value) {
@@ -53,22 +32,6 @@ void append_row(std::string& bytes, const std::vector<PlyColumn>& columns, std::
 }
 
 }  // namespace
-
-void write_obj(const std::string& path, const TriangleMesh& mesh) {
-  if (!mesh.tetrahedra.empty()) {
-    throw ConfigError(path, fmt::format("{} tetrahedra", mesh.tetrahedra.size()),
-                      "triangles and segments: OBJ has no tetrahedra, PLY does");
-  }
-  std::string text;
-  auto out = std::back_inserter(text);
-  for (int i = 0; i < mesh.n_vertices(); ++i) {
-    fmt::format_to(out, "v {:.17g} {:.17g} {:.17g}\n", mesh.vertices(0, i), mesh.vertices(1, i),
-                   mesh.vertices(2, i));
-  }
-  for (const auto& t : mesh.triangles) fmt::format_to(out, "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
-  for (const auto& s : mesh.segments) fmt::format_to(out, "l {} {}\n", s[0] + 1, s[1] + 1);
-  write_file(path, text);
-}
 
 std::string ply_bytes(const TriangleMesh& mesh, const std::vector<PlyColumn>& of_vertices,
                       const std::vector<PlyColumn>& of_triangles) {

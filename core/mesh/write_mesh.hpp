@@ -1,4 +1,4 @@
-// Meshes written by us: OBJ for people, binary PLY for frames.
+// Meshes written by us: binary PLY, as frames are.
 #pragma once
 
 #include <string>
@@ -8,11 +8,6 @@
 #include "core/mesh/triangle_mesh.hpp"
 
 namespace bb {
-
-/// Vertices with 17 digits (read back bit for bit), faces, segments as `l`.
-/// Errors: ConfigError for tetrahedra, which OBJ does not have, and when the file cannot be written whole; nothing half-written
-/// stays.
-void write_obj(const std::string& path, const TriangleMesh& mesh);
 
 /// One more scalar property of a PLY element, beside the coordinates or the corners: a value for each vertex
 /// or each triangle. Our reader skips it.

@@ -1,7 +1,5 @@
-// One equilateral triangle above a plane: three equal contacts under a third of the weight each,
-// and nothing else.
-#include "experiments/scenes/resting_block_1d.hpp"
-
+// One equilateral triangle above a plane: three equal contacts under a third of the weight each, and nothing else. All
+// vertices are at one height, so no element is strained: at rest kappa |b'(d)| is that third, in newtons.
 #include <cmath>
 
 #include "experiments/scenes/procedural_scene.hpp"
@@ -39,10 +37,6 @@ Scene build_resting_block_1d(const ParameterMap& p, const SceneContext& context)
 }
 
 }  // namespace
-
-double resting_block_load(const ParameterMap& p) {
-  return number(p, "mass_kg") * number(p, "gravity_m_per_s2") / 3;
-}
 
 ProceduralScene make_scene_resting_block_1d() {
   ProceduralScene scene;

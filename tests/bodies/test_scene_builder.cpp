@@ -116,7 +116,7 @@ TEST(scene_builder, gives_hinges_the_angle_of_the_rest_shape) {
 
 TEST(scene_builder, halves_a_bare_limit) {
   BodySpec body = cloth("cloth");
-  body.material.limit = StrainLimitSpec::from_limit(0.02);
+  body.material.limit = StrainLimitSpec{0.01, 0.01};
   body.material.density = 0.4;
 
   const Scene scene = scene_of({body});
@@ -192,7 +192,7 @@ TEST(scene_builder, pins_by_index_by_box_and_by_top_row) {
 TEST(scene_builder, leaves_out_elements_that_hold_no_unknown) {
   BodySpec body = cloth("cloth");
   body.material.springs = 10;
-  body.material.limit = StrainLimitSpec::from_limit(0.02);
+  body.material.limit = StrainLimitSpec{0.01, 0.01};
   body.pins.emplace_back().indices = {0, 1, 5};  // one triangle, three edges
 
   const Scene scene = scene_of({body});

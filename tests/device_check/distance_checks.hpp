@@ -26,8 +26,7 @@ BB_HD void distance_of_pair(Slots<T>& slots) {
   slots.write(closest.weights), slots.write(closest.r), slots.write(closest.d);
   slots.write(T(static_cast<int>(closest.region)));
   const DistanceDerivatives<T, N> d = distance_derivatives<T, N>(x, closest);
-  const DistanceDerivatives<T, N> d_sq = squared_distance_derivatives<T, N>(x, closest);
-  slots.write(d.gradient), slots.write(d.hessian), slots.write(d_sq.gradient), slots.write(d_sq.hessian);
+  slots.write(d.gradient), slots.write(d.hessian);
 }
 template <class T>
 struct Distances : Columns<T> {

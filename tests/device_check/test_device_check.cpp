@@ -127,7 +127,7 @@ TEST(DeviceCheck, EigenvaluesAndProjection) {
   expect_same_bits<Eigen2>(11), expect_same_bits<Eigen3>(22);
   expect_same_bits<Eigen9>(172), expect_same_bits<Eigen12>(301);
 }
-TEST(DeviceCheck, Distances) { expect_same_bits<Distances>(921); }
+TEST(DeviceCheck, Distances) { expect_same_bits<Distances>(477); }
 TEST(DeviceCheck, Mollifier) { expect_same_bits<Mollifier>(158); }
 TEST(DeviceCheck, Accd) { expect_same_bits<Sweeps>(12); }
 TEST(DeviceCheck, Spring) { expect_same_bits<Spring>(43); }

@@ -130,6 +130,15 @@ TEST(SpringBatch, StoresTheElementTerms) {
   expect_stored(out, 5, terms.energy, terms.grad, terms.hess);
 }
 
+std::vector<double> hinge_angles(const std::vector<std::array<int, 4>>& hinges, const Positions& x) {
+  std::vector<double> angles;
+  for (const auto& [e0, e1, v0, v1] : hinges) {
+    const Vec3d points[4] = {x.col(e0), x.col(e1), x.col(v0), x.col(v1)};
+    angles.push_back(hinge_angle<double>(points));
+  }
+  return angles;
+}
+
 struct HingeStrip {
   Strip strip{80};
   std::vector<double> stiffness, rest_angle;

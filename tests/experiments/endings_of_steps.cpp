@@ -82,7 +82,7 @@ Ending slope_that_underflows() {
 Ending torn_cloth() {
   SceneBuilder builder("torn cloth", false, Vec3d::Zero(), "test");
   BodySpec spec = cloth_spec(3, 0, 0.001);
-  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  spec.material.limit = StrainLimitSpec{0.01, 0.01};
   PinSpec left, right;
   left.indices = {0, 3, 6};
   right.indices = {2, 5, 8};

@@ -21,22 +21,17 @@ Points<Long, N> moved(const Points<Long, N>& x, int coordinate, Long step) {
 
 /// Central differences of the oracle's distance and of its vector field w r/|r|, best over a ladder of steps.
 template <PairKind K>
-void expect_derivatives(const Points<double, pair_points(K)>& x, bool squared, double tolerance) {
+void expect_derivatives(const Points<double, pair_points(K)>& x, double tolerance) {
   constexpr int N = pair_points(K);
   const auto closest = closest_points<K, double>(x);
-  const auto derivatives = squared ? squared_distance_derivatives<double, N>(x, closest)
-                                   : distance_derivatives<double, N>(x, closest);
+  const auto derivatives = distance_derivatives<double, N>(x, closest);
   const Points<Long, N> base = x.template cast<Long>();
-  const auto value = [&](const Points<Long, N>& y) {
-    const Long d = oracle_closest<K>(y).d;
-    return squared ? d * d : d;
-  };
+  const auto value = [&](const Points<Long, N>& y) { return oracle_closest<K>(y).d; };
   const auto gradient = [&](const Points<Long, N>& y) {
     const auto c = oracle_closest<K>(y);
     Vec<Long, 3 * N> g;
     for (int i = 0; i < N; ++i) {
-      g.template segment<3>(3 * i) =
-          c.weights[i] * (squared ? Vec<Long, 3>(2 * c.r) : Vec<Long, 3>(c.r / c.d));
+      g.template segment<3>(3 * i) = c.weights[i] * Vec<Long, 3>(c.r / c.d);
     }
     return g;
   };
@@ -77,8 +72,7 @@ void expect_derivatives_in_every_region(std::size_t n_regions_of_kind) {
     }
     if (!inside) continue;
     ++seen[region];
-    expect_derivatives<K>(x, false, 1e-8);
-    expect_derivatives<K>(x, true, 1e-8);
+    expect_derivatives<K>(x, 1e-8);
   }
   EXPECT_EQ(seen.size(), n_regions_of_kind);
   for (const auto& [region, count] : seen) EXPECT_EQ(count, wanted) << region_name(region);
@@ -118,16 +112,6 @@ TEST(DistanceDerivatives, TinyGapsOverTrianglesKeepTheirDigits) {
     EXPECT_GT(out.hessian.norm(), 1);
     EXPECT_LT(out.hessian.norm(), 10);
   }
-}
-
-TEST(SquaredDistanceDerivatives, TouchingPairsHaveThem) {
-  Points<double, 4> x;
-  x << 0.3, 0, 1, 0, 0.3, 0, 0, 1, 0, 0, 0, 0;
-  const auto closest = closest_point_triangle(x);
-  ASSERT_EQ(closest.d, 0);
-  const auto out = squared_distance_derivatives<double, 4>(x, closest);
-  EXPECT_EQ(out.gradient.norm(), 0);
-  EXPECT_NEAR(out.hessian(2, 2), 2, 1e-15);  // p over the plane: d^2 = z^2
 }
 
 }  // namespace

@@ -43,23 +43,6 @@ TEST(topology, joins_the_wings_of_a_non_manifold_edge_in_index_order) {
   EXPECT_EQ(boundary_edges(fan).size(), 6u);
 }
 
-TEST(topology, numbers_components_by_their_smallest_vertex) {
-  int n = 0;
-
-  EXPECT_EQ(connected_components(two_triangles(), &n), (std::vector<int>{0, 0, 0, 0, 0, 1}));
-  EXPECT_EQ(n, 2);
-}
-
-TEST(topology, joins_long_chains) {
-  TriangleMesh chain = rod_mesh(1000, Vec3d::Zero(), Vec3d::UnitX());
-  std::reverse(chain.segments.begin(), chain.segments.end());
-  int n = 0;
-
-  connected_components(chain, &n);
-
-  EXPECT_EQ(n, 1);
-}
-
 TEST(topology, counts_the_hinges_of_a_grid) {
   const TriangleMesh mesh = grid_mesh(5, 4, 1, 1);
 

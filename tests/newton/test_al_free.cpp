@@ -268,7 +268,7 @@ TEST(AlFree, goes_on_from_an_archive_bit_for_bit) {
 TEST(AlFree, refuses_what_it_cannot_step) {
   SceneBuilder builder("limited", false, Vec3d(0, 0, -10), "test");
   BodySpec sheet = test::cloth_spec(3, 0.012, d_hat);
-  sheet.material.limit = StrainLimitSpec::from_limit(0.05);
+  sheet.material.limit = StrainLimitSpec{0.025, 0.025};
   builder.add_body(sheet);
   Obstacle plane;
   plane.name = "floor";

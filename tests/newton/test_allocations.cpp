@@ -17,7 +17,7 @@ Scene two_layers(int n) {
     spec.name = "layer" + std::to_string(layer);
     spec.mesh.vertices.row(0) *= 1 + 0.03 * layer;  // vertices not above vertices
     spec.material.bending = 1e-4;
-    spec.material.limit = StrainLimitSpec::from_limit(0.05);
+    spec.material.limit = StrainLimitSpec{0.025, 0.025};
     builder.add_body(spec);
   }
   Obstacle floor;

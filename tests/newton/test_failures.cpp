@@ -80,7 +80,7 @@ StepReport hang(double k_s, int steps) {
   SceneBuilder builder("hung cloth", false, Vec3d(0, -10, 0), "test");
   BodySpec spec = test::cloth_spec(5, 0, 0.001);
   spec.material.youngs = 1;  // carries nothing
-  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  spec.material.limit = StrainLimitSpec{0.01, 0.01};
   PinSpec pin;
   for (int v = 0; v < 25; ++v) {
     if (spec.mesh.vertices(1, v) > spec.mesh.vertices.row(1).maxCoeff() - 1e-9) pin.indices.push_back(v);
@@ -118,7 +118,7 @@ TEST(Failures, a_load_that_neighbours_share_is_an_overload_of_the_limit) {
   SceneBuilder builder("cloth that flies apart", false, Vec3d::Zero(), "test");
   BodySpec spec = test::cloth_spec(9, 0, 0.001);
   spec.material.youngs = 1;
-  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  spec.material.limit = StrainLimitSpec{0.01, 0.01};
   builder.add_body(spec);
   Scene scene = builder.finish();
   const double middle = scene.x0.row(0).mean();

@@ -13,7 +13,7 @@ Scene cloth_on_sphere(int n) {
   SceneBuilder builder("cloth on sphere", false, Vec3d(0, 0, -9.81), "test");
   BodySpec spec = test::cloth_spec(n, 0, 0.01);
   spec.material.bending = 1e-4;
-  spec.material.limit = StrainLimitSpec::from_limit(0.05);
+  spec.material.limit = StrainLimitSpec{0.025, 0.025};
   spec.velocity = Vec3d(0, 0, -1);
   builder.add_body(spec);
   Obstacle sphere;
@@ -217,7 +217,7 @@ class StrainWatch final : public StepObserver {
 TEST(LineSearch, takes_its_fraction_of_a_binding_strain_bound_at_the_first_trial) {
   SceneBuilder builder("cloth that flies apart", false, Vec3d::Zero(), "test");
   BodySpec spec = test::cloth_spec(3, 0, 0.001);
-  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  spec.material.limit = StrainLimitSpec{0.01, 0.01};
   builder.add_body(spec);
   Scene scene = builder.finish();
   scene.v0.row(0) = 10 * (scene.x0.row(0).array() - scene.x0.row(0).mean());

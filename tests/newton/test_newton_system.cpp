@@ -45,7 +45,7 @@ Scene limited_triangle() {
   spec.mesh.vertices << 0, 2, 0, 0, 0, 2, 0, 0, 0;
   spec.mesh.triangles = {{0, 1, 2}};
   spec.material.youngs = 1;
-  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  spec.material.limit = StrainLimitSpec{0.01, 0.01};
   spec.d_hat = d_hat;
   builder.add_body(spec);
   return builder.finish();

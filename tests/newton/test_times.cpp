@@ -18,7 +18,7 @@ Scene falling_cloths() {
     BodySpec spec = test::cloth_spec(5, height, 0.01);
     spec.name = height < 0.01 ? "lower" : "upper";
     spec.material.bending = 1e-4;
-    spec.material.limit = StrainLimitSpec::from_limit(0.05);
+    spec.material.limit = StrainLimitSpec{0.025, 0.025};
     PinSpec corner;
     corner.indices = {0};
     if (height < 0.01) spec.pins = {corner};
@@ -79,7 +79,7 @@ TEST(Times, every_moment_of_a_step_belongs_to_a_phase) {
 TEST(Times, a_state_of_the_limit_is_measured_once) {
   SceneBuilder builder("hung cloth", false, Vec3d(0, -10, 0), "test");
   BodySpec spec = test::cloth_spec(5, 0, 0.001);
-  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  spec.material.limit = StrainLimitSpec{0.01, 0.01};
   PinSpec top;
   top.box = {Vec3d(-10, 0.49, -1), Vec3d(10, 10, 1)};
   spec.pins = {top};

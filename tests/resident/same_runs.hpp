@@ -15,7 +15,7 @@ inline Scene cloth_on_floor() {
   BodySpec cloth = test::cloth_spec(4, 0.012, 0.02);
   cloth.mesh.vertices.row(2) += 0.01 * cloth.mesh.vertices.row(0);
   cloth.material.bending = 1e-3;
-  cloth.material.limit = StrainLimitSpec::from_limit(0.1);
+  cloth.material.limit = StrainLimitSpec{0.05, 0.05};
   PinSpec corner;
   corner.indices = {0};
   corner.motion.velocity = Vec3d(0.05, 0, 0);

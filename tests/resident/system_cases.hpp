@@ -66,7 +66,7 @@ inline Scene cloth_on_plate() {
   cloth.material.youngs = 300;
   cloth.material.bending = 1e-3;
   cloth.material.springs = 5;
-  cloth.material.limit = StrainLimitSpec::from_limit(0.1);
+  cloth.material.limit = StrainLimitSpec{0.05, 0.05};
   PinSpec corners;
   corners.indices = {0, 4};
   corners.motion.velocity = Vec3d(0.05, 0, 0);

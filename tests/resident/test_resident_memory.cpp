@@ -21,7 +21,7 @@ Scene cloth(int n) {
   SceneBuilder builder("cloth", false, Vec3d(0, 0, -10), "test");
   BodySpec spec = test::cloth_spec(n, 0.035, 0.02);
   spec.material.bending = 1e-3;
-  spec.material.limit = StrainLimitSpec::from_limit(0.1);
+  spec.material.limit = StrainLimitSpec{0.05, 0.05};
   builder.add_body(spec);
   BodySpec other = test::cloth_spec(3, 0.1, 0.02);
   other.name = "other";

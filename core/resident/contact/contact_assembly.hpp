@@ -22,7 +22,7 @@ class ContactAssembly {
                   const AssemblyOptions& options = {});
 
   /// For the rows of an iterate: slots and, with blocks, the pattern of the matrix. Skip it while the stencils are the
-  /// same (same_stencils()). Errors: as ContactPattern::build.
+  /// same (RowFinder::same()). Errors: as ContactPattern::build.
   void set_pattern(ResidentRows& rows, bool blocks = true);
 
   /// gradient [3 n_vertices] (N) += that of B at x.

@@ -30,12 +30,7 @@ class RowFinder {
   /// What an executor that only counts buffers is to take the rows for.
   void expect(const ExpectedContacts& expected) { expected_ = expected; }
 
-  /// Whether two tables have the same stencils and free vertices, so that one pattern serves both.
-  bool same_stencils(ResidentRows& a, ResidentRows& b) {
-    compare(a, b);
-    return same();
-  }
-  /// The same in two calls.
+  /// Looks whether two tables have the same stencils and free vertices, so that one pattern serves both; same() says it.
   void compare(ResidentRows& a, ResidentRows& b);
   bool same() const { return comparable_ && differs_.get() == 0; }
 
