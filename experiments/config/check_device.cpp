@@ -70,8 +70,6 @@ void check_device(const RunConfig& config, const Complain& complain) {
     complain("/contact/model", "\"offset_geometric\"",
              "all_pairs " + on + ": no kernel knows the blocks of features");
   }
-  if (config.contact.rest_rule == RestRule::off)
-    complain("/contact/rest_rule", "\"off\"", "on " + on + ": its kernels have the rule built in");
   if (is_numeric(config.contact.hessian_mode)) {
     complain("/contact/hessian_mode", '"' + word_of(config.contact.hessian_mode) + '"',
              "gauss_newton or projected_full " + on);
@@ -85,9 +83,11 @@ void check_device(const RunConfig& config, const Complain& complain) {
              fmt::format("{} {}: the matrix stays where it is assembled",
                          linear_solver_at(MatrixPlace::executor).name, on));
   }
-  for (const auto& [term, choice] : config.hessian.parameters) {
-    if (choice != ParameterValue(std::string("progressive"))) continue;
-    complain("/hessian/" + term, "\"progressive\"", "another choice " + on);
+  const auto of_contact = config.hessian.parameters.find("contact");
+  if (of_contact != config.hessian.parameters.end() &&
+      of_contact->second == ParameterValue(std::string("progressive"))) {
+    complain("/hessian/contact", "\"progressive\"",
+             "another choice " + on + ": its kernels of contact ask no forces");
   }
 }
 

@@ -143,6 +143,23 @@ TEST(ResidentSettings, AccumulatedTimesOfImpact) {
   EXPECT_GT(shortened, 3);
 }
 
+/// d_hat is longer than the edges, so that every vertex has neighbours of its own sheet in reach.
+TEST(ResidentSettings, WithoutTheRestRule) {
+  SceneBuilder builder("sheet", false, Vec3d(0, 0, -10), "test");
+  builder.add_body(test::cloth_spec(5, 0.4, 0.3));
+  const Scene scene = builder.finish();
+  const auto with = [](RestRule rule) {
+    Method method = cubic();
+    method.contact_options.rest_rule = rule;
+    return method;
+  };
+  const RunEnd on = test::run_steps(scene, with(RestRule::on), 4),
+               off = expect_same_run(
+                   scene, [&] { return with(RestRule::off); }, 4, tolerance);
+  EXPECT_GT(off.contacts, on.contacts + 100);
+  EXPECT_GT((off.x - on.x).cwiseAbs().maxCoeff(), 1e-3);
+}
+
 TEST(ResidentSettings, PartsOfABound) {
   for (const double cap : {0.3, 1.0}) {
     SCOPED_TRACE(cap);

@@ -64,11 +64,11 @@ BB_HD bool may_pair(const PairSearch& s, Index i, Index j) {
   }
 }
 
-/// Whether the pair is of one body, and stays apart as far as the rest rule asks for it.
+/// Whether the rest rule says something of the pair, and it stays apart as far as that asks for it.
 template <PairKind K>
 BB_HD bool apart_by_rest_rule(const PairSearch& s, Index i, Index j) {
   const PairVertices<K> pair = pair_vertices<K>(s.surface, i, j);
-  if (s.surface.body[pair.vertex[0]] != s.surface.body[pair.vertex[pair_split(K)]]) return false;
+  if (!s.surface.ruled_at_rest(pair.vertex[0], pair.vertex[pair_split(K)])) return false;
   constexpr int n = pair_points(K);
   return bb::apart_by_rest_rule<K>(pair.law, points_of<n>(s.surface.rest, pair.vertex),
                                    points_of<n>(s.x0, pair.vertex), points_of<n>(s.x1, pair.vertex),

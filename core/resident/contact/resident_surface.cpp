@@ -1,5 +1,6 @@
 #include "core/resident/contact/resident_surface.hpp"
 
+#include <numeric>
 #include <string>
 
 namespace bb::resident {
@@ -46,20 +47,28 @@ ResidentSurface::ResidentSurface(exec::Executor& executor, const Scene& scene, c
       triangles_(executor, "surface triangles", surface.triangles),
       vertex_free_(executor, "surface vertex free"),
       body_(executor, "surface body"),
+      apart_(executor, "surface vertices without the rest rule"),
       rest_(executor, "surface rest positions"),
       obstacles_(executor, "obstacles"),
       planar_(surface.planar),
       element_size_(surface.element_size) {
   vertex_free_.upload(surface.vertex_free);
   body_.upload(scene.body);
+  if (surface.rest_rule == RestRule::off) {
+    std::vector<int> each(scene.body.size());
+    std::iota(each.begin(), each.end(), 0);
+    apart_.upload(each);
+  }
   rest_.upload({scene.rest.data(), static_cast<std::size_t>(scene.rest.size())});
   obstacles_.upload(plain_obstacles(scene.obstacles));
 }
 
 SurfaceView ResidentSurface::view() const {
-  return {points_.view(), edges_.view(), triangles_.view(), vertex_free_.data(),
-          body_.data(),   rest_.data(),  obstacles_.data(), static_cast<int>(obstacles_.size()),
-          planar_};
+  return {points_.view(),    edges_.view(),
+          triangles_.view(), vertex_free_.data(),
+          body_.data(),      rest_.data(),
+          obstacles_.data(), static_cast<int>(obstacles_.size()),
+          planar_,           apart_.size() > 0 ? apart_.data() : body_.data()};
 }
 
 template struct ResidentPrimitives<1>;

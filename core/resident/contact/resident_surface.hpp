@@ -68,10 +68,12 @@ struct SurfaceView {
   const PlainObstacle* obstacles;
   int n_obstacles;
   bool planar;
+  const int*
+      rest_body;  // [n_vertices] vertices of one number are ruled at rest: `body`, or with the rule off one each
 
   // what row_rule.hpp asks
   BB_HD bool is_free(int v) const { return vertex_free[v] != 0; }
-  BB_HD bool ruled_at_rest(int v, int w) const { return body[v] == body[w]; }
+  BB_HD bool ruled_at_rest(int v, int w) const { return rest_body[v] == rest_body[w]; }
   template <int N>
   BB_HD Mat<double, 3, N> rest_points(const int* of) const {
     return points_of<N>(rest, of);
@@ -99,6 +101,7 @@ class ResidentSurface {
   ResidentPrimitives<3> triangles_;
   exec::Buffer<std::uint8_t> vertex_free_;
   exec::Buffer<int> body_;
+  exec::Buffer<int> apart_;  // empty with the rest rule on
   exec::Buffer<double> rest_;
   exec::Buffer<PlainObstacle> obstacles_;
   const bool planar_;

@@ -14,7 +14,7 @@ ResidentContact::ResidentContact(const ResidentInputs& inputs)
       options_(inputs.options),
       vectors_(inputs.vectors),
       mass_(inputs.mass),
-      surface_(scene_),
+      surface_(scene_, options_.contact_options.rest_rule),
       resident_surface_(executor_, scene_, surface_),
       candidates_(executor_),
       broad_phase_(executor_, resident_surface_, surface_, inputs.contacts),
