@@ -7,7 +7,9 @@ from .gpu_evidence import OF_SOLVE
 LARGE = "drape_1m"
 MEMORY_RUN = ("dense_8m", "dense_184m")  # the second one: in records of 2026-11-26, of the same scene
 MOST_KERNELS = 12
-PLAIN = "plain_"  # runs of which no kernel calls a library
+PLAIN = (
+    "plain_"  # in records until 2026-11-28: runs of which no kernel called a library; others had other bits
+)
 ROOMS = ("sums", "linear", "elements", "contact", "system", "runs")
 CHECKS = (
     "device_tests",
@@ -78,10 +80,16 @@ def fallen(record: dict) -> list[str]:
         for name, part in record["parts"].items()
         if part["status"] in ("failed", "timed_out")
     ]
-    plain = [run for run in record.get("same", []) if run["name"].startswith(PLAIN)]
+    judged_runs = plain_runs(record) or record.get("same", [])
     return parts + [
-        f"- {run['name']}: **not the bits of the host**" for run in plain if run["same_bits"] is not True
+        f"- {run['name']}: **not the bits of the host**"
+        for run in judged_runs
+        if run["same_bits"] is not True
     ]
+
+
+def plain_runs(record: dict) -> list[dict]:
+    return [run for run in record.get("same", []) if run["name"].startswith(PLAIN)]
 
 
 def judged(record: dict) -> list[str]:

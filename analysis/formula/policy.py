@@ -39,6 +39,9 @@ TEMPLATE = """\
 #include <cmath>
 
 #include "core/barrier/stiffness_sums.hpp"
+#include "core/math/atan2.hpp"
+#include "core/math/exp.hpp"
+#include "core/math/log.hpp"
 #include "core/plugin/barrierbench_plugin.h"
 
 namespace {{
@@ -46,14 +49,12 @@ namespace {{
 using T = double;
 
 double kappa_of({arguments}) {{
-  using std::atan, std::cos, std::cosh, std::exp, std::pow, std::sin, std::sinh, std::sqrt, std::tan;
-  using std::tanh;
+  using std::cos, std::cosh, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
 {common}  return {kappa};
 }}
 
 double slope_of({slope_arguments}) {{
-  using std::atan, std::cos, std::cosh, std::exp, std::pow, std::sin, std::sinh, std::sqrt, std::tan;
-  using std::tanh;
+  using std::cos, std::cosh, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
 {slope_common}  return {slope};
 }}
 

@@ -14,6 +14,12 @@ from .symbolic import L, Terms, U
 
 INVERSE = sp.Symbol("r", positive=True)  # 1/u
 MOST_FACTORS = 8  # of a power that is written as a product
+# Functions that have the same bits on a card (core/math); all others are those of the compiler's library.
+ELEMENTARY = {
+    "log": "bb::elementary::log({})",
+    "exp": "bb::elementary::exp({})",
+    "atan": "bb::elementary::atan2({}, T(1.0))",
+}
 
 HEAD = """\
 // {formula}
@@ -34,7 +40,7 @@ struct Formula {{
   /// As built-in shapes have it where it takes nothing but + - * / and the logarithm: then four rows at a time.
   template <class T>
   BB_HD static bb::ShapeTerms<T> {terms}(const bb::shapes::NormalizedGap<T>& gap, T d_hat, [[maybe_unused]] T l) {{
-    using std::atan, std::cos, std::cosh, std::exp, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+    using std::cos, std::cosh, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
     [[maybe_unused]] const T u = gap.u, e = gap.e;
 {inverse}{common}    return {{d_hat * d_hat * ({b}), d_hat * ({db}), T({d2b})}};
   }}
@@ -46,6 +52,8 @@ PLUGIN = """\
 
 #include "barriers/shapes/builtin_shape.hpp"
 #include "barriers/shapes/lane_batch.hpp"
+#include "core/math/atan2.hpp"
+#include "core/math/exp.hpp"
 #include "core/plugin/barrierbench_plugin.h"
 
 namespace {{
@@ -84,6 +92,8 @@ DEVICE = """\
 #include <limits>
 
 #include "core/cuda/device_block.cuh"
+#include "core/math/atan2.hpp"
+#include "core/math/exp.hpp"
 #include "core/resident/contact/given_shape.hpp"
 #include "core/resident/contact/shape_kernels.hpp"
 
@@ -139,10 +149,10 @@ class Printer(CXX17CodePrinter):
         return f"pow({self._print(base)}, {self._print(p)})"
 
     def _print_Function(self, x: sp.Function) -> str:
-        name = type(x).__name__
-        return f"{'std::log' if name == 'log' else name}({self._print(x.args[0])})"
+        name, of = type(x).__name__, self._print(x.args[0])
+        return ELEMENTARY[name].format(of) if name in ELEMENTARY else f"{name}({of})"
 
-    _print_log = _print_exp = _print_Function
+    _print_log = _print_exp = _print_atan = _print_Function
 
 
 def cpp(name: str, formula: str, terms: Terms, ends: Ends) -> str:

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "core/barrier/normalized_gap.hpp"
+#include "core/math/exp.hpp"
 
 namespace bb::shapes {
 
@@ -23,14 +24,14 @@ struct Exponential {
   template <class T>
   BB_HD static ShapeTerms<T> eval(T d, T d_hat, T a = T(default_exponent)) {
     if (d >= d_hat) return {T(0), T(0), T(0)};
-    const T t = a * NormalizedGap<T>(d, d_hat).e, at_d_hat = T(std::exp(double(-a)));
+    const T t = a * NormalizedGap<T>(d, d_hat).e, at_d_hat = elementary::exp(-a);
     T p1, p2, p3;
     if (t < T(1)) {
       p3 = third_remainder(t);
       p2 = p3 + T(0.5) * (t * t);
       p1 = p2 + t;
     } else {
-      p1 = T(std::exp(double(t))) - T(1);  // in double: the exp of float is an approximation on a card
+      p1 = elementary::exp(t) - T(1);
       p2 = p1 - t;
       p3 = p2 - T(0.5) * (t * t);
     }

@@ -32,7 +32,7 @@ inline void store_four(const Lanes<double, 4>& x, std::size_t m, double* column)
 
 }  // namespace detail
 
-/// As shape_batch, to rounding. What a row gets depends on that row alone, not on those beside it.
+/// With the bits of shape_batch: what a row gets depends on that row alone, not on those beside it.
 template <HasTerms S>
 void lane_batch(void*, std::size_t n, const double* d, const double* d_hat, double* b, double* db,
                 double* d2b) {
@@ -41,7 +41,7 @@ void lane_batch(void*, std::size_t n, const double* d, const double* d_hat, doub
     const std::size_t m = std::min<std::size_t>(4, n - begin);
     const Real gaps = detail::load_four(d + begin, m), widths = detail::load_four(d_hat + begin, m);
     const shapes::NormalizedGap<Real> gap(gaps, widths);
-    const ShapeTerms<Real> terms = S::terms(gap, widths, minus_log(gap.u, gap.e));
+    const ShapeTerms<Real> terms = S::terms(gap, widths, elementary::minus_log_of(gap.u, gap.e));
     detail::store_four(terms.b, m, b + begin);
     detail::store_four(terms.db, m, db + begin);
     detail::store_four(terms.d2b, m, d2b + begin);

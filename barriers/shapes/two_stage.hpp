@@ -17,7 +17,7 @@ struct TwoStage {
   /// Requires d >= 0, d_hat > 0 (m); total there.
   template <class T>
   BB_HD static ShapeTerms<T> eval(T d, T d_hat) {
-    using std::log;
+    using elementary::log;
     if (d >= d_hat) return {T(0), T(0), T(0)};
     const NormalizedGap<T> gap(d, d_hat);
     const T e = gap.e, two_u = T(2) * gap.u;

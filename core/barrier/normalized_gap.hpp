@@ -1,10 +1,9 @@
 // What every shape starts from: the gap in units of d_hat, without cancellation near d_hat. Element math.
 #pragma once
 
-#include <cmath>
-
 #include "core/barrier/shape.hpp"
 #include "core/math/host_device.hpp"
+#include "core/math/log.hpp"
 
 namespace bb::shapes {
 
@@ -16,11 +15,7 @@ struct NormalizedGap {
   BB_HD NormalizedGap(T d, T d_hat) : u(d / d_hat), e((d_hat - d) / d_hat) {}
 
   /// -ln u >= 0: from e near d_hat, from u near contact, each where it is the accurate one.
-  BB_HD T minus_log() const {
-    using std::log;
-    using std::log1p;
-    return e < T(0.5) ? -log1p(-e) : -log(u);
-  }
+  BB_HD T minus_log() const { return elementary::minus_log(u, e); }
 };
 
 }  // namespace bb::shapes

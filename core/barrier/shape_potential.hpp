@@ -15,7 +15,7 @@ namespace bb::shapes {
 /// Infinite at u = 0.
 template <class T>
 BB_HD T inverse_gap_excess(const NormalizedGap<T>& gap) {
-  using std::log;
+  using elementary::log;
   if (gap.u == T(0)) return std::numeric_limits<T>::infinity();
   if (gap.e > T(0.5)) return T(1) / gap.u - gap.u + T(2) * log(gap.u);
   const T t = gap.e / (T(2) - gap.e), t_sq = t * t;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/math/exp.hpp"
 #include "core/math/host_device.hpp"
 
 namespace bb {
@@ -20,9 +21,6 @@ BB_HD T crept(T deviation, T yield, T kept) {
 }
 
 /// The part of an excess that is left after dt (s) at `rate` (1/s).
-BB_HD inline double kept_after(double rate, double dt) {
-  using std::exp;
-  return exp(-rate * dt);
-}
+BB_HD inline double kept_after(double rate, double dt) { return elementary::exp(-rate * dt); }
 
 }  // namespace bb

@@ -7,6 +7,7 @@
 #include "core/energy/creep.hpp"
 #include "core/energy/stiffening.hpp"
 #include "core/energy/terms.hpp"
+#include "core/math/atan2.hpp"
 #include "core/math/psd.hpp"
 
 namespace bb {
@@ -16,7 +17,7 @@ namespace bb {
 /// keeps its digits near 0 and pi. Points in the order e0 e1 v0 v1. Host-device: yes. Total.
 template <class T>
 BB_HD T hinge_angle(const Vec<T, 3> (&x)[4]) {
-  using std::atan2;
+  using elementary::atan2;
   const Vec<T, 3> e = x[1] - x[0], b = x[3] - x[0];
   const Vec<T, 3> n0 = e.cross(Vec<T, 3>(x[2] - x[0])), n1 = b.cross(e);
   return atan2(-e.norm() * n0.dot(b), n0.dot(n1));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/energy/terms.hpp"
+#include "core/math/atan2.hpp"
 #include "core/math/congruence.hpp"
 #include "core/math/psd.hpp"
 
@@ -23,7 +24,7 @@ struct RodCorner {
 /// Angle in [0, pi] between two vectors, by atan2, so that it keeps its digits near 0 and pi. Host-device: yes. Total.
 template <class T>
 BB_HD T angle_between(const Vec<T, 3>& a, const Vec<T, 3>& b) {
-  using std::atan2;
+  using elementary::atan2;
   return atan2(a.cross(b).norm(), a.dot(b));
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/math/exp.hpp"
 #include "core/math/host_device.hpp"
 
 namespace bb {
@@ -16,7 +17,7 @@ struct Stiffened {
 /// e^y - 1 - y, y >= 0, without cancellation near 0. Host-device: yes.
 template <class T>
 BB_HD T exponential_remainder(T y) {
-  using std::expm1;
+  using elementary::expm1;
   if (y > T(0.5)) return expm1(y) - y;
   T sum = T(0);  // y^2/2 (1 + y/3 (1 + y/4 (...))); the next factor is below 0.5^13 2/15!
   for (int k = 14; k >= 3; --k) sum = (T(1) + sum) * y / T(k);
@@ -28,7 +29,7 @@ BB_HD T exponential_remainder(T y) {
 /// Total; infinite beyond every number.
 template <class T>
 BB_HD Stiffened<T> stiffened(T u, T linear, T exponential, T exponent) {
-  using std::abs, std::exp, std::expm1;
+  using elementary::exp, elementary::expm1, std::abs;
   Stiffened<T> out{linear / T(2) * u * u, linear * u, linear};
   if (!(exponential > T(0))) return out;
   const T y = exponent * abs(u), grown = exponential / exponent * expm1(y);

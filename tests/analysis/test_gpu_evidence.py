@@ -267,13 +267,25 @@ def test_parts_that_no_group_asks_for_are_left_out(raw, tmp_path):
     assert set(json.loads(Path(done.stdout.strip()).read_text())["parts"]) == {"device_tests", "formula_log", "formula_functions"} | {f"card_{room}" for room in ("contact", "elements", "linear", "runs", "sums", "system")}
 
 
-def test_a_plain_run_without_the_bits_of_the_host_has_failed(raw, tmp_path, capsys):
-    for device, state in (("cuda", "a"), ("host", "b")):
-        (raw / f"same/plain_sheet.{device}").mkdir(parents=True)
+def one_run(raw, name, states):
+    for device, state in states.items():
+        (raw / f"same/{name}.{device}").mkdir(parents=True)
         run = run_json()
         run["summary"]["state_hash"] = state
-        (raw / f"same/plain_sheet.{device}/run.json").write_text(json.dumps(run))
-    assert "- plain_sheet: **not the bits of the host**" in page(raw, tmp_path, capsys)
+        (raw / f"same/{name}.{device}/run.json").write_text(json.dumps(run))
+
+
+def test_a_run_without_the_bits_of_the_host_has_failed(raw, tmp_path, capsys):
+    one_run(raw, "sheet", {"cuda": "a", "host": "b"})
+    text = page(raw, tmp_path, capsys)
+    assert "- sheet: **not the bits of the host**" in text and "may differ" not in text
+
+
+def test_in_a_record_with_plain_runs_these_have_to_have_them(raw, tmp_path, capsys):
+    one_run(raw, "sheet", {"cuda": "a", "host": "b"})
+    one_run(raw, "plain_sheet", {"cuda": "a", "host": "b"})
+    text = page(raw, tmp_path, capsys)
+    assert "- plain_sheet: **not the bits of the host**" in text and "- sheet: **" not in text and "may differ" in text
 
 
 @pytest.mark.parametrize("words", ["test", "tests,,scene", ""])

@@ -3,6 +3,8 @@
 #include "tests/device_check/math_checks.hpp"
 #include "tests/ptx/instantiate.cuh"
 
+EACH(bb::device_check::Elementary<double>)
+EACH(bb::device_check::Elementary<float>)
 EACH(bb::device_check::Svds<double>)
 EACH(bb::device_check::Svds<float>)
 EACH(bb::device_check::SymmetricEigen<double, 2>)

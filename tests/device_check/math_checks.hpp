@@ -1,6 +1,9 @@
-// core/math: eigenvalues, SVD, PSD projection.
+// core/math: eigenvalues, SVD, PSD projection, elementary functions.
 #pragma once
 
+#include "core/math/atan2.hpp"
+#include "core/math/exp.hpp"
+#include "core/math/log.hpp"
 #include "core/math/psd.hpp"
 #include "core/math/svd.hpp"
 #include "tests/device_check/slots.hpp"
@@ -17,6 +20,24 @@ struct Svds : Columns<T> {
     slots.write(a.U), slots.write(a.sigma), slots.write(a.V);
     slots.write(b.U), slots.write(b.sigma), slots.write(b.V);
     slots.write(c.U), slots.write(c.sigma), slots.write(c.V);
+  }
+};
+
+/// Of numbers of every size and sign, some of them as they are and some far larger or smaller.
+template <class T>
+struct Elementary : Columns<T> {
+  BB_HD void operator()(exec::Index i) const {
+    Slots<T> slots = this->slots(i);
+    for (const T size : {T(1), T(0x1p120), T(0x1p-120), T(0)}) {
+      const T a = slots.scalar(), b = slots.scalar(), x = size * a,
+              near = T(1) - T(0.5) * (a < T(0) ? -a : a);
+      slots.write(elementary::log(x)), slots.write(elementary::log(x < T(0) ? -x : x));
+      slots.write(elementary::log(near)), slots.write(elementary::minus_log(near, T(1) - near));
+      slots.write(elementary::exp(T(40) * a)), slots.write(elementary::expm1(a)),
+          slots.write(elementary::exp(x));
+      slots.write(elementary::atan2(a, b)), slots.write(elementary::atan2(x, b)),
+          slots.write(elementary::atan2(b, x));
+    }
   }
 };
 

@@ -10,8 +10,6 @@ namespace ptx {
 class LockstepExecutor : public PtxExecutor {
  public:
   using PtxExecutor::PtxExecutor;
-  /// Whether the numbers of a kernel may differ by library_tolerance, by its name.
-  std::function<bool(const std::string&)> calls_a_library = bb::test::calls_a_library;
 
  protected:
   /// Errors: ExecutionError, also where the results differ; it names the kernel and the first number that does.

@@ -19,7 +19,6 @@ TestedExecutor::TestedExecutor() : TestedExecutor(exec::Order::forward) {}
 TestedExecutor::TestedExecutor(exec::Order order, unsigned seed)
     : HostExecutor(order, seed), device_(std::make_unique<Device>(*this, order, seed)) {}
 TestedExecutor::~TestedExecutor() = default;
-bool TestedExecutor::calls_library_of_host() { return false; }
 
 void TestedExecutor::run(const exec::KernelInfo& kernel, exec::Index n, const void* f) {
   device_->run(kernel, n, f);

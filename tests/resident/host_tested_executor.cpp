@@ -8,7 +8,6 @@ struct TestedExecutor::Device {};
 TestedExecutor::TestedExecutor() = default;
 TestedExecutor::TestedExecutor(exec::Order order, unsigned seed) : HostExecutor(order, seed) {}
 TestedExecutor::~TestedExecutor() = default;
-bool TestedExecutor::calls_library_of_host() { return true; }
 
 void TestedExecutor::run(const exec::KernelInfo& kernel, exec::Index n, const void* f) {
   HostExecutor::run(kernel, n, f);

@@ -7,8 +7,6 @@ namespace bb::resident_creep_test {
 namespace {
 
 using namespace bb::test;
-// Hinges of the CPU path are computed four at a time, which rounds otherwise.
-constexpr double rounding = 1e-13;
 
 BodySpec folded_sheet() {
   BodySpec out;
@@ -86,14 +84,14 @@ struct Both {
     resident.x_n.upload(numbers_of(x));
     for (const auto& term : resident.terms) term->begin_step(resident.resident_frame(frame));
   }
-  void expect_same(double tolerance) {
+  void expect_same() {
     ASSERT_GT(largest(cpu.gradient), 1e-3);
-    EXPECT_LE(largest(resident.gradient() - cpu.gradient), tolerance * largest(cpu.gradient));
+    EXPECT_EQ(resident.gradient(), cpu.gradient);
     cpu.sum(TermSet::all(), StepHessian::clamped, HessianLevel({StepHessian::clamped}), {});
     resident.fill(TermSet::all(), {});
     const Difference found = compare(resident, cpu);
     EXPECT_GT(found.n_nonzero, 100);
-    EXPECT_LE(found.relative, tolerance);
+    EXPECT_EQ(found.relative, 0);
     long double energy = 0;
     for (const auto& term : cpu.terms) {
       for (const double e : term->families()[0].local.energy) energy += e;
@@ -104,11 +102,6 @@ struct Both {
   }
 };
 
-double tolerance_of(const Case& of) {
-  const bool same = std::string(of.term) != "hinges" && test::TestedExecutor::calls_library_of_host();
-  return same ? 0 : rounding;
-}
-
 TEST(ResidentCreep, FollowsFromStepToStep) {
   for (const Case& one : all_cases()) {
     SCOPED_TRACE(one.name);
@@ -117,21 +110,21 @@ TEST(ResidentCreep, FollowsFromStepToStep) {
     ASSERT_EQ(both.resident.terms.size(), 2u) << "inertia and the term";
     const Positions x = strained(one.scene, 0.05), y = strained(one.scene, 0.08);
     both.linearise(x);
-    both.expect_same(tolerance_of(one));
+    both.expect_same();
     const Positions first = both.cpu.gradient;
     both.end_step(x);
     both.linearise(x);
     EXPECT_EQ(both.cpu.gradient, first) << "a step that is over has its own energy";
-    both.expect_same(tolerance_of(one));
+    both.expect_same();
     for (int step = 0; step < 2; ++step) {
       both.begin_step(x);
       both.linearise(y);
-      both.expect_same(tolerance_of(one));
+      both.expect_same();
       both.end_step(y);
     }
     both.begin_step(x);
     both.linearise(x);
-    both.expect_same(tolerance_of(one));
+    both.expect_same();
     const bool creeps = std::string(one.name) != "bending that grows";
     EXPECT_EQ(largest(both.cpu.gradient - first) > 1e-3 * largest(first), creeps);
   }
@@ -145,7 +138,7 @@ TEST(ResidentCreep, HasEveryMatrixOfTheTerms) {
     both.linearise(x);
     both.end_step(x);
     both.begin_step(x);
-    expect_every_matrix(both.resident, both.cpu, strained(one.scene, 0.08), tolerance_of(one));
+    expect_every_matrix(both.resident, both.cpu, strained(one.scene, 0.08), 0);
   }
 }
 
@@ -192,11 +185,9 @@ TEST(ResidentCreep, IsKept) {
     fresh.begin_step(x);
     both.linearise(x);
     fresh.linearise(x);
-    EXPECT_LE(largest(fresh.resident.gradient() - both.resident.gradient()),
-              tolerance_of(one) * largest(both.resident.gradient()));
-    EXPECT_LE(largest(fresh.cpu.gradient - both.cpu.gradient),
-              tolerance_of(one) * largest(both.cpu.gradient));
-    fresh.expect_same(tolerance_of(one));
+    EXPECT_EQ(fresh.resident.gradient(), both.resident.gradient());
+    EXPECT_EQ(fresh.cpu.gradient, both.cpu.gradient);
+    fresh.expect_same();
   }
 }
 

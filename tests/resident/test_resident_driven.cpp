@@ -102,7 +102,7 @@ std::vector<Case> all_cases() {
   out.push_back(
       {"air_drag", in_wind(), 1e-16});  // K is symmetric to rounding, and the host keeps one triangle of it
   out.push_back({"inflation", inflated(), 1e-13});  // the centres of bodies are summed in another order
-  out.push_back({"cloth_springs", sprung(), test::TestedExecutor::calls_library_of_host() ? 0 : 1e-15});
+  out.push_back({"cloth_springs", sprung()});
   out.push_back({"stitch", stitched()});
   return out;
 }

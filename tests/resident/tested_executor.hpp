@@ -14,8 +14,6 @@ class TestedExecutor final : public exec::HostExecutor {
   TestedExecutor();
   explicit TestedExecutor(exec::Order order, unsigned seed = 1);
   ~TestedExecutor() override;
-  /// Whether kernels call the exp, log and atan2 of the host: nvcc brings its own, which differ in the last place.
-  static bool calls_library_of_host();
 
  protected:
   void run(const exec::KernelInfo& kernel, exec::Index n, const void* f) override;

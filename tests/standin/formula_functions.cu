@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "core/cuda/device_block.cuh"
+#include "core/math/atan2.hpp"
+#include "core/math/exp.hpp"
 #include "core/resident/contact/given_shape.hpp"
 #include "core/resident/contact/shape_kernels.hpp"
 
@@ -23,12 +25,12 @@ struct Formula {
   /// As built-in shapes have it where it takes nothing but + - * / and the logarithm: then four rows at a time.
   template <class T>
   BB_HD static bb::ShapeTerms<T> scalar_terms(const bb::shapes::NormalizedGap<T>& gap, T d_hat, [[maybe_unused]] T l) {
-    using std::atan, std::cos, std::cosh, std::exp, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+    using std::cos, std::cosh, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
     [[maybe_unused]] const T u = gap.u, e = gap.e;
     const T c0 = (e * e);
-    const T c1 = std::atan(e);
+    const T c1 = bb::elementary::atan2(e, T(1.0));
     const T c2 = std::cosh(e);
-    const T c3 = exp(e);
+    const T c3 = bb::elementary::exp(e);
     const T c4 = c2 + c3;
     const T c5 = c1 + c4;
     const T c6 = T(2.0) * e;

@@ -11,6 +11,7 @@ const char* const sample_formula =
     "(d_hat - d)^2*(exp(1 - d/d_hat) + cosh(1 - d/d_hat) + atan(1 - d/d_hat)) + (d_hat - "
     "d)^(5/2)/d_hat^(1/2)";
 const double sample_tolerance = 1e-12;
+const bool sample_calls_library = true;
 
 static void evaluate(void*, std::size_t n, const double* d, const double* d_hat, double* b, double* db,
                      double* d2b) {

@@ -6,7 +6,8 @@
 namespace bb::formula_kernel_test {
 
 extern const char* const sample_formula;
-extern const double sample_tolerance;  // relative: functions of a card differ in the last place
+extern const double sample_tolerance;    // relative: other words for the same shape
+extern const bool sample_calls_library;  // whose functions differ in the last place on a card
 Shape sample_shape();
 
 }  // namespace bb::formula_kernel_test
