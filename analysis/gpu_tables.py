@@ -7,9 +7,8 @@ from .gpu_evidence import OF_SOLVE
 LARGE = "drape_1m"
 MEMORY_RUN = ("dense_8m", "dense_184m")  # the second one: in records of 2026-11-26, of the same scene
 MOST_KERNELS = 12
-PLAIN = (
-    "plain_"  # in records until 2026-11-28: runs of which no kernel called a library; others had other bits
-)
+PLAIN = "plain_"  # in records until 2026-11-28: runs of which no kernel called a library
+DIFFERENT = {False: "not the bits of the host", None: "whether it has the bits of the host is not known"}
 ROOMS = ("sums", "linear", "elements", "contact", "system", "runs")
 CHECKS = (
     "device_tests",
@@ -82,7 +81,7 @@ def fallen(record: dict) -> list[str]:
     ]
     judged_runs = plain_runs(record) or record.get("same", [])
     return parts + [
-        f"- {run['name']}: **not the bits of the host**"
+        f"- {run['name']}: **{DIFFERENT[run['same_bits']]}**"
         for run in judged_runs
         if run["same_bits"] is not True
     ]

@@ -2,7 +2,7 @@
 # A folder that runs barrierbench on nodes without its packages, and a module file for it: make_module.sh DIR.
 # DIR must be on a file system that the nodes share. Run it where ./bench build has been run; nodes need the same C library
 # or a newer one. Afterwards: module use DIR/modulefiles && module load barrierbench, then barrierbench sweep ...
-# Presets, methods and cost models are copied too (BARRIERBENCH_CONFIGS); sweeps and base configs are found by the paths that are
+# Presets and methods are copied too (BARRIERBENCH_CONFIGS); sweeps and base configs are found by the paths that are
 # given. Verbs in Python (status, collect) need the Python environment of ./bench.
 set -euo pipefail
 dir="$(realpath -m "$1")" root="$(cd "$(dirname "$0")/.." && pwd)"

@@ -31,7 +31,7 @@ BB_HD inline Centre centre_near(double n, double d) {
 
 /// The angle of (x, y) for y > 0 within 1 ulp, of n the smaller, d the larger of |x| and |y|; n/d and d neither large nor small (atan2).
 /// With a number c close to n/d, t = (n/d - c)/(1 + c n/d) and A = atan c:
-///   atan(n/d) = A + atan t,   atan t = t - t^3/3 + t^5/5 - ...,   t^2 < 0.027: 10 terms leave 1e-18 of t
+///   atan(n/d) = A + atan t,   atan t = t - t^3/3 + t^5/5 - ...,   t^2 < 0.027: 10 terms leave 1e-17 of t
 /// c is such that n - c d has no rounding. The angle is that more or less than a right or a straight angle.
 BB_HD inline double angle_of(double n, double d, bool steep, bool backwards) {
   constexpr double part[] = {1. / 3, 1. / 5, 1. / 7, 1. / 9, 1. / 11, 1. / 13, 1. / 15, 1. / 17, 1. / 19};

@@ -1,4 +1,5 @@
-// The exponential function in + - * /, which both compilers leave as they are written: libraries differ in the last place.
+// The exponential function in + - * / and one fused multiply-add, which both compilers leave as they are written: libraries differ in
+// the last place.
 #pragma once
 
 #include <bit>

@@ -35,7 +35,7 @@ ResidentBarrier::ResidentBarrier(const BarrierFunction& barrier, bool potential,
   if (shape_.launches && !(potential && !shape_.launches->folded_rows)) return;
   if (potential) {
     throw ConfigError("shape", "\"" + shape_.name + "\", which has no kernel of a potential",
-                      "a shape of barriers/shapes that has a potential");
+                      "a shape of the program with a potential (cubic, quadratic)");
   }
   if (host_calls) return;
   if (!shape_.device_code) {
