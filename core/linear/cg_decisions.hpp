@@ -1,5 +1,5 @@
 // What conjugate gradients decide from a few numbers, for every loop that runs them: that of the host
-// (conjugate_gradients.cpp) and the kernels of an executor (core/resident/linear/pcg_kernels.hpp).
+// (conjugate_gradients.cpp) and the kernels of an executor (core/linear/executor/pcg_kernels.hpp).
 #pragma once
 
 #include <cmath>

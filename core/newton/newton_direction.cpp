@@ -1,9 +1,9 @@
 // Gradient and matrix of the iterate, and the Newton direction: the matrix at the level that makes it positive definite,
 // its solve with prescribed motion lifted to the right-hand side, negative curvature.
+#include "core/exec/sums/vector_kernels.hpp"
 #include "core/linear/definiteness.hpp"
 #include "core/newton/element_name.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/resident/sums/vector_kernels.hpp"
 #include "core/terms/cusps.hpp"
 
 namespace bb {

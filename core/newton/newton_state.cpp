@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/newton/step_solver.hpp"
+#include "core/scene/pinned_vertices.hpp"
 
 namespace bb {
 
@@ -70,7 +71,7 @@ NewtonState::NewtonState(const Scene& of, Method& method, const Plan& with, Phas
       n_free(static_cast<int>(std::count(fixed.begin(), fixed.end(), 0))),
       potential(make(of, method, plan, fixed, clock)),
       executor(potential->executor()),
-      vectors(executor, fixed, of.pins),
+      vectors(executor, fixed, pinned_vertices(of)),
       level(choices_of(plan, method)),
       x(executor, "positions"),
       trial(executor, "trial positions"),

@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "core/exec/sums/vectors.hpp"
 #include "core/newton/hessian_level.hpp"
 #include "core/newton/incremental_potential.hpp"
 #include "core/newton/method.hpp"
-#include "core/resident/sums/vectors.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/plan.hpp"
 

@@ -4,10 +4,10 @@
 
 #include "core/exec/host_executor.hpp"
 #include "core/linear/block_starts.hpp"
+#include "core/linear/executor/reduced_upload.hpp"
+#include "core/linear/executor/resident_pcg.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/linear/parallel.hpp"
-#include "core/resident/linear/reduced_upload.hpp"
-#include "core/resident/linear/resident_pcg.hpp"
 #include "core/solvers/linear_solvers.hpp"
 
 namespace bb {

@@ -6,8 +6,8 @@
 #include <exception>
 
 #include "core/exec/metered_executor.hpp"
+#include "core/linear/executor/solver_launches.hpp"
 #include "core/newton/simulation.hpp"
-#include "core/resident/linear/solver_launches.hpp"
 #include "core/resident/system/resident_potential.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"

@@ -17,11 +17,11 @@ core/cuda/device core/cuda/device_executor
 core/linear/block_scaling core/linear/condition core/linear/condition_dense core/linear/extreme_pairs core/linear/scaled_matrix core/linear/spectrum_end
 core/linear/block_system core/linear/gather_map core/linear/reduction
 core/linear/cg_runs core/linear/conjugate_gradients core/linear/definiteness core/linear/linear_solver core/linear/preconditioner core/linear/solve_detail
+core/linear/executor/block_jacobi core/linear/executor/resident_preconditioner core/linear/executor/schwarz
 core/mesh/mesh_objects core/mesh/raw_mesh core/mesh/read_mesh
 core/newton/newton_system core/newton/newton_view
 core/parameters/check core/parameters/parameter
 core/record/kept_hash core/record/provenance
-core/resident/linear/block_jacobi core/resident/linear/resident_preconditioner core/resident/linear/schwarz
 core/terms/contact core/terms/linear_contact
 core/terms/part_term core/terms/registry
 experiments/cli/sweep_cases experiments/cli/sweep_spec

@@ -5,7 +5,7 @@ instructions of its PTX, cache lines and sectors that a request of a warp touche
     kernel_table.py --check              compares what is built with results/KERNELS.json; nothing is compiled or run
     kernel_table.py [--profile FILE]...  writes results/KERNELS.json and results/KERNELS.md
 
-The kernels are those of core/resident/*/kernels.inc, their numbers those of the object files bb_device_ROOM. A check fails
+The kernels are those of the lists kernels.inc of rooms, their numbers those of the object files bb_device_ROOM. A check fails
 (exit code 1) when registers, stack, accesses to local memory or FP64 instructions have grown, a kernel is new, gone or without its numbers, a kernel of PCG or of sums uses local
 memory, or a buffer is read in more sectors than 1.2 times the least without a reason in gathers.toml. Where another
 version of nvcc made the objects, only names are compared. Exit code 2: an object file is missing or not understood.
@@ -82,7 +82,8 @@ def kernels_of_room(path: Path) -> tuple[dict[str, dict], str]:
 
 def built(build: Path) -> dict:
     """{"nvcc": version, "kernels": {name: row}} of the object files."""
-    rooms = sorted(p.parent.name for p in (ROOT / "core/resident").glob("*/kernels.inc"))
+    folders = [p.parent for p in (ROOT / "core").rglob("kernels.inc")]
+    rooms = sorted((f.parent if f.name == "executor" else f).name for f in folders)  # cmake/KernelLists.cmake
     versions, out = set(), {}
     for room in rooms:
         rows, version = kernels_of_room(object_file(build, room))

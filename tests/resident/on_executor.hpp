@@ -4,6 +4,7 @@
 #include "core/exec/host_executor.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/hessian_request.hpp"
+#include "core/scene/pinned_vertices.hpp"
 #include "tests/resident/cpu_elements.hpp"
 #include "tests/resident/tested_executor.hpp"
 
@@ -37,7 +38,7 @@ struct OnExecutor {
              exec::Index piece = resident::ElementMatrix::default_piece)
       : executor(on),
         plan(make_plan(scene, options, {})),
-        vectors(on, std::vector<std::uint8_t>(3 * scene.mass.size()), scene.pins),
+        vectors(on, std::vector<std::uint8_t>(3 * scene.mass.size()), pinned_vertices(scene)),
         mass(on, "vertex masses"),
         elements(on, scene.n_vertices(), piece),
         x_n(on, "start"),

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "barriers/shapes/registry.hpp"
+#include "core/exec/sums/resident_sum.hpp"
 #include "core/resident/contact/detour_kernels.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
-#include "core/resident/sums/resident_sum.hpp"
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/resident/contact_on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/contact/contact_loads.hpp"
+#include "core/exec/sums/resident_sum.hpp"
 #include "core/resident/contact/resident_lag.hpp"
-#include "core/resident/sums/resident_sum.hpp"
 #include "tests/resident/assembled.hpp"
 
 namespace bb::resident_lag_test {

@@ -7,7 +7,7 @@
 
 #include "core/exec/counting_executor.hpp"
 #include "core/exec/metered_executor.hpp"
-#include "core/resident/linear/solver_launches.hpp"
+#include "core/linear/executor/solver_launches.hpp"
 #include "tests/resident/system_cases.hpp"
 
 namespace bb::resident_memory_test {

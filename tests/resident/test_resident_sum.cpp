@@ -1,5 +1,5 @@
 // Sums, maxima and first items over columns of an executor.
-#include "core/resident/sums/resident_sum.hpp"
+#include "core/exec/sums/resident_sum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The kernels of core/resident/system, each against a plain loop.
-#include "core/resident/sums/vector_kernels.hpp"
+#include "core/exec/sums/vector_kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "core/exec/host_executor.hpp"
-#include "core/resident/sums/resident_sum.hpp"
+#include "core/exec/sums/resident_sum.hpp"
 #include "core/resident/system/row_totals.hpp"
 #include "tests/resident/tested_executor.hpp"
 

@@ -1,10 +1,11 @@
 // Vector operations of a Newton iteration on an executor, against loops.
-#include "core/resident/sums/vectors.hpp"
+#include "core/exec/sums/vectors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/scene/pinned_vertices.hpp"
 #include "tests/resident/on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"
 
@@ -39,7 +40,7 @@ struct Vectors {
 
 TEST(Vectors, MovePutsPinsOnTargetAtTheEndOfAStepOnly) {
   Vectors v;
-  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  VectorTools tools(v.executor, v.fixed, pinned_vertices(v.scene));
   tools.set_targets(v.target);
   ASSERT_EQ(v.scene.pins.size(), 3u);
   const auto short_pin = [&] {
@@ -65,7 +66,7 @@ TEST(Vectors, MovePutsPinsOnTargetAtTheEndOfAStepOnly) {
 
 TEST(Vectors, NormsAndProductsLeaveFixedDegreesOfFreedomOut) {
   Vectors v;
-  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  VectorTools tools(v.executor, v.fixed, pinned_vertices(v.scene));
   double largest = 0, largest_free = 0;
   long double dot = 0, magnitude = 0;
   for (std::size_t i = 0; i < v.fixed.size(); ++i) {
@@ -95,7 +96,7 @@ TEST(Vectors, NormsAndProductsLeaveFixedDegreesOfFreedomOut) {
 
 TEST(Vectors, FindWhatIsNoNumber) {
   Vectors v;
-  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  VectorTools tools(v.executor, v.fixed, pinned_vertices(v.scene));
   EXPECT_EQ(tools.first_not_finite(v.x), -1);
   v.x.set(40, INFINITY);
   v.x.set(17, std::nan(""));
@@ -109,7 +110,7 @@ TEST(Vectors, FixedBitsAreThreeAVertex) {
 
 TEST(Vectors, DirectionsAreSplitAtTheRoundingOfTheirVertex) {
   Vectors v;
-  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  VectorTools tools(v.executor, v.fixed, pinned_vertices(v.scene));
   std::vector<double> sizes(v.scene.mass.size());
   for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = 1e-3 * static_cast<double>(i % 5);
   exec::Buffer<double> body_size{v.executor, "sizes"};
@@ -154,7 +155,7 @@ TEST(Vectors, LongestOfMany) {
 
 TEST(Vectors, ASolutionIsAddedWithItsProducts) {
   Vectors v;
-  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  VectorTools tools(v.executor, v.fixed, pinned_vertices(v.scene));
   const Positions step_host = wave(v.scene, 0.7), expected = v.dx_host + step_host;
   exec::Buffer<double> step(v.executor, "step");
   step.upload(numbers_of(step_host));

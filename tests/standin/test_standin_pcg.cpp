@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/cuda/device_executor.hpp"
-#include "core/resident/linear/block_jacobi.hpp"
-#include "tests/resident/linear_cases.hpp"
+#include "core/linear/executor/block_jacobi.hpp"
+#include "tests/linear/executor/linear_cases.hpp"
 #include "tests/standin/cudart.hpp"
 
 namespace bb::resident {

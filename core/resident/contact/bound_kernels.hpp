@@ -5,11 +5,11 @@
 #include "core/contact/float_rounding.hpp"
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_planes.hpp"
+#include "core/exec/sums/sum_kernels.hpp"
 #include "core/geometry/accd.hpp"
 #include "core/resident/contact/candidate_lists.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/pair_search.hpp"
-#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

@@ -1,11 +1,11 @@
 // From rows to gradient, matrix and the force of a given motion.
 #pragma once
 
+#include "core/linear/executor/resident_matrix.hpp"
 #include "core/resident/contact/contact_pattern.hpp"
 #include "core/resident/contact/resident_surface.hpp"
 #include "core/resident/contact/sum_kernels.hpp"
 #include "core/resident/contact/term_kernels.hpp"
-#include "core/resident/linear/resident_matrix.hpp"
 
 namespace bb::resident {
 

@@ -1,9 +1,9 @@
 // The few numbers that leave the rows: energies, and what the policy ipc_adaptive starts from.
 #pragma once
 
+#include "core/exec/sums/resident_sum.hpp"
 #include "core/resident/contact/contact_assembly.hpp"
 #include "core/resident/contact/sum_kernels.hpp"
-#include "core/resident/sums/resident_sum.hpp"
 
 namespace bb::resident {
 

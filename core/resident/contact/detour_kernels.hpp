@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/contact/gap_along.hpp"
+#include "core/exec/sums/sum_kernels.hpp"
 #include "core/resident/contact/term_kernels.hpp"
-#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

@@ -1,7 +1,7 @@
 // Numbers of the mollified rows, which are few: a column of them beside the list of their rows.
 #pragma once
 
-#include "core/resident/linear/find_block.hpp"
+#include "core/linear/executor/find_block.hpp"
 
 namespace bb::resident {
 

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "core/contact/step_bound.hpp"
+#include "core/exec/sums/resident_sum.hpp"
 #include "core/resident/contact/bound_kernels.hpp"
 #include "core/resident/contact/compaction.hpp"
 #include "core/resident/contact/resident_broad_phase.hpp"
-#include "core/resident/sums/resident_sum.hpp"
 
 namespace bb::resident {
 

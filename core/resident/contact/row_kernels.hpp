@@ -2,11 +2,11 @@
 #pragma once
 
 #include "core/contact/row_rule.hpp"
+#include "core/exec/sums/sum_kernels.hpp"
 #include "core/resident/contact/candidate_lists.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

@@ -4,9 +4,9 @@
 
 #include "core/barrier/relative_change.hpp"
 #include "core/barrier/scaled_policy.hpp"
+#include "core/linear/executor/sub_matrix.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/linear/sub_matrix.hpp"
 
 namespace bb::resident {
 

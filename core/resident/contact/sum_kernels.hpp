@@ -1,9 +1,9 @@
 // What is summed over rows.
 #pragma once
 
+#include "core/exec/sums/sum_kernels.hpp"
 #include "core/resident/contact/mollified_column.hpp"
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

@@ -8,9 +8,9 @@
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/obstacle_shape.hpp"
 #include "core/contact/row_hessian.hpp"
+#include "core/linear/executor/find_block.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/linear/find_block.hpp"
 
 namespace bb::resident {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/linear/executor/resident_matrix.hpp"
 #include "core/resident/elements/gather_lists.hpp"
-#include "core/resident/linear/resident_matrix.hpp"
 
 namespace bb::resident {
 

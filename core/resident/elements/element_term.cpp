@@ -1,6 +1,6 @@
 #include "core/resident/elements/element_term.hpp"
 
-#include "core/resident/sums/vector_kernels.hpp"
+#include "core/exec/sums/vector_kernels.hpp"
 
 namespace bb::resident {
 

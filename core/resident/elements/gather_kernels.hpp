@@ -1,10 +1,10 @@
 // Local terms of a piece of elements summed into vertices and blocks: every target owns its contributions, sorted by
 // element, and adds them one after the other to what it has. So the sum does not depend on how elements are cut into
-// pieces. Values of blocks: core/resident/linear/resident_matrix.hpp.
+// pieces. Values of blocks: core/linear/executor/resident_matrix.hpp.
 #pragma once
 
-#include "core/resident/linear/find_block.hpp"
-#include "core/resident/linear/resident_matrix.hpp"
+#include "core/linear/executor/find_block.hpp"
+#include "core/linear/executor/resident_matrix.hpp"
 
 namespace bb::resident {
 

@@ -1,6 +1,8 @@
 // All kernels of this room.
 #pragma once
 
+#include "core/exec/sums/sum_kernels.hpp"
+#include "core/exec/sums/vector_kernels.hpp"
 #include "core/resident/elements/cloth_spring_kernels.hpp"
 #include "core/resident/elements/element_kernels.hpp"
 #include "core/resident/elements/family_kernels.hpp"
@@ -9,5 +11,3 @@
 #include "core/resident/elements/limit_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"
 #include "core/resident/elements/quadratic_kernels.hpp"
-#include "core/resident/sums/sum_kernels.hpp"
-#include "core/resident/sums/vector_kernels.hpp"

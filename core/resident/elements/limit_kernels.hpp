@@ -10,10 +10,10 @@
 #include "core/barrier/shape_potential.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/energy/strain_stiffness.hpp"
+#include "core/exec/sums/sum_kernels.hpp"
+#include "core/linear/executor/sub_matrix.hpp"
 #include "core/resident/elements/family_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
-#include "core/resident/linear/sub_matrix.hpp"
-#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/energy/vertex_loads.hpp"
+#include "core/exec/sums/sum_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
-#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

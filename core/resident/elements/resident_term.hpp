@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/exec/buffer.hpp"
+#include "core/exec/sums/resident_sum.hpp"
+#include "core/linear/executor/resident_matrix.hpp"
 #include "core/record/phase_times.hpp"
 #include "core/resident/elements/element_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"
-#include "core/resident/linear/resident_matrix.hpp"
-#include "core/resident/sums/resident_sum.hpp"
 #include "core/terms/report.hpp"
 #include "core/terms/term_set.hpp"
 

@@ -1,9 +1,9 @@
 // What terms are made from on an executor, and the list that they are added to.
 #pragma once
 
+#include "core/exec/sums/vectors.hpp"
 #include "core/resident/elements/element_matrix.hpp"
 #include "core/resident/elements/resident_term.hpp"
-#include "core/resident/sums/vectors.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/list_of_terms.hpp"

@@ -2,8 +2,8 @@
 // (core/terms) is on the host. Rows: those of core/resident/contact/lag_kernels.hpp.
 #pragma once
 
+#include "core/exec/sums/vector_kernels.hpp"
 #include "core/resident/contact/resident_lag.hpp"
-#include "core/resident/sums/vector_kernels.hpp"
 #include "core/resident/system/resident_contact.hpp"
 #include "core/terms/known_step.hpp"
 

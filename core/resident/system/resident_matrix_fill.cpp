@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/linear/executor/pcg_kernels.hpp"
 #include "core/resident/elements/hessian_request.hpp"
-#include "core/resident/linear/pcg_kernels.hpp"
 #include "core/resident/system/resident_potential.hpp"
 
 namespace bb::resident {

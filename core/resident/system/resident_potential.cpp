@@ -6,6 +6,7 @@
 #include "core/math/error.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/resident/system/term_list.hpp"
+#include "core/scene/pinned_vertices.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "core/terms/known_step.hpp"
 
@@ -38,7 +39,7 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
       scene_(scene),
       method_(method),
       plan_(plan),
-      vectors_(*executor_, fixed, scene.pins),
+      vectors_(*executor_, fixed, pinned_vertices(scene)),
       mass_(*executor_, "vertex masses"),
       elements_(*executor_, scene.n_vertices()),
       forcing_(linear_parameters(method)),

@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/linear/executor/resident_pcg.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/newton/incremental_potential.hpp"
 #include "core/newton/method.hpp"
 #include "core/resident/contact/expected_contacts.hpp"
 #include "core/resident/elements/term_inputs.hpp"
-#include "core/resident/linear/resident_pcg.hpp"
 #include "core/terms/cusps.hpp"
 #include "core/terms/plan.hpp"
 

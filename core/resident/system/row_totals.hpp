@@ -3,9 +3,9 @@
 
 #include <limits>
 
+#include "core/exec/sums/sum_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 #include "core/resident/contact/sum_kernels.hpp"
-#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

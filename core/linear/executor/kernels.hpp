@@ -1,0 +1,6 @@
+// Every kernel of this room, for the lists of kernels.inc.
+#pragma once
+
+#include "core/linear/executor/block_jacobi_kernels.hpp"
+#include "core/linear/executor/pcg_kernels.hpp"
+#include "core/linear/executor/schwarz_kernels.hpp"

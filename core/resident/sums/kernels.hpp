@@ -1,4 +1,0 @@
-// All kernels of this room.
-#pragma once
-
-#include "core/resident/sums/sum_kernels.hpp"
