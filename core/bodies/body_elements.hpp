@@ -25,11 +25,6 @@ List& of_model(const std::string& model, std::vector<List>& lists) {
   return lists.back();
 }
 
-/// Whether a column says something of an element for which 0 says nothing.
-inline bool any_positive(const std::vector<double>& column) {
-  return std::any_of(column.begin(), column.end(), [](double value) { return value > 0; });
-}
-
 struct BodyElements {
   Scene& scene;
   const int first;                 // vertex 0 of the body in the scene

@@ -13,9 +13,8 @@
 #include "core/bodies/body_spec.hpp"
 #include "core/bodies/element_answer.hpp"
 #include "core/bodies/material_settings.hpp"
-#include "core/energy/element_batch.hpp"
+#include "core/energy/families/element_family.hpp"
 #include "core/input/memory.hpp"
-#include "core/math/precision.hpp"
 #include "core/mesh/write_mesh.hpp"
 
 namespace bb {
@@ -74,8 +73,8 @@ class Part {
   /// "springs": what size() counts. "no spring": what is said when there are none.
   virtual std::string_view elements() const = 0;
   virtual std::string_view no_elements() const = 0;
-  /// One batch a term of E; none without elements.
-  virtual void add_batches(const Scene&, Precision, std::vector<std::unique_ptr<EnergyBatch>>& out) const = 0;
+  /// One family a term of E; none without elements. The scene outlives them.
+  virtual void add_families(const Scene&, const FamilyPlace&, std::vector<std::unique_ptr<ElementFamily>>& out) const = 0;
   virtual void add_frame_fields(const Scene&, const Positions& /*x*/, FrameFields&) const {}
 
   // --- a single element, as `eval` asks for it

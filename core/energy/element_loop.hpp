@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/energy/element_batch.hpp"
+#include "core/energy/local_terms.hpp"
 #include "core/energy/terms.hpp"
 #include "core/math/error.hpp"
 #include "core/math/lower_blocks.hpp"
@@ -43,22 +43,6 @@ void store_terms(const ElementTerms<T, N>& terms, std::size_t e, PassParts parts
   }
 }
 
-/// Of elements first to first + n - 1, n of the L lanes.
-template <class T, int L, int W>
-void store_abreast(const TermsAbreast<T, L, W>& terms, std::size_t first, std::size_t n, PassParts parts,
-                   LocalTerms& out) {
-  constexpr std::size_t numbers = n_lower_numbers(W), size = 3 * W;
-  for (std::size_t lane = 0; lane < n; ++lane) {
-    const std::size_t e = first + lane;
-    if (parts.values) {
-      out.energy[e] = terms.energy[lane];
-      for (std::size_t k = 0; k < size; ++k) out.grad[size * e + k] = terms.grad[k][lane];
-    }
-    if (!parts.hessians) continue;
-    for (std::size_t k = 0; k < numbers; ++k) out.hess[numbers * e + k] = terms.hess[k][lane];
-  }
-}
-
 /// terms.operator()<T>(e), the ElementTerms of element e in the scalar T, of n elements: each part in the scalar that
 /// the precision has for it.
 template <class Terms>
@@ -76,20 +60,8 @@ void store_energies(std::size_t n, Precision precision, const Value& value, doub
   });
 }
 
-/// Those of n elements for which is.operator()<T>(e) holds, in the scalar of energies, ascending.
-template <class Is>
-std::vector<std::size_t> elements_where(std::size_t n, Precision precision, const Is& is) {
-  std::vector<std::size_t> out;
-  with_value_scalar(precision, [&]<class T>() {
-    for (std::size_t e = 0; e < n; ++e) {
-      if (is.template operator()<T>(e)) out.push_back(e);
-    }
-  });
-  return out;
-}
-
 /// ConfigError unless a column has one entry an element and, where `positive`, no entry that is not > 0.
-inline void check_column(const char* where, std::size_t n, const std::vector<double>& column, bool positive) {
+inline void check_column(const char* where, std::size_t n, std::span<const double> column, bool positive) {
   if (column.size() != n) {
     throw ConfigError(where, std::to_string(column.size()) + " entries",
                       std::to_string(n) + ", one an element");

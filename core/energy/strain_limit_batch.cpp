@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "core/energy/element_loop.hpp"
-#include "core/energy/membrane_batch.hpp"
-#include "core/energy/tetrahedron_batch.hpp"
+#include "core/energy/rest_shapes.hpp"
 
 namespace bb {
 namespace {

@@ -5,14 +5,14 @@
 #include <array>
 #include <limits>
 
-#include "core/energy/element_batch.hpp"
+#include "core/energy/local_terms.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/energy/strain_stiffness.hpp"
 #include "core/math/precision.hpp"
 
 namespace bb {
 
-/// Not an EnergyBatch: its energy needs a barrier and kappa. One object a run; values, derivatives and
+/// Not an ElementFamily: its energy needs a barrier and kappa. One object a run; values, derivatives and
 /// measure write its columns, so one caller at a time. `Barrier` is a BarrierFunction
 /// (core/barrier/shape.hpp) or anything with its batch call eval(n, d, d_hat, b, db, d2b).
 /// Rest: TriangleRest or TetrahedronRest.

@@ -18,7 +18,7 @@ HostPotential::HostPotential(const Scene& scene, Method& method, const Plan& pla
       scene_(scene),
       plan_(plan),
       precision_(method.precision),
-      terms_(make_terms(plan, {scene, method, plan.contacts, fixed})),
+      terms_(make_terms(plan, {executor_, scene, method, plan.contacts, fixed})),
       blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed)) {
   make_solver();
   set_fixed_families(method);

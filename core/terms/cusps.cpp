@@ -1,34 +1,32 @@
 #include "core/terms/cusps.hpp"
 
 #include "core/bodies/part.hpp"
-#include "core/energy/spring_batch.hpp"
+#include "core/terms/stitch.hpp"
 
 namespace bb {
 
-void Cusps::add(std::string_view of, const EnergyBatch& batch, const PositionsView& x) {
-  const auto w = static_cast<std::size_t>(batch.width());
-  for (const std::size_t e : batch.cusps(x)) {
+void Cusps::add(std::string_view of, const ElementFamily& family, const PositionsView& x) {
+  const auto w = static_cast<std::size_t>(family.width());
+  for (const std::size_t e : family.cusps(x.data())) {
     if (count++ == 0) term = of, element = e, width = w;
-    const auto own = batch.vertices().subspan(w * e, w);
+    const auto own = family.vertices().subspan(w * e, w);
     vertices.insert(vertices.end(), own.begin(), own.end());
   }
 }
 
 CuspSearch::CuspSearch(const Scene& scene, Precision precision) {
+  const FamilyPlace place{executor_, precision};
   for (const PartEntry& entry : part_entries()) {
-    std::vector<std::unique_ptr<EnergyBatch>> made;
-    entry.part.add_batches(scene, precision, made);
-    for (auto& batch : made) batches_.push_back({entry.name, std::move(batch)});
+    std::vector<std::unique_ptr<ElementFamily>> made;
+    entry.part.add_families(scene, place, made);
+    for (auto& family : made) families_.push_back({entry.name, std::move(family)});
   }
-  const Stitches& stitches = scene.stitches;
-  if (stitches.pairs.empty()) return;
-  batches_.push_back({"stitch", std::make_unique<SpringBatch>(stitches.pairs, stitches.rest_length,
-                                                              stitches.stiffness, precision)});
+  if (!scene.stitches.pairs.empty()) families_.push_back({"stitch", stitch_family(place, scene.stitches)});
 }
 
 Cusps CuspSearch::find(const PositionsView& x) const {
   Cusps out;
-  for (const Named& named : batches_) out.add(named.term, *named.batch, x);
+  for (const Named& named : families_) out.add(named.term, *named.family, x);
   return out;
 }
 

@@ -1,4 +1,4 @@
-// Elements whose energy has a cusp at the iterate (EnergyBatch::cusps): it is no minimum there, whatever the first and second derivatives
+// Elements whose energy has a cusp at the iterate (ElementFamily::cusps): it is no minimum there, whatever the first and second derivatives
 // that such elements have chosen say.
 #pragma once
 
@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/energy/element_batch.hpp"
-#include "core/math/precision.hpp"
+#include "core/energy/families/element_family.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/scene/scene.hpp"
 
 namespace bb {
@@ -15,12 +15,12 @@ namespace bb {
 struct Cusps {
   std::size_t count = 0;
   std::string_view term;      // of the first element
-  std::size_t element = 0;    // the first one's number in its batch
+  std::size_t element = 0;    // the first one's number in its family
   std::vector<int> vertices;  // of all of them, element after element
   std::size_t width = 0;      // of the first one: so many vertices are its own
 
-  /// Those of a batch of `of`.
-  void add(std::string_view of, const EnergyBatch& batch, const PositionsView& x);
+  /// Those of a family of `of`.
+  void add(std::string_view of, const ElementFamily& family, const PositionsView& x);
 };
 
 /// The elastic elements of a scene on the host, for a potential whose own are elsewhere. Rest shapes that creep or shrink
@@ -33,9 +33,10 @@ class CuspSearch {
  private:
   struct Named {
     std::string_view term;
-    std::unique_ptr<EnergyBatch> batch;
+    std::unique_ptr<ElementFamily> family;
   };
-  std::vector<Named> batches_;
+  exec::HostExecutor executor_;
+  std::vector<Named> families_;
 };
 
 }  // namespace bb

@@ -4,10 +4,9 @@
 
 #include <stdexcept>
 
-#include "core/terms/batch_term.hpp"
+#include "core/terms/family_term.hpp"
 
 namespace bb {
-namespace {
 
 std::string_view name_of(const Part& part) {
   for (const PartEntry& entry : part_entries()) {
@@ -16,19 +15,15 @@ std::string_view name_of(const Part& part) {
   throw std::logic_error("a part that is not in core/scene/parts/registry.inc");
 }
 
-}  // namespace
-
 PlanItem needs_part(const Part& part, const TermNeeds& needs) {
   const std::size_t n = part.size(needs.scene);
   return plan_item(n > 0, fmt::format("{} {}", n, part.elements()), std::string(part.no_elements()));
 }
 
 void make_part(const Part& part, const TermInputs& inputs, TermList& terms) {
-  std::vector<std::unique_ptr<EnergyBatch>> batches;
-  part.add_batches(inputs.scene, inputs.options.precision, batches);
-  for (std::unique_ptr<EnergyBatch>& batch : batches) {
-    terms.add(std::make_unique<BatchTerm>(name_of(part), std::move(batch)));
-  }
+  std::vector<std::unique_ptr<ElementFamily>> families;
+  part.add_families(inputs.scene, {inputs.executor, inputs.options.precision}, families);
+  for (auto& family : families) terms.add(std::make_unique<FamilyTerm>(name_of(part), std::move(family)));
 }
 
 }  // namespace bb

@@ -1,4 +1,4 @@
-// The elastic terms: the elements of a part (core/bodies/part.hpp), one term a batch.
+// The elastic terms: the elements of a part (core/bodies/part.hpp), one term a family.
 #pragma once
 
 #include "core/bodies/part.hpp"
@@ -6,6 +6,8 @@
 
 namespace bb {
 
+/// That of its line in core/scene/parts/registry.inc.
+std::string_view name_of(const Part& part);
 PlanItem needs_part(const Part& part, const TermNeeds& needs);
 void make_part(const Part& part, const TermInputs& inputs, TermList& terms);
 

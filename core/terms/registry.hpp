@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/exec/executor.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/term.hpp"
@@ -22,6 +23,7 @@ struct TermNeeds {
 
 /// What a term is made from. All of it outlives the term.
 struct TermInputs {
+  exec::Executor& executor;  // in whose memory families are, which is the host's
   const Scene& scene;
   TermOptions& options;
   const ContactPlan& contacts;

@@ -1,11 +1,18 @@
 // Stitches: k/2 (|x_b - x_a| - l0)^2.
+#include "core/terms/stitch.hpp"
+
 #include <fmt/format.h>
 
-#include "core/energy/spring_batch.hpp"
-#include "core/terms/batch_term.hpp"
+#include "core/energy/families/families.hpp"
+#include "core/terms/family_term.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
+
+std::unique_ptr<ElementFamily> stitch_family(const FamilyPlace& place, const Stitches& stitches) {
+  return spring_family(place, {"stitched vertices", "stitch stiffness", "stitch rest lengths"}, stitches.pairs,
+                       stitches.stiffness, stitches.rest_length);
+}
 
 PlanItem needs_stitch(const TermNeeds& needs) {
   const std::size_t n = needs.scene.stitches.pairs.size();
@@ -13,10 +20,8 @@ PlanItem needs_stitch(const TermNeeds& needs) {
 }
 
 void make_stitch(const TermInputs& inputs, TermList& terms) {
-  const Stitches& stitches = inputs.scene.stitches;
-  terms.add(std::make_unique<BatchTerm>(
-      "stitch", std::make_unique<SpringBatch>(stitches.pairs, stitches.rest_length, stitches.stiffness,
-                                              inputs.options.precision)));
+  const FamilyPlace place{inputs.executor, inputs.options.precision};
+  terms.add(std::make_unique<FamilyTerm>("stitch", stitch_family(place, inputs.scene.stitches)));
 }
 
 }  // namespace bb

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "core/energy/constraint_batch.hpp"
-#include "core/energy/element_batch.hpp"
+#include "core/energy/local_terms.hpp"
+#include "core/math/projection.hpp"
 #include "core/linear/block_system.hpp"
 #include "core/math/types.hpp"
 #include "core/record/phase_times.hpp"

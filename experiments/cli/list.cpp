@@ -6,7 +6,7 @@
 #include "barriers/stiffness/registry.hpp"
 #include "core/bodies/part.hpp"
 #include "core/energy/membrane_model.hpp"
-#include "core/energy/tetrahedron_batch.hpp"
+#include "core/energy/solid_model.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "core/math/error.hpp"

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "barriers/shapes/registry.hpp"
-#include "core/energy/hinge_batch.hpp"
-#include "core/energy/membrane_batch.hpp"
-#include "core/energy/spring_batch.hpp"
+#include "core/energy/families/families.hpp"
+#include "core/energy/membrane_model.hpp"
+#include "core/energy/solid_model.hpp"
 #include "core/energy/strain_limit_batch.hpp"
-#include "core/energy/tetrahedron_batch.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/mesh/solid_generators.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
@@ -21,36 +21,38 @@ struct Sheet {
   Scene scene = cloth_stack(1, 64);
 };
 
-void value(benchmark::State& state, const EnergyBatch& batch, const Positions& x) {
-  std::vector<double> energy(batch.size());
+void value(benchmark::State& state, ElementFamily& family, const Positions& x) {
+  std::vector<double> energy(static_cast<std::size_t>(family.size()));
   for (auto _ : state) {
-    batch.values(x, energy.data());
+    family.values(x.data(), energy.data());
     benchmark::DoNotOptimize(energy.data());
     benchmark::ClobberMemory();
   }
-  count_items(state, batch.size());
+  count_items(state, static_cast<std::size_t>(family.size()));
 }
 
-void derivatives(benchmark::State& state, const EnergyBatch& batch, const Positions& x) {
+void derivatives(benchmark::State& state, ElementFamily& family, const Positions& x) {
   LocalTerms terms;
   for (auto _ : state) {
-    batch.derivatives(x, Projection::psd, terms);
+    family.derivatives(x.data(), Projection::psd, terms);
     benchmark::DoNotOptimize(terms.hess.data());
     benchmark::ClobberMemory();
   }
-  count_items(state, batch.size());
+  count_items(state, static_cast<std::size_t>(family.size()));
 }
 
-using MakeBatch = std::function<std::unique_ptr<EnergyBatch>(const Scene&)>;
+using MakeFamily = std::function<MadeFamily(const FamilyPlace&, const Scene&)>;
 
-void register_batch(const std::string& name, const MakeBatch& make) {
+void register_family(const std::string& name, const MakeFamily& make) {
   add("energy/" + name + "/value", [make](benchmark::State& state) {
     const Sheet sheet;
-    value(state, *make(sheet.scene), sheet.scene.x0);
+    exec::HostExecutor executor;
+    value(state, *make({executor}, sheet.scene), sheet.scene.x0);
   });
   add("energy/" + name + "/gradient_and_hessian", [make](benchmark::State& state) {
     const Sheet sheet;
-    derivatives(state, *make(sheet.scene), sheet.scene.x0);
+    exec::HostExecutor executor;
+    derivatives(state, *make({executor}, sheet.scene), sheet.scene.x0);
   });
 }
 
@@ -58,9 +60,11 @@ void register_batch(const std::string& name, const MakeBatch& make) {
 void solid(benchmark::State& state, std::string_view model, bool with_derivatives) {
   const TriangleMesh mesh = solid_box_mesh({12, 12, 12}, Vec3d(1, 1, 1));
   const std::vector<double> lame(mesh.tetrahedra.size(), 1e5);
-  const TetrahedronBatch batch(model, mesh.tetrahedra, mesh.vertices, lame, lame);
+  const SolidPart part{std::string(model), mesh.tetrahedra, lame, lame};
+  exec::HostExecutor executor;
+  const MadeFamily family = tetrahedron_family({executor}, part, mesh.vertices);
   const Positions x = moved(mesh.vertices, 2e-3, 2);
-  with_derivatives ? derivatives(state, batch, x) : value(state, batch, x);
+  with_derivatives ? derivatives(state, *family, x) : value(state, *family, x);
 }
 
 /// The limit of the sheet with the first shape of the registry; `terms` null for values.
@@ -103,17 +107,19 @@ void strain_bound(benchmark::State& state) {
 
 void register_energies() {
   for (const MembraneModel<double>& model : membrane_models<double>()) {
-    register_batch(std::string(model.name), [name = model.name](const Scene& scene) {
-      const MembranePart& part = scene.membranes.front();
-      return std::make_unique<MembraneBatch>(name, part.triangles, scene.rest, part.lame_mu,
-                                             part.lame_lambda);
-    });
+    register_family(std::string(model.name),
+                    [&model, part = MembranePart()](const FamilyPlace& place, const Scene& scene) mutable {
+                      part = scene.membranes.front();
+                      part.model = model.name;
+                      return membrane_family(place, part, scene.rest, false);
+                    });
   }
-  register_batch("spring", [](const Scene& scene) {
-    return std::make_unique<SpringBatch>(scene.springs.edges, scene.rest, scene.springs.stiffness);
+  register_family("spring", [](const FamilyPlace& place, const Scene& scene) {
+    const SpringPart& part = scene.springs;
+    return spring_family(place, {}, part.edges, part.stiffness, lengths_of(part.edges, scene.rest));
   });
-  register_batch("hinge", [](const Scene& scene) {
-    return std::make_unique<HingeBatch>(scene.hinges.hinges, scene.hinges.stiffness, scene.hinges.rest_angle);
+  register_family("hinge", [](const FamilyPlace& place, const Scene& scene) {
+    return hinge_family(place, scene.hinges);
   });
   for (const SolidModel<double>& model : solid_models<double>()) {
     const std::string name = "energy/" + std::string(model.name) + "_solid";

@@ -5,26 +5,25 @@
 #include <functional>
 
 #include "core/bodies/part.hpp"
-#include "core/energy/element_batch.hpp"
+#include "core/energy/families/element_family.hpp"
 #include "core/energy/stiffening.hpp"
 #include "core/mesh/topology.hpp"
 #include "tests/bodies/bodies.hpp"
+#include "tests/energy/host_family.hpp"
 
 namespace bb::rest_shapes_test {
 namespace {
 
 using namespace test;
 
-std::vector<std::unique_ptr<EnergyBatch>> batches_of(const Scene& scene) {
-  std::vector<std::unique_ptr<EnergyBatch>> out;
-  for (const PartEntry& entry : part_entries()) entry.part.add_batches(scene, Precision::full, out);
-  return out;
-}
 double energy_of(const Scene& scene, const Positions& x) {
+  exec::HostExecutor executor;
+  std::vector<std::unique_ptr<ElementFamily>> families;
+  for (const PartEntry& entry : part_entries()) entry.part.add_families(scene, {executor}, families);
   double sum = 0;
-  for (const auto& batch : batches_of(scene)) {
-    std::vector<double> energy(batch->size());
-    batch->values(x, energy.data());
+  for (const auto& family : families) {
+    std::vector<double> energy(static_cast<std::size_t>(family->size()));
+    family->values(x.data(), energy.data());
     for (const double e : energy) sum += e;
   }
   return sum;
@@ -208,18 +207,14 @@ TEST(ClothSprings, RememberRatiosOfTheirRestLengths) {
   body.material.cloth_yield = 0.1;
   body.material.cloth_creep = 3;
   const Scene scene = scene_of({body});
-  const auto batches = batches_of(scene);
-  ASSERT_EQ(batches.size(), 1u);
-  EnergyBatch& batch = *batches.front();
-  std::vector<double> memory(batch.memory().begin(), batch.memory().end());
-  ASSERT_EQ(memory, std::vector<double>(17, 1.0));
-  batch.flow(scaled(scene, 0.5 * 1.1, 0.5 * 0.95), 0.2, memory);
-  for (const double ratio : memory) EXPECT_NEAR(ratio, 1, 1e-15);  // within the yield
-  batch.flow(scaled(scene, 0.5 * 1.5, 0.5 * 0.6), 0.2, memory);
+  HostFamily family(
+      [&](const FamilyPlace& place) { return cloth_spring_family(place, scene.cloth_springs); });
+  ASSERT_EQ(family.memory(), std::vector<double>(17, 1.0));
+  family.step(scaled(scene, 0.5 * 1.1, 0.5 * 0.95), 0.2);
+  for (const double ratio : family.memory()) EXPECT_NEAR(ratio, 1, 1e-15);  // within the yield
+  family.step(scaled(scene, 0.5 * 1.5, 0.5 * 0.6), 0.2);
   const double kept = std::exp(-0.6);
-  std::vector<double> energy(17);
-  batch.set_memory(memory);
-  batch.values(scaled(scene, 0.75, 0.3), energy.data());
+  const std::vector<double> memory = family.memory(), energy = family.values(scaled(scene, 0.75, 0.3));
   const double longer = 1.5 / (1 + 0.1 + 0.4 * kept), shorter = 0.6 / (1 - 0.1 - 0.3 * kept);
   int n_long = 0;
   for (std::size_t e = 0; e < 17; ++e) {

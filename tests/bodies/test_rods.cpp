@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/bodies/part.hpp"
+#include "core/exec/host_executor.hpp"
 #include "tests/bodies/bodies.hpp"
 
 namespace bb::rods_test {
@@ -53,10 +54,11 @@ TEST(rods, are_as_stiff_as_their_mean_segment_and_mass_say) {
 }
 
 double bending_energy(const Scene& scene) {
-  std::vector<std::unique_ptr<EnergyBatch>> batches;
-  parts::rods::part().add_batches(scene, Precision::full, batches);
-  std::vector<double> energy(batches.at(0)->size());
-  batches[0]->values(scene.x0, energy.data());
+  exec::HostExecutor executor;
+  std::vector<std::unique_ptr<ElementFamily>> families;
+  parts::rods::part().add_families(scene, {executor}, families);
+  std::vector<double> energy(static_cast<std::size_t>(families.at(0)->size()));
+  families[0]->values(scene.x0.data(), energy.data());
   double sum = 0;
   for (const double each : energy) sum += each;
   return sum;

@@ -9,8 +9,8 @@
 #include "core/energy/hinge.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/energy/rod_bend.hpp"
+#include "core/energy/solid_model.hpp"
 #include "core/energy/spring.hpp"
-#include "core/energy/tetrahedron_batch.hpp"
 #include "tests/energy/energy_cases.hpp"
 
 namespace bb::test::cusp_test {

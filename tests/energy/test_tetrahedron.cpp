@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "core/energy/tetrahedron_batch.hpp"
+#include "core/energy/solid_model.hpp"
 #include "core/math/error.hpp"
 #include "tests/energy/energy_cases.hpp"
+#include "tests/energy/host_family.hpp"
 #include "tests/oracle/dense.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
@@ -197,6 +198,7 @@ struct Row {
   std::vector<std::array<int, 4>> tetrahedra;
   Positions rest, deformed;
   std::vector<double> mu, lambda;
+  SolidPart part(const std::string& model) const { return {model, tetrahedra, mu, lambda}; }
   explicit Row(int n) : rest(3, 4 * n), deformed(3, 4 * n) {
     for (int e = 0; e < n; ++e) {
       tetrahedra.push_back({4 * e, 4 * e + 1, 4 * e + 2, 4 * e + 3});
@@ -211,23 +213,23 @@ struct Row {
   }
 };
 
-TEST(TetrahedronBatch, stores_the_element_terms_whatever_the_threads) {
+TEST(TetrahedronFamily, stores_the_element_terms_whatever_the_threads) {
   const Row row(80);
   for (const auto& model : solid_models<double>()) {
     SCOPED_TRACE(model.name);
-    const TetrahedronBatch batch(model.name, row.tetrahedra, row.rest, row.mu, row.lambda);
-    ASSERT_EQ(batch.size(), 80u);
+    const SolidPart part = row.part(std::string(model.name));
+    const HostFamily family(
+        [&](const FamilyPlace& place) { return tetrahedron_family(place, part, row.rest); });
+    ASSERT_EQ(family.size(), 80u);
     LocalTerms many, one;
-    batch.derivatives(row.deformed, Projection::psd, many);
+    family.derivatives(row.deformed, Projection::psd, many);
     {
       const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
-      batch.derivatives(row.deformed, Projection::psd, one);
+      family.derivatives(row.deformed, Projection::psd, one);
     }
     EXPECT_EQ(one.grad, many.grad);
     EXPECT_EQ(one.hess, many.hess);
-    std::vector<double> energy(batch.size());
-    batch.values(row.deformed, energy.data());
-    EXPECT_EQ(energy, many.energy);
+    EXPECT_EQ(family.values(row.deformed), many.energy);
     Vec3d rest[4], x[4];
     for (int i = 0; i < 4; ++i) rest[i] = row.rest.col(28 + i), x[i] = row.deformed.col(28 + i);
     const auto terms =
@@ -239,10 +241,14 @@ TEST(TetrahedronBatch, stores_the_element_terms_whatever_the_threads) {
   }
 }
 
-TEST(TetrahedronBatch, names_the_rest_tetrahedron_that_is_inverted_or_flat) {
+TEST(TetrahedronFamily, names_the_rest_tetrahedron_that_is_inverted_or_flat) {
   Row row(3);
   std::swap(row.tetrahedra[1][0], row.tetrahedra[1][1]);
-  const auto make = [&] { TetrahedronBatch("arap", row.tetrahedra, row.rest, row.mu, row.lambda); };
+  const auto make = [&] {
+    const SolidPart part = row.part("arap");
+    const HostFamily family(
+        [&](const FamilyPlace& place) { return tetrahedron_family(place, part, row.rest); });
+  };
   try {
     make();
     FAIL() << "accepted";

@@ -7,6 +7,7 @@
 
 #include "core/audit/state_audit.hpp"
 #include "core/bodies/part.hpp"
+#include "core/exec/host_executor.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/audit_mesh.hpp"
@@ -125,10 +126,11 @@ TEST(EveryPart, makes_a_body_of_itself_alone) {
     for (const PartEntry& other : part_entries()) {
       EXPECT_EQ(other.part.size(part.scene) > 0, other.name == part.entry.name) << other.name;
     }
-    std::vector<std::unique_ptr<EnergyBatch>> batches;
-    part.entry.part.add_batches(part.scene, Precision::full, batches);
+    exec::HostExecutor executor;
+    std::vector<std::unique_ptr<ElementFamily>> families;
+    part.entry.part.add_families(part.scene, {executor}, families);
     std::size_t n = 0;
-    for (const auto& batch : batches) n += batch->size();
+    for (const auto& family : families) n += static_cast<std::size_t>(family->size());
     EXPECT_EQ(n, part.entry.part.size(part.scene)) << part.entry.name;
   }
 }
@@ -239,7 +241,8 @@ class Plain final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.bodies.size(); }
   std::string_view elements() const override { return "plain things"; }
   std::string_view no_elements() const override { return "nothing plain"; }
-  void add_batches(const Scene&, Precision, std::vector<std::unique_ptr<EnergyBatch>>&) const override {}
+  void add_families(const Scene&, const FamilyPlace&,
+                    std::vector<std::unique_ptr<ElementFamily>>&) const override {}
   std::vector<std::string> element_names() const override { return {}; }
   ElementAnswer element(const std::string&, Fields&) const override { return {}; }
 };

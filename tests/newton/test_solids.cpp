@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/bodies/part.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/mesh/solid_generators.hpp"
 #include "core/mesh/topology.hpp"
 #include "tests/newton/small_scenes.hpp"
@@ -46,12 +47,13 @@ Uniaxial uniaxial(const std::string& model, double youngs, double nu, double a) 
 }
 
 Positions elastic_forces(const Scene& scene, const Positions& x) {
-  std::vector<std::unique_ptr<EnergyBatch>> batches;
-  parts::tetrahedra::part().add_batches(scene, Precision::full, batches);
+  exec::HostExecutor executor;
+  std::vector<std::unique_ptr<ElementFamily>> families;
+  parts::tetrahedra::part().add_families(scene, {executor}, families);
   LocalTerms terms;
-  batches.at(0)->derivatives(x, Projection::psd, terms);
+  families.at(0)->derivatives(x.data(), Projection::psd, terms);
   Positions out = Positions::Zero(3, x.cols());
-  const std::span<const int> vertices = batches[0]->vertices();
+  const std::span<const int> vertices = families[0]->vertices();
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     out.col(vertices[i]) += Vec3d(terms.grad[3 * i], terms.grad[3 * i + 1], terms.grad[3 * i + 2]);
   }

@@ -7,6 +7,7 @@
 #include "barriers/stiffness/registry.hpp"
 #include "core/bodies/scene_builder.hpp"
 #include "core/energy/membrane_model.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/newton/energy_sum.hpp"
 #include "core/newton/hessian_level.hpp"
@@ -83,6 +84,7 @@ inline StepFrame step_frame(const Scene& scene) {
 }
 
 struct CpuElements {
+  exec::HostExecutor executor;
   const Scene& scene;
   TermOptions& options;
   Plan plan;
@@ -100,7 +102,7 @@ struct CpuElements {
         plan(plan_without_contact(given, chosen)),
         fixed(3 * given.mass.size(), 0),
         blocks(given.n_vertices(), fixed),
-        terms(make_terms(plan, {scene, options, plan.contacts, fixed})) {
+        terms(make_terms(plan, {executor, scene, options, plan.contacts, fixed})) {
     std::vector<Stencils> families;
     for (const auto& term : terms) families.push_back(term->families()[0].stencils);
     blocks.set_elements(families);

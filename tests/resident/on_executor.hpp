@@ -3,6 +3,7 @@
 
 #include "core/exec/host_executor.hpp"
 #include "core/resident/elements/element_terms.hpp"
+#include "core/resident/elements/family_term.hpp"
 #include "core/resident/elements/hessian_request.hpp"
 #include "core/scene/pinned_vertices.hpp"
 #include "tests/resident/cpu_elements.hpp"
@@ -61,7 +62,7 @@ struct OnExecutor {
     make("pull", resident::make_resident_pull);
     make("air_drag", resident::make_resident_air_drag);
     make("inflation", resident::make_resident_inflation);
-#define BB_MAKE_kernels(name) make(#name, resident::make_resident_##name);
+#define BB_MAKE_kernels(name) make(#name, resident::make_resident_part<parts::name::part>);
 #define BB_MAKE_host_only(name)
 #define PART(name, doc, convex, where, ...) BB_MAKE_##where(name)
 #include "core/scene/parts/registry.inc"
@@ -83,12 +84,12 @@ struct OnExecutor {
     const IterateNumbers said = report();
     return said.limit_kappa_change_rel.finite() ? said.limit_kappa_change_rel.value : 0;
   }
-  void fill(TermSet set, const resident::HessianRequest& request) {
+  void fill(TermSet set, const HessianRequest& request) {
     elements.clear();
     add(set, request);
   }
   /// Elastic terms first.
-  void add(TermSet set, const resident::HessianRequest& request) {
+  void add(TermSet set, const HessianRequest& request) {
     for (const bool elastic : {true, false}) {
       for (const auto& term : terms) {
         if (set.has(term->group()) && (term->group() == TermGroup::elastic) == elastic)

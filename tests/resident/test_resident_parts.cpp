@@ -1,7 +1,7 @@
 // Rods and solids of an executor against the terms of the CPU path: energies, gradients, matrices, changes.
 #include <cmath>
 
-#include "core/energy/tetrahedron_batch.hpp"
+#include "core/energy/solid_model.hpp"
 #include "core/mesh/solid_generators.hpp"
 #include "tests/resident/on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"

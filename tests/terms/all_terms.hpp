@@ -6,6 +6,7 @@
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "core/bodies/scene_builder.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/mesh/solid_generators.hpp"
 #include "core/terms/plan.hpp"
@@ -82,6 +83,7 @@ inline Positions disturbed(const Scene& scene, double size) {
 
 /// The terms of a scene at the start of a step.
 struct TermsOf {
+  exec::HostExecutor executor;
   Scene scene;
   TermOptions options;
   Plan plan;
@@ -102,7 +104,7 @@ struct TermsOf {
         plan(make_plan(scene, options, {})),
         fixed(3 * scene.mass.size(), 0),
         blocks(scene.n_vertices(), fixed),
-        terms(make_terms(plan, {scene, options, plan.contacts, fixed})) {
+        terms(make_terms(plan, {executor, scene, options, plan.contacts, fixed})) {
     no_gradient.setZero(3, x_n.cols());
     for (const auto& term : terms) term->begin_step(frame, clock);
   }

@@ -5,85 +5,11 @@
 
 #include "core/bodies/part.hpp"
 #include "core/energy/cloth_spring.hpp"
-#include "core/energy/creep.hpp"
-#include "core/energy/element_loop.hpp"
+#include "core/energy/families/families.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace bb {
 namespace {
-
-/// All springs of a scene. Remembers how many times as long as its rest length every spring rests.
-class ClothSpringBatch final : public EnergyBatch {
- public:
-  ClothSpringBatch(const ClothSpringPart& part, Precision precision)
-      : part_(part),
-        ratio_(part.pairs.size(), 1.0),
-        creeps_(any_positive(part.creep)),
-        precision_(precision) {
-    set_time(0);
-    for (const auto& pair : part.pairs) vertices_.insert(vertices_.end(), pair.begin(), pair.end());
-  }
-  std::string_view name() const override { return "cloth_spring"; }
-  int width() const override { return 2; }
-  std::span<const int> vertices() const override { return vertices_; }
-  void values(const PositionsView& x, double* energy) const override {
-    const auto value = [&]<class T>(std::size_t e) {
-      const Points<2, T> p(x, vertices_, e);
-      return cloth_spring_value<T>(p.x, static_cast<T>(rest_length(e)), law<T>(e));
-    };
-    store_energies(size(), precision_, value, energy);
-  }
-  void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override {
-    out.resize(size(), width());
-    const auto terms = [&]<class T>(std::size_t e) {
-      const Points<2, T> p(x, vertices_, e);
-      return cloth_spring_terms<T>(p.x, static_cast<T>(rest_length(e)), law<T>(e), projection);
-    };
-    store_elements(size(), precision_, terms, out);
-  }
-  std::vector<std::size_t> cusps(const PositionsView& x) const override {
-    return elements_where(size(), precision_, [&]<class T>(std::size_t e) {
-      const Points<2, T> p(x, vertices_, e);
-      return cloth_spring_is_cusp<T>(p.x, static_cast<T>(rest_length(e)), law<T>(e));
-    });
-  }
-
-  void set_time(double t) override {
-    factor_.clear();
-    for (const auto& keys : part_.shrink_keys.lists) factor_.push_back(value_at(keys, t));
-  }
-  std::span<const double> memory() const override {
-    return creeps_ ? std::span<const double>(ratio_) : std::span<const double>();
-  }
-  void set_memory(std::span<const double> memory) override { ratio_.assign(memory.begin(), memory.end()); }
-  void flow(const PositionsView& x, double dt, std::span<double> memory) const override {
-    for_each_element(size(), [&](std::size_t e) {
-      const Points<2> p(x, vertices_, e);
-      memory[e] = crept_ratio<double>(p.x, rest_length(e), shrink(e) * part_.rest_length[e], part_.yield[e],
-                                      kept_after(part_.creep[e], dt), memory[e]);
-    });
-  }
-
- private:
-  double rest_length(std::size_t e) const { return shrink(e) * (ratio_[e] * part_.rest_length[e]); }
-  double shrink(std::size_t e) const {
-    const std::vector<int>& list = part_.shrink_keys.list;
-    return list.empty() || list[e] < 0 ? 1 : factor_[static_cast<std::size_t>(list[e])];
-  }
-  template <class T>
-  SpringLaw<T> law(std::size_t e) const {
-    return {static_cast<T>(part_.tension[e]), static_cast<T>(part_.tension_growing[e]),
-            static_cast<T>(part_.compression[e]), static_cast<T>(part_.compression_growing[e]),
-            static_cast<T>(part_.exponent[e])};
-  }
-
-  const ClothSpringPart part_;
-  std::vector<int> vertices_;
-  std::vector<double> ratio_;
-  std::vector<double> factor_;  // of each list of shrink_keys, 1
-  bool creeps_;
-  Precision precision_;
-};
 
 using Pair = std::array<int, 2>;
 
@@ -222,10 +148,8 @@ class ClothSprings final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.cloth_springs.pairs.size(); }
   std::string_view elements() const override { return "cloth springs"; }
   std::string_view no_elements() const override { return "no spring of cloth"; }
-  void add_batches(const Scene& scene, Precision precision,
-                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
-    if (scene.cloth_springs.pairs.empty()) return;
-    out.push_back(std::make_unique<ClothSpringBatch>(scene.cloth_springs, precision));
+  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+    if (!scene.cloth_springs.pairs.empty()) out.push_back(cloth_spring_family(place, scene.cloth_springs));
   }
 
   std::vector<std::string> element_names() const override { return {"cloth_spring"}; }

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/bodies/part.hpp"
-#include "core/energy/hinge_batch.hpp"
+#include "core/energy/families/families.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace bb {
@@ -76,14 +76,8 @@ class Hinges final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.hinges.hinges.size(); }
   std::string_view elements() const override { return "hinges"; }
   std::string_view no_elements() const override { return "no bending"; }
-  void add_batches(const Scene& scene, Precision precision,
-                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
-    const HingePart& part = scene.hinges;
-    if (part.hinges.empty()) return;
-    auto batch = std::make_unique<HingeBatch>(part.hinges, part.stiffness, part.rest_angle, precision);
-    if (any_positive(part.exponential)) batch->set_stiffening(part.exponential, part.exponent);
-    if (any_positive(part.creep)) batch->set_creep(part.yield, part.creep);
-    out.push_back(std::move(batch));
+  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+    if (!scene.hinges.hinges.empty()) out.push_back(hinge_family(place, scene.hinges));
   }
 
   std::vector<std::string> element_names() const override { return {"hinge"}; }

@@ -8,7 +8,8 @@
 #include "core/bodies/lumping.hpp"
 #include "core/bodies/part.hpp"
 #include "core/bodies/poisson_check.hpp"
-#include "core/energy/membrane_batch.hpp"
+#include "core/energy/families/families.hpp"
+#include "core/energy/membrane_model.hpp"
 #include "core/math/svd.hpp"
 #include "core/mesh/topology.hpp"
 #include "core/parameters/registry.hpp"
@@ -288,16 +289,9 @@ class Membrane final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.membrane_triangles().size(); }
   std::string_view elements() const override { return "triangles"; }
   std::string_view no_elements() const override { return "no membrane element"; }
-  void add_batches(const Scene& scene, Precision precision,
-                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
     for (const MembranePart& part : scene.membranes) {
-      if (part.triangles.empty()) continue;
-      auto batch = std::make_unique<MembraneBatch>(part.model, part.triangles, scene.rest, part.lame_mu,
-                                                   part.lame_lambda, scene.planar, part.warp, precision);
-      if (!part.shrink.empty()) batch->scale_rest(part.shrink);
-      batch->set_shrink(part.shrink_keys);
-      if (!part.creep.empty()) batch->set_creep(part.yield, part.creep);
-      out.push_back(std::move(batch));
+      if (!part.triangles.empty()) out.push_back(membrane_family(place, part, scene.rest, scene.planar));
     }
   }
   void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/bodies/part.hpp"
-#include "core/energy/element_loop.hpp"
+#include "core/energy/families/families.hpp"
 #include "core/energy/rod_bend.hpp"
 
 namespace bb {
@@ -14,46 +14,6 @@ namespace {
 
 /// Rest angles below are those of a straight rod whose coordinates are rounded.
 constexpr double least_rest_angle = 1e-6;  // rad
-
-class RodBendBatch final : public EnergyBatch {
- public:
-  RodBendBatch(const RodPart& rods, Precision precision)
-      : stiffness_(rods.stiffness), rest_angle_(rods.rest_angle), precision_(precision) {
-    check_column("rods/stiffness", rods.corners.size(), stiffness_, false);
-    check_column("rods/rest_angle", rods.corners.size(), rest_angle_, false);
-    for (const auto& corner : rods.corners) vertices_.insert(vertices_.end(), corner.begin(), corner.end());
-  }
-  std::string_view name() const override { return "rod_bend"; }
-  int width() const override { return 3; }
-  std::span<const int> vertices() const override { return vertices_; }
-  void values(const PositionsView& x, double* energy) const override {
-    const auto value = [&]<class T>(std::size_t e) {
-      const Points<3, T> p(x, vertices_, e);
-      return rod_bend_value<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_angle_[e]));
-    };
-    store_energies(size(), precision_, value, energy);
-  }
-  void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override {
-    out.resize(size(), width());
-    const auto terms = [&]<class T>(std::size_t e) {
-      const Points<3, T> p(x, vertices_, e);
-      return rod_bend_terms<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_angle_[e]),
-                               projection);
-    };
-    store_elements(size(), precision_, terms, out);
-  }
-  std::vector<std::size_t> cusps(const PositionsView& x) const override {
-    return elements_where(size(), precision_, [&]<class T>(std::size_t e) {
-      const Points<3, T> p(x, vertices_, e);
-      return rod_bend_is_cusp<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_angle_[e]));
-    });
-  }
-
- private:
-  std::vector<int> vertices_;
-  std::vector<double> stiffness_, rest_angle_;
-  Precision precision_;
-};
 
 /// The other ends of the lone edges at every vertex, in the order of the edges.
 std::vector<std::vector<int>> neighbours(const TriangleMesh& mesh) {
@@ -111,9 +71,8 @@ class Rods final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.rods.corners.size(); }
   std::string_view elements() const override { return "rod bends"; }
   std::string_view no_elements() const override { return "no rod that bends"; }
-  void add_batches(const Scene& scene, Precision precision,
-                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
-    if (!scene.rods.corners.empty()) out.push_back(std::make_unique<RodBendBatch>(scene.rods, precision));
+  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+    if (!scene.rods.corners.empty()) out.push_back(rod_family(place, scene.rods));
   }
 
   std::vector<std::string> element_names() const override { return {"rod_bend"}; }

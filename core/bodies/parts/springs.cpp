@@ -1,12 +1,11 @@
 // Springs: on every edge of a body, of triangles and of rods. Lone edges are rods, whose mass this part brings.
-#include "core/energy/spring_batch.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
 #include "core/bodies/part.hpp"
+#include "core/energy/families/families.hpp"
 #include "core/energy/spring.hpp"
 #include "core/mesh/topology.hpp"
 
@@ -78,11 +77,10 @@ class Springs final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.springs.edges.size(); }
   std::string_view elements() const override { return "springs"; }
   std::string_view no_elements() const override { return "no spring"; }
-  void add_batches(const Scene& scene, Precision precision,
-                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
     const SpringPart& part = scene.springs;
     if (part.edges.empty()) return;
-    out.push_back(std::make_unique<SpringBatch>(part.edges, scene.rest, part.stiffness, precision));
+    out.push_back(spring_family(place, {}, part.edges, part.stiffness, lengths_of(part.edges, scene.rest)));
   }
 
   std::vector<std::string> element_names() const override { return {"spring"}; }

@@ -6,7 +6,8 @@
 
 #include "core/bodies/part.hpp"
 #include "core/bodies/poisson_check.hpp"
-#include "core/energy/tetrahedron_batch.hpp"
+#include "core/energy/families/families.hpp"
+#include "core/energy/solid_model.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace bb {
@@ -134,12 +135,9 @@ class Tetrahedra final : public Part {
   }
   std::string_view elements() const override { return "tetrahedra"; }
   std::string_view no_elements() const override { return "no tetrahedron"; }
-  void add_batches(const Scene& scene, Precision precision,
-                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
     for (const SolidPart& part : scene.solids) {
-      if (part.tetrahedra.empty()) continue;
-      out.push_back(std::make_unique<TetrahedronBatch>(part.model, part.tetrahedra, scene.rest, part.lame_mu,
-                                                       part.lame_lambda, precision));
+      if (!part.tetrahedra.empty()) out.push_back(tetrahedron_family(place, part, scene.rest));
     }
   }
   void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {

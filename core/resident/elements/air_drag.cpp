@@ -1,6 +1,7 @@
 // Drag of the air on an executor: every corner sums up its triangles at the start of a step.
 #include "core/terms/air_drag.hpp"
 
+#include "core/energy/families/element_columns.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/vertex_quadratic.hpp"
 

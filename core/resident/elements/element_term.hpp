@@ -72,31 +72,4 @@ class TermOf : public ElementTerm {
   Elements elements_{};
 };
 
-/// element-major [width n] to columns [width, n].
-template <class T>
-std::vector<T> to_columns(std::span<const T> rows, std::size_t width) {
-  const std::size_t n = width == 0 ? 0 : rows.size() / width;
-  std::vector<T> out(rows.size());
-  for (std::size_t e = 0; e < n; ++e) {
-    for (std::size_t k = 0; k < width; ++k) out[k * n + e] = rows[width * e + k];
-  }
-  return out;
-}
-
-/// Two columns [n] one after the other.
-inline void upload_pair(std::span<const double> first, std::span<const double> second, Buffer<double>& out) {
-  std::vector<double> both(first.begin(), first.end());
-  both.insert(both.end(), second.begin(), second.end());
-  out.upload(both);
-}
-
-/// Element-major vertices of elements of a scene.
-template <std::size_t W>
-std::vector<int> flat(const std::vector<std::array<int, W>>& elements) {
-  std::vector<int> out;
-  out.reserve(W * elements.size());
-  for (const auto& element : elements) out.insert(out.end(), element.begin(), element.end());
-  return out;
-}
-
 }  // namespace bb::resident

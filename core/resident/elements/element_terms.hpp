@@ -1,5 +1,4 @@
-// What makes the terms of this room on an executor, one function a line of core/terms/registry.inc and of
-// core/scene/parts/registry.inc. Called where the plan says that they are needed.
+// What makes the terms of this room on an executor, one function a line of core/terms/registry.inc. Called where the plan says that they are needed.
 #pragma once
 
 #include "core/resident/elements/term_inputs.hpp"
@@ -9,8 +8,6 @@ namespace bb::resident {
 /// Inertia and weight are one term: a vertex is read once.
 MakeResident make_resident_inertia, make_resident_external_force;
 MakeResident make_resident_pull, make_resident_air_drag, make_resident_inflation, make_resident_stitch;
-MakeResident make_resident_membrane, make_resident_springs, make_resident_cloth_springs, make_resident_hinges,
-    make_resident_rods, make_resident_tetrahedra;
 /// Errors: ConfigError for a barrier shape that is not in barriers/shapes (a plugin's has no kernel), for a policy without
 /// kernel, and those of StrainLimitBatch.
 MakeResident make_resident_strain_limit;

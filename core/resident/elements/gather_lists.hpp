@@ -7,7 +7,7 @@
 
 #include "core/exec/buffer.hpp"
 #include "core/linear/block_system.hpp"
-#include "core/resident/elements/element_kernels.hpp"
+#include "core/energy/families/element_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
 
 namespace bb::resident {

@@ -1,7 +1,7 @@
 // Which Hessian a kernel is asked for at a level of the step.
 #pragma once
 
-#include "core/resident/elements/element_kernels.hpp"
+#include "core/energy/families/element_kernels.hpp"
 #include "core/terms/step_hessian.hpp"
 
 namespace bb::resident {

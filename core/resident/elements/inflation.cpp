@@ -1,4 +1,5 @@
 // A pressure from within closed surfaces, on an executor.
+#include "core/energy/families/element_columns.hpp"
 #include "core/resident/elements/element_term.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/inflation_kernels.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/energy/inflation.hpp"
-#include "core/resident/elements/element_kernels.hpp"
+#include "core/energy/families/element_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"
 
 namespace bb::resident {

@@ -1,11 +1,15 @@
 // All kernels of this room.
 #pragma once
 
+#include "core/energy/families/cloth_springs.hpp"
+#include "core/energy/families/element_kernels.hpp"
+#include "core/energy/families/hinges.hpp"
+#include "core/energy/families/membrane.hpp"
+#include "core/energy/families/rods.hpp"
+#include "core/energy/families/springs.hpp"
+#include "core/energy/families/tetrahedra.hpp"
 #include "core/exec/sums/sum_kernels.hpp"
 #include "core/exec/sums/vector_kernels.hpp"
-#include "core/resident/elements/cloth_spring_kernels.hpp"
-#include "core/resident/elements/element_kernels.hpp"
-#include "core/resident/elements/family_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
 #include "core/resident/elements/inflation_kernels.hpp"
 #include "core/resident/elements/limit_kernels.hpp"

@@ -8,11 +8,12 @@
 #include "core/barrier/relative_change.hpp"
 #include "core/barrier/scaled_policy.hpp"
 #include "core/barrier/shape_potential.hpp"
+#include "core/energy/families/element_kernels.hpp"
+#include "core/energy/families/rest_kernels.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/energy/strain_stiffness.hpp"
 #include "core/exec/sums/sum_kernels.hpp"
 #include "core/linear/executor/sub_matrix.hpp"
-#include "core/resident/elements/family_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
 
 namespace bb::resident {

@@ -3,7 +3,7 @@
 
 #include "core/energy/air_drag.hpp"
 #include "core/energy/vertex_loads.hpp"
-#include "core/resident/elements/element_kernels.hpp"
+#include "core/energy/families/element_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"
 
 namespace bb::resident {

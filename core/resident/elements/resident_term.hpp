@@ -11,7 +11,7 @@
 #include "core/exec/sums/resident_sum.hpp"
 #include "core/linear/executor/resident_matrix.hpp"
 #include "core/record/phase_times.hpp"
-#include "core/resident/elements/element_kernels.hpp"
+#include "core/energy/families/element_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"
 #include "core/terms/report.hpp"
 #include "core/terms/term_set.hpp"

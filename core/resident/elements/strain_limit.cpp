@@ -6,7 +6,7 @@
 #include "core/barrier/launches.hpp"
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
-#include "core/resident/elements/element_columns.hpp"
+#include "core/energy/families/element_columns.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/limit_forms.hpp"
 #include "core/resident/elements/limit_kernels.hpp"
@@ -121,7 +121,8 @@ class LimitTerm final : public TermOf<Limit<R, N>> {
   const Buffer<double>& vertex_mass_;
   const LimitLaunches<N>& launches_;
   const bool adds_;  // triangles have said their part of what is reported before
-  ElementColumns<LimitedRest<N>> columns_;
+  Buffer<int> vertex_;
+  RestShapes<LimitedRest<N>> shapes_;
   Buffer<double> band_, mass_, state_, kappa_, before_;
   Buffer<KappaParts> parts_;
   ResidentLeast least_, beyond_;
@@ -143,7 +144,8 @@ LimitTerm<R, N>::LimitTerm(const ResidentInputs& inputs, const Batch& batch, con
       vertex_mass_(inputs.mass),
       launches_(launches_of<R, N>(*options_.limit.shape.launches)),
       adds_(of_solids && !inputs.scene.limit.triangles.empty()),
-      columns_(executor_, of_solids ? "solid limit" : "limit", batch.vertices(), batch.rests()),
+      vertex_(executor_, of_solids ? "solid limit vertices" : "limit vertices"),
+      shapes_(executor_, of_solids ? "solid limit rest shapes" : "limit rest shapes", batch.rests()),
       band_(executor_, "limit bands"),
       mass_(executor_, "limit element masses"),
       state_(executor_, "limit stretches and barrier terms", 5 * N * static_cast<Index>(batch.size())),
@@ -155,6 +157,7 @@ LimitTerm<R, N>::LimitTerm(const ResidentInputs& inputs, const Batch& batch, con
       bounds_(executor_),
       numbers_(executor_) {
   const Index n = kappa_.size();
+  vertex_.upload(to_columns(batch.vertices(), N + 1));
   upload_pair(part.onset, part.width, band_);
   if (!policy().uniform()) {
     mass_.upload(part.mass);
@@ -166,9 +169,9 @@ LimitTerm<R, N>::LimitTerm(const ResidentInputs& inputs, const Batch& batch, con
 
 template <int R, int N>
 void LimitTerm<R, N>::set_columns(Index n) {
-  elements_.of = columns_.vertex.data();
+  elements_.of = vertex_.data();
   elements_.n = n;
-  elements_.rest = columns_.rest();
+  elements_.rest = shapes_.rest();
   elements_.onset = band_.data(), elements_.band_width = band_.data() + n;
   double* column = state_.data();
   for (double** pointer : {&elements_.sigma, &elements_.gap, &elements_.b, &elements_.db, &elements_.d2b}) {

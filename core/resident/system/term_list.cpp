@@ -4,6 +4,7 @@
 
 #include "core/math/error.hpp"
 #include "core/resident/elements/element_terms.hpp"
+#include "core/resident/elements/family_term.hpp"
 #include "core/resident/system/resident_contact.hpp"
 
 namespace bb::resident {
@@ -13,7 +14,9 @@ namespace {
 #define BB_MAKE_kernels(name) &make_resident_##name
 #define BB_MAKE_host_only(name) nullptr
 #define ENTRY(name, doc, convex, where) BB_MAKE_##where(name),
-#define PART(name, doc, convex, where, ...) BB_MAKE_##where(name),
+#define BB_PART_kernels(name) &make_resident_part<parts::name::part>
+#define BB_PART_host_only(name) nullptr
+#define PART(name, doc, convex, where, ...) BB_PART_##where(name),
 constexpr MakeResident* makers[] = {
 #include "core/terms/registry.inc"
 };
@@ -21,6 +24,8 @@ constexpr MakeResident* makers[] = {
 #undef PART
 #undef BB_MAKE_kernels
 #undef BB_MAKE_host_only
+#undef BB_PART_kernels
+#undef BB_PART_host_only
 
 }  // namespace
 

@@ -1,16 +1,15 @@
-// Element batches in float and mixed precision against those in double: one source, two scalars.
+// Families of elements in float and mixed precision against those in double: one source, two scalars.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include "core/energy/hinge_batch.hpp"
-#include "core/energy/membrane_batch.hpp"
-#include "core/energy/spring_batch.hpp"
+#include "core/energy/membrane_model.hpp"
 #include "core/energy/strain_limit_batch.hpp"
+#include "tests/energy/host_family.hpp"
 #include "tests/energy/strip.hpp"
 
-namespace bb::test::float_batches_test {
+namespace bb::test::float_families_test {
 namespace {
 
 double difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -29,52 +28,38 @@ void expect_rounded(const std::vector<double>& in_float, const std::vector<doubl
   for (const double number : in_float) EXPECT_EQ(static_cast<double>(static_cast<float>(number)), number);
 }
 
-/// make(precision): the same batch in each.
-template <class Make>
-void compare(const Make& make, const Positions& x) {
+void compare(const HostFamily::Make& make, const Positions& x) {
   LocalTerms full, mixed, single;
-  const auto in_double = make(Precision::full), in_both = make(Precision::mixed),
-             in_float = make(Precision::single);
-  SCOPED_TRACE(in_double->name());
-  ASSERT_GT(in_double->size(), 30U);
-  in_double->derivatives(x, Projection::psd, full);
-  in_both->derivatives(x, Projection::psd, mixed);
-  in_float->derivatives(x, Projection::psd, single);
+  const HostFamily in_double(make), in_both(make, Precision::mixed), in_float(make, Precision::single);
+  ASSERT_GT(in_double.size(), 30U);
+  in_double.derivatives(x, Projection::psd, full);
+  in_both.derivatives(x, Projection::psd, mixed);
+  in_float.derivatives(x, Projection::psd, single);
   EXPECT_EQ(mixed.energy, full.energy);
   EXPECT_EQ(mixed.grad, full.grad);
   EXPECT_EQ(mixed.hess, single.hess);
   expect_rounded(single.energy, full.energy);
   expect_rounded(single.grad, full.grad);
   expect_rounded(single.hess, full.hess);
-  std::vector<double> values(in_float->size());
-  in_float->values(x, values.data());
-  EXPECT_EQ(values, single.energy);
-  in_both->values(x, values.data());
-  EXPECT_EQ(values, full.energy);
+  EXPECT_EQ(in_float.values(x), single.energy);
+  EXPECT_EQ(in_both.values(x), full.energy);
 }
 
-TEST(FloatBatches, every_element_in_float_has_the_terms_of_double_to_the_rounding_of_float) {
+TEST(FloatFamilies, every_element_in_float_has_the_terms_of_double_to_the_rounding_of_float) {
   const Strip strip(40);
-  const std::vector<double> ones(strip.triangles.size(), 1.0);
+  MembranePart part;
+  part.triangles = strip.triangles;
+  part.lame_mu = part.lame_lambda = std::vector<double>(strip.triangles.size(), 1.0);
   for (const auto& model : membrane_models<double>()) {
-    for (const bool planar : {false, true}) {
-      compare(
-          [&](Precision p) {
-            return std::make_unique<MembraneBatch>(model.name, strip.triangles, strip.rest, ones, ones,
-                                                   planar, std::span<const Vec3d>{}, p);
-          },
-          strip.deformed);
-    }
+    part.model = model.name;
+    SCOPED_TRACE(part.model);
+    for (const bool planar : {false, true}) compare(membranes_of(part, strip.rest, planar), strip.deformed);
   }
-  compare(
-      [&](Precision p) {
-        return std::make_unique<SpringBatch>(strip.edges, strip.rest,
-                                             std::vector<double>(strip.edges.size(), 2.0), p);
-      },
-      strip.deformed);
-  const std::vector<double> stiffness(strip.hinges.size(), 0.3), rest(strip.hinges.size(), 0.1);
-  compare([&](Precision p) { return std::make_unique<HingeBatch>(strip.hinges, stiffness, rest, p); },
-          strip.deformed);
+  compare(springs_of(strip.edges, strip.rest, std::vector<double>(strip.edges.size(), 2.0)), strip.deformed);
+  HingePart hinges;
+  hinges.hinges = strip.hinges;
+  hinges.stiffness.assign(strip.hinges.size(), 0.3), hinges.rest_angle.assign(strip.hinges.size(), 0.1);
+  compare(hinges_of(hinges), strip.deformed);
 }
 
 /// (width - y)^2 of each singular value.
@@ -89,7 +74,7 @@ struct Quadratic {
   }
 };
 
-TEST(FloatBatches, the_strain_limit_measures_and_bounds_in_float) {
+TEST(FloatFamilies, the_strain_limit_measures_and_bounds_in_float) {
   const Strip strip(40);
   const std::size_t n = strip.triangles.size();
   const std::vector<double> onset(n, 0.0), width(n, 0.5), kappa(n, 2.0);
@@ -120,4 +105,4 @@ TEST(FloatBatches, the_strain_limit_measures_and_bounds_in_float) {
 }
 
 }  // namespace
-}  // namespace bb::test::float_batches_test
+}  // namespace bb::test::float_families_test

@@ -1,42 +1,42 @@
-// Kernels over the elements of one family: energies, gradients and Hessians, one element an item. The family is a
-// struct of pointers with `width` vertices an element,
+// Kernels over the elements of one kind: energies, gradients and Hessians, one element an item. A kind is a struct of
+// pointers with `width` vertices an element,
 //   double value(const double* x, Index e)                                          J
 //   ElementTerms<double, 3 width> terms(const double* x, Index e, Projection)       J, N, N/m
 //   int vertex(int k, Index e)
-// and, where a host takes several abreast, with the bits of terms(),
-//   lanes, void terms_abreast(const double* x, Index first, Projection, TermsAbreast<double, lanes, width>& out)
+// where a host may choose the scalar T, those of the first two as templates of it, and bool is_cusp<T>(x, e);
+// where a host takes several abreast, with the bits of terms(),
+//   lanes, void terms_abreast<T>(const double* x, Index first, Projection, TermsAbreast<T, lanes, width>& out)
 #pragma once
 
 #include <cstring>
 
 #include "core/energy/terms.hpp"
 #include "core/exec/kernel.hpp"
+#include "core/math/precision.hpp"
 
-namespace bb::resident {
-
-using exec::Index;
-using exec::Key;
+namespace bb {
 
 /// Vertices of n elements as columns, and their points.
 template <int W>
 struct ElementVertices {
   static constexpr int width = W;
   const int* of;  // [W n] column k: vertex k of every element
-  Index n;
+  exec::Index n;
 
-  BB_HD int vertex(int k, Index e) const { return of[k * n + e]; }
+  BB_HD int vertex(int k, exec::Index e) const { return of[k * n + e]; }
   /// x: [3 n_vertices] m.
-  BB_HD void points(const double* x, Index e, Vec3d (&out)[W]) const {
+  template <class T>
+  BB_HD void points(const double* x, exec::Index e, Vec<T, 3> (&out)[W]) const {
     for (int k = 0; k < W; ++k) {
-      const double* p = x + 3 * static_cast<Index>(vertex(k, e));
-      out[k] = Vec3d(p[0], p[1], p[2]);
+      const double* p = x + 3 * static_cast<exec::Index>(vertex(k, e));
+      out[k] = Vec<T, 3>(static_cast<T>(p[0]), static_cast<T>(p[1]), static_cast<T>(p[2]));
     }
   }
 };
 
 /// Neighbouring elements of a family: what has local terms at a time.
 struct Piece {
-  Index begin, n;
+  exec::Index begin, n;
 };
 
 /// Which Hessian of an element goes into the matrix: `first`; where t > 0, first + t (clamped - first); where a vertex
@@ -58,12 +58,58 @@ constexpr int lanes_of() {
   }
 }
 
-template <class Elements>
+/// T: the scalar that it is computed in; a card has double alone.
+template <class Elements, class T = double>
 struct ElementValues {
   Elements elements;
   const double* x;  // [3 n_vertices] m
   double* energy;   // [n] J
-  BB_HD void operator()(Index e) const { energy[e] = elements.value(x, e); }
+  BB_HD void operator()(exec::Index e) const {
+    if constexpr (std::is_same_v<T, double>) {
+      energy[e] = elements.value(x, e);
+    } else {
+      energy[e] = elements.template value<T>(x, e);
+    }
+  }
+};
+
+/// The local terms of an element side by side, as an assembly in the host's cache reads them. Of a host alone.
+template <class Elements, class T>
+struct ElementLocalTerms {
+  Elements elements;
+  Projection projection;
+  PassParts parts;
+  const double* x;
+  double* energy;  // [n] J
+  double* grad;    // [3 width n] N, element by element
+  double* hess;    // [9 width (width + 1)/2 n] N/m, lower blocks, element by element
+
+  void operator()(exec::Index e) const {
+    const ElementTerms<T, size> terms = elements.template terms<T>(x, e, projection);
+    if (parts.values) {
+      energy[e] = terms.energy;
+      for (int c = 0; c < size; ++c) grad[size * e + c] = terms.grad[c];
+    }
+    if (!parts.hessians) return;
+    store_lower_blocks(Elements::width, terms.hess, hess + numbers * e, [](T entry) -> double { return entry; });
+  }
+  static constexpr int lanes = lanes_of<Elements>();
+  void abreast(exec::Index first) const requires(lanes > 1) {
+    TermsAbreast<T, lanes, Elements::width> terms;
+    elements.terms_abreast(x, first, projection, terms);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const exec::Index e = first + lane;
+      if (parts.values) {
+        energy[e] = terms.energy[lane];
+        for (int c = 0; c < size; ++c) grad[size * e + c] = terms.grad[c][lane];
+      }
+      for (exec::Index k = 0; parts.hessians && k < numbers; ++k) hess[numbers * e + k] = terms.hess[k][lane];
+    }
+  }
+
+ private:
+  static constexpr int size = 3 * Elements::width;
+  static constexpr exec::Index numbers = n_lower_numbers(Elements::width);
 };
 
 /// Item i: element piece.begin + i.
@@ -74,15 +120,15 @@ struct ElementGradients {
   const double* x;
   double* energy;  // [n] J
   double* grad;    // [3 width, piece.n] N, a column a coordinate
-  BB_HD void operator()(Index i) const {
+  BB_HD void operator()(exec::Index i) const {
     constexpr int size = 3 * Elements::width;
-    const Index e = piece.begin + i;
+    const exec::Index e = piece.begin + i;
     const ElementTerms<double, size> terms = elements.terms(x, e, Projection::none);
     energy[e] = terms.energy;
     for (int c = 0; c < size; ++c) grad[c * piece.n + i] = terms.grad[c];
   }
   static constexpr int lanes = lanes_of<Elements>();
-  void abreast(Index i) const requires(lanes > 1) {
+  void abreast(exec::Index i) const requires(lanes > 1) {
     TermsAbreast<double, lanes, Elements::width> terms;
     elements.terms_abreast(x, piece.begin + i, Projection::none, terms);
     memcpy(energy + piece.begin + i, terms.energy, sizeof terms.energy);
@@ -101,8 +147,8 @@ struct ElementHessians {
   const double* x;
   double* hess;  // [9 width (width + 1)/2, piece.n] N/m, a column a number
 
-  BB_HD void operator()(Index i) const {
-    const Index e = piece.begin + i;
+  BB_HD void operator()(exec::Index i) const {
+    const exec::Index e = piece.begin + i;
     const bool clamp = has_large_force(e);
     for (int pass = 0; pass < (request.t > 0 ? 2 : 1); ++pass) {
       const Projection projection = clamp || pass == 1 ? Projection::psd : request.first;
@@ -110,8 +156,8 @@ struct ElementHessians {
     }
   }
   static constexpr int lanes = lanes_of<Elements>();
-  void abreast(Index i) const requires(lanes > 1) {
-    const Index e = piece.begin + i;
+  void abreast(exec::Index i) const requires(lanes > 1) {
+    const exec::Index e = piece.begin + i;
     const bool clamp = has_large_force(e);
     for (int lane = 1; lane < lanes; ++lane) {
       if (has_large_force(e + lane) == clamp) continue;
@@ -132,7 +178,7 @@ struct ElementHessians {
  private:
   static constexpr int size = 3 * Elements::width;
 
-  BB_HD bool has_large_force(Index e) const {
+  BB_HD bool has_large_force(exec::Index e) const {
     bool large = false;
     for (int k = 0; k < Elements::width && request.threshold >= 0; ++k) {
       large = large || request.force[elements.vertex(k, e)] >= request.threshold;
@@ -143,7 +189,7 @@ struct ElementHessians {
   BB_HD static void put(double number, double t, double& there) {
     there = t > 0 ? there + t * (number - there) : number;
   }
-  BB_HD void store(const Mat<double, size, size>& m, Index i, double t) const {
+  BB_HD void store(const Mat<double, size, size>& m, exec::Index i, double t) const {
     double* out = hess + i;
     for_each_lower_number(Elements::width, [&](int row, int column) {
       put(m(row, column), t, *out);
@@ -152,4 +198,4 @@ struct ElementHessians {
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb

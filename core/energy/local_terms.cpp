@@ -1,5 +1,4 @@
-// Storage of local terms.
-#include "core/energy/element_batch.hpp"
+#include "core/energy/local_terms.hpp"
 
 #include "core/math/lower_blocks.hpp"
 

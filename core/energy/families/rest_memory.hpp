@@ -1,4 +1,4 @@
-// What rest shapes remember from step to step on an executor: memory() of core/energy/element_batch.hpp.
+// What rest shapes remember from step to step on an executor: plastic parts and lengths that creep.
 #pragma once
 
 #include <vector>
@@ -6,7 +6,7 @@
 #include "core/archive/archive.hpp"
 #include "core/exec/buffer.hpp"
 
-namespace bb::resident {
+namespace bb {
 
 class RestMemory {
  public:
@@ -43,4 +43,4 @@ class RestMemory {
   bool flowed_ = false;
 };
 
-}  // namespace bb::resident
+}  // namespace bb

@@ -1,0 +1,66 @@
+// Springs of cloth: their columns, rest lengths that shrink and creep.
+#include "core/energy/families/cloth_springs.hpp"
+
+#include "core/energy/families/families.hpp"
+#include "core/energy/families/rest_memory.hpp"
+
+namespace bb {
+namespace {
+
+/// Remembers how many times as long as its rest length every spring rests.
+class ClothSpringFamily final : public FamilyOf<ClothSprings> {
+ public:
+  ClothSpringFamily(const FamilyPlace& place, const ClothSpringPart& part)
+      : FamilyOf(place, "cloth spring vertices", std::span(part.pairs)),
+        law_(place.executor, "cloth spring stiffnesses"),
+        given_(place.executor, "cloth spring lengths"),
+        rest_(place.executor, "cloth spring rest lengths", elements_.n),
+        creep_(place.executor, "cloth spring creep"),
+        shrink_(place.executor, "cloth spring shrinkage", part.shrink_keys, part.pairs.size()),
+        ratio_(place.executor, "cloth spring ratios"),
+        creeps_(any_positive(part.creep)) {
+    std::vector<double> law;
+    for (const auto* column :
+         {&part.tension, &part.tension_growing, &part.compression, &part.compression_growing, &part.exponent}) {
+      law.insert(law.end(), column->begin(), column->end());
+    }
+    law_.upload(law);
+    given_.upload(part.rest_length);
+    upload_pair(part.yield, part.creep, creep_);
+    ratio_.set(std::vector<double>(part.pairs.size(), 1.0));
+    elements_.law = law_.data();
+    elements_.rest_length = rest_.data();
+    set_time(0);
+  }
+
+  void begin_step() override { ratio_.begin_step(); }
+  void set_time(double t) override {
+    shrink_.set_time(t);
+    place_.executor.each(elements_.n, PlaceClothSprings{lengths(), ratio_.data(), rest_.data()});
+  }
+  bool flows() const override { return creeps_; }
+  void end_step(const double* x, double dt) override {
+    place_.executor.each(elements_.n, FlowClothSprings{elements_, lengths(), creep_.data(),
+                                                       creep_.data() + elements_.n, x, dt, ratio_.flow()});
+  }
+  void keep(Archive& archive) override {
+    if (creeps_) ratio_.keep(archive);
+  }
+
+ private:
+  GivenLengths lengths() const { return {given_.data(), shrink_.list(), shrink_.factor()}; }
+
+  exec::Buffer<double> law_, given_, rest_;
+  exec::Buffer<double> creep_;  // [2, n] yield, rate
+  ShrinkFactors shrink_;
+  RestMemory ratio_;
+  bool creeps_;
+};
+
+}  // namespace
+
+MadeFamily cloth_spring_family(const FamilyPlace& place, const ClothSpringPart& part) {
+  return std::make_unique<ClothSpringFamily>(place, part);
+}
+
+}  // namespace bb

@@ -1,0 +1,68 @@
+// Springs of cloth, and rest lengths that shrink and creep.
+#pragma once
+
+#include "core/energy/cloth_spring.hpp"
+#include "core/energy/families/element_kernels.hpp"
+
+namespace bb {
+
+struct ClothSprings : ElementVertices<2> {
+  const double* law;          // [5, n] the members of SpringLaw, N/m and 1
+  const double* rest_length;  // [n] m
+  template <class T>
+  BB_HD SpringLaw<T> law_of(exec::Index e) const {
+    return {static_cast<T>(law[e]), static_cast<T>(law[n + e]), static_cast<T>(law[2 * n + e]),
+            static_cast<T>(law[3 * n + e]), static_cast<T>(law[4 * n + e])};
+  }
+  template <class T = double>
+  BB_HD T value(const double* x, exec::Index e) const {
+    Vec<T, 3> p[2];
+    points(x, e, p);
+    return cloth_spring_value<T>(p, static_cast<T>(rest_length[e]), law_of<T>(e));
+  }
+  template <class T = double>
+  BB_HD ElementTerms<T, 6> terms(const double* x, exec::Index e, Projection projection) const {
+    Vec<T, 3> p[2];
+    points(x, e, p);
+    return cloth_spring_terms<T>(p, static_cast<T>(rest_length[e]), law_of<T>(e), projection);
+  }
+  template <class T>
+  bool is_cusp(const double* x, exec::Index e) const {
+    Vec<T, 3> p[2];
+    points(x, e, p);
+    return cloth_spring_is_cusp<T>(p, static_cast<T>(rest_length[e]), law_of<T>(e));
+  }
+};
+
+/// Rest lengths as they are given, and what a time makes of them.
+struct GivenLengths {
+  const double* given;   // [n] m
+  const int* list;       // [n] into factor, -1: none; or null
+  const double* factor;  // of the time, 1
+  BB_HD double shrink(exec::Index e) const { return list && list[e] >= 0 ? factor[list[e]] : 1; }
+};
+
+struct PlaceClothSprings {
+  GivenLengths lengths;
+  const double* ratio;  // [n] 1
+  double* rest_length;
+  BB_HD void operator()(exec::Index e) const { rest_length[e] = lengths.shrink(e) * (ratio[e] * lengths.given[e]); }
+};
+
+/// ratio [n] becomes what it is after a step of dt (s) that ended at x.
+struct FlowClothSprings {
+  ClothSprings elements;
+  GivenLengths lengths;
+  const double *yield, *creep;  // [n] 1, 1/s
+  const double* x;
+  double dt;
+  double* ratio;
+  BB_HD void operator()(exec::Index e) const {
+    Vec3d p[2];
+    elements.points(x, e, p);
+    ratio[e] = crept_ratio<double>(p, elements.rest_length[e], lengths.shrink(e) * lengths.given[e], yield[e],
+                                   kept_after(creep[e], dt), ratio[e]);
+  }
+};
+
+}  // namespace bb

@@ -1,0 +1,105 @@
+// Elements as columns of an executor's memory: vertices, rest shapes, and factors on these that a time gives.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/energy/families/rest_kernels.hpp"
+#include "core/energy/strain_limit.hpp"
+#include "core/exec/buffer.hpp"
+#include "core/scene/motion.hpp"
+#include "core/scene/parts/shrink_key.hpp"
+
+namespace bb {
+
+/// element-major [width n] to columns [width, n].
+template <class T>
+std::vector<T> to_columns(std::span<const T> rows, std::size_t width) {
+  const std::size_t n = width == 0 ? 0 : rows.size() / width;
+  std::vector<T> out(rows.size());
+  for (std::size_t e = 0; e < n; ++e) {
+    for (std::size_t k = 0; k < width; ++k) out[k * n + e] = rows[width * e + k];
+  }
+  return out;
+}
+
+/// Whether a column says something of an element for which 0 says nothing.
+inline bool any_positive(std::span<const double> column) {
+  return std::any_of(column.begin(), column.end(), [](double value) { return value > 0; });
+}
+
+/// Two columns [n] one after the other.
+inline void upload_pair(std::span<const double> first, std::span<const double> second,
+                        exec::Buffer<double>& out) {
+  std::vector<double> both(first.begin(), first.end());
+  both.insert(both.end(), second.begin(), second.end());
+  out.upload(both);
+}
+
+/// Element-major vertices of elements of a scene.
+template <std::size_t W>
+std::vector<int> flat(std::span<const std::array<int, W>> elements) {
+  std::vector<int> out;
+  out.reserve(W * elements.size());
+  for (const auto& element : elements) out.insert(out.end(), element.begin(), element.end());
+  return out;
+}
+template <std::size_t W>
+std::vector<int> flat(const std::vector<std::array<int, W>>& elements) {
+  return flat(std::span(elements));
+}
+
+/// Rest shapes as they are stored: TriangleRest or TetrahedronRest.
+template <class Rest>
+struct RestShapes {
+  using Columns = RestColumnsOf<Rest>;
+
+  RestShapes(exec::Executor& executor, const std::string& name, std::span<const Rest> rests)
+      : numbers(executor, name) {
+    const std::size_t n = rests.size();
+    std::vector<double> columns((n_inverse + 1) * n);
+    for (std::size_t e = 0; e < n; ++e) {
+      for (std::size_t k = 0; k < n_inverse; ++k) columns[k * n + e] = rests[e].dm_inv.data()[k];
+      columns[n_inverse * n + e] = rest_measure(rests[e]);
+    }
+    numbers.upload(columns);
+  }
+  Columns rest() const {
+    constexpr exec::Index inverse = n_inverse;
+    return {numbers.data(), numbers.data() + numbers.size() / (inverse + 1) * inverse};
+  }
+
+  static constexpr std::size_t n_inverse = Columns::n_inverse;
+  exec::Buffer<double> numbers;  // [n_inverse + 1, n]
+};
+
+/// Factors on rest lengths that a time gives, as kernels read them.
+class ShrinkFactors {
+ public:
+  /// n: elements. The schedule outlives it.
+  ShrinkFactors(exec::Executor& executor, const std::string& name, const ShrinkSchedule& schedule, std::size_t n)
+      : lists_(schedule.lists), list_(executor, name), factor_(executor, "factors of shrinkage") {
+    std::vector<int> list = schedule.list;
+    if (!list.empty()) list.resize(n, -1);
+    list_.upload(list);
+  }
+  void set_time(double t) {
+    std::vector<double> factor;
+    for (const auto& keys : lists_) factor.push_back(value_at(keys, t));
+    factor_.upload(factor);
+  }
+  bool any() const { return list_.size() > 0; }
+  /// [n] into factor(), -1: none; null where no element has one.
+  const int* list() const { return any() ? list_.data() : nullptr; }
+  const double* factor() const { return factor_.data(); }
+
+ private:
+  const std::vector<std::vector<ShrinkKey>> lists_;
+  exec::Buffer<int> list_;
+  exec::Buffer<double> factor_;
+};
+
+}  // namespace bb

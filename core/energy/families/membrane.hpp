@@ -1,0 +1,83 @@
+// Triangles of a membrane model, whose rest shapes may shrink over time and creep.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "core/energy/families/element_kernels.hpp"
+#include "core/energy/families/rest_kernels.hpp"
+#include "core/energy/membrane_list.hpp"
+#include "core/energy/membrane_rest.hpp"
+
+namespace bb {
+
+/// Rest shapes [5, n] that change with time: those that are given [5, n], a factor on their lengths, a plastic part.
+struct PlaceTriangles {
+  const double* given;
+  const int* list;            // [n] into factor, -1: none; or null
+  const double* factor;       // of the time, 1
+  const double* plastic_inv;  // [4 n] triangle by triangle; or null
+  exec::Index n;
+  double* rest;
+  BB_HD void operator()(exec::Index e) const {
+    const double by = list && list[e] >= 0 ? factor[list[e]] : 1;
+    const TriangleRest<double> from = RestColumns{given, given + 4 * n}.at(e, n);
+    const TriangleRest<double> to =
+        placed_rest<double>(from, by, plastic_inv ? plastic_inv + 4 * e : nullptr);
+    for (int k = 0; k < 4; ++k) rest[k * n + e] = to.dm_inv.data()[k];
+    rest[4 * n + e] = to.area;
+  }
+};
+
+/// plastic_inv becomes what it is after a step of dt (s) that ended at x.
+struct FlowTriangles {
+  ElementVertices<3> elements;
+  RestColumns rest;
+  const double *yield, *creep;  // [n] 1, 1/s
+  const double* x;
+  double dt;
+  double* plastic_inv;
+  BB_HD void operator()(exec::Index e) const {
+    Vec3d p[3];
+    elements.points(x, e, p);
+    creep_plastic<double>(rest.at(e, elements.n), p, yield[e], kept_after(creep[e], dt), plastic_inv + 4 * e);
+  }
+};
+
+/// R: 3 in space, 2 in the x-y plane.
+template <class Model, int R>
+struct Membrane : ElementVertices<3> {
+  RestColumns rest;
+  const double *lame_mu, *lame_lambda;  // [n] N/m
+  template <class T = double>
+  BB_HD T value(const double* x, exec::Index e) const {
+    Vec<T, 3> p[3];
+    points(x, e, p);
+    return membrane_value<Model, R, T>(rest.at<T>(e, n), p, static_cast<T>(lame_mu[e]),
+                                       static_cast<T>(lame_lambda[e]));
+  }
+  template <class T = double>
+  BB_HD ElementTerms<T, 9> terms(const double* x, exec::Index e, Projection projection) const {
+    Vec<T, 3> p[3];
+    points(x, e, p);
+    return membrane_terms<Model, R, T>(rest.at<T>(e, n), p, static_cast<T>(lame_mu[e]),
+                                       static_cast<T>(lame_lambda[e]), projection);
+  }
+  /// In space only a triangle without area has one.
+  template <class T>
+  bool is_cusp(const double* x, exec::Index e) const {
+    Vec<T, 3> p[3];
+    points(x, e, p);
+    const Vec<T, 3> a = p[1] - p[0], b = p[2] - p[0];
+    const T thin = std::sqrt(std::numeric_limits<T>::epsilon());
+    if (R == 3 && a.cross(b).norm() > thin * a.norm() * b.norm()) return false;
+    return membrane_is_cusp<Model, R, T>(rest.at<T>(e, n), p, static_cast<T>(lame_mu[e]),
+                                         static_cast<T>(lame_lambda[e]));
+  }
+};
+template <class Model>
+struct SpaceMembrane : Membrane<Model, 3> {};
+template <class Model>
+struct PlanarMembrane : Membrane<Model, 2> {};
+
+}  // namespace bb
