@@ -1,7 +1,7 @@
 #include "core/terms/cusps.hpp"
 
 #include "core/bodies/part.hpp"
-#include "core/terms/stitch.hpp"
+#include "core/energy/families/families.hpp"
 
 namespace bb {
 

@@ -20,8 +20,8 @@ class ClothSpringFamily final : public FamilyOf<ClothSprings> {
         ratio_(place.executor, "cloth spring ratios"),
         creeps_(any_positive(part.creep)) {
     std::vector<double> law;
-    for (const auto* column :
-         {&part.tension, &part.tension_growing, &part.compression, &part.compression_growing, &part.exponent}) {
+    for (const auto* column : {&part.tension, &part.tension_growing, &part.compression,
+                               &part.compression_growing, &part.exponent}) {
       law.insert(law.end(), column->begin(), column->end());
     }
     law_.upload(law);

@@ -46,7 +46,9 @@ struct PlaceClothSprings {
   GivenLengths lengths;
   const double* ratio;  // [n] 1
   double* rest_length;
-  BB_HD void operator()(exec::Index e) const { rest_length[e] = lengths.shrink(e) * (ratio[e] * lengths.given[e]); }
+  BB_HD void operator()(exec::Index e) const {
+    rest_length[e] = lengths.shrink(e) * (ratio[e] * lengths.given[e]);
+  }
 };
 
 /// ratio [n] becomes what it is after a step of dt (s) that ended at x.

@@ -80,7 +80,8 @@ struct RestShapes {
 class ShrinkFactors {
  public:
   /// n: elements. The schedule outlives it.
-  ShrinkFactors(exec::Executor& executor, const std::string& name, const ShrinkSchedule& schedule, std::size_t n)
+  ShrinkFactors(exec::Executor& executor, const std::string& name, const ShrinkSchedule& schedule,
+                std::size_t n)
       : lists_(schedule.lists), list_(executor, name), factor_(executor, "factors of shrinkage") {
     std::vector<int> list = schedule.list;
     if (!list.empty()) list.resize(n, -1);

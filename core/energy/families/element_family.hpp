@@ -91,8 +91,9 @@ class FamilyOf : public ElementFamily {
   void derivatives(const double* x, Projection projection, LocalTerms& out) override {
     out.resize(static_cast<std::size_t>(elements_.n), Elements::width);
     for_each_pass(place_.precision, [&]<class T>(PassParts parts) {
-      place_.executor.each(elements_.n, ElementLocalTerms<Elements, T>{elements_, projection, parts, x, out.energy.data(),
-                                                                       out.grad.data(), out.hess.data()});
+      place_.executor.each(elements_.n,
+                           ElementLocalTerms<Elements, T>{elements_, projection, parts, x, out.energy.data(),
+                                                          out.grad.data(), out.hess.data()});
     });
   }
   std::vector<std::size_t> cusps(const double* x) const override {

@@ -91,7 +91,8 @@ struct ElementLocalTerms {
       for (int c = 0; c < size; ++c) grad[size * e + c] = terms.grad[c];
     }
     if (!parts.hessians) return;
-    store_lower_blocks(Elements::width, terms.hess, hess + numbers * e, [](T entry) -> double { return entry; });
+    store_lower_blocks(Elements::width, terms.hess, hess + numbers * e,
+                       [](T entry) -> double { return entry; });
   }
   static constexpr int lanes = lanes_of<Elements>();
   void abreast(exec::Index first) const requires(lanes > 1) {

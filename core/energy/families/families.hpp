@@ -4,11 +4,7 @@
 
 #include "core/energy/families/element_family.hpp"
 #include "core/math/types.hpp"
-#include "core/scene/parts/cloth_springs.hpp"
-#include "core/scene/parts/hinges.hpp"
-#include "core/scene/parts/membrane.hpp"
-#include "core/scene/parts/rods.hpp"
-#include "core/scene/parts/tetrahedra.hpp"
+#include "core/scene/scene.hpp"
 
 namespace bb {
 
@@ -16,17 +12,23 @@ using MadeFamily = std::unique_ptr<ElementFamily>;
 
 /// @param x_rest  [3 x n_vertices] m   @param planar  F is 2 x 2 in the x-y plane, z has no terms
 /// Errors: ConfigError for an unknown model, triangles without area, or a warp direction that is normal to one.
-MadeFamily membrane_family(const FamilyPlace& place, const MembranePart& part, const PositionsView& x_rest, bool planar);
+MadeFamily membrane_family(const FamilyPlace& place, const MembranePart& part, const PositionsView& x_rest,
+                           bool planar);
 
 /// Names of the buffers of a family of springs.
 struct SpringNames {
-  const char *vertices = "spring vertices", *stiffness = "spring stiffness", *rest_length = "spring rest lengths";
+  const char *vertices = "spring vertices", *stiffness = "spring stiffness",
+             *rest_length = "spring rest lengths";
 };
 /// stiffness [n] N/m, rest_length [n] m.
-MadeFamily spring_family(const FamilyPlace& place, const SpringNames& names, std::span<const std::array<int, 2>> pairs,
-                         std::span<const double> stiffness, std::vector<double> rest_length);
+MadeFamily spring_family(const FamilyPlace& place, const SpringNames& names,
+                         std::span<const std::array<int, 2>> pairs, std::span<const double> stiffness,
+                         std::vector<double> rest_length);
 /// Distances [n] (m) of pairs of vertices at x.
 std::vector<double> lengths_of(std::span<const std::array<int, 2>> pairs, const PositionsView& x);
+
+/// The springs that stitch vertices together.
+MadeFamily stitch_family(const FamilyPlace& place, const Stitches& stitches);
 
 MadeFamily cloth_spring_family(const FamilyPlace& place, const ClothSpringPart& part);
 MadeFamily hinge_family(const FamilyPlace& place, const HingePart& part);

@@ -26,7 +26,8 @@ struct HingeElements : Of {
   bool is_cusp(const double* x, exec::Index e) const {
     Vec<T, 3> p[4];
     this->points(x, e, p);
-    return hinge_is_cusp<T>(p, static_cast<T>(this->stiffness_at_rest(e)), static_cast<T>(this->rest_angle[e]));
+    return hinge_is_cusp<T>(p, static_cast<T>(this->stiffness_at_rest(e)),
+                            static_cast<T>(this->rest_angle[e]));
   }
   static constexpr int lanes = hinge_lanes;
   template <class T>

@@ -11,7 +11,8 @@ namespace bb {
 namespace {
 
 /// With what the part shrinks them by from the start.
-std::vector<TriangleRest<double>> given_rests(const MembranePart& part, const PositionsView& x_rest, bool planar) {
+std::vector<TriangleRest<double>> given_rests(const MembranePart& part, const PositionsView& x_rest,
+                                              bool planar) {
   std::vector<TriangleRest<double>> rests = triangle_rests(part.triangles, x_rest, planar, part.warp);
   for (std::size_t e = 0; e < part.shrink.size(); ++e) {
     const Vec2d& factors = part.shrink[e];
@@ -28,7 +29,8 @@ class MembraneFamily final : public FamilyOf<Elements> {
   using Base::elements_, Base::place_;
 
  public:
-  MembraneFamily(const FamilyPlace& place, const MembranePart& part, std::span<const TriangleRest<double>> rests)
+  MembraneFamily(const FamilyPlace& place, const MembranePart& part,
+                 std::span<const TriangleRest<double>> rests)
       : Base(place, "membrane vertices", std::span(part.triangles)),
         shapes_(place.executor, "membrane rest shapes", rests),
         lame_(place.executor, "membrane Lame parameters"),
@@ -55,9 +57,9 @@ class MembraneFamily final : public FamilyOf<Elements> {
   void set_time(double t) override {
     if (given_.size() == 0) return;
     shrink_.set_time(t);
-    place_.executor.each(elements_.n,
-                         PlaceTriangles{given_.data(), shrink_.list(), shrink_.factor(),
-                                        creeps_ ? plastic_inv_.data() : nullptr, elements_.n, shapes_.numbers.data()});
+    place_.executor.each(elements_.n, PlaceTriangles{given_.data(), shrink_.list(), shrink_.factor(),
+                                                     creeps_ ? plastic_inv_.data() : nullptr, elements_.n,
+                                                     shapes_.numbers.data()});
   }
   bool flows() const override { return creeps_; }
   void end_step(const double* x, double dt) override {
@@ -79,7 +81,8 @@ class MembraneFamily final : public FamilyOf<Elements> {
 };
 
 template <class Model>
-MadeFamily of_model(const FamilyPlace& place, const MembranePart& part, const PositionsView& x_rest, bool planar) {
+MadeFamily of_model(const FamilyPlace& place, const MembranePart& part, const PositionsView& x_rest,
+                    bool planar) {
   const std::vector<TriangleRest<double>> rests = given_rests(part, x_rest, planar);
   if (planar) return std::make_unique<MembraneFamily<PlanarMembrane<Model>>>(place, part, rests);
   return std::make_unique<MembraneFamily<SpaceMembrane<Model>>>(place, part, rests);

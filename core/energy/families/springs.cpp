@@ -68,11 +68,17 @@ std::vector<double> lengths_of(std::span<const std::array<int, 2>> pairs, const 
   return out;
 }
 
-MadeFamily spring_family(const FamilyPlace& place, const SpringNames& names, std::span<const std::array<int, 2>> pairs,
-                         std::span<const double> stiffness, std::vector<double> rest_length) {
+MadeFamily spring_family(const FamilyPlace& place, const SpringNames& names,
+                         std::span<const std::array<int, 2>> pairs, std::span<const double> stiffness,
+                         std::vector<double> rest_length) {
   check_column("spring/stiffness", pairs.size(), stiffness, false);
   check_column("spring/rest_length", pairs.size(), rest_length, false);
   return std::make_unique<SpringFamily>(place, names, pairs, stiffness, std::move(rest_length));
+}
+
+MadeFamily stitch_family(const FamilyPlace& place, const Stitches& stitches) {
+  return spring_family(place, {"stitched vertices", "stitch stiffness", "stitch rest lengths"},
+                       stitches.pairs, stitches.stiffness, stitches.rest_length);
 }
 
 }  // namespace bb

@@ -1,12 +1,13 @@
 #include "core/resident/elements/family_term.hpp"
 
+#include "core/energy/families/families.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/terms/part_term.hpp"
-#include "core/terms/stitch.hpp"
 
 namespace bb::resident {
 
-FamilyTerm::FamilyTerm(const ResidentInputs& inputs, std::string_view name, std::unique_ptr<ElementFamily> family)
+FamilyTerm::FamilyTerm(const ResidentInputs& inputs, std::string_view name,
+                       std::unique_ptr<ElementFamily> family)
     : ElementTerm(inputs, name, TermGroup::elastic, Phase::elastic, family->width(), family->vertices()),
       family_(std::move(family)) {}
 
@@ -40,7 +41,8 @@ void make_resident_part(const Part& part, const ResidentInputs& inputs, Resident
 }
 
 void make_resident_stitch(const ResidentInputs& inputs, ResidentTermList& terms) {
-  terms.add(std::make_unique<FamilyTerm>(inputs, "stitch", stitch_family({inputs.executor}, inputs.scene.stitches)));
+  terms.add(std::make_unique<FamilyTerm>(inputs, "stitch",
+                                         stitch_family({inputs.executor}, inputs.scene.stitches)));
 }
 
 }  // namespace bb::resident
