@@ -3,7 +3,7 @@
 
 #include "core/barrier/launches.hpp"
 #include "core/exec/executor.hpp"
-#include "core/resident/contact/stiffness_kernels.hpp"
+#include "core/resident/contact/row_kappa.hpp"
 #include "core/resident/elements/limit_kernels.hpp"
 
 namespace bb {

@@ -22,18 +22,20 @@ enum class ContactKind : std::uint8_t {
   obstacle_edge,
   obstacle_triangle
 };
-constexpr bool is_obstacle(ContactKind kind) { return kind >= ContactKind::obstacle; }
+/// Kind of a row whose edges are close to parallel, or whose edge is to the axis of a cylinder, after those of
+/// ContactKind: barrier times mollifier.
+constexpr std::uint8_t mollified_kind = 7;
+BB_HD constexpr bool is_obstacle(ContactKind kind) { return kind >= ContactKind::obstacle; }
 
-/// Of row r of either table.
-template <class Table>
-ContactKey key_of(const Table& rows, std::size_t r) {
+/// Of the row of a pair. stencil, weight: number k at [by * k].
+inline ContactKey key_of(PairId pair, const int* stencil, const double* weight, std::size_t by = 1) {
   std::array<int, 4> own;
   for (std::size_t k = 0; k < 4; ++k) {
     // the weight of an obstacle that moves is -1, those of its pair are between 0 and 1
-    const bool stands = pair_obstacle(rows.pair[r]) >= 0 && rows.stencil_weight[4 * r + k] < -0.5;
-    own[k] = stands ? -1 : rows.stencil[4 * r + k];
+    const bool stands = pair_obstacle(pair) >= 0 && weight[by * k] < -0.5;
+    own[k] = stands ? -1 : stencil[by * k];
   }
-  return row_key(rows.pair[r], own);
+  return row_key(pair, own);
 }
 
 /// One row a candidate pair that is closer than its activation distance (row_rule.hpp), in the order of the pairs; what
@@ -68,7 +70,7 @@ struct ContactTable {
   std::vector<double> flat;       // [3 n] axis of a cylinder, else 0
 
   std::size_t size() const { return d.size(); }
-  ContactKey key(std::size_t r) const { return key_of(*this, r); }
+  ContactKey key(std::size_t r) const { return key_of(pair[r], &stencil[4 * r], &stencil_weight[4 * r]); }
   void resize(std::size_t n);
 };
 
@@ -90,7 +92,7 @@ struct MollifiedTable {
   std::vector<int> n_free;       // [n]
   std::vector<double> normal;    // [3 n]
 
-  ContactKey key(std::size_t r) const { return key_of(*this, r); }
+  ContactKey key(std::size_t r) const { return key_of(pair[r], &stencil[4 * r], &stencil_weight[4 * r]); }
   bool of_axis(std::size_t r) const {
     return axis[3 * r] != 0 || axis[3 * r + 1] != 0 || axis[3 * r + 2] != 0;
   }

@@ -7,6 +7,7 @@
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_geometry.hpp"
 #include "core/contact/row_columns.hpp"
+#include "core/contact/sliding_shape.hpp"
 #include "core/math/lower_blocks.hpp"
 #include "core/math/parallel.hpp"
 
@@ -16,21 +17,11 @@ namespace {
 
 template <class T>
 using Hessian12 = Mat<T, 12, 12>;
-/// Rows and columns of the free points of `full` on the compact slots, the others 0; `vertex` [4] are the
-/// compact ids, -1 padded, in stencil order.
-template <class T>
-Hessian12<T> compact(const int* stencil, const int* vertex, const Hessian12<T>& full) {
-  int local[4] = {-1, -1, -1, -1}, n = 0;
-  for (int k = 0; k < 4; ++k) {
-    if (n < 4 && vertex[n] >= 0 && stencil[k] == vertex[n]) local[n++] = k;
-  }
-  Hessian12<T> out = Hessian12<T>::Zero();
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      out.template block<3, 3>(3 * i, 3 * j) = full.template block<3, 3>(3 * local[i], 3 * local[j]);
-    }
-  }
-  return out;
+/// The vertices of a row that are free, a bit each.
+unsigned free_of(const MollifiedTable& rows, std::size_t r) {
+  unsigned free = 0;
+  for (unsigned k = 0; k < 4; ++k) free |= (rows.vertex[4 * r + k] >= 0 ? 1u : 0u) << k;
+  return free;
 }
 
 template <class T>
@@ -95,7 +86,7 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
                          Projection projection, PassParts parts, double* grad, double* hess) {
   const auto [g, full] = mollified_derivatives<T>(rows, r, x);
   if (parts.hessians) {
-    Hessian12<T> h = compact<T>(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full);
+    Hessian12<T> h = moved_to_front<T>(free_of(rows, r), full);
     project_leading<T>(rows.n_free[r], projection, h);
     store_lower_blocks(4, h, hess, [](T entry) -> double { return entry; });
   }

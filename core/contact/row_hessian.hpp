@@ -18,8 +18,8 @@ struct RowShape {
   Vec<T, 3> n;     // unit normal
   Vec<T, 3> q[F];  // orthonormal directions in which the closest points slide
   T distance;      // of the closest points, m
-  T stretch;       // kappa b'', N/m
-  T push;          // kappa b', N
+  T stiffness;     // kappa b'', N/m
+  T force;         // kappa b', N
   T bend = T(1);   // F = 1: 0 where moving across n and q_0 turns no normal, as along the axis of a cylinder
 };
 
@@ -54,20 +54,20 @@ struct WeightBasis {
 }  // namespace detail
 
 /// The block that every pair of points of a row shares whose closest points slide nowhere, apart from w_i w_j:
-///   stretch n n^T + push curvature (I - n n^T - flat flat^T),
-/// both eigenspaces projected. stretch = kappa b'', push = kappa b', curvature 1/d or the obstacle's (1/m), flat the
+///   stiffness n n^T + force curvature (I - n n^T - flat flat^T),
+/// both eigenspaces projected. stiffness = kappa b'', force = kappa b', curvature 1/d or the obstacle's (1/m), flat the
 /// axis of a cylinder or 0.   Host-device.
 template <class T>
-BB_HD inline Mat<T, 3, 3> fixed_points_block(const Vec<T, 3>& n, const Vec<T, 3>& flat, T stretch,
-                                             T push_curvature, Projection projection) {
-  const T along = project_eigenvalue(stretch, projection);
-  const T across = project_eigenvalue(push_curvature, projection);
+BB_HD inline Mat<T, 3, 3> fixed_points_block(const Vec<T, 3>& n, const Vec<T, 3>& flat, T stiffness,
+                                             T force_curvature, Projection projection) {
+  const T along = project_eigenvalue(stiffness, projection);
+  const T across = project_eigenvalue(force_curvature, projection);
   return along * n * n.transpose() +
          across * (Mat<T, 3, 3>::Identity() - n * n.transpose() - flat * flat.transpose());
 }
 
-/// Lower blocks (lower_blocks.hpp) of stretch grad d grad d^T + push grad^2 d with projected eigenvalues.
-///   grad d = w x n, and with c = push the second term is in the basis of docs/design.md, Contact rows:
+/// Lower blocks (lower_blocks.hpp) of stiffness grad d grad d^T + force grad^2 d with projected eigenvalues.
+///   grad d = w x n, and with c = force the second term is in the basis of docs/design.md, Contact rows:
 ///   -c (g_l x n)(w x q_l)^T - c (w x q_l)(g_l x n)^T - c d (g_l x n)(g_l x n)^T + c/d (w x t)(w x t)^T,
 /// t the direction at a right angle to n and every q_l (F = 1). w x t is an eigenvector; the rest lives in
 /// span(w, g_l) x n and w x span(q_l), which are at right angles to each other.
@@ -84,11 +84,11 @@ BB_HD inline void row_hessian(const RowShape<T, F>& row, Projection projection,
   const Vec<T, 4> w = basis.u[0];  // unit
 
   Mat<T, D, D> m = Mat<T, D, D>::Zero();
-  m(0, 0) = row.stretch * w_length * w_length;
+  m(0, 0) = row.stiffness * w_length * w_length;
   for (int l = 0; l < F; ++l) {
     const Vec<T, F + 1> g = basis.coordinates.col(l + 1);
-    m.template topLeftCorner<F + 1, F + 1>() -= (row.push * row.distance) * (g * g.transpose());
-    const Vec<T, F + 1> coupling = (-row.push * w_length) * g;
+    m.template topLeftCorner<F + 1, F + 1>() -= (row.force * row.distance) * (g * g.transpose());
+    const Vec<T, F + 1> coupling = (-row.force * w_length) * g;
     m.template block<F + 1, 1>(0, F + 1 + l) = coupling;
     m.template block<1, F + 1>(F + 1 + l, 0) = coupling.transpose();
   }
@@ -106,7 +106,7 @@ BB_HD inline void row_hessian(const RowShape<T, F>& row, Projection projection,
   }
   if constexpr (F == 1) {
     const Vec<T, 3> t = row.n.cross(row.q[0]);
-    const T value = project_eigenvalue(row.bend * row.push / row.distance * w_length * w_length, projection);
+    const T value = project_eigenvalue(row.bend * row.force / row.distance * w_length * w_length, projection);
     across += value * (t * t.transpose());
   }
   T* next = blocks;

@@ -6,23 +6,14 @@
 #include "core/contact/contact_terms.hpp"
 #include "core/contact/gap_along.hpp"
 #include "core/contact/numeric_projection.hpp"
-#include "core/contact/obstacle_shape.hpp"
 #include "core/contact/pair_lanes.hpp"
 #include "core/contact/pair_row.hpp"
 #include "core/contact/row_columns.hpp"
 #include "core/contact/row_hessian.hpp"
-#include "core/geometry/distance_derivatives.hpp"
+#include "core/contact/sliding_shape.hpp"
 
 namespace bb {
 namespace {
-
-/// Edges along which the closest points of a row slide.
-constexpr int n_sliding(ContactKind kind) {
-  if (kind == ContactKind::point_edge || kind == ContactKind::obstacle_edge) return 1;
-  const bool two = kind == ContactKind::point_triangle || kind == ContactKind::edge_edge ||
-                   kind == ContactKind::obstacle_triangle;
-  return two ? 2 : 0;
-}
 
 template <class T>
 T scale_of(const ContactTable& rows, std::size_t r) {
@@ -45,13 +36,13 @@ Vec<T, 12> gap_gradient(const ContactTable& rows, std::size_t r) {
   return g;
 }
 
-/// stretch grad d grad d^T.
+/// stiffness grad d grad d^T.
 template <class T>
-void store_stretch(const Vec<T, 12>& grad_d, T stretch, double* hess) {
+void store_stiffness(const Vec<T, 12>& grad_d, T stiffness, double* hess) {
   for (int b = 0; b < 4; ++b) {
     for (int a = b; a < 4; ++a) {
       for (int c = 0; c < 3; ++c) {
-        for (int r = 0; r < 3; ++r) *hess++ = stretch * (grad_d[3 * a + r] * grad_d[3 * b + c]);
+        for (int r = 0; r < 3; ++r) *hess++ = stiffness * (grad_d[3 * a + r] * grad_d[3 * b + c]);
       }
     }
   }
@@ -78,74 +69,48 @@ void store_fixed_points(const ContactTable& rows, std::size_t r, Projection proj
   }
 }
 
-/// The local frame of an obstacle and an edge (N = 2) or a triangle: that of a point with it, across a cylinder's axis.
-template <int N, class T>
-RowShape<T, N - 1> obstacle_shape(const ContactTable& rows, std::size_t r, const PositionsView& x) {
-  const Vec<T, 3> axis = Vec3d::Map(&rows.flat[3 * r]).template cast<T>();
-  std::array<int, N> vertex;
-  std::copy_n(&rows.stencil[4 * r], N, vertex.begin());
-  const T distance = entry<T>(rows.d, r) + entry<T>(rows.offset, r);
-  RowShape<T, N - 1> out =
-      bb::obstacle_shape<N, T>(gather_in<T>(x, vertex), axis, normal_of<T>(rows, r), distance);
-  Vec<T, 4> g[N - 1];
-  for (int l = 0; l < N - 1; ++l) {
-    g[l] = out.g[l];
-    out.g[l].setZero();
-  }
-  for (int k = 0, slot = 0; k < N && slot < rows.n_free[r]; ++k) {
-    if (vertex[static_cast<std::size_t>(k)] != rows.vertex[4 * r + static_cast<std::size_t>(slot)]) continue;
-    for (int l = 0; l < N - 1; ++l) out.g[l][slot] = g[l][k];
+/// The vertices of a row that are free, a bit each, in role order.
+unsigned free_of(const ContactTable& rows, std::size_t r) {
+  unsigned free = 0;
+  std::size_t slot = 0;
+  for (std::size_t k = 0; k < 4 && slot < static_cast<std::size_t>(rows.n_free[r]); ++k) {
+    if (rows.stencil[4 * r + k] != rows.vertex[4 * r + slot]) continue;
+    free |= 1u << k;
     ++slot;
   }
-  out.w = Vec<double, 4>::Map(&rows.weight[4 * r]).template cast<T>();
-  out.stretch = scale_of<T>(rows, r) * entry<T>(rows.d2b, r);
-  out.push = scale_of<T>(rows, r) * entry<T>(rows.db, r);
-  return out;
+  return free;
 }
 
-/// The local frame of a row; the closest points are those that the row keeps.
-template <PairKind K, class T>
-RowShape<T, n_sliding(contact_kind<K>())> row_shape(const ContactTable& rows, std::size_t r,
-                                                    const PositionsView& x, Region interior) {
-  constexpr int n = pair_points(K), F = n_sliding(contact_kind<K>());
-  std::array<int, n> vertex;
-  Closest<T, n> closest;
-  for (int k = 0; k < n; ++k) {
-    vertex[static_cast<std::size_t>(k)] = rows.stencil[4 * r + static_cast<std::size_t>(k)];
-    closest.weights[k] = entry<T>(rows.stencil_weight, 4 * r + static_cast<std::size_t>(k));
+template <class T>
+struct RowPoints {
+  const int* vertex;
+  const PositionsView& x;
+  template <int N>
+  Mat<T, 3, N> first() const {
+    std::array<int, N> of;
+    std::copy_n(vertex, N, of.begin());
+    return gather_in<T>(x, of);
   }
-  closest.d = entry<T>(rows.d, r) + entry<T>(rows.offset, r);
-  closest.r = closest.d * normal_of<T>(rows, r);
-  closest.region = interior;
-  const auto frame = detail::region_frame<T, n>(gather_in<T>(x, vertex), closest);
-  RowShape<T, F> out;
-  out.w = Vec<double, 4>::Map(&rows.weight[4 * r]).template cast<T>();
-  out.n = frame.n;
-  for (int l = 0; l < F; ++l) {
-    out.q[l] = frame.q[l];
-    out.g[l].setZero();
-    int slot = 0;
-    for (int k = 0; k < n && slot < rows.n_free[r]; ++k) {
-      const int free_vertex = rows.vertex[4 * r + static_cast<std::size_t>(slot)];
-      if (vertex[static_cast<std::size_t>(k)] == free_vertex) out.g[l][slot++] = frame.g[l][k];
-    }
-  }
-  out.distance = closest.d;
-  out.stretch = scale_of<T>(rows, r) * entry<T>(rows.d2b, r);
-  out.push = scale_of<T>(rows, r) * entry<T>(rows.db, r);
-  return out;
-}
+};
 
+/// The local frame of a row on the compact slots; the closest points are those that the row keeps.
 template <int F, class T>
 RowShape<T, F> row_shape(const ContactTable& rows, std::size_t r, const PositionsView& x) {
-  if (is_obstacle(rows.kind[r])) return obstacle_shape<F + 1, T>(rows, r, x);
-  if constexpr (F == 1) {
-    return row_shape<PairKind::point_edge, T>(rows, r, x, Region::p_e);
-  } else if (rows.kind[r] == ContactKind::point_triangle) {
-    return row_shape<PairKind::point_triangle, T>(rows, r, x, Region::p_t);
-  } else {
-    return row_shape<PairKind::edge_edge, T>(rows, r, x, Region::ea_eb);
-  }
+  const SlidingRow<T> row{rows.kind[r],
+                          free_of(rows, r),
+                          Vec<double, 4>::Map(&rows.stencil_weight[4 * r]).template cast<T>(),
+                          normal_of<T>(rows, r),
+                          entry<T>(rows.d, r) + entry<T>(rows.offset, r),
+                          scale_of<T>(rows, r) * entry<T>(rows.d2b, r),
+                          scale_of<T>(rows, r) * entry<T>(rows.db, r)};
+  RowShape<T, F> out;
+  with_sliding_shape<T>(row, RowPoints<T>{&rows.stencil[4 * r], x},
+                        Vec<T, 3>(Vec3d::Map(&rows.flat[3 * r]).template cast<T>()), [&](const auto& shape) {
+                          if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, RowShape<T, F>>)
+                            out = shape;
+                        });
+  move_to_front(row.free, out);
+  return out;
 }
 
 template <class T>
@@ -163,8 +128,8 @@ void set_lane(RowShape<FourOf<T>, F>& lanes, std::size_t lane, const RowShape<T,
     set(lanes.q[l], row.q[l]);
   }
   lanes.distance.v[lane] = row.distance;
-  lanes.stretch.v[lane] = row.stretch;
-  lanes.push.v[lane] = row.push;
+  lanes.stiffness.v[lane] = row.stiffness;
+  lanes.force.v[lane] = row.force;
   lanes.bend.v[lane] = row.bend;
 }
 
@@ -203,7 +168,8 @@ void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, co
     if (!parts.hessians) continue;
     const int edges = n_sliding(rows.kind[r]);
     if (mode == HessianMode::gauss_newton || rows.db[r] == 0) {
-      store_stretch<T>(grad_d, scale_of<T>(rows, r) * entry<T>(rows.d2b, r), hess + row_hessian_numbers * r);
+      store_stiffness<T>(grad_d, scale_of<T>(rows, r) * entry<T>(rows.d2b, r),
+                         hess + row_hessian_numbers * r);
     } else if (edges == 0) {
       store_fixed_points<T>(rows, r, projection, hess + row_hessian_numbers * r);
     } else {
@@ -242,10 +208,10 @@ HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const Pos
     if (rows.n_free[r] == 0) continue;
     const GapAlong gap = gap_along(rows, r, x, dx);
     held.add(rows.d[r], gap);
-    const double push = scale_of<double>(rows, r) * rows.d2b[r] * gap.missing(rows.d[r]);
-    if (!(push > 0)) continue;
+    const double missed = scale_of<double>(rows, r) * rows.d2b[r] * gap.missing(rows.d[r]);
+    if (!(missed > 0)) continue;
     for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
-      force.col(rows.vertex[4 * r + k]) += push * rows.weight[4 * r + k] * normal_of<double>(rows, r);
+      force.col(rows.vertex[4 * r + k]) += missed * rows.weight[4 * r + k] * normal_of<double>(rows, r);
     }
   }
   return held;

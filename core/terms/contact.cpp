@@ -20,14 +20,15 @@ ContactOptions contact_options(const TermOptions& options) {
 
 }  // namespace
 
-ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const ContactPlan& plan,
-                         const std::vector<std::uint8_t>& fixed, const TermList& terms)
-    : scene_(scene),
-      options_(options),
-      fixed_(fixed),
+ContactTerm::ContactTerm(const TermInputs& inputs, const TermList& terms)
+    : scene_(inputs.scene),
+      options_(inputs.options),
+      fixed_(inputs.fixed),
       terms_(terms),
-      contacts_(scene, contact_options(options), plan),
-      stiffness_(*options.stiffness, scene.mass) {
+      contacts_(scene_, contact_options(options_), inputs.contacts),
+      stiffness_(inputs.executor, *options_.stiffness, scene_.mass) {
+  const Scene& scene = scene_;
+  const TermOptions& options = options_;
   const PairAreas* areas = contacts_.areas();
   if (areas && areas->without_area() >= 0) {
     throw ConfigError(
@@ -94,7 +95,7 @@ void ContactTerm::linearise(const PositionsView& x, const TermContext& context) 
   {
     const ScopedPhase timer(context.clock, Phase::stiffness);
     start_policy(x, context);
-    const double change = stiffness_.refresh(state_.rows, state_.mollified, context.blocks, context.elastic);
+    const double change = stiffness_.refresh(state_.tables(), context.blocks, context.elastic);
     kappa_change_ = first_iterate_ ? 0 : change;
     if (first_iterate_) scale_multipliers();
     first_iterate_ = false;
@@ -218,7 +219,7 @@ bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
 
 void ContactTerm::freeze(const BlockSystem& blocks, const BlockSystem::Values& elastic, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::stiffness);
-  stiffness_.freeze(trial_.rows, trial_.mollified, blocks, elastic);
+  stiffness_.freeze(trial_.tables(), state_.tables(), blocks, elastic);
 }
 
 void ContactTerm::evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,
@@ -240,7 +241,7 @@ void ContactTerm::accept(PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::stiffness);
   std::swap(state_, trial_);
   use_state();
-  stiffness_.keep(state_.rows, state_.mollified);
+  stiffness_.keep(state_.tables());
 }
 
 void ContactTerm::add_constraints(const ConstraintRequest& request,
@@ -253,7 +254,8 @@ void ContactTerm::add_constraints(const ConstraintRequest& request,
   ContactState& found = constrained_;
   contacts_.find_rows(request.x, found.rows, found.mollified);
   const bool compliant = request.inequalities == Inequalities::compliant;
-  if (compliant) stiffness_.freeze(found.rows, found.mollified, request.blocks, request.elastic);
+  ContactState none;  // nothing is linearised: no row has a kappa yet
+  if (compliant) stiffness_.freeze(found.tables(), none.tables(), request.blocks, request.elastic);
   constraints_.set(found.rows, found.mollified, request.x, compliant);
   out.push_back(&constraints_);
 }
@@ -273,8 +275,7 @@ void make_contact(const TermInputs& inputs, TermList& terms) {
   if (inputs.options.linear_contact) {
     return terms.add(std::make_unique<LinearContact>(inputs.scene, inputs.options, inputs.contacts));
   }
-  terms.add(
-      std::make_unique<ContactTerm>(inputs.scene, inputs.options, inputs.contacts, inputs.fixed, terms));
+  terms.add(std::make_unique<ContactTerm>(inputs, terms));
 }
 
 }  // namespace bb

@@ -13,9 +13,11 @@
 #include "core/scene/contact_plan.hpp"
 #include "core/terms/carried_loads.hpp"
 #include "core/terms/contact_constraints.hpp"
+#include "core/terms/contact_stiffness.hpp"
 #include "core/terms/known_step.hpp"
 #include "core/terms/policy_start.hpp"
-#include "core/terms/stiffness_update.hpp"
+#include "core/terms/registry.hpp"
+#include "core/terms/step_end_gaps.hpp"
 #include "core/terms/term.hpp"
 #include "core/terms/term_options.hpp"
 
@@ -28,6 +30,7 @@ struct ContactState {
   double gap_min = std::numeric_limits<double>::infinity();  // m; infinity without rows
 
   std::size_t size() const { return rows.size() + mollified.size(); }
+  ContactTables tables() { return {rows, mollified}; }
   /// f(rows), f(mollified).
   template <class F>
   void for_each_table(const F& f) const {
@@ -36,18 +39,10 @@ struct ContactState {
   }
 };
 
-/// Of a pair in a row at a step end, for policies that adapt between steps.
-struct PairGap {
-  PairId pair;
-  double gap, park;  // m
-  void keep(Archive& archive);
-};
-
 class ContactTerm final : public Term {
  public:
-  /// All arguments must outlive the term. fixed: [3 n] prescribed or locked degrees of freedom. terms: with those of lines before.
-  ContactTerm(const Scene& scene, TermOptions& options, const ContactPlan& plan,
-              const std::vector<std::uint8_t>& fixed, const TermList& terms);
+  /// All arguments must outlive the term. terms: with those of lines before.
+  ContactTerm(const TermInputs& inputs, const TermList& terms);
   std::string_view name() const override { return "contact"; }
   TermGroup group() const override { return TermGroup::contact; }
   Phase phase() const override { return Phase::contact_terms; }
@@ -92,7 +87,7 @@ class ContactTerm final : public Term {
 
   const ContactState& state() const { return state_; }
   const ContactSystem& contacts() const { return contacts_; }
-  StiffnessUpdate& stiffness() { return stiffness_; }
+  ContactStiffness& stiffness() { return stiffness_; }
   /// The iterate was accepted: updates the multipliers beside the barrier (barrier_multipliers.hpp). Whether E has changed,
   /// so that the iterate has to be linearised again. Requires options with barrier_multipliers.
   bool update_beside();
@@ -114,7 +109,7 @@ class ContactTerm final : public Term {
   void scale_multipliers();
   void start_policy(const PositionsView& x, const TermContext& context);
   StartSums start_sums(const PositionsView& others) const;
-  void list_pair_gaps();
+  std::vector<PairGap> pair_gaps() const;
   void carry_loads(const PositionsView& x);
 
   const Scene& scene_;
@@ -122,7 +117,7 @@ class ContactTerm final : public Term {
   const std::vector<std::uint8_t>& fixed_;
   const TermList& terms_;
   ContactSystem contacts_;
-  StiffnessUpdate stiffness_;
+  ContactStiffness stiffness_;
   std::optional<FoldedBarrier> folded_;  // where the policy has a potential: of kappa that falls as 1/d^2,
   std::optional<GapPotential> gap_potential_;  // of any kappa(d)
   std::optional<ContactMultipliers> multipliers_;
@@ -137,13 +132,11 @@ class ContactTerm final : public Term {
   bool first_iterate_ = true;
   PolicyStart policy_start_;
   StepBound bound_;
-  std::vector<PairGap> gaps_, previous_gaps_;  // by pair
-  std::vector<StiffnessPolicy::PairEnd> pair_ends_;
+  StepEndGaps gaps_;
 };
 
-/// What is said of rows that have kappa, b and its derivatives, where there are some.
-void report_rows(const ContactState& state, IterateNumbers& out);
-void report_rows(const ContactState& state, Precision precision, const PositionsView& x, StepNumbers& out);
+/// What is said at the end of a step of rows that have kappa, b and its derivatives.
+void report_end_of(const ContactState& state, Precision precision, const PositionsView& x, StepNumbers& out);
 
 /// The rows among these terms; empty tables where the plan has no contact.
 const ContactState& contact_state(const TermList& terms);

@@ -53,16 +53,7 @@ void ContactTerm::end_step(const PositionsView& x, PhaseClock& clock) {
   if (has_multipliers()) carry_loads(x);
   if (!stiffness_.policy().adapts()) return;
   const ScopedPhase timer(clock, Phase::stiffness);
-  list_pair_gaps();
-  pair_ends_.clear();
-  auto before = previous_gaps_.begin();
-  for (const PairGap& now : gaps_) {
-    while (before != previous_gaps_.end() && before->pair < now.pair) ++before;
-    if (before == previous_gaps_.end()) break;
-    if (before->pair == now.pair) pair_ends_.push_back({now.gap, before->gap, now.park});
-  }
-  stiffness_.policy().end_step(pair_ends_);
-  previous_gaps_.swap(gaps_);
+  stiffness_.policy().end_step(gaps_.end_step(pair_gaps()));
 }
 
 // The rows of a state that was reached without energies have none of their shape.
@@ -74,28 +65,22 @@ void ContactTerm::carry_loads(const PositionsView& x) {
   carried_.take(now);
 }
 
-void PairGap::keep(Archive& archive) { archive(pair, gap, park); }
-
 void ContactTerm::keep(Archive& archive) {
   bool started = policy_start_.started();
-  archive(started, previous_gaps_);
+  archive(started);
+  gaps_.keep(archive);
   policy_start_.set_started(started);
   stiffness_.policy().keep(archive);
   if (has_multipliers()) carried_.keep(archive);
 }
 
-void ContactTerm::list_pair_gaps() {
-  const double park = options_.contact_options.ccd_park;
-  const ContactTable& rows = state_.rows;
-  gaps_.clear();
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    gaps_.push_back({rows.pair[r], rows.d[r], park * rows.d_hat[r]});
-  }
-  const MollifiedTable& mollified = state_.mollified;
-  for (std::size_t r = 0; r < mollified.size(); ++r) {
-    gaps_.push_back({mollified.pair[r], mollified.d[r], park * mollified.d_hat[r]});
-  }
-  std::sort(gaps_.begin(), gaps_.end(), [](const PairGap& a, const PairGap& b) { return a.pair < b.pair; });
+std::vector<PairGap> ContactTerm::pair_gaps() const {
+  std::vector<PairGap> out;
+  state_.for_each_table([&](const auto& rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      out.push_back({rows.pair[r], rows.d[r], options_.contact_options.ccd_park * rows.d_hat[r]});
+  });
+  return out;
 }
 
 }  // namespace bb

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/contact/contact_loads.hpp"
-#include "core/contact/kappa_memory.hpp"
+#include "core/contact/stiffness_update.hpp"
 
 namespace bb {
 

@@ -276,7 +276,7 @@ void LinearContact::report_end(const PositionsView& x, StepNumbers& out, PhaseCl
   end_.gap_min = contacts_.find_rows(x, end_.rows, end_.mollified);
   fill_loads(end_.rows);
   fill_loads(end_.mollified);
-  report_rows(end_, options_.precision, x, out);
+  report_end_of(end_, options_.precision, x, out);
 }
 
 }  // namespace bb

@@ -9,8 +9,8 @@
 #include "core/contact/surface.hpp"
 #include "core/exec/counting_executor.hpp"
 #include "core/newton/newton_system.hpp"
+#include "core/resident/contact/policy_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/contact/resident_stiffness.hpp"
 #include "core/resident/system/resident_potential.hpp"
 #include "experiments/run/method.hpp"
 

@@ -5,7 +5,7 @@
 
 namespace bb::test {
 
-struct HostPolicy final : StiffnessPolicy {
+struct HostPolicy : StiffnessPolicy {
   std::string_view name() const override { return "host_only"; }
   Refresh refresh() const override { return Refresh::per_step; }
   void fill(const StiffnessBatch&, double*) const override {}

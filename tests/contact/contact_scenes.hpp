@@ -10,7 +10,6 @@
 #include "core/barrier/shape.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
-#include "core/contact/kappa_memory.hpp"
 
 namespace bb::test {
 

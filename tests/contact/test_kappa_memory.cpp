@@ -1,15 +1,52 @@
 // A row that continues a contact on a neighbouring feature keeps its stiffness, so that B does
-// not jump there.
+// not jump there: the memory of a StiffnessUpdate, in any order of its items.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "core/contact/stiffness_update.hpp"
+#include "core/exec/host_executor.hpp"
+#include "tests/barriers/host_policy.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
 namespace bb::test::kappa_memory_test {
 namespace {
+
+/// Refreshed once a step; with a potential kappa has both parts, and what a trial meets is known from then on.
+struct StepPolicy final : HostPolicy {
+  explicit StepPolicy(bool with_potential) : potential(with_potential) {}
+  bool has_potential() const override { return potential; }
+  bool potential;
+};
+
+/// The memory of a step. Rows of pairs that it does not know are reported, and get `given`.
+struct Memory {
+  explicit Memory(bool potential = false, exec::Order order = exec::Order::threads)
+      : executor(order), policy(potential) {}
+  static std::array<StiffnessRows, 2> views(Rows& rows) {
+    return {stiffness_rows(rows.table), stiffness_rows(rows.mollified)};
+  }
+  void store(Rows& rows) { update.keep(views(rows)); }
+  void recall(Rows& rows) {
+    missing.clear(), missing_mollified.clear();
+    const auto tables = views(rows);
+    update.freeze(tables, {}, [&](std::size_t of, const std::uint8_t* marked, bool at_d_hat) {
+      EXPECT_TRUE(at_d_hat);
+      for (Index r = 0; r < tables[of].n; ++r) {
+        if (marked[r] == 0) continue;
+        (of == 0 ? missing : missing_mollified).push_back(static_cast<int>(r));
+        tables[of].set(r, given);
+      }
+    });
+  }
+  exec::HostExecutor executor;
+  StepPolicy policy;
+  StiffnessUpdate update{executor, policy};
+  KappaParts given;
+  std::vector<int> missing, missing_mollified;
+};
 
 // A point (vertex 0) above two triangles that share the edge x = 0.
 Scene point_over_fan() {
@@ -47,13 +84,11 @@ TEST(KappaMemory, BIsContinuousWhereAPointSlidesOverAnEdge) {
     before.table.kappa[r] = before.table.kind[r] == ContactKind::point_triangle ? 7 : 3;
     before.table.parts[r].fixed = before.table.kappa[r];
   }
-  KappaMemory memory;
-  memory.store(before.table, before.mollified);
+  Memory memory;
+  memory.store(before);
+  memory.recall(after);
 
-  std::vector<int> missing, missing_mollified;
-  memory.recall(after.table, after.mollified, missing, missing_mollified);
-
-  EXPECT_TRUE(missing.empty());
+  EXPECT_TRUE(memory.missing.empty());
   for (std::size_t r = 0; r < 2; ++r) {  // each pair took its kappa along
     EXPECT_EQ(after.table.kappa[r], after.table.kind[r] == ContactKind::point_triangle ? 3 : 7);
   }
@@ -73,19 +108,18 @@ TEST(KappaMemory, OfPairsWithOneFeatureIsThatOfEach) {
   one.table.parts = {rows.table.parts[1]};
   one.table.d = {rows.table.d[1]};
   one.table.kappa = {0};
-  KappaMemory memory;
-  memory.store(one.table, one.mollified);
+  Memory memory(true);
+  memory.store(one);
 
-  std::vector<int> missing, missing_mollified;
-  memory.recall(rows.table, rows.mollified, missing, missing_mollified);
-  EXPECT_EQ(missing, std::vector<int>{0});
+  memory.given = {3, 0};
+  memory.recall(rows);
+  EXPECT_EQ(memory.missing, std::vector<int>{0});
   EXPECT_DOUBLE_EQ(rows.table.kappa[1], 7 + 0.02 / std::pow(rows.table.d[1], 2));
-  rows.table.parts[0] = {3, 0};  // what the policy gives the new pair
-  memory.store(rows.table, rows.mollified);
-  ASSERT_EQ(memory.known().pair, rows.table.pair);
-  EXPECT_EQ(memory.known().parts[0].fixed, 3);
-  EXPECT_EQ(memory.known().parts[1].fixed, 7);
-  EXPECT_EQ(memory.known().parts[1].per_gap_sq, 0.02);
+  const KnownStiffness known = memory.update.known();
+  ASSERT_EQ(known.pair, rows.table.pair);
+  EXPECT_EQ(known.parts[0].fixed, 3);
+  EXPECT_EQ(known.parts[1].fixed, 7);
+  EXPECT_EQ(known.parts[1].per_gap_sq, 0.02);
 }
 
 template <class Table>
@@ -122,28 +156,27 @@ Scene two_sheets() {
   return scene;
 }
 
-TEST(KappaMemory, GivesBackWhatItStoredAndReportsTheRest) {
+void gives_back(exec::Order order) {
   const Scene scene = two_sheets();
   ContactSystem contacts(scene, {});
-  const Rows stored = numbered(contacts, scene.x0);
+  Rows stored = numbered(contacts, scene.x0);
   ASSERT_GT(stored.table.size(), 10U);
   ASSERT_GT(stored.mollified.size(), 0U);
-  KappaMemory memory;
-  memory.store(stored.table, stored.mollified);
+  Memory memory(false, order);
+  memory.store(stored);
 
   Rows same = rows_at(contacts, scene.x0);
-  std::vector<int> missing{7}, missing_mollified{7};
-  memory.recall(same.table, same.mollified, missing, missing_mollified);
-  EXPECT_TRUE(missing.empty() && missing_mollified.empty());
+  memory.recall(same);
+  EXPECT_TRUE(memory.missing.empty() && memory.missing_mollified.empty());
   EXPECT_EQ(same.table.kappa, stored.table.kappa);
   EXPECT_EQ(same.mollified.kappa, stored.mollified.kappa);
 
   Positions moved = scene.x0;
   moved.rightCols(16).colwise() += Vec3d(0.24, 0.05, 0);
   Rows other = rows_at(contacts, moved);
-  memory.recall(other.table, other.mollified, missing, missing_mollified);
-  EXPECT_GT(missing.size(), 0U);
-  EXPECT_LT(missing.size(), other.table.size());
+  memory.recall(other);
+  EXPECT_GT(memory.missing.size(), 0U);
+  EXPECT_LT(memory.missing.size(), other.table.size());
   const std::map<PairId, double> known = kappa_of(stored);
   const auto expect_known = [&known](const auto& table, const std::vector<int>& reported) {
     for (std::size_t r = 0; r < table.size(); ++r) {
@@ -155,35 +188,41 @@ TEST(KappaMemory, GivesBackWhatItStoredAndReportsTheRest) {
       }
     }
   };
-  expect_known(other.table, missing);
-  expect_known(other.mollified, missing_mollified);
+  expect_known(other.table, memory.missing);
+  expect_known(other.mollified, memory.missing_mollified);
 
   // with the new ones it knows all pairs of both states, ascending
-  memory.store(other.table, other.mollified);
-  const std::vector<PairId>& pairs = memory.known().pair;
+  memory.store(other);
+  const std::vector<PairId> pairs = memory.update.known().pair;
   EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
   EXPECT_EQ(std::adjacent_find(pairs.begin(), pairs.end()), pairs.end());
-  EXPECT_EQ(pairs.size(), known.size() + missing.size() + missing_mollified.size());
+  EXPECT_EQ(pairs.size(), known.size() + memory.missing.size() + memory.missing_mollified.size());
+}
+
+TEST(KappaMemory, GivesBackWhatItStoredAndReportsTheRestInEveryOrder) {
+  for (const exec::Order order :
+       {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled})
+    gives_back(order);
 }
 
 TEST(KappaMemory, KnownRowsKeepTheirFirstValueUntilCleared) {
   const Scene scene = two_sheets();
   ContactSystem contacts(scene, {});
-  Rows rows = numbered(contacts, scene.x0);
-  KappaMemory memory;
-  memory.store(rows.table, rows.mollified);
-  memory.store({}, {});  // a state without contacts does not make it forget
+  Rows rows = numbered(contacts, scene.x0), none;
+  none.table.resize(0), none.mollified.resize(0);
+  Memory memory;
+  memory.store(rows);
+  memory.store(none);  // a state without contacts does not make it forget
   const std::vector<double> first = rows.table.kappa;
   for (std::size_t r = 0; r < first.size(); ++r) set_kappa(rows.table, r, first[r] + 100);
-  memory.store(rows.table, rows.mollified);
-  std::vector<int> missing, missing_mollified;
-  memory.recall(rows.table, rows.mollified, missing, missing_mollified);
+  memory.store(rows);
+  memory.recall(rows);
   EXPECT_EQ(rows.table.kappa, first);
 
-  memory.clear();
-  memory.recall(rows.table, rows.mollified, missing, missing_mollified);
-  EXPECT_EQ(missing.size(), rows.table.size());
-  EXPECT_EQ(missing_mollified.size(), rows.mollified.size());
+  memory.update.begin_step();
+  memory.recall(rows);
+  EXPECT_EQ(memory.missing.size(), rows.table.size());
+  EXPECT_EQ(memory.missing_mollified.size(), rows.mollified.size());
 }
 
 TEST(KappaMemory, AnEdgePairKeepsItsValueWhenItBecomesMollified) {
@@ -196,18 +235,17 @@ TEST(KappaMemory, AnEdgePairKeepsItsValueWhenItBecomesMollified) {
   Rows plain = rows_at(contacts, scene.x0);
   ASSERT_EQ(plain.table.size(), 1U);
   plain.table.parts[0] = {42, 0.02};
-  KappaMemory memory;
-  memory.store(plain.table, plain.mollified);
+  Memory memory(true);
+  memory.store(plain);
 
   Positions turned = scene.x0;
   turned(1, 2) = -0.01;
   turned(1, 3) = 0.009;
   Rows parallel = rows_at(contacts, turned);
   ASSERT_EQ(parallel.mollified.size(), 1U);
-  std::vector<int> missing, missing_mollified;
-  memory.recall(parallel.table, parallel.mollified, missing, missing_mollified);
+  memory.recall(parallel);
   EXPECT_EQ(parallel.mollified.kappa[0], 42 + 0.02 / (parallel.mollified.d[0] * parallel.mollified.d[0]));
-  EXPECT_TRUE(missing_mollified.empty());
+  EXPECT_TRUE(memory.missing_mollified.empty());
 }
 
 }  // namespace

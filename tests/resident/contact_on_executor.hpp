@@ -147,11 +147,11 @@ inline std::string bytes_of(resident::ResidentRows& rows) {
   return out;
 }
 
-/// Energy, push and stretch, too.
+/// Energy, force and stiffness, too.
 inline std::string terms_of(resident::ResidentRows& rows) {
   const resident::RowView v = rows.view();
   std::string out = bytes_of(rows);
-  for (const double* c : {v.energy, v.push, v.stretch}) {
+  for (const double* c : {v.energy, v.force, v.stiffness}) {
     out.append(reinterpret_cast<const char*>(c), static_cast<std::size_t>(v.n) * sizeof(double));
   }
   return out;

@@ -32,7 +32,7 @@ inline std::map<PairId, Expected> by_pair(const Rows& rows) {
   for (std::size_t r = 0; r < t.size(); ++r)
     out.emplace(t.pair[r], expected(t, r, static_cast<std::uint8_t>(t.kind[r])));
   const MollifiedTable& m = rows.mollified;
-  for (std::size_t r = 0; r < m.size(); ++r) out.emplace(m.pair[r], expected(m, r, resident::mollified_kind));
+  for (std::size_t r = 0; r < m.size(); ++r) out.emplace(m.pair[r], expected(m, r, mollified_kind));
   return out;
 }
 

@@ -1,6 +1,9 @@
 // What both systems say of contacts, number by number.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "tests/contact/moving_obstacles.hpp"
 #include "tests/resident/both_systems.hpp"
 
 namespace bb::resident_reports_test {
@@ -71,7 +74,8 @@ TEST(ResidentSystem, SaysTheSameOfContactsNumberByNumber) {
       [&] { return test::method_with_policy("cubic", "elasticity_inclusive", lagged); }};
   const Scene scenes[] = {test::touching(test::cloth_on_plate(), 0.012),
                           test::touching(test::two_sheets(), 0.01),
-                          test::touching(test::cloth_on_balls_and_bar(), 0.02)};
+                          test::touching(test::cloth_on_balls_and_bar(), 0.02),
+                          test::with_moving_obstacles(test::touching(test::cloth_on_balls_and_bar(), 0.02))};
   for (std::size_t m = 0; m < std::size(methods); ++m) {
     for (std::size_t s = 0; s < std::size(scenes); ++s) {
       SCOPED_TRACE("method " + std::to_string(m) + ", scene " + std::to_string(s));
@@ -79,6 +83,23 @@ TEST(ResidentSystem, SaysTheSameOfContactsNumberByNumber) {
     }
   }
   EXPECT_GT(n_shared, 3);  // pairs with one closest feature
+}
+
+// The vertex by which an obstacle moves is no part of its contacts.
+TEST(ResidentSystem, NamesAnObstacleThatMovesAsOneThatStands) {
+  const Scene still = test::touching(test::cloth_on_balls_and_bar(), 0.02);
+  StepNumbers end[2];
+  for (const std::size_t k : {0, 1}) {
+    Both both(k == 0 ? still : test::with_moving_obstacles(still), touching_method);
+    both.resident.view().report_end(end[k]);
+  }
+  ASSERT_GT(end[0].contact_loads.size(), 5u);
+  ASSERT_EQ(end[1].contact_loads.size(), end[0].contact_loads.size());
+  for (std::size_t i = 0; i < end[0].contact_loads.size(); ++i) {
+    EXPECT_EQ(end[1].contact_loads[i].key, end[0].contact_loads[i].key);
+    EXPECT_TRUE(
+        std::ranges::any_of(end[1].contact_loads[i].key, [](int id) { return obstacle_of(id) >= 0; }));
+  }
 }
 
 }  // namespace

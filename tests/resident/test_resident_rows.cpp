@@ -45,7 +45,7 @@ TEST(ResidentRowFinder, HasThoseOfRods) {
     compare(scene, on.rows, reference, n_kinds);
   }
   EXPECT_GT(n_kinds[static_cast<int>(ContactKind::point_edge)], 50);
-  EXPECT_GT(n_kinds[resident::mollified_kind], 5);
+  EXPECT_GT(n_kinds[mollified_kind], 5);
 }
 
 TEST(ResidentRowFinder, HasThoseOfPlanarScenes) {

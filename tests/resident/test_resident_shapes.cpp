@@ -48,8 +48,8 @@ TEST(ResidentBarrier, EvaluatesEveryShapeOfTheRegistry) {
       for (Index r = 0; r < n_gaps; ++r) {
         const ShapeTerms<double> one = barrier.eval(v.d[r], v.d_hat[r]);
         worst = std::max({worst, relative(v.energy[r], v.kappa[r] * one.b),
-                          relative(v.push[r], v.kappa[r] * one.db),
-                          relative(v.stretch[r], v.kappa[r] * one.d2b)});
+                          relative(v.force[r], v.kappa[r] * one.db),
+                          relative(v.stiffness[r], v.kappa[r] * one.d2b)});
         n_active += one.db < 0;
       }
       EXPECT_LE(worst, 1e-13) << shape.name;
@@ -82,8 +82,8 @@ TEST(ResidentBarrier, FoldsTheStiffnessIntoShapesWithAPotential) {
     FoldedBarrier(barrier).eval(n_gaps, v.d, v.d_hat, parts.data(), e.data(), de.data(), d2e.data());
     double worst = 0;
     for (std::size_t r = 0; r < e.size(); ++r) {
-      worst = std::max(
-          {worst, relative(v.energy[r], e[r]), relative(v.push[r], de[r]), relative(v.stretch[r], d2e[r])});
+      worst = std::max({worst, relative(v.energy[r], e[r]), relative(v.force[r], de[r]),
+                        relative(v.stiffness[r], d2e[r])});
     }
     EXPECT_LE(worst, 1e-13);
     EXPECT_GT(e[0], 0);
@@ -107,8 +107,8 @@ TEST(ResidentBarrier, CallsAShapeWithoutAKernelForEveryRow) {
       for (Index r = 0; r < n_gaps; ++r) {
         const ShapeTerms<double> one = barrier.eval(v.d[r], v.d_hat[r]);
         ASSERT_EQ(v.energy[r], v.kappa[r] * one.b) << name;
-        ASSERT_EQ(v.push[r], v.kappa[r] * one.db) << name;
-        ASSERT_EQ(v.stretch[r], v.kappa[r] * one.d2b) << name;
+        ASSERT_EQ(v.force[r], v.kappa[r] * one.db) << name;
+        ASSERT_EQ(v.stiffness[r], v.kappa[r] * one.d2b) << name;
         n_active += one.db < 0;
       }
     }

@@ -11,7 +11,7 @@
 
 #include "core/exec/host_executor.hpp"
 #include "core/exec/sums/resident_sum.hpp"
-#include "core/resident/system/row_totals.hpp"
+#include "core/resident/contact/sum_kernels.hpp"
 #include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident::system_kernels_test {
@@ -51,10 +51,10 @@ TEST(SystemKernels, Columns) {
 /// Rows of every kind, some of them mollified, with a stiffness of their own or one for all.
 struct SomeRows {
   static constexpr std::size_t n = 1000;
-  std::vector<double> d = positive(3), d_hat = positive(4), kappa = positive(5), push = positive(6),
-                      stretch = positive(7), energy = positive(10), mollifier;
+  std::vector<double> d = positive(3), d_hat = positive(4), kappa = positive(5), force = positive(6),
+                      stiffness = positive(7), energy = positive(10), mollifier;
   std::vector<std::uint8_t> kind;
-  exec::Buffer<double> d_on, d_hat_on, kappa_on, push_on, stretch_on, energy_on, mollifier_on;
+  exec::Buffer<double> d_on, d_hat_on, kappa_on, force_on, stiffness_on, energy_on, mollifier_on;
   exec::Buffer<std::uint8_t> kind_on;
   exec::Buffer<std::uint32_t> mollified_on;
 
@@ -67,14 +67,14 @@ struct SomeRows {
       : d_on(on(executor, d)),
         d_hat_on(on(executor, d_hat)),
         kappa_on(on(executor, kappa)),
-        push_on(executor, "pushes"),
-        stretch_on(on(executor, stretch)),
+        force_on(executor, "forces"),
+        stiffness_on(on(executor, stiffness)),
         energy_on(on(executor, energy)),
         mollifier_on(executor, "mollifiers"),
         kind_on(executor, "kinds"),
         mollified_on(executor, "mollified rows") {
-    for (double& x : push) x = -x;  // kappa b' is not positive
-    push_on.upload(push);
+    for (double& x : force) x = -x;  // kappa b' is not positive
+    force_on.upload(force);
     for (std::size_t r = 0; r < n; ++r) kind.push_back(static_cast<std::uint8_t>(r % (mollified_kind + 1)));
     kind_on.upload(kind);
     std::vector<std::uint32_t> list;
@@ -89,7 +89,7 @@ struct SomeRows {
     RowView out{};
     out.n = n;
     out.d = d_on.data(), out.d_hat = d_hat_on.data(), out.kind = kind_on.data();
-    out.push = push_on.data(), out.stretch = stretch_on.data(), out.energy = energy_on.data();
+    out.force = force_on.data(), out.stiffness = stiffness_on.data(), out.energy = energy_on.data();
     out.kappa = uniform ? nullptr : kappa_on.data();
     out.uniform_kappa = 7;
     return out;
@@ -109,7 +109,7 @@ struct SomeRows {
   /// Loads of all rows, N; 0 where they are mollified.
   std::vector<double> loads() const {
     std::vector<double> out;
-    for (std::size_t r = 0; r < n; ++r) out.push_back(mollified(r) ? 0 : -push[r]);
+    for (std::size_t r = 0; r < n; ++r) out.push_back(mollified(r) ? 0 : -force[r]);
     return out;
   }
 };
@@ -141,7 +141,7 @@ TEST(SystemKernels, TotalsOfRowsAreThoseOfALoop) {
       const double kappa = uniform ? 7 : rows.kappa[r];
       gap_rel = std::min(gap_rel, rows.d[r] / rows.d_hat[r]);
       kappa_min = std::min(kappa_min, kappa), kappa_max = std::max(kappa_max, kappa);
-      if (!rows.mollified(r)) curvature = std::max(curvature, rows.stretch[r]);
+      if (!rows.mollified(r)) curvature = std::max(curvature, rows.stiffness[r]);
     }
     const std::vector<double> loads = rows.loads();
     EXPECT_EQ(smallest_of(found.gap_rel_min), gap_rel);
@@ -189,7 +189,7 @@ TEST(SystemKernels, TotalsOfNoRowsAndOfNoNumbers) {
   EXPECT_EQ(empty.load.value(), 0);
   SomeRows rows(executor);
   rows.d_on.set(17, std::numeric_limits<double>::quiet_NaN());
-  rows.stretch_on.set(18, -std::numeric_limits<double>::quiet_NaN());
+  rows.stiffness_on.set(18, -std::numeric_limits<double>::quiet_NaN());
   const RowView view = rows.view(false);
   const RowTotals bad = totals(executor, view, rows.energy_of(view));
   EXPECT_TRUE(std::isnan(smallest_of(bad.gap_rel_min)));

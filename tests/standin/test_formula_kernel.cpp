@@ -71,7 +71,7 @@ class FormulaKernel : public testing::TestWithParam<Argument> {
 double relative(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::abs(b); }
 
 struct Terms {
-  std::vector<double> energy, push, stretch;
+  std::vector<double> energy, force, stiffness;
 };
 
 /// kept: a kappa each; else 150 N/m for all.
@@ -89,8 +89,8 @@ Terms on_the_device(cuda::DeviceExecutor& device, const BarrierFunction& barrier
   for (int i = 0; i < 2; ++i) resident.evaluate(device, rows);  // loaded once
   Terms out{std::vector<double>(n_gaps), std::vector<double>(n_gaps), std::vector<double>(n_gaps)};
   device.download(out.energy.data(), v.energy, bytes);
-  device.download(out.push.data(), v.push, bytes);
-  device.download(out.stretch.data(), v.stretch, bytes);
+  device.download(out.force.data(), v.force, bytes);
+  device.download(out.stiffness.data(), v.stiffness, bytes);
   return out;
 }
 
@@ -103,9 +103,9 @@ TEST_P(FormulaKernel, HasTheNumbersOfTheShapeInEveryRow) {
       const ShapeTerms<double> one = barrier.eval(gaps.d[r], gaps.d_hat[r]);
       const double kappa = kept ? gaps.kappa[r] : 150;
       ASSERT_LE(relative(found.energy[r], kappa * one.b), sample_tolerance) << gaps.d[r];
-      ASSERT_LE(relative(found.push[r], kappa * one.db), sample_tolerance) << gaps.d[r];
-      ASSERT_LE(relative(found.stretch[r], kappa * one.d2b), sample_tolerance) << gaps.d[r];
-      n_active += found.push[r] < 0;
+      ASSERT_LE(relative(found.force[r], kappa * one.db), sample_tolerance) << gaps.d[r];
+      ASSERT_LE(relative(found.stiffness[r], kappa * one.d2b), sample_tolerance) << gaps.d[r];
+      n_active += found.force[r] < 0;
     }
   }
   EXPECT_GT(n_active, 600);
@@ -156,10 +156,10 @@ TEST_P(KernelOfAText, IsMadeWhenItIsAskedFor) {
   for (std::size_t r = 0; r < n_gaps; ++r) {
     const ShapeTerms<double> one = barrier.eval(gaps.d[r], gaps.d_hat[r]);
     ASSERT_LE(relative(found.energy[r], gaps.kappa[r] * one.b), most) << gaps.d[r];
-    ASSERT_LE(relative(found.push[r], gaps.kappa[r] * one.db), most) << gaps.d[r];
-    ASSERT_LE(relative(found.stretch[r], gaps.kappa[r] * one.d2b), most) << gaps.d[r];
+    ASSERT_LE(relative(found.force[r], gaps.kappa[r] * one.db), most) << gaps.d[r];
+    ASSERT_LE(relative(found.stiffness[r], gaps.kappa[r] * one.d2b), most) << gaps.d[r];
   }
-  EXPECT_LT(found.push[n_gaps / 2], 0);
+  EXPECT_LT(found.force[n_gaps / 2], 0);
 }
 INSTANTIATE_TEST_SUITE_P(Gap, KernelOfAText, testing::Values(Argument::gap));
 

@@ -5,10 +5,10 @@
 #include "core/contact/float_rounding.hpp"
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_planes.hpp"
+#include "core/exec/sums/compaction_kernels.hpp"
 #include "core/exec/sums/sum_kernels.hpp"
 #include "core/geometry/accd.hpp"
 #include "core/resident/contact/candidate_lists.hpp"
-#include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/pair_search.hpp"
 
 namespace bb::resident {

@@ -45,7 +45,7 @@ RowEnergy ContactAssembly::row_energy(ResidentRows& rows, const exec::Buffer<dou
 void ContactAssembly::add_gradient(ResidentRows& rows, const exec::Buffer<double>& x,
                                    exec::Buffer<double>& gradient) {
   mollify(rows, x);
-  gather(rows, RowPush{}, gradient);
+  gather(rows, RowForce{}, gradient);
 }
 
 /// Requires the numbers of the mollified rows.

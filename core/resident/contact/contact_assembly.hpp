@@ -14,7 +14,7 @@ struct AssemblyOptions {
   Index hessians_a_chunk = 1 << 18;      // rows whose Hessians are kept at a time, 720 B each
 };
 
-/// Sums over rows whose energy, push and stretch are set. Results do not depend on the chunks.
+/// Sums over rows whose energy, force and stiffness are set. Results do not depend on the chunks.
 class ContactAssembly {
  public:
   /// surface must outlive it.

@@ -1,7 +1,7 @@
 // Where contact rows go: the rows of every vertex, the blocks of the matrix, and what adds up to each of them.
 #pragma once
 
-#include "core/resident/contact/compaction.hpp"
+#include "core/exec/sums/compaction.hpp"
 #include "core/resident/contact/expected_contacts.hpp"
 #include "core/resident/contact/pattern_view.hpp"
 #include "core/resident/contact/resident_rows.hpp"

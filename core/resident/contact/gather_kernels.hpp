@@ -36,9 +36,9 @@ struct GatherRows {
 };
 
 /// The gradient of B, N.
-struct RowPush {
+struct RowForce {
   BB_HD void add(const RowView& rows, Index r, double weight, double* sum) const {
-    for (int c = 0; c < 3; ++c) sum[c] += rows.push[r] * (weight * rows.normal[c * rows.n + r]);
+    for (int c = 0; c < 3; ++c) sum[c] += rows.force[r] * (weight * rows.normal[c * rows.n + r]);
   }
 };
 
@@ -49,7 +49,7 @@ struct RowGivenMotion {
   BB_HD void add(const RowView& rows, Index r, double weight, double* sum) const {
     const double closing = closing_motion(rows, r);
     if (closing == 0) return;
-    const double size = rows.stretch[r] * closing * weight;
+    const double size = rows.stiffness[r] * closing * weight;
     for (int c = 0; c < 3; ++c) sum[c] += size * rows.normal[c * rows.n + r];
   }
 
@@ -82,8 +82,8 @@ struct GatherStreamed {
       const Index r = pair_row_of(code);
       if (has_own_hessian(rows, choice.mode, r)) continue;
       const double wa = rows.weight[pair_a(code) * rows.n + r], wb = rows.weight[pair_b(code) * rows.n + r];
-      if (choice.mode == HessianMode::gauss_newton || rows.push[r] == 0) {
-        add_stretch(r, wa, wb, sum);
+      if (choice.mode == HessianMode::gauss_newton || rows.force[r] == 0) {
+        add_stiffness(r, wa, wb, sum);
       } else {
         add_fixed_points(r, wa * wb, sum);
       }
@@ -92,22 +92,22 @@ struct GatherStreamed {
   }
 
  private:
-  BB_HD void add_stretch(Index r, double wa, double wb, double* sum) const {
+  BB_HD void add_stiffness(Index r, double wa, double wb, double* sum) const {
     const Vec3d n = rows.normal_of(r), ga = wa * n, gb = wb * n;
-    for (int c = 0; c < 9; ++c) sum[c] += rows.stretch[r] * (ga[c % 3] * gb[c / 3]);
+    for (int c = 0; c < 9; ++c) sum[c] += rows.stiffness[r] * (ga[c % 3] * gb[c / 3]);
   }
   /// Rows whose closest points slide nowhere, grad^2 d included.
   BB_HD void add_fixed_points(Index r, double ww, double* sum) const {
     const auto [curvature, flat] = row_curvature(rows, surface, r, x);
-    const double stretch = rows.stretch[r], push = rows.push[r] * curvature;
+    const double stiffness = rows.stiffness[r], force = rows.force[r] * curvature;
     const Vec3d n = rows.normal_of(r);
-    const Mat3d one = fixed_points_block<double>(n, flat, stretch, push,
+    const Mat3d one = fixed_points_block<double>(n, flat, stiffness, force,
                                                  choice.blended ? Projection::psd : choice.projection);
     if (!choice.blended) {
       for (int c = 0; c < 9; ++c) sum[c] += ww * one(c % 3, c / 3);
       return;
     }
-    const Mat3d exact = fixed_points_block<double>(n, flat, stretch, push, Projection::none);
+    const Mat3d exact = fixed_points_block<double>(n, flat, stiffness, force, Projection::none);
     for (int c = 0; c < 9; ++c) sum[c] += ww * blend(exact(c % 3, c / 3), one(c % 3, c / 3), choice.t);
   }
 };

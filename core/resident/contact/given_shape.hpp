@@ -30,8 +30,8 @@ struct EvaluateGivenShape {
     }
     const double kappa = rows.kappa ? rows.kappa[r] : rows.uniform_kappa;
     rows.energy[r] = kappa * terms.b;
-    rows.push[r] = kappa * terms.db;
-    rows.stretch[r] = kappa * terms.d2b;
+    rows.force[r] = kappa * terms.db;
+    rows.stiffness[r] = kappa * terms.d2b;
   }
 };
 
@@ -44,8 +44,8 @@ constexpr std::uint64_t given_shape_layout = [] {
                                 offsetof(RowView, kappa),
                                 offsetof(RowView, uniform_kappa),
                                 offsetof(RowView, energy),
-                                offsetof(RowView, push),
-                                offsetof(RowView, stretch)};
+                                offsetof(RowView, force),
+                                offsetof(RowView, stiffness)};
   std::uint64_t packed = 0;
   for (const std::size_t place : places) packed = packed << 8 | place;
   return packed;

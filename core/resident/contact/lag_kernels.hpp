@@ -204,7 +204,7 @@ struct LearnLoads {
   double *load, *strength;
   BB_HD void operator()(Index r) const {
     const RowView& rows = contact.rows;
-    load[r] = -rows.push[r];
+    load[r] = -rows.force[r];
     if (rows.mollified(r)) load[r] *= contact.mollifier.number[contact.mollifier.of(r)];
     strength[r] = sides.of(rows, r, body) * load[r];
   }

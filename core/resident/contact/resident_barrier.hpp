@@ -14,7 +14,7 @@ class ResidentBarrier {
   /// code of its own. Errors: ConfigError where it has none, for the article's literal evaluation, for float, and for a
   /// potential that the shape has not.
   ResidentBarrier(const BarrierFunction& barrier, bool potential, bool host_calls = false);
-  /// Fills energy, push and stretch of the rows from d, d_hat and kappa.
+  /// Fills energy, force and stiffness of the rows from d, d_hat and kappa.
   void evaluate(exec::Executor& executor, ResidentRows& rows) const;
   /// Loads device code that the shape brings, so that nothing has begun when it cannot be. Errors: ExecutionError.
   void prepare(exec::Executor& executor) const;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/resident/contact/compaction.hpp"
+#include "core/exec/sums/compaction.hpp"
 
 namespace bb::resident {
 

@@ -5,6 +5,7 @@
 
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/contact/contact_table.hpp"
+#include "core/contact/stiffness_rows.hpp"
 #include "core/exec/buffer.hpp"
 #include "core/math/types.hpp"
 
@@ -12,10 +13,6 @@ namespace bb::resident {
 
 using exec::Index;
 using exec::Key;
-
-/// Kind of a row whose edges are close to parallel, or whose edge is to the axis of a cylinder, after those of
-/// ContactKind: barrier times mollifier.
-constexpr std::uint8_t mollified_kind = 7;
 
 /// What kappa is made of, which says what columns a policy needs.
 enum class KappaColumns {
@@ -28,18 +25,18 @@ enum class KappaColumns {
 /// What kernels read and write of rows; number k of a row is column[k * n + row].
 struct RowView {
   Index n;
-  int* vertex;                      // [4][n] in role order (p t0 t1 t2, ea0 ea1 eb0 eb1), -1 padded
-  double* weight;                   // [4][n] w_i, 0 padded
-  double* normal;                   // [3][n] unit, grad_i d = w_i n
-  double *d, *d_hat;                // [n] m
-  Key* pair;                        // [n] PairId, ascending
-  std::uint8_t* kind;               // [n] ContactKind or mollified_kind
-  std::uint8_t* free;               // [n] bit k: vertex k is free
-  double* kappa;                    // [n] N/m, of a potential its fixed part; null: uniform_kappa
-  double* kappa_before;             // [n] N/m, 0: the pair was not there; or null
-  double* per_gap_sq;               // [n] N m; or null
-  double uniform_kappa;             // N/m
-  double *energy, *push, *stretch;  // [n] kappa b (J, before any mollifier), kappa b' (N), kappa b'' (N/m)
+  int* vertex;                         // [4][n] in role order (p t0 t1 t2, ea0 ea1 eb0 eb1), -1 padded
+  double* weight;                      // [4][n] w_i, 0 padded
+  double* normal;                      // [3][n] unit, grad_i d = w_i n
+  double *d, *d_hat;                   // [n] m
+  Key* pair;                           // [n] PairId, ascending
+  std::uint8_t* kind;                  // [n] ContactKind or mollified_kind
+  std::uint8_t* free;                  // [n] bit k: vertex k is free
+  double* kappa;                       // [n] N/m, of a potential its fixed part; null: uniform_kappa
+  double* kappa_before;                // [n] N/m, 0: the pair was not there; or null
+  double* per_gap_sq;                  // [n] N m; or null
+  double uniform_kappa;                // N/m
+  double *energy, *force, *stiffness;  // [n] kappa b (J, before any mollifier), kappa b' (N), kappa b'' (N/m)
 
   BB_HD bool is_free(Index r, int k) const { return (free[r] >> k & 1) != 0; }
   BB_HD int n_free(Index r) const {
@@ -56,11 +53,13 @@ struct RowView {
 
 /// What is read of rows on the host: identity, gap and force.
 struct HostRows {
-  std::vector<int> vertex;  // [4][n]
+  std::vector<int> vertex;     // [4][n]
+  std::vector<double> weight;  // [4][n]
   std::vector<Key> pair;
   std::vector<std::uint8_t> kind;
-  std::vector<double> d, d_hat, push;
+  std::vector<double> d, d_hat, force;
   std::size_t size() const { return d.size(); }
+  ContactKey key(std::size_t r) const { return key_of(pair[r], &vertex[r], &weight[r], size()); }
 };
 
 class ResidentRows {
@@ -80,13 +79,13 @@ class ResidentRows {
         kappa_before_(executor, "contact kappa before"),
         per_gap_sq_(executor, "contact kappa per gap"),
         energy_(executor, "contact energies"),
-        push_(executor, "contact b'"),
-        stretch_(executor, "contact b''") {}
+        force_(executor, "contact b'"),
+        stiffness_(executor, "contact b''") {}
 
   /// Values are lost. Errors: OutOfMemory.
   void resize(Index n) {
     vertex_.fit(4 * n), weight_.fit(4 * n), normal_.fit(3 * n);
-    for (auto* column : {&d_, &d_hat_, &energy_, &push_, &stretch_}) column->fit(n);
+    for (auto* column : {&d_, &d_hat_, &energy_, &force_, &stiffness_}) column->fit(n);
     pair_.fit(n), kind_.fit(n), free_.fit(n);
     if (columns_ != KappaColumns::uniform) kappa_.fit(n);
     if (columns_ == KappaColumns::compared) kappa_before_.fit(n);
@@ -96,7 +95,7 @@ class ResidentRows {
     for (auto column :
          {&ResidentRows::weight_, &ResidentRows::normal_, &ResidentRows::d_, &ResidentRows::d_hat_,
           &ResidentRows::kappa_, &ResidentRows::kappa_before_, &ResidentRows::per_gap_sq_,
-          &ResidentRows::energy_, &ResidentRows::push_, &ResidentRows::stretch_}) {
+          &ResidentRows::energy_, &ResidentRows::force_, &ResidentRows::stiffness_}) {
       (this->*column).swap(other.*column);
     }
     vertex_.swap(other.vertex_), pair_.swap(other.pair_), kind_.swap(other.kind_), free_.swap(other.free_);
@@ -107,14 +106,14 @@ class ResidentRows {
   /// Hands over the columns that only one of two tables needs at a time: those that gradients and matrix read.
   void lend(ResidentRows& other) noexcept {
     for (auto column :
-         {&ResidentRows::weight_, &ResidentRows::normal_, &ResidentRows::push_, &ResidentRows::stretch_}) {
+         {&ResidentRows::weight_, &ResidentRows::normal_, &ResidentRows::force_, &ResidentRows::stiffness_}) {
       (this->*column).swap(other.*column);
     }
   }
   /// Gives all memory back.
   void free() {
     for (auto* column : {&weight_, &normal_, &d_, &d_hat_, &kappa_, &kappa_before_, &per_gap_sq_, &energy_,
-                         &push_, &stretch_}) {
+                         &force_, &stiffness_}) {
       column->free();
     }
     vertex_.free(), pair_.free(), kind_.free(), free_.free(), list.free();
@@ -139,14 +138,19 @@ class ResidentRows {
             columns_ == KappaColumns::potential ? used(per_gap_sq_) : nullptr,
             uniform_kappa,
             energy_.data(),
-            push_.data(),
-            stretch_.data()};
+            force_.data(),
+            stiffness_.data()};
+  }
+  /// Requires columns that are not uniform.
+  StiffnessRows stiffness_rows() {
+    const RowView rows = view();
+    return {rows.n, rows.pair, rows.d, rows.kappa, rows.per_gap_sq, 1, nullptr, rows.kappa_before};
   }
   bool feasible() const { return min_gap > 0; }
-  /// Cost: a copy of 49 bytes a row.
+  /// Cost: a copy of 81 bytes a row.
   HostRows on_host() const {
-    return {vertex_.download(), pair_.download(),  kind_.download(),
-            d_.download(),      d_hat_.download(), push_.download()};
+    return {vertex_.download(), weight_.download(), pair_.download(), kind_.download(),
+            d_.download(),      d_hat_.download(),  force_.download()};
   }
 
   exec::Buffer<std::uint32_t> list;  // numbers of the mollified rows, ascending
@@ -161,7 +165,7 @@ class ResidentRows {
   exec::Buffer<double> weight_, normal_, d_, d_hat_;
   exec::Buffer<Key> pair_;
   exec::Buffer<std::uint8_t> kind_, free_;
-  exec::Buffer<double> kappa_, kappa_before_, per_gap_sq_, energy_, push_, stretch_;
+  exec::Buffer<double> kappa_, kappa_before_, per_gap_sq_, energy_, force_, stiffness_;
 };
 
 }  // namespace bb::resident

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "core/contact/step_bound.hpp"
+#include "core/exec/sums/compaction.hpp"
 #include "core/exec/sums/resident_sum.hpp"
 #include "core/resident/contact/bound_kernels.hpp"
-#include "core/resident/contact/compaction.hpp"
 #include "core/resident/contact/resident_broad_phase.hpp"
 
 namespace bb::resident {

@@ -1,7 +1,7 @@
 // Narrow phase on an executor: candidate pairs to contact rows.
 #pragma once
 
-#include "core/resident/contact/compaction.hpp"
+#include "core/exec/sums/compaction.hpp"
 #include "core/resident/contact/expected_contacts.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 #include "core/resident/contact/resident_surface.hpp"

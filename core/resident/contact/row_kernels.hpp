@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/contact/row_rule.hpp"
+#include "core/exec/sums/compaction_kernels.hpp"
 #include "core/exec/sums/sum_kernels.hpp"
 #include "core/resident/contact/candidate_lists.hpp"
-#include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 

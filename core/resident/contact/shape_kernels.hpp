@@ -18,7 +18,7 @@ BB_HD ShapeTerms<double> shape_at(Argument argument, double d, double d_hat) {
   return terms;
 }
 
-/// energy, push and stretch of rows whose kappa is a number.
+/// energy, force and stiffness of rows whose kappa is a number.
 template <class S>
 struct EvaluateShape {
   RowView rows;
@@ -27,8 +27,8 @@ struct EvaluateShape {
     const ShapeTerms<double> terms = shape_at<S>(argument, rows.d[r], rows.d_hat[r]);
     const double kappa = rows.kappa ? rows.kappa[r] : rows.uniform_kappa;
     rows.energy[r] = kappa * terms.b;
-    rows.push[r] = kappa * terms.db;
-    rows.stretch[r] = kappa * terms.d2b;
+    rows.force[r] = kappa * terms.db;
+    rows.stiffness[r] = kappa * terms.d2b;
   }
 };
 
@@ -42,8 +42,8 @@ struct EvaluateFoldedShape {
     const KappaParts parts = rows.parts(r);
     const double fixed = parts.fixed, at_d_hat = parts.per_gap_sq / (d_hat * d_hat);
     rows.energy[r] = fixed * b.b + at_d_hat * psi.b;
-    rows.push[r] = fixed * b.db + at_d_hat * psi.db;
-    rows.stretch[r] = fixed * b.d2b + at_d_hat * psi.d2b;
+    rows.force[r] = fixed * b.db + at_d_hat * psi.db;
+    rows.stiffness[r] = fixed * b.d2b + at_d_hat * psi.d2b;
   }
 };
 

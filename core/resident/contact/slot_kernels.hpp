@@ -1,10 +1,8 @@
 // Which rows touch a vertex, and which blocks of the matrix the rows touch: kernels behind contact_pattern.hpp.
 #pragma once
 
-#include "core/linear/executor/find_block.hpp"
-#include "core/resident/contact/compaction_kernels.hpp"
+#include "core/exec/sums/compaction_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/contact/stiffness_kernels.hpp"
 
 namespace bb::resident {
 

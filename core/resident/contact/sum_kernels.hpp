@@ -1,6 +1,7 @@
 // What is summed over rows.
 #pragma once
 
+#include "core/contact/row_totals.hpp"
 #include "core/exec/sums/sum_kernels.hpp"
 #include "core/resident/contact/mollified_column.hpp"
 #include "core/resident/contact/resident_rows.hpp"
@@ -32,6 +33,17 @@ struct RowMass {
 struct RowPoints {
   RowView rows;
   BB_HD void operator()(Index r, Compensated& sum) const { sum.add(rows.n_free(r)); }
+};
+
+/// What is said of the rows.
+struct TotalsOfRows {
+  using Sum = RowTotals;
+  RowView rows;
+  RowEnergy energy;
+  BB_HD void operator()(Index r, RowTotals& sum) const {
+    sum.add({rows.kind[r], rows.d[r], rows.d_hat[r], rows.kappa_of(r), rows.force[r], rows.stiffness[r]});
+    energy(r, sum.energy);
+  }
 };
 
 }  // namespace bb::resident

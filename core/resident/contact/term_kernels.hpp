@@ -6,8 +6,8 @@
 #include "core/contact/mollified_terms.hpp"
 #include "core/contact/obstacle.hpp"
 #include "core/contact/obstacle_pair.hpp"
-#include "core/contact/obstacle_shape.hpp"
 #include "core/contact/row_hessian.hpp"
+#include "core/contact/sliding_shape.hpp"
 #include "core/linear/executor/find_block.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
@@ -78,7 +78,7 @@ struct MollifiedRowAt {
   const double* x;
 
   BB_HD MollifiedDerivatives<double> derivatives(Index r) const {
-    const double b = rows.energy[r], db = rows.push[r], d2b = rows.stretch[r];
+    const double b = rows.energy[r], db = rows.force[r], d2b = rows.stiffness[r];
     if (!of_axis(rows, r)) {
       return mollified_derivatives<double>(row_points(rows, r, x), threshold(r), b, db, d2b);
     }
@@ -160,7 +160,7 @@ BB_HD inline bool has_own_hessian(const RowView& rows, HessianMode mode, Index r
   const int kind = rows.kind[r];
   const bool slides =
       kind != static_cast<int>(ContactKind::point_point) && kind != static_cast<int>(ContactKind::obstacle);
-  return mode != HessianMode::gauss_newton && slides && rows.push[r] != 0;
+  return mode != HessianMode::gauss_newton && slides && rows.force[r] != 0;
 }
 
 /// Where a kernel puts the Hessian of a row of the chunk.
@@ -174,30 +174,17 @@ struct RowHessians {
   HessianChoice choice;
 };
 
-/// The free points of a 12 x 12 matrix moved to its front, in order; the rest 0.
-BB_HD inline Mat<double, 12, 12> to_front(const Mat<double, 12, 12>& full, const int* local, int n) {
-  Mat<double, 12, 12> out = Mat<double, 12, 12>::Zero();
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      out.block<3, 3>(3 * i, 3 * j) = full.block<3, 3>(3 * local[i], 3 * local[j]);
-    }
-  }
-  return out;
-}
-
 struct MollifiedHessians {
   RowHessians to;
   BB_HD void operator()(Index i) const {
     const Index r = to.chunk.row(i);
     if (!to.rows.mollified(r)) return;
-    int local[4], n = 0, front[4] = {-1, -1, -1, -1};
+    int n = 0, front[4] = {-1, -1, -1, -1};
     for (int k = 0; k < 4; ++k) {
-      if (!to.rows.is_free(r, k)) continue;
-      front[k] = n;
-      local[n++] = k;
+      if (to.rows.is_free(r, k)) front[k] = n++;
     }
     const Mat<double, 12, 12> exact =
-        to_front(MollifiedRowAt{to.rows, to.surface, to.x}.derivatives(r).hessian, local, n);
+        moved_to_front(to.rows.free[r], MollifiedRowAt{to.rows, to.surface, to.x}.derivatives(r).hessian);
     Mat<double, 12, 12> h = exact;
     project_leading<double>(n, to.choice.blended ? Projection::psd : to.choice.projection, h);
     int at = 0;
@@ -232,68 +219,44 @@ BB_HD void store_sliding(const RowHessians& to, Index i, const RowShape<double, 
     to.number[c * to.stride + i] = blend(exact[c], blocks[c], to.choice.t);
 }
 
-/// The local frame of a row of K points whose closest points slide along edges, 0 at given points.
-template <PairKind K>
-BB_HD RowShape<double, K == PairKind::point_edge ? 1 : 2> sliding_shape(const RowView& rows,
-                                                                        const SurfaceView& surface, Index r,
-                                                                        const double* x) {
-  constexpr int n = pair_points(K), F = K == PairKind::point_edge ? 1 : 2;
-  int vertex[n];
-  Closest<double, n> closest;
-  RowShape<double, F> shape;
-  shape.w.setZero();
-  for (int k = 0; k < n; ++k) {
-    vertex[k] = rows.vertex[k * rows.n + r];
-    closest.weights[k] = rows.weight[k * rows.n + r];
-    if (rows.is_free(r, k)) shape.w[k] = closest.weights[k];
-  }
-  const Mat<double, 3, n> points = points_of<n>(x, vertex);
-  closest.d = rows.d[r] + pair_offset(surface, rows.pair[r]);
-  closest.r = closest.d * rows.normal_of(r);
-  closest.region = K == PairKind::point_edge       ? Region::p_e
-                   : K == PairKind::point_triangle ? Region::p_t
-                                                   : Region::ea_eb;
-  const auto frame = bb::detail::region_frame<double, n>(points, closest);
-  shape.n = frame.n;
-  for (int l = 0; l < F; ++l) {
-    shape.q[l] = frame.q[l];
-    shape.g[l].setZero();
-    for (int k = 0; k < n; ++k) {
-      if (rows.is_free(r, k)) shape.g[l][k] = frame.g[l][k];
-    }
-  }
-  shape.distance = closest.d;
-  shape.stretch = rows.stretch[r];
-  shape.push = rows.push[r];
-  return shape;
-}
-
 /// Thickness of the primitive of an obstacle's row: that of an edge may come from a triangle, m.
 BB_HD inline double obstacle_offset(const SurfaceView& surface, Key pair) {
   const bool edge = pair_list(pair) == obstacle_pairs_of<2>;
   return edge ? surface.edges.offset[pair_first(pair)] : surface.triangles.offset[pair_first(pair)];
 }
 
-/// That of a row of an obstacle and the inside of an edge (N = 2) or a triangle.
-template <int N>
-BB_HD RowShape<double, N - 1> obstacle_row_shape(const RowView& rows, const SurfaceView& surface, Index r,
-                                                 const double* x) {
-  const AnalyticSurface<double> obstacle = obstacle_of(surface, rows.pair[r], x);
-  Vec3d axis = Vec3d::Zero();
-  if (obstacle.kind == ObstacleKind::cylinder) axis = obstacle.axis;
-  const double distance = rows.d[r] + (obstacle_offset(surface, rows.pair[r]) + obstacle.radius);
-  RowShape<double, N - 1> shape =
-      obstacle_shape<N, double>(leading_points<N>(rows, r, x), axis, rows.normal_of(r), distance);
-  for (int k = 0; k < N; ++k) {
-    if (rows.is_free(r, k)) {
-      shape.w[k] = rows.weight[k * rows.n + r];
-      continue;
-    }
-    for (int l = 0; l < N - 1; ++l) shape.g[l][k] = 0;
+struct RowPointsAt {
+  const RowView& rows;
+  Index r;
+  const double* x;
+  template <int N>
+  BB_HD Mat<double, 3, N> first() const {
+    return leading_points<N>(rows, r, x);
   }
-  shape.stretch = rows.stretch[r];
-  shape.push = rows.push[r];
-  return shape;
+};
+
+/// f(the local frame of row r), where its closest points slide along edges; 0 at given points. Requires a row without mollifier.
+template <class F>
+BB_HD void with_row_shape(const RowView& rows, const SurfaceView& surface, Index r, const double* x,
+                          const F& f) {
+  const ContactKind kind = static_cast<ContactKind>(rows.kind[r]);
+  double offset = 0;
+  Vec3d axis = Vec3d::Zero();
+  if (is_obstacle(kind)) {
+    const AnalyticSurface<double> obstacle = obstacle_of(surface, rows.pair[r], x);
+    if (obstacle.kind == ObstacleKind::cylinder) axis = obstacle.axis;
+    offset = obstacle_offset(surface, rows.pair[r]) + obstacle.radius;
+  } else {
+    offset = pair_offset(surface, rows.pair[r]);
+  }
+  const SlidingRow<double> row{kind,
+                               rows.free[r],
+                               weights_of(rows, r),
+                               rows.normal_of(r),
+                               rows.d[r] + offset,
+                               rows.stiffness[r],
+                               rows.force[r]};
+  with_sliding_shape<double>(row, RowPointsAt{rows, r, x}, axis, f);
 }
 
 /// Rows whose closest points slide; what is to be 0 is not computed.
@@ -302,20 +265,8 @@ struct SlidingHessians {
   BB_HD void operator()(Index i) const {
     const Index r = to.chunk.row(i);
     if (!has_own_hessian(to.rows, to.choice.mode, r)) return;
-    switch (static_cast<ContactKind>(to.rows.kind[r])) {
-      case ContactKind::point_edge:
-        return store_sliding(to, i, sliding_shape<PairKind::point_edge>(to.rows, to.surface, r, to.x));
-      case ContactKind::point_triangle:
-        return store_sliding(to, i, sliding_shape<PairKind::point_triangle>(to.rows, to.surface, r, to.x));
-      case ContactKind::edge_edge:
-        return store_sliding(to, i, sliding_shape<PairKind::edge_edge>(to.rows, to.surface, r, to.x));
-      case ContactKind::obstacle_edge:
-        return store_sliding(to, i, obstacle_row_shape<2>(to.rows, to.surface, r, to.x));
-      case ContactKind::obstacle_triangle:
-        return store_sliding(to, i, obstacle_row_shape<3>(to.rows, to.surface, r, to.x));
-      default:
-        return;  // mollified
-    }
+    if (to.rows.mollified(r)) return;
+    with_row_shape(to.rows, to.surface, r, to.x, [&](const auto& shape) { store_sliding(to, i, shape); });
   }
 };
 

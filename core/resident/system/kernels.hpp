@@ -3,4 +3,4 @@
 
 #include "core/exec/sums/sum_kernels.hpp"
 #include "core/exec/sums/vector_kernels.hpp"
-#include "core/resident/system/row_totals.hpp"
+#include "core/resident/contact/sum_kernels.hpp"

@@ -21,14 +21,13 @@ ResidentContact::ResidentContact(const ResidentInputs& inputs)
       step_bound_(executor_, resident_surface_,
                   {options_.contact_options.ccd_park, options_.contact_options.ccd_max_probes}),
       finder_(executor_, resident_surface_, inputs.contacts.mollifier.needed),
-      stiffness_(executor_, *options_.stiffness, scene_.mass),
+      stiffness_(executor_, *options_.stiffness),
       barrier_(options_.contact, options_.stiffness->has_potential(),
                executor_.in_host_memory() || executor_.counts_only()),
       assembly_(executor_, resident_surface_, scene_.n_vertices()),
       sums_(executor_),
       curved_(executor_),
       straight_(executor_),
-      gaps_(executor_),
       rows_(executor_, columns_of(*options_.stiffness)),
       trial_(executor_, columns_of(*options_.stiffness)),
       part_(executor_, "contact gradient"),
@@ -43,7 +42,6 @@ void ResidentContact::expect(const ExpectedContacts& expected) {
 
 void ResidentContact::begin_step(const ResidentFrame& frame) {
   stiffness_.begin_step();
-  has_step_elastic_ = false;
   change_frame(frame);
   first_iterate_ = true;
   if (frugal()) assembly_.free_matrix();
@@ -138,26 +136,25 @@ void ResidentContact::look_at_rows(const Column& x) {
 
 void ResidentContact::change_frame(const ResidentFrame& frame) {
   time_ = {frame.dt, frame.c};
-  stiffness_.set_time(time_);
   options_.stiffness->set_time(time_);
 }
 
-void ResidentContact::use_policy_kappa() {
-  if (options_.stiffness->uniform()) stiffness_.set_uniform(options_.stiffness->state().kappa);
-}
-
-// Of a policy with a potential H of the step's first iterate, all through the step.
+// What the policy reads of the matrix now, or has read at the step's first iterate.
 void ResidentContact::keep_elastic(const ResidentContext& context) {
-  const StiffnessPolicy& policy = *options_.stiffness;
   elastic_ = context.elastic;
-  if (!policy.needs_hessian()) return;
-  if (!policy.has_potential() || !has_step_elastic_) {
-    has_step_elastic_ = true;
+  if (!options_.stiffness->needs_hessian()) return;
+  if (stiffness_.takes_matrix()) {
     elastic_value_.resize(value_count(context.n_blocks));
     executor_.copy(elastic_value_.data(), elastic_.value,
                    static_cast<std::size_t>(elastic_value_.size()) * sizeof(double));
   }
   elastic_.value = elastic_value_.data();
+}
+
+void ResidentContact::refresh_kappa() {
+  rows_.uniform_kappa = policy_kappa();
+  const StiffnessRows of[] = {rows_.stiffness_rows()};
+  stiffness_.refresh(of, kappa_of(rows_));
 }
 
 void ResidentContact::linearise(const Column& x, const ResidentContext& context, Column& g) {
@@ -170,10 +167,9 @@ void ResidentContact::linearise(const Column& x, const ResidentContext& context,
   if (frugal()) executor_.trim();
   has_pattern_ = true;
   start_policy(x, g);
-  use_policy_kappa();
   const bool same = taken_ && evaluated_ && options_.stiffness->uniform() &&
-                    rows_.uniform_kappa == stiffness_.uniform_kappa();  // as in the trial that was accepted
-  stiffness_.refresh(rows_, elastic_);
+                    rows_.uniform_kappa == policy_kappa();  // as in the trial that was accepted
+  refresh_kappa();
   says_change_ = !first_iterate_;
   first_iterate_ = false;
   if (!same) barrier_.evaluate(executor_, rows_);
@@ -198,8 +194,7 @@ void ResidentContact::give_back_motion() {
 void ResidentContact::start_policy(const Column& x, const Column& others) {
   StiffnessPolicy& policy = *options_.stiffness;
   if (!policy_start_.due(policy, static_cast<std::size_t>(rows_.size()))) return;
-  stiffness_.set_uniform(1);
-  stiffness_.refresh(rows_, {});
+  rows_.uniform_kappa = 1;
   barrier_.evaluate(executor_, rows_);
   evaluated_ = false;  // with another kappa
   part_.resize(others.size());
@@ -257,8 +252,9 @@ bool ResidentContact::admits(const Column&, const Column&, PhaseClock& clock) {
 }
 
 void ResidentContact::freeze() {
-  use_policy_kappa();
-  stiffness_.freeze(trial_, rows_, elastic_);
+  trial_.uniform_kappa = policy_kappa();
+  const StiffnessRows trial[] = {trial_.stiffness_rows()}, iterate[] = {rows_.stiffness_rows()};
+  stiffness_.freeze(trial, iterate, kappa_of(trial_));
 }
 
 void ResidentContact::evaluate(const Column&) {
@@ -281,14 +277,19 @@ void ResidentContact::add_rows(RowEnergies& out) {
 
 void ResidentContact::accept() {
   take_trial();
-  stiffness_.keep(rows_);
+  const StiffnessRows of[] = {rows_.stiffness_rows()};
+  stiffness_.keep(of);
 }
 
 void ResidentContact::end_step(const Column&, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::stiffness);
   StiffnessPolicy& policy = *options_.stiffness;
-  if (!policy.adapts()) return;
-  policy.end_step(gaps_.end_step(rows_, options_.contact_options.ccd_park));
+  if (!policy.adapts() || executor_.counts_only()) return;
+  const HostRows rows = rows_.on_host();
+  std::vector<PairGap> gaps;
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    gaps.push_back({rows.pair[r], rows.d[r], options_.contact_options.ccd_park * rows.d_hat[r]});
+  policy.end_step(gaps_.end_step(std::move(gaps)));
 }
 
 void make_resident_contact(const ResidentInputs& inputs, ResidentTermList& terms) {

@@ -8,14 +8,15 @@
 #include "core/record/phase_times.hpp"
 #include "core/resident/contact/contact_assembly.hpp"
 #include "core/resident/contact/contact_sums.hpp"
+#include "core/resident/contact/policy_kernels.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
 #include "core/resident/contact/resident_broad_phase.hpp"
 #include "core/resident/contact/resident_step_bound.hpp"
-#include "core/resident/contact/resident_stiffness.hpp"
 #include "core/resident/contact/row_finder.hpp"
+#include "core/resident/contact/sum_kernels.hpp"
 #include "core/resident/elements/term_inputs.hpp"
-#include "core/resident/system/row_totals.hpp"
 #include "core/terms/policy_start.hpp"
+#include "core/terms/step_end_gaps.hpp"
 
 namespace bb::resident {
 
@@ -110,7 +111,13 @@ class ResidentContact final : public ResidentTerm {
     return totals_.get();
   }
   void start_policy(const Column& x, const Column& others);
-  void use_policy_kappa();
+  double policy_kappa() const {
+    return options_.stiffness->uniform() ? options_.stiffness->state().kappa : 0;
+  }
+  void refresh_kappa();
+  StiffnessUpdate::Compute kappa_of(ResidentRows& rows) {
+    return resident::kappa_of(rows, executor_, *options_.stiffness, time_, mass_.data(), elastic_);
+  }
   void give_back_motion();
 
   exec::Executor& executor_;
@@ -124,7 +131,7 @@ class ResidentContact final : public ResidentTerm {
   ResidentBroadPhase broad_phase_;
   ResidentStepBound step_bound_;
   RowFinder finder_;
-  ResidentStiffness stiffness_;
+  StiffnessUpdate stiffness_;
   ResidentBarrier barrier_;
   ContactAssembly assembly_;
   RowSums sums_;
@@ -144,7 +151,7 @@ class ResidentContact final : public ResidentTerm {
   Column
       elastic_value_;  // H that the policy reads: of the iterate; of one with a potential that of the step's first
   MatrixPart elastic_{};
-  bool has_step_elastic_ = false;
+  double uniform_kappa_ = 0;  // N/m, of a policy that has one
   MatrixPart matrix_{};
   ResidentSums<RowTotals> totals_;
   StepBound bound_;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/exec/board.hpp"
-#include "core/resident/contact/compaction_kernels.hpp"
+#include "core/exec/sums/compaction_kernels.hpp"
 
 namespace bb::resident {
 

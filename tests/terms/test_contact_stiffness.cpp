@@ -2,9 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "barriers/stiffness/registry.hpp"
-#include "core/terms/stiffness_update.hpp"
+#include "core/exec/host_executor.hpp"
+#include "core/terms/contact_stiffness.hpp"
 
-namespace bb::stiffness_update_test {
+namespace bb::contact_stiffness_test {
 namespace {
 
 constexpr double dt = 0.01;
@@ -38,7 +39,8 @@ ContactTable rows_of(const std::vector<PairId>& pairs) {
 struct Updated {
   std::vector<double> mass{0.3};
   std::unique_ptr<StiffnessPolicy> policy;
-  StiffnessUpdate update{*policy, mass};
+  exec::HostExecutor executor;
+  ContactStiffness update{executor, *policy, mass};
   BlockSystem blocks{1, {0, 0, 0}};
   BlockSystem::Values elastic;
   MollifiedTable none;
@@ -46,11 +48,14 @@ struct Updated {
   explicit Updated(std::unique_ptr<StiffnessPolicy> given = inertia_policy()) : policy(std::move(given)) {
     none.resize(0);
   }
-  double refresh(ContactTable& rows) { return update.refresh(rows, none, blocks, elastic); }
-  void freeze(ContactTable& rows) { update.freeze(rows, none, blocks, elastic); }
+  double refresh(ContactTable& rows) { return update.refresh({rows, none}, blocks, elastic); }
+  /// state: the rows of the iterate.
+  void freeze(ContactTable& trial, ContactTable& state) {
+    update.freeze({trial, none}, {state, none}, blocks, elastic);
+  }
 };
 
-TEST(StiffnessUpdate, a_trial_that_was_rejected_says_nothing_of_the_rows_that_stay) {
+TEST(ContactStiffness, a_trial_that_was_rejected_says_nothing_of_the_rows_that_stay) {
   Updated u;
   u.update.set_time({dt, 1});
   ContactTable state = rows_of({7});
@@ -58,19 +63,19 @@ TEST(StiffnessUpdate, a_trial_that_was_rejected_says_nothing_of_the_rows_that_st
   EXPECT_NEAR(state.kappa[0], 0.3 / (dt * dt), 1e-9);
 
   ContactTable rejected = rows_of({1, 2, 3});  // more rows than the state has, all of them new
-  u.freeze(rejected);
+  u.freeze(rejected, state);
   u.update.set_time({2 * dt, 1});
   EXPECT_NEAR(u.refresh(state), 3, 1e-12);  // kappa fell to a quarter
 }
 
-TEST(StiffnessUpdate, a_row_of_an_accepted_trial_is_compared_with_what_it_came_with) {
+TEST(ContactStiffness, a_row_of_an_accepted_trial_is_compared_with_what_it_came_with) {
   Updated u;
   u.update.set_time({dt, 1});
   ContactTable state = rows_of({7});
   u.refresh(state);
   ContactTable accepted = rows_of({7, 8});
-  u.freeze(accepted);
-  u.update.keep(accepted, u.none);
+  u.freeze(accepted, state);
+  u.update.keep({accepted, u.none});
   EXPECT_EQ(accepted.kappa_before[1], 0);  // met for the first time
   u.update.set_time({2 * dt, 1});
   EXPECT_NEAR(u.refresh(accepted), 3, 1e-12);
@@ -98,18 +103,18 @@ struct Folded : Updated {
   }
   KappaParts met(PairId pair, double mass_of_vertex, double gap) {
     mass[0] = mass_of_vertex;
-    ContactTable trial = rows_of({pair});
+    ContactTable trial = rows_of({pair}), state = rows_of({});
     trial.d[0] = gap;
-    update.freeze(trial, none, blocks, elastic);
+    freeze(trial, state);
     EXPECT_EQ(trial.kappa[0], trial.parts[0].at(gap));
     return trial.parts[0];
   }
 };
 
-TEST(StiffnessUpdate, a_potential_keeps_what_a_pair_was_first_met_with_also_in_a_rejected_trial) {
+TEST(ContactStiffness, a_potential_keeps_what_a_pair_was_first_met_with_also_in_a_rejected_trial) {
   Folded u;
   ContactTable state = rows_of({7});
-  u.update.refresh(state, u.none, u.blocks, u.elastic);
+  u.refresh(state);
   EXPECT_DOUBLE_EQ(state.parts[0].fixed, 2);
   EXPECT_DOUBLE_EQ(state.parts[0].per_gap_sq, 0.3);
   EXPECT_DOUBLE_EQ(state.kappa[0], 2 + 0.3 / (0.005 * 0.005));
@@ -125,10 +130,10 @@ TEST(StiffnessUpdate, a_potential_keeps_what_a_pair_was_first_met_with_also_in_a
   EXPECT_DOUBLE_EQ(dropped.met(8, 0.9, 0.004).fixed, 2 + 0.9 / (0.01 * 0.01));
 }
 
-TEST(StiffnessUpdate, a_potential_reads_the_matrix_of_the_step_s_first_iterate) {
+TEST(ContactStiffness, a_potential_reads_the_matrix_of_the_step_s_first_iterate) {
   Folded u;
   ContactTable state = rows_of({7});
-  u.update.refresh(state, u.none, u.blocks, u.elastic);
+  u.refresh(state);
   u.set_elastic(5);
   EXPECT_DOUBLE_EQ(u.met(8, 0.3, 0.004).fixed, 2);
   u.update.begin_step();
@@ -136,4 +141,4 @@ TEST(StiffnessUpdate, a_potential_reads_the_matrix_of_the_step_s_first_iterate) 
 }
 
 }  // namespace
-}  // namespace bb::stiffness_update_test
+}  // namespace bb::contact_stiffness_test

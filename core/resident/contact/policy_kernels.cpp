@@ -1,0 +1,21 @@
+#include "core/resident/contact/policy_kernels.hpp"
+
+#include "core/barrier/launches.hpp"
+#include "core/math/error.hpp"
+
+namespace bb::resident {
+
+void require_kernel(const StiffnessPolicy& policy, const std::string& where) {
+  if (policy.uniform() || (policy.launches() && policy.launches()->rows)) return;
+  throw ConfigError(where, std::string(policy.name()), host_policy_words);
+}
+
+StiffnessUpdate::Compute kappa_of(ResidentRows& rows, exec::Executor& executor, const StiffnessPolicy& policy,
+                                  const StiffnessTime& time, const double* mass, const MatrixPart& elastic) {
+  return [&, mass](std::size_t, const std::uint8_t* missing, bool at_d_hat) {
+    policy.launches()->rows(executor, policy,
+                            {rows.view(), missing, policy.needs_hessian(), time, at_d_hat, mass, elastic});
+  };
+}
+
+}  // namespace bb::resident

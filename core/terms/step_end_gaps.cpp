@@ -1,0 +1,26 @@
+#include "core/terms/step_end_gaps.hpp"
+
+#include <algorithm>
+
+#include "core/archive/archive.hpp"
+
+namespace bb {
+
+void PairGap::keep(Archive& archive) { archive(pair, gap, park); }
+
+std::span<const StiffnessPolicy::PairEnd> StepEndGaps::end_step(std::vector<PairGap> now) {
+  std::sort(now.begin(), now.end(), [](const PairGap& a, const PairGap& b) { return a.pair < b.pair; });
+  ends_.clear();
+  auto before = before_.begin();
+  for (const PairGap& each : now) {
+    while (before != before_.end() && before->pair < each.pair) ++before;
+    if (before == before_.end()) break;
+    if (before->pair == each.pair) ends_.push_back({each.gap, before->gap, each.park});
+  }
+  before_ = std::move(now);
+  return ends_;
+}
+
+void StepEndGaps::keep(Archive& archive) { archive(before_); }
+
+}  // namespace bb

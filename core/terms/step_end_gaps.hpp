@@ -1,0 +1,31 @@
+// The gaps of pairs at two step ends in a row, for policies that adapt between steps.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/barrier/stiffness_policy.hpp"
+#include "core/contact/pair_id.hpp"
+
+namespace bb {
+
+/// Of a pair in a row at a step end.
+struct PairGap {
+  PairId pair;
+  double gap, park;  // m; park: ccd_park times d_hat of the row
+  void keep(Archive& archive);
+};
+
+class StepEndGaps {
+ public:
+  /// The pairs that have a row at this step end, in any order. Those of them that had one at the end before, ascending by pair; valid
+  /// until the next call.
+  std::span<const StiffnessPolicy::PairEnd> end_step(std::vector<PairGap> now);
+  void keep(Archive& archive);
+
+ private:
+  std::vector<PairGap> before_;  // ascending by pair
+  std::vector<StiffnessPolicy::PairEnd> ends_;
+};
+
+}  // namespace bb
