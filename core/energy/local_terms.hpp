@@ -10,10 +10,11 @@ namespace bb {
 struct LocalTerms {
   std::vector<double> energy;  // [n] J
   std::vector<double> grad;    // [3w n] N, vertex-major
-  std::vector<double> hess;    // [9w(w + 1)/2 n] N/m, lower blocks (lower_blocks.hpp)
+  std::vector<double>
+      hess;  // [9w(w + 1)/2 n] N/m, lower blocks (lower_blocks.hpp); empty: there is no Hessian
 
-  /// Makes room for n elements of w vertices; allocates only when it must grow.
-  void resize(std::size_t n, int width);
+  /// Makes room for n elements of w vertices, and for their Hessians where they have some; allocates only when it must grow.
+  void resize(std::size_t n, int width, bool has_hessian = true);
 };
 
 }  // namespace bb

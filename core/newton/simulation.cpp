@@ -6,7 +6,6 @@
 #include "core/archive/archive.hpp"
 #include "core/newton/iteration.hpp"
 #include "core/newton/velocity_damping.hpp"
-#include "core/terms/pull.hpp"
 
 namespace bb {
 
@@ -100,8 +99,10 @@ bool Simulation::hold_pins(std::vector<int> holding) {
 
 // Whether the nominal step that begins has other pulls than the one before.
 bool Simulation::other_pulls() const {
+  const double now = nominal_start_ + dt_ / 2, before = nominal_start_ - dt_ / 2;
   return step_ > 0 && parts_.at_start() &&
-         acting_pulls(scene_, nominal_start_ + dt_ / 2) != acting_pulls(scene_, nominal_start_ - dt_ / 2);
+         std::any_of(scene_.pulls.begin(), scene_.pulls.end(),
+                     [&](const Pull& pull) { return pull.span.holds(now) != pull.span.holds(before); });
 }
 
 // Forces jump where vertices are let go or held, and where pulls begin or end: an acceleration of before is not theirs.

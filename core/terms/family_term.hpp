@@ -1,4 +1,4 @@
-// An elastic term: one family of elements (core/energy/families) in the host's memory.
+// A term of elements that stay: one family (core/energy/families) in the host's memory.
 #pragma once
 
 #include "core/energy/families/element_family.hpp"
@@ -8,11 +8,12 @@ namespace bb {
 
 class FamilyTerm final : public Term {
  public:
-  /// name: that of registry.inc.
-  FamilyTerm(std::string_view name, std::unique_ptr<ElementFamily> family);
+  /// name: that of registry.inc. group: load or elastic.
+  FamilyTerm(std::string_view name, TermGroup group, std::unique_ptr<ElementFamily> family);
   std::string_view name() const override { return name_; }
-  TermGroup group() const override { return TermGroup::elastic; }
-  Phase phase() const override { return Phase::elastic; }
+  TermGroup group() const override { return group_; }
+  Phase phase() const override { return phase_of(group_); }
+  bool on_vertices() const override { return family_->on_vertices(); }
   void begin_step(const StepFrame& frame, PhaseClock& clock) override;
   void change_frame(const StepFrame& frame) override;
   void end_step(const PositionsView& x, PhaseClock& clock) override;
@@ -23,7 +24,10 @@ class FamilyTerm final : public Term {
   void clamp(const PositionsView& x) override {
     family_->derivatives(x.data(), Projection::psd, families_[0].clamped);
   }
-  void evaluate(const PositionsView& x) override { family_->values(x.data(), families_[0].trial_energy.data()); }
+  void evaluate(const PositionsView& x) override {
+    family_->values(x.data(), families_[0].trial_energy.data());
+  }
+  void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const override;
   void add_cusps(const PositionsView& x, Cusps& out) const override;
   bool offers_constraints() const override { return family_->constraints() != nullptr; }
   void add_constraints(const ConstraintRequest&, std::vector<const ConstraintBatch*>& out) override {
@@ -32,6 +36,7 @@ class FamilyTerm final : public Term {
 
  private:
   std::string_view name_;
+  TermGroup group_;
   std::unique_ptr<ElementFamily> family_;
   double dt_ = 0;  // s, of the step
 };

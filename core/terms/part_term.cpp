@@ -23,7 +23,8 @@ PlanItem needs_part(const Part& part, const TermNeeds& needs) {
 void make_part(const Part& part, const TermInputs& inputs, TermList& terms) {
   std::vector<std::unique_ptr<ElementFamily>> families;
   part.add_families(inputs.scene, {inputs.executor, inputs.options.precision}, families);
-  for (auto& family : families) terms.add(std::make_unique<FamilyTerm>(name_of(part), std::move(family)));
+  for (auto& family : families)
+    terms.add(std::make_unique<FamilyTerm>(name_of(part), TermGroup::elastic, std::move(family)));
 }
 
 }  // namespace bb

@@ -14,7 +14,8 @@ PlanItem needs_stitch(const TermNeeds& needs) {
 
 void make_stitch(const TermInputs& inputs, TermList& terms) {
   const FamilyPlace place{inputs.executor, inputs.options.precision};
-  terms.add(std::make_unique<FamilyTerm>("stitch", stitch_family(place, inputs.scene.stitches)));
+  terms.add(std::make_unique<FamilyTerm>("stitch", TermGroup::elastic,
+                                         stitch_family(place, inputs.scene.stitches)));
 }
 
 }  // namespace bb

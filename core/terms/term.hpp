@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "core/energy/constraint_batch.hpp"
+#include "core/energy/families/family_step.hpp"
 #include "core/energy/local_terms.hpp"
-#include "core/math/projection.hpp"
+#include "core/energy/vertex_loads.hpp"
 #include "core/linear/block_system.hpp"
+#include "core/math/projection.hpp"
 #include "core/math/types.hpp"
 #include "core/record/phase_times.hpp"
 #include "core/terms/list_of_terms.hpp"
@@ -26,7 +28,7 @@ struct ContactLoads;
 struct Cusps;
 struct KnownStep;
 
-/// One time step, the same for all terms.
+/// One time step, the same for all terms. It outlives the step.
 struct StepFrame {
   Positions x_n, x_tilde;  // [3 x n] m
   double dt = 0;           // s
@@ -34,8 +36,7 @@ struct StepFrame {
   double load_factor = 1;  // of the external force
   double t_end = 0;        // s, when the step is over: what is given as a function of time is taken there
   bool at_start = false;   // no step: forces at t_end, where a step of length dt begins
-  /// s, in the middle of the step: what acts then acts in the whole of it, whatever the ends of spans are rounded to.
-  double middle() const { return at_start ? t_end + dt / 2 : t_end - dt / 2; }
+  FamilyStep of_families() const { return {x_n.data(), x_tilde.data(), dt, c, load_factor, t_end, at_start}; }
 };
 
 /// What a term may read of the others while it is linearised at an iterate.
@@ -64,9 +65,7 @@ struct TermFamily {
 
 /// What E changes by from the iterate to the trial, in parts that are summed one by one: a difference of
 /// large sums would lose the decrease that the line search looks for.
-struct EnergyPart {
-  double change, magnitude;  // J; rounding noise is some multiple of eps times the magnitudes
-};
+using EnergyPart = ValueChange<double>;
 using EnergyParts = std::vector<EnergyPart>;
 
 /// Whether inequalities are rigid, or as compliant as the stiffness says that the term has.

@@ -2,6 +2,8 @@
 // without some groups.
 #pragma once
 
+#include "core/record/phase_times.hpp"
+
 namespace bb {
 
 enum class TermGroup : unsigned {
@@ -11,6 +13,11 @@ enum class TermGroup : unsigned {
   contact = 8,   // what keeps surfaces apart
   friction = 16  // what brakes them: along each other, and as they meet
 };
+
+/// What linearising elements that stay is charged to.
+constexpr Phase phase_of(TermGroup group) {
+  return group == TermGroup::load ? Phase::assembly : Phase::elastic;
+}
 
 class TermSet {
  public:

@@ -41,8 +41,7 @@ class HostFamily {
   void step(const Positions& x, double dt, int n = 1) {
     for (int i = 0; i < n; ++i) {
       family_->end_step(x.data(), dt);
-      family_->begin_step();
-      family_->set_time(0);
+      family_->begin_step({});
     }
   }
 
@@ -53,12 +52,15 @@ class HostFamily {
 
 /// Membranes that rest at `rest`. The part outlives what is made.
 inline HostFamily::Make membranes_of(const MembranePart& part, const Positions& rest, bool planar = false) {
-  return [&part, rest, planar](const FamilyPlace& place) { return membrane_family(place, part, rest, planar); };
+  return
+      [&part, rest, planar](const FamilyPlace& place) { return membrane_family(place, part, rest, planar); };
 }
 /// Springs of stiffness k (N/m) that rest at x. The edges outlive what is made.
 inline HostFamily::Make springs_of(const std::vector<std::array<int, 2>>& edges, const Positions& x,
                                    const std::vector<double>& k) {
-  return [&edges, x, k](const FamilyPlace& place) { return spring_family(place, {}, edges, k, lengths_of(edges, x)); };
+  return [&edges, x, k](const FamilyPlace& place) {
+    return spring_family(place, {}, edges, k, lengths_of(edges, x));
+  };
 }
 /// The part outlives what is made.
 inline HostFamily::Make hinges_of(const HingePart& part) {

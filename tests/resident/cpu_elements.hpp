@@ -95,6 +95,7 @@ struct CpuElements {
   Positions gradient;
   PhaseClock clock;
   EnergySums sums;
+  StepFrame first_step;
 
   CpuElements(const Scene& given, TermOptions& chosen, const StepFrame& frame)
       : scene(given),
@@ -102,11 +103,12 @@ struct CpuElements {
         plan(plan_without_contact(given, chosen)),
         fixed(3 * given.mass.size(), 0),
         blocks(given.n_vertices(), fixed),
-        terms(make_terms(plan, {executor, scene, options, plan.contacts, fixed})) {
+        terms(make_terms(plan, {executor, scene, options, plan.contacts, fixed})),
+        first_step(frame) {
     std::vector<Stencils> families;
     for (const auto& term : terms) families.push_back(term->families()[0].stencils);
     blocks.set_elements(families);
-    for (const auto& term : terms) term->begin_step(frame, clock);
+    for (const auto& term : terms) term->begin_step(first_step, clock);
   }
   static Plan plan_without_contact(const Scene& scene, const TermOptions& options) {
     Plan plan = make_plan(scene, options, {});

@@ -92,6 +92,7 @@ struct TermsOf {
   BlockSystem::Values no_elastic;
   Positions no_gradient;
   PhaseClock clock;
+  StepFrame first_step;
   TermList terms;
 
   TermsOf(Scene given, const Positions& x_n, const StepFrame& frame)
@@ -104,9 +105,10 @@ struct TermsOf {
         plan(make_plan(scene, options, {})),
         fixed(3 * scene.mass.size(), 0),
         blocks(scene.n_vertices(), fixed),
+        first_step(frame),
         terms(make_terms(plan, {executor, scene, options, plan.contacts, fixed})) {
     no_gradient.setZero(3, x_n.cols());
-    for (const auto& term : terms) term->begin_step(frame, clock);
+    for (const auto& term : terms) term->begin_step(first_step, clock);
   }
   template <class Change>
   static TermOptions changed(const Change& change) {

@@ -1,8 +1,6 @@
-// Pulls, drag of the air, stitches and inflation against their closed forms; their derivatives against each other are those of
-// test_every_term.cpp and test_projections.cpp.
+// Stitches, shrinking, inflation of closed bodies and the spans of pulls against their closed forms. Loads element by element: tests/energy/test_load_families.cpp;
+// derivatives of terms against each other: test_every_term.cpp and test_projections.cpp.
 #include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/topology.hpp"
@@ -47,62 +45,10 @@ BodySpec triangle() {
   return out;
 }
 
-Scene built(const BodySpec& body, const Air& air = {}) {
+Scene built(const BodySpec& body) {
   SceneBuilder builder("scene", false, Vec3d(0, 0, -10), "test");
-  builder.set_air(air);
   builder.add_body(body);
   return builder.finish();
-}
-
-TEST(AirDrag, is_the_force_of_the_relative_velocity_split_at_the_normal) {
-  const Air air{0.7, 0.2, Vec3d(1, -2, 0.5), {}};
-  const Scene scene = built(triangle(), air);
-  Positions x = scene.x0;
-  x.row(0).array() += 0.01;
-  x(2, 1) += 0.03;
-  const Linearised drag(scene, "air_drag", x);
-  ASSERT_NE(drag.term, nullptr);
-  const Vec3d twice =
-      Vec3d(scene.x0.col(1) - scene.x0.col(0)).cross(Vec3d(scene.x0.col(2) - scene.x0.col(0)));
-  const double area = twice.norm() / 2;
-  const Vec3d n = twice.normalized();
-  for (int v = 0; v < 3; ++v) {
-    const Vec3d u = (x.col(v) - scene.x0.col(v)) / dt - air.wind, along = n.dot(u) * n;
-    const Vec3d force = -area / 3 * (0.7 * along + 0.2 * (u - along));
-    ASSERT_GT(force.norm(), 0.05);
-    EXPECT_LT((drag.gradient().col(v) + force).norm(), 1e-14);
-    const Mat3d matrix = area / (3 * dt) * (0.2 * Mat3d::Identity() + 0.5 * n * n.transpose());
-    EXPECT_LT((Mat3d::Map(&drag.family().local.hess[9 * static_cast<std::size_t>(v)]) - matrix).norm(),
-              1e-13);
-  }
-}
-
-TEST(AirDrag, takes_the_wind_of_the_end_of_the_step) {
-  Air air{0.7, 0.7, Vec3d::Zero(), {{0, Vec3d::Zero()}, {1, Vec3d(0, 0, 4)}}};
-  const Scene scene = built(triangle(), air);
-  const Linearised drag(scene, "air_drag", scene.x0, 0.5);
-  const double area = drag.gradient().row(2).sum() / (0.7 * -2);
-  const Vec3d twice =
-      Vec3d(scene.x0.col(1) - scene.x0.col(0)).cross(Vec3d(scene.x0.col(2) - scene.x0.col(0)));
-  EXPECT_NEAR(area, twice.norm() / 2, 1e-14);
-}
-
-TEST(Pull, is_a_spring_to_the_pose_of_its_time_with_the_stiffness_of_its_time) {
-  BodySpec body = triangle();
-  PinSpec& pin = body.pins.emplace_back();
-  pin.indices = {1};
-  pin.pull = 40;
-  pin.pull_factors = {{0, 1}, {1, 0}};
-  pin.motion.velocity = Vec3d(0, 2, 0);
-  const Scene scene = built(body);
-  Positions x = scene.x0;
-  x(0, 1) += 0.3;
-  const Linearised pull(scene, "pull", x, 0.25);
-  ASSERT_NE(pull.term, nullptr);
-  const Vec3d off(0.3, -0.5, 0);
-  EXPECT_LT((pull.gradient().col(1) - 30 * off).norm(), 1e-13);
-  EXPECT_NEAR(pull.family().local.energy[0], 15 * off.squaredNorm(), 1e-14);
-  EXPECT_LT((Mat3d::Map(pull.family().local.hess.data()) - 30 * Mat3d::Identity()).norm(), 1e-13);
 }
 
 TEST(Pull, acts_in_the_steps_whose_middle_is_between_hold_and_release) {
@@ -172,24 +118,6 @@ TEST(Shrinking, over_time_is_that_of_the_factor_at_the_end_of_the_step) {
       EXPECT_GT((later.gradient() - expected.gradient()).norm(), 0.01) << part;
     }
   }
-}
-
-TEST(Inflation, follows_its_keys) {
-  BodySpec body = triangle();
-  body.name = "ball";
-  body.mesh = icosphere_mesh(1, 0.5);
-  const auto at_half = [](BodySpec spec) {
-    const Scene scene = built(spec);
-    const Linearised inflation(scene, "inflation", scene.x0, 0.5);
-    EXPECT_NE(inflation.term, nullptr);
-    return Positions(inflation.gradient());
-  };
-  BodySpec constant = body;
-  constant.pressure = 30;
-  body.pressure_keys = {{0, 20}, {1, 40}};
-  const Positions expected = at_half(constant);
-  EXPECT_GT(expected.norm(), 1);
-  EXPECT_LT((at_half(body) - expected).norm(), 1e-12);
 }
 
 TEST(Stitch, is_the_square_of_the_distance) {

@@ -144,8 +144,8 @@ TEST(Restitution, RemembersTheSpeedOfMeeting) {
   for (Body& body : scene.bodies) body.restitution.reset();
   scene.obstacles[0].restitution = half;
   scene.v0.row(2).array() = -2.0;
-  const auto next_step = [&scene](const TermList& terms, PhaseClock& clock) {
-    StepFrame frame = AtIterate::frame(scene);
+  const StepFrame frame = AtIterate::frame(scene);
+  const auto next_step = [&frame](const TermList& terms, PhaseClock& clock) {
     for (const auto& term : terms) term->begin_step(frame, clock);
   };
   const auto energy_of = [&scene](AtIterate& at) {

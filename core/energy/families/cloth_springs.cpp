@@ -30,14 +30,14 @@ class ClothSpringFamily final : public FamilyOf<ClothSprings> {
     ratio_.set(std::vector<double>(part.pairs.size(), 1.0));
     elements_.law = law_.data();
     elements_.rest_length = rest_.data();
-    set_time(0);
+    place_lengths(0);
   }
 
-  void begin_step() override { ratio_.begin_step(); }
-  void set_time(double t) override {
-    shrink_.set_time(t);
-    place_.executor.each(elements_.n, PlaceClothSprings{lengths(), ratio_.data(), rest_.data()});
+  void begin_step(const FamilyStep& step) override {
+    ratio_.begin_step();
+    place_lengths(step.t_end);
   }
+  void change_step(const FamilyStep& step) override { place_lengths(step.t_end); }
   bool flows() const override { return creeps_; }
   void end_step(const double* x, double dt) override {
     place_.executor.each(elements_.n, FlowClothSprings{elements_, lengths(), creep_.data(),
@@ -48,6 +48,10 @@ class ClothSpringFamily final : public FamilyOf<ClothSprings> {
   }
 
  private:
+  void place_lengths(double t) {
+    shrink_.set_time(t);
+    place_.executor.each(elements_.n, PlaceClothSprings{lengths(), ratio_.data(), rest_.data()});
+  }
   GivenLengths lengths() const { return {given_.data(), shrink_.list(), shrink_.factor()}; }
 
   exec::Buffer<double> law_, given_, rest_;

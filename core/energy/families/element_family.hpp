@@ -6,12 +6,15 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/energy/constraint_batch.hpp"
 #include "core/energy/families/element_columns.hpp"
 #include "core/energy/families/element_kernels.hpp"
+#include "core/energy/families/family_step.hpp"
 #include "core/energy/local_terms.hpp"
 #include "core/exec/executor.hpp"
 
@@ -40,10 +43,21 @@ class ElementFamily {
   virtual std::span<const int> vertices() const = 0;
   exec::Index size() const { return static_cast<exec::Index>(vertices().size()) / width(); }
 
+  /// Whether the elements are all vertices, in their order.
+  virtual bool on_vertices() const { return false; }
+  /// False where energies are linear.
+  virtual bool has_hessian() const { return true; }
+
   /// Energies [n], J. Cost: O(n), allocates nothing.
   virtual void values(const double* x, double* energy) = 0;
+  /// Whether changes() says how energies change; else they are compared.
+  virtual bool has_changes() const { return false; }
+  /// From x0 to x1 in closed form, J: the numbers of element e at stride e. Rounding noise is some multiple of eps times magnitude.
+  virtual void changes(const double* /*x0*/, const double* /*x1*/, double* /*change*/, double* /*magnitude*/,
+                       exec::Index /*stride*/) {}
 
-  // --- pieces as columns, which threads of a card read side by side
+  // --- pieces as columns, which threads of a card read side by side. Errors: std::logic_error of every vertex, whose loads an executor
+  // adds in a launch of their own (core/resident/elements/loads.cpp).
   /// energy [n]; grad [3 w, piece.n], N.
   virtual void gradients(Piece piece, const double* x, double* energy, double* grad) = 0;
   /// hess [lower numbers, piece.n], N/m.
@@ -58,11 +72,12 @@ class ElementFamily {
   /// Constraints whose energy is this one; null: it has no such form.
   virtual const ConstraintBatch* constraints() const { return nullptr; }
 
-  // --- rest shapes that move from step to step. Within a step they stay, so that E is one function of x.
-  /// A step begins: what the one before has left holds. set_time() comes next.
-  virtual void begin_step() {}
-  /// What is given as a function of time is that of t (s) from now on. Before the first call it is that of the start, 0.
-  virtual void set_time(double /*t*/) {}
+  // --- what is given as a function of time, and rest shapes that move. Within a step they stay, so that E is one function of x.
+  /// A step begins: what the one before has left holds.
+  virtual void begin_step(const FamilyStep& step) { change_step(step); }
+  /// The same step with another prediction, length and end. What is given as a function of time is that of the end. Before the first step
+  /// rest shapes are those of the start, 0.
+  virtual void change_step(const FamilyStep&) {}
   /// Whether elements remember.
   virtual bool flows() const { return false; }
   /// A step of dt (s) has ended at x: what the next one begins with. Whoever looks at the step that is over sees its own E.
@@ -77,51 +92,98 @@ class FamilyOf : public ElementFamily {
  public:
   int width() const override { return Elements::width; }
   std::span<const int> vertices() const override { return vertices_; }
+  bool on_vertices() const override { return IsEveryVertex<Elements>; }
+  bool has_hessian() const override { return !IsLinear<Elements>; }
   void values(const double* x, double* energy) override {
-    with_value_scalar(place_.precision, [&]<class T>() {
+    with_scalar([&]<class T>() {
       place_.executor.each(elements_.n, ElementValues<Elements, T>{elements_, x, energy});
     });
   }
+  bool has_changes() const override { return HasChange<Elements>; }
+  void changes(const double* x0, const double* x1, double* change, double* magnitude,
+               exec::Index stride) override {
+    if constexpr (HasChange<Elements>) {
+      place_.executor.each(elements_.n,
+                           ElementChanges<Elements>{elements_, x0, x1, change, magnitude, stride});
+    }
+  }
   void gradients(Piece piece, const double* x, double* energy, double* grad) override {
-    place_.executor.each(piece.n, ElementGradients<Elements>{elements_, piece, x, energy, grad});
+    if constexpr (IsEveryVertex<Elements>) {
+      throw std::logic_error("pieces of the loads of every vertex");
+    } else {
+      place_.executor.each(piece.n, ElementGradients<Elements>{elements_, piece, x, energy, grad});
+    }
   }
   void hessians(Piece piece, const HessianRequest& request, const double* x, double* hess) override {
-    place_.executor.each(piece.n, ElementHessians<Elements>{elements_, piece, request, x, hess});
+    if constexpr (IsEveryVertex<Elements>) {
+      throw std::logic_error("pieces of the loads of every vertex");
+    } else {
+      place_.executor.each(piece.n, ElementHessians<Elements>{elements_, piece, request, x, hess});
+    }
   }
   void derivatives(const double* x, Projection projection, LocalTerms& out) override {
-    out.resize(static_cast<std::size_t>(elements_.n), Elements::width);
-    for_each_pass(place_.precision, [&]<class T>(PassParts parts) {
+    out.resize(static_cast<std::size_t>(elements_.n), Elements::width, has_hessian());
+    const auto fill = [&]<class T>(PassParts parts) {
+      parts.hessians = parts.hessians && has_hessian();
       place_.executor.each(elements_.n,
                            ElementLocalTerms<Elements, T>{elements_, projection, parts, x, out.energy.data(),
                                                           out.grad.data(), out.hess.data()});
-    });
+    };
+    if constexpr (HasScalars<Elements>) {
+      for_each_pass(place_.precision, fill);
+    } else {
+      fill.template operator()<double>(PassParts{true, true});
+    }
   }
   std::vector<std::size_t> cusps(const double* x) const override {
     std::vector<std::size_t> out;
-    with_value_scalar(place_.precision, [&]<class T>() {
-      for (exec::Index e = 0; e < elements_.n; ++e) {
-        if (elements_.template is_cusp<T>(x, e)) out.push_back(static_cast<std::size_t>(e));
-      }
-    });
+    if constexpr (HasCusps<Elements>) {
+      with_scalar([&]<class T>() {
+        for (exec::Index e = 0; e < elements_.n; ++e) {
+          if (elements_.template is_cusp<T>(x, e)) out.push_back(static_cast<std::size_t>(e));
+        }
+      });
+    }
     return out;
   }
 
  protected:
   /// name: of the buffer of vertices.
   template <std::size_t W>
-  FamilyOf(const FamilyPlace& place, const char* name, std::span<const std::array<int, W>> elements)
+  FamilyOf(const FamilyPlace& place, const std::string& name, std::span<const std::array<int, W>> elements)
       : place_(place), vertex_(place.executor, name) {
     static_assert(W == Elements::width);
     if (!elements.empty()) vertices_ = {elements.front().data(), W * elements.size()};
-    vertex_.upload(to_columns(vertices_, W));
-    elements_.of = vertex_.data();
-    elements_.n = static_cast<exec::Index>(elements.size());
+    upload_vertices();
+  }
+  /// Vertices that no column of the scene has.
+  FamilyOf(const FamilyPlace& place, const std::string& name, std::vector<int> vertices)
+      : place_(place),
+        own_vertices_(std::move(vertices)),
+        vertices_(own_vertices_),
+        vertex_(place.executor, name) {
+    upload_vertices();
   }
 
   FamilyPlace place_;
   Elements elements_{};
 
  private:
+  void upload_vertices() {
+    vertex_.upload(to_columns(vertices_, Elements::width));
+    elements_.of = vertex_.data();
+    elements_.n = size();
+  }
+  template <class F>
+  void with_scalar(const F& f) const {
+    if constexpr (HasScalars<Elements>) {
+      with_value_scalar(place_.precision, f);
+    } else {
+      f.template operator()<double>();
+    }
+  }
+
+  std::vector<int> own_vertices_;
   std::span<const int> vertices_;
   exec::Buffer<int> vertex_;
 };

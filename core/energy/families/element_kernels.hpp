@@ -3,7 +3,10 @@
 //   double value(const double* x, Index e)                                          J
 //   ElementTerms<double, 3 width> terms(const double* x, Index e, Projection)       J, N, N/m
 //   int vertex(int k, Index e)
-// where a host may choose the scalar T, those of the first two as templates of it, and bool is_cusp<T>(x, e);
+// where a host may choose the scalar T, those of the first two as templates of it; where energies have cusps, bool is_cusp<T>(x, e);
+// where a change between two states has a closed form, which does not cancel as a difference of energies does,
+//   ValueChange<double> change(const double* x0, const double* x1, Index e)         J
+// where there is no Hessian, linear = true; where elements are all vertices, in their order, every_vertex = true;
 // where a host takes several abreast, with the bits of terms(),
 //   lanes, void terms_abreast<T>(const double* x, Index first, Projection, TermsAbreast<T, lanes, width>& out)
 #pragma once
@@ -58,6 +61,28 @@ constexpr int lanes_of() {
   }
 }
 
+/// What a kind may have beside values and terms. Without HasScalars it is computed in double.
+template <class Elements>
+concept HasScalars = requires(const Elements& of, const double* x) {
+  of.template value<float>(x, exec::Index{});
+};
+template <class Elements>
+concept HasCusps = requires(const Elements& of, const double* x) {
+  of.template is_cusp<double>(x, exec::Index{});
+};
+template <class Elements>
+concept HasChange = requires(const Elements& of, const double* x) {
+  of.change(x, x, exec::Index{});
+};
+template <class Elements>
+concept IsLinear = requires {
+  requires Elements::linear;
+};
+template <class Elements>
+concept IsEveryVertex = requires {
+  requires Elements::every_vertex;
+};
+
 /// T: the scalar that it is computed in; a card has double alone.
 template <class Elements, class T = double>
 struct ElementValues {
@@ -85,7 +110,7 @@ struct ElementLocalTerms {
   double* hess;    // [9 width (width + 1)/2 n] N/m, lower blocks, element by element
 
   void operator()(exec::Index e) const {
-    const ElementTerms<T, size> terms = elements.template terms<T>(x, e, projection);
+    const ElementTerms<T, size> terms = terms_of(e);
     if (parts.values) {
       energy[e] = terms.energy;
       for (int c = 0; c < size; ++c) grad[size * e + c] = terms.grad[c];
@@ -111,6 +136,26 @@ struct ElementLocalTerms {
  private:
   static constexpr int size = 3 * Elements::width;
   static constexpr exec::Index numbers = n_lower_numbers(Elements::width);
+  ElementTerms<T, size> terms_of(exec::Index e) const {
+    if constexpr (HasScalars<Elements>) {
+      return elements.template terms<T>(x, e, projection);
+    } else {
+      return elements.terms(x, e, projection);
+    }
+  }
+};
+
+/// Changes from x0 to x1 in closed form; the numbers of element e are at stride e.
+template <class Elements>
+struct ElementChanges {
+  Elements elements;
+  const double *x0, *x1;
+  double *change, *magnitude;  // J
+  exec::Index stride;
+  BB_HD void operator()(exec::Index e) const {
+    const auto part = elements.change(x0, x1, e);
+    change[stride * e] = part.change, magnitude[stride * e] = part.magnitude;
+  }
 };
 
 /// Item i: element piece.begin + i.

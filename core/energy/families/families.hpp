@@ -30,6 +30,13 @@ std::vector<double> lengths_of(std::span<const std::array<int, 2>> pairs, const 
 /// The springs that stitch vertices together.
 MadeFamily stitch_family(const FamilyPlace& place, const Stitches& stitches);
 
+/// Loads of a scene, which outlives them.
+MadeFamily inertia_family(const FamilyPlace& place, const Scene& scene);
+MadeFamily weight_family(const FamilyPlace& place, const Scene& scene);
+MadeFamily pull_family(const FamilyPlace& place, const Scene& scene);
+MadeFamily air_drag_family(const FamilyPlace& place, const Scene& scene);
+MadeFamily inflation_family(const FamilyPlace& place, const Scene& scene);
+
 MadeFamily cloth_spring_family(const FamilyPlace& place, const ClothSpringPart& part);
 MadeFamily hinge_family(const FamilyPlace& place, const HingePart& part);
 MadeFamily rod_family(const FamilyPlace& place, const RodPart& part);

@@ -32,7 +32,7 @@ class HingeFamily final : public FamilyOf<Elements> {
     }
   }
 
-  void begin_step() override { rest_angle_.begin_step(); }
+  void begin_step(const FamilyStep&) override { rest_angle_.begin_step(); }
   bool flows() const override { return creeps_; }
   void end_step(const double* x, double dt) override {
     place_.executor.each(elements_.n, FlowHinges{elements_, creep_.data(), creep_.data() + elements_.n, x, dt,

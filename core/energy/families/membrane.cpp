@@ -50,17 +50,14 @@ class MembraneFamily final : public FamilyOf<Elements> {
       for (std::size_t e = 0; e < rests.size(); ++e) none.insert(none.end(), {1, 0, 0, 1});
       plastic_inv_.set(none);
     }
-    MembraneFamily::set_time(0);
+    place_shapes(0);
   }
 
-  void begin_step() override { plastic_inv_.begin_step(); }
-  void set_time(double t) override {
-    if (given_.size() == 0) return;
-    shrink_.set_time(t);
-    place_.executor.each(elements_.n, PlaceTriangles{given_.data(), shrink_.list(), shrink_.factor(),
-                                                     creeps_ ? plastic_inv_.data() : nullptr, elements_.n,
-                                                     shapes_.numbers.data()});
+  void begin_step(const FamilyStep& step) override {
+    plastic_inv_.begin_step();
+    place_shapes(step.t_end);
   }
+  void change_step(const FamilyStep& step) override { place_shapes(step.t_end); }
   bool flows() const override { return creeps_; }
   void end_step(const double* x, double dt) override {
     place_.executor.each(elements_.n, FlowTriangles{elements_, elements_.rest, creep_.data(),
@@ -71,6 +68,14 @@ class MembraneFamily final : public FamilyOf<Elements> {
   }
 
  private:
+  void place_shapes(double t) {
+    if (given_.size() == 0) return;
+    shrink_.set_time(t);
+    place_.executor.each(elements_.n, PlaceTriangles{given_.data(), shrink_.list(), shrink_.factor(),
+                                                     creeps_ ? plastic_inv_.data() : nullptr, elements_.n,
+                                                     shapes_.numbers.data()});
+  }
+
   RestShapes<TriangleRest<double>> shapes_;
   exec::Buffer<double> lame_;
   exec::Buffer<double> given_;  // [5, n] rest shapes before any change; empty: they stay

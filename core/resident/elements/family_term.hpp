@@ -1,4 +1,4 @@
-// An elastic term: one family of elements (core/energy/families) in the executor's memory.
+// A term of elements that stay: one family (core/energy/families) in the executor's memory.
 #pragma once
 
 #include "core/bodies/part.hpp"
@@ -9,12 +9,14 @@ namespace bb::resident {
 
 class FamilyTerm final : public ElementTerm {
  public:
-  /// name: that of registry.inc.
-  FamilyTerm(const ResidentInputs& inputs, std::string_view name, std::unique_ptr<ElementFamily> family);
+  /// name: that of registry.inc. group: load or elastic.
+  FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
+             std::unique_ptr<ElementFamily> family);
   void begin_step(const ResidentFrame& frame) override;
   void change_frame(const ResidentFrame& frame) override;
   void end_step(const Column& x, PhaseClock& clock) override;
   void keep(Archive& archive) override;
+  void add_change(const Column& x, const Column& trial, ResidentChange& out) override;
 
  protected:
   void values(const double* x, double* energy) override { family_->values(x, energy); }
@@ -27,7 +29,8 @@ class FamilyTerm final : public ElementTerm {
 
  private:
   std::unique_ptr<ElementFamily> family_;
-  double dt_ = 0;  // s, of the step
+  Buffer<double> change_;  // [2, n] J, and magnitudes; empty: energies are compared
+  double dt_ = 0;          // s, of the step
 };
 
 /// One term a family of the part.

@@ -1,27 +1,17 @@
-// Inertia and weight: the terms whose elements are the vertices.
+// Inertia and weight in one launch each: a vertex is read once.
 #pragma once
 
-#include "core/energy/vertex_loads.hpp"
+#include "core/energy/families/loads.hpp"
 #include "core/exec/sums/sum_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
 
 namespace bb::resident {
 
-BB_HD inline Vec3d point_at(const double* x, Index v) { return Vec3d(x[3 * v], x[3 * v + 1], x[3 * v + 2]); }
-
 /// The loads of a step.
 struct Loads {
-  const double* mass;           // [n] kg, 0 for prescribed vertices
-  const double *x_n, *x_tilde;  // [3 n] m, start of the step and prediction
-  double dt, c, load_factor;    // s; as in StepFrame
-  double gravity[3];            // m/s^2; all 0 where the scene has none
+  InertiaLoads inertia;
+  WeightLoads weight;
   bool has_weight;
-
-  BB_HD double weight(Index v) const { return inertia_weight(mass[v], c, dt); }
-  BB_HD Vec3d off_target(const double* x, Index v) const { return point_at(x, v) - point_at(x_tilde, v); }
-  BB_HD Vec3d force(Index v) const {
-    return weight_force(load_factor, mass[v], Vec3d(gravity[0], gravity[1], gravity[2]));
-  }
 };
 
 /// g += gradient of the loads.
@@ -31,21 +21,21 @@ struct LoadGradient {
   double* g;  // [3 n] N
   BB_HD void operator()(Index v) const {
     Vec3d out = point_at(g, v);
-    out += loads.weight(v) * loads.off_target(x, v);
-    if (loads.has_weight) out += -loads.force(v);
+    out += loads.inertia.gradient(x, v);
+    if (loads.has_weight) out += loads.weight.gradient(v);
     for (int k = 0; k < 3; ++k) g[3 * v + k] = out[k];
   }
 };
 
 /// Adds the weights of inertia to the diagonal blocks.
 struct InertiaDiagonal {
-  Loads loads;
+  InertiaLoads inertia;
   const Index* row_begin;
   const int* column;
   double* value;
   BB_HD void operator()(Index v) const {
     const Index block = find_block(row_begin, column, static_cast<int>(v), static_cast<int>(v));
-    const double weight = loads.weight(v);
+    const double weight = inertia.weight(v);
     for (int c = 0; c < 9; c += 4) value[value_index(block, c)] += weight;
   }
 };
@@ -55,11 +45,8 @@ struct LoadEnergies {
   Loads loads;
   const double* x;
   BB_HD void operator()(Index v, Compensated& sum) const {
-    sum.add(inertia_value(loads.weight(v), loads.off_target(x, v)));
-    if (loads.has_weight) {
-      const Vec3d way = point_at(x, v) - point_at(loads.x_n, v);
-      sum.add(-loads.force(v).dot(way));
-    }
+    sum.add(loads.inertia.value(x, v));
+    if (loads.has_weight) sum.add(loads.weight.value(x, v));
   }
 };
 
@@ -68,12 +55,10 @@ struct LoadChanges {
   Loads loads;
   const double *x0, *x1;
   BB_HD void operator()(Index v, Compensated& sum) const {
-    const Vec3d step = point_at(x1, v) - point_at(x0, v);
-    const auto inertia =
-        inertia_change(loads.weight(v), loads.off_target(x0, v), loads.off_target(x1, v), step);
+    const auto inertia = loads.inertia.change(x0, x1, v);
     sum.add(inertia.change, inertia.magnitude);
     if (!loads.has_weight) return;
-    const auto work = work_change(loads.force(v), step);
+    const auto work = loads.weight.change(x0, x1, v);
     sum.add(work.change, work.magnitude);
   }
 };

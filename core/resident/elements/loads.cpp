@@ -13,23 +13,17 @@ class LoadTerm final : public ResidentTerm {
         scene_(inputs.scene),
         matrix_(inputs.matrix),
         n_vertices_(inputs.mass.size()) {
-    loads_.mass = inputs.mass.data();
+    loads_.inertia.mass = loads_.weight.mass = inputs.mass.data();
   }
   void add_weight() { loads_.has_weight = true; }
 
   std::string_view name() const override { return "inertia"; }
   TermGroup group() const override { return TermGroup::load; }
   Phase phase() const override { return Phase::assembly; }
-  void begin_step(const ResidentFrame& frame) override {
-    loads_.x_n = frame.x_n->data();
-    loads_.load_factor = frame.load_factor;
-    change_frame(frame);
-  }
   void change_frame(const ResidentFrame& frame) override {
-    loads_.x_tilde = frame.x_tilde->data();
     const Vec3d gravity = gravity_at(scene_, frame.t_end);
-    for (int k = 0; k < 3; ++k) loads_.gravity[k] = gravity[k];
-    loads_.dt = frame.dt, loads_.c = frame.c;
+    loads_.inertia.set_step(frame.of_families(), gravity);
+    loads_.weight.set_step(frame.of_families(), gravity);
   }
   void keep(Archive& archive) override {
     ResidentTerm::keep(archive);
@@ -41,7 +35,8 @@ class LoadTerm final : public ResidentTerm {
   }
   void add_matrix(const Column&, const HessianRequest&) override {
     const MatrixPart part = matrix_.part();
-    executor_.each(n_vertices_, InertiaDiagonal{loads_, part.row_begin, part.column, matrix_.value()});
+    executor_.each(n_vertices_,
+                   InertiaDiagonal{loads_.inertia, part.row_begin, part.column, matrix_.value()});
   }
   void evaluate(const Column&) override {}
   void add_change(const Column& x, const Column& trial, ResidentChange& out) override {

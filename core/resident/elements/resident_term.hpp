@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "core/energy/families/element_kernels.hpp"
 #include "core/exec/buffer.hpp"
 #include "core/exec/sums/resident_sum.hpp"
 #include "core/linear/executor/resident_matrix.hpp"
 #include "core/record/phase_times.hpp"
-#include "core/energy/families/element_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"
 #include "core/terms/report.hpp"
 #include "core/terms/term_set.hpp"
@@ -33,7 +33,9 @@ struct ResidentFrame {
   const Column *x_n = nullptr, *x_tilde = nullptr;   // start of the step and prediction
   double dt = 0, c = 1, load_factor = 1, t_end = 0;  // as in StepFrame
   bool at_start = false;
-  double middle() const { return at_start ? t_end + dt / 2 : t_end - dt / 2; }
+  FamilyStep of_families() const {
+    return {x_n->data(), x_tilde->data(), dt, c, load_factor, t_end, at_start};
+  }
 };
 
 /// x0 -> x1, x1 - x0 = dx up to rounding, m; x1 is exact at prescribed vertices.

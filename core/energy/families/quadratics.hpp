@@ -1,51 +1,43 @@
-// Vertices that are pulled to places: 1/2 (x - y)^T K (x - y), and what drag of the air makes of y and K.
+// Vertices that are pulled to places: 1/2 (x - y)^T K (x - y), and what drag of the air makes of y and K. Drag of the air on
+// triangles: every corner of a triangle of area A bears -A/3 (c_n u_n + c_t u_t), u_n and u_t the parts of its velocity
+// relative to the wind along and across the triangle's normal. Areas and normals are those of the start of the step, the
+// velocity is (x - x_n)/h: the energy is 1/(2 h) u^T C u with u = x - x_n - h wind, and convex.
 #pragma once
 
 #include "core/energy/air_drag.hpp"
-#include "core/energy/vertex_loads.hpp"
-#include "core/energy/families/element_kernels.hpp"
-#include "core/resident/elements/load_kernels.hpp"
+#include "core/energy/families/loads.hpp"
 
-namespace bb::resident {
+namespace bb {
 
-/// Convex: no projection changes the Hessian.
+/// K symmetric without negative eigenvalues: no projection changes the Hessian.
 struct Quadratics : ElementVertices<1> {
   double* place;   // [3, n] y, m
   double* matrix;  // [9, n] K, N/m
 
-  BB_HD Vec3d off(const double* x, Index e) const {
+  BB_HD Vec3d off(const double* x, exec::Index e) const {
     return point_at(x, vertex(0, e)) - Vec3d(place[e], place[n + e], place[2 * n + e]);
   }
-  BB_HD Mat3d stiffness(Index e) const {
+  BB_HD Mat3d stiffness(exec::Index e) const {
     Mat3d out;
     for (int c = 0; c < 9; ++c) out.data()[c] = matrix[c * n + e];
     return out;
   }
-  BB_HD void set(Index e, const Vec3d& at, const Mat3d& k) const {
+  BB_HD void set(exec::Index e, const Vec3d& at, const Mat3d& k) const {
     for (int c = 0; c < 3; ++c) place[c * n + e] = at[c];
     for (int c = 0; c < 9; ++c) matrix[c * n + e] = k.data()[c];
   }
-  BB_HD double value(const double* x, Index e) const {
+  BB_HD double value(const double* x, exec::Index e) const {
     return quadratic_value<double>(stiffness(e), off(x, e));
   }
-  BB_HD ElementTerms<double, 3> terms(const double* x, Index e, Projection) const {
+  BB_HD ElementTerms<double, 3> terms(const double* x, exec::Index e, Projection) const {
     const Mat3d k = stiffness(e);
     const Vec3d from = off(x, e);
     return {quadratic_value<double>(k, from), k * from, k};
   }
-};
-
-/// Changes from x0 to x1, in closed form.
-struct QuadraticChanges {
-  Quadratics elements;
-  const double *x0, *x1;
-  double *change, *magnitude;  // [n] J
-  BB_HD void operator()(Index e) const {
-    const Index v = elements.vertex(0, e);
+  BB_HD ValueChange<double> change(const double* x0, const double* x1, exec::Index e) const {
+    const exec::Index v = vertex(0, e);
     const Vec3d step = point_at(x1, v) - point_at(x0, v);
-    const auto part =
-        quadratic_change<double>(elements.stiffness(e), elements.off(x0, e), elements.off(x1, e), step);
-    change[e] = part.change, magnitude[e] = part.magnitude;
+    return quadratic_change<double>(stiffness(e), off(x0, e), off(x1, e), step);
   }
 };
 
@@ -53,14 +45,14 @@ struct QuadraticChanges {
 struct DragCoefficients {
   const int* triangle;              // [3 triangles] vertices
   const std::uint32_t *start, *of;  // [n + 1]; triangles of every element, ascending
-  Index n;
+  exec::Index n;
   double normal, tangential;  // N s/m^3
   const double* x_n;          // [3 n_vertices] m
   double* coefficient;
-  BB_HD void operator()(Index e) const {
+  BB_HD void operator()(exec::Index e) const {
     Mat3d sum = Mat3d::Zero();
     for (std::uint32_t i = start[e]; i < start[e + 1]; ++i) {
-      const int* const corner = triangle + 3 * static_cast<Index>(of[i]);
+      const int* const corner = triangle + 3 * static_cast<exec::Index>(of[i]);
       const Vec3d x[3] = {point_at(x_n, corner[0]), point_at(x_n, corner[1]), point_at(x_n, corner[2])};
       sum += drag_of_corner<double>(x, normal, tangential);
     }
@@ -74,7 +66,7 @@ struct DragInWind {
   const double* coefficient;  // [9, n] N s/m
   const double* x_n;          // [3 n_vertices] m
   double wind[3], dt;         // m/s, s
-  BB_HD void operator()(Index e) const {
+  BB_HD void operator()(exec::Index e) const {
     Mat3d k;
     for (int c = 0; c < 9; ++c) k.data()[c] = coefficient[c * elements.n + e] / dt;
     const Vec3d way = dt * Vec3d(wind[0], wind[1], wind[2]);
@@ -82,4 +74,4 @@ struct DragInWind {
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb

@@ -1,0 +1,71 @@
+// Triangles under a pressure from within, -p V, seen from the centre of their body at the start of the step, on which the sum of
+// their volumes does not depend.
+#pragma once
+
+#include "core/energy/families/loads.hpp"
+#include "core/energy/inflation.hpp"
+
+namespace bb {
+
+struct Inflated : ElementVertices<3> {
+  const double* pressure;  // [n] Pa, without what follows keys
+  const int* key;          // [n] into factor, -1: constant
+  const double* factor;    // of the step
+  const int* body;         // [n] into centre
+  const double* centre;    // [3 bodies] m
+
+  template <class T>
+  BB_HD T pressure_of(exec::Index e) const {
+    return static_cast<T>(key[e] < 0 ? pressure[e] : pressure[e] * factor[key[e]]);
+  }
+  template <class T>
+  BB_HD void off_centre(const double* x, exec::Index e, Vec<T, 3> (&out)[3]) const {
+    const Vec3d from = point_at(centre, body[e]);
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d off = point_at(x, vertex(k, e)) - from;
+      out[k] = off.cast<T>();
+    }
+  }
+  template <class T = double>
+  BB_HD T value(const double* x, exec::Index e) const {
+    Vec<T, 3> p[3];
+    off_centre<T>(x, e, p);
+    return -pressure_of<T>(e) * volume_below<T>(p[0], p[1], p[2]);
+  }
+  template <class T = double>
+  BB_HD ElementTerms<T, 9> terms(const double* x, exec::Index e, Projection projection) const {
+    Vec<T, 3> p[3];
+    off_centre<T>(x, e, p);
+    return inflation_terms<T>(p, pressure_of<T>(e), projection);
+  }
+};
+
+/// Neighbouring vertices.
+struct VertexRange {
+  int first, n;
+};
+
+/// centre of body b: the mean of its vertices, a tree over 256 strided sums.
+struct BodyCentres {
+  struct Shared {
+    double sum[3][exec::block_threads];
+  };
+  const VertexRange* range;
+  const double* x;  // [3 n_vertices] m
+  double* centre;   // [3 bodies] m
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, exec::Index b) const {
+    const VertexRange of = range[b];
+    block.threads([&](int t) {
+      double sum[3] = {0, 0, 0};
+      for (int v = t; v < of.n; v += exec::block_threads) {
+        for (int c = 0; c < 3; ++c) sum[c] += x[3 * static_cast<exec::Index>(of.first + v) + c];
+      }
+      for (int c = 0; c < 3; ++c) shared.sum[c][t] = sum[c];
+    });
+    for (int c = 0; c < 3; ++c) exec::fold(block, shared.sum[c], exec::block_threads);
+    block.threads(3, [&](int t) { centre[3 * b + t] = shared.sum[t][0] / of.n; });
+  }
+};
+
+}  // namespace bb

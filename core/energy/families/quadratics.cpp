@@ -1,0 +1,129 @@
+// Soft pins, k/2 |x - p(t)|^2 with p where the motion of a pin takes its vertex by the end of the step and k its stiffness then; and
+// drag of the air, for which every corner sums up its triangles at the start of a step.
+#include "core/energy/families/quadratics.hpp"
+
+#include "core/energy/families/families.hpp"
+
+namespace bb {
+namespace {
+
+class QuadraticFamily : public FamilyOf<Quadratics> {
+ protected:
+  QuadraticFamily(const FamilyPlace& place, const Scene& scene, const std::string& name,
+                  std::vector<int> vertices)
+      : FamilyOf(place, name + " vertices", std::move(vertices)),
+        scene_(scene),
+        places_(place.executor, name + " places", 3 * size()),
+        matrix_(place.executor, name + " matrices", 9 * size()) {
+    elements_.place = places_.data(), elements_.matrix = matrix_.data();
+  }
+
+  const Scene& scene_;
+  exec::Buffer<double> places_, matrix_;
+};
+
+/// Pull by pull.
+std::vector<int> pulled_vertices(const Scene& scene) {
+  std::vector<int> out;
+  for (const Pull& pull : scene.pulls) out.insert(out.end(), pull.vertices.begin(), pull.vertices.end());
+  return out;
+}
+
+/// N/m, in a step.
+double stiffness_of(const Pull& pull, const FamilyStep& step) {
+  if (!pull.span.holds(step.middle())) return 0;
+  return pull.stiffness * (pull.factors.empty() ? 1 : value_at(pull.factors, step.t_end));
+}
+
+/// Places and stiffnesses of a step come from the host, as those of pins do.
+class PullFamily final : public QuadraticFamily {
+ public:
+  PullFamily(const FamilyPlace& place, const Scene& scene)
+      : QuadraticFamily(place, scene, "pull", pulled_vertices(scene)) {}
+
+  void change_step(const FamilyStep& step) override {
+    const auto n = static_cast<std::size_t>(size());
+    std::vector<double> at(3 * n), matrix(9 * n);
+    std::size_t e = 0;
+    for (const Pull& pull : scene_.pulls) {
+      const RigidMotion& motion = scene_.motions[static_cast<std::size_t>(pull.motion)];
+      const double stiffness = stiffness_of(pull, step);
+      for (const int v : pull.vertices) {
+        const Vec3d to = motion(scene_.x0.col(v), step.t_end);
+        for (std::size_t c = 0; c < 3; ++c) {
+          at[c * n + e] = to[static_cast<Eigen::Index>(c)];
+          matrix[4 * c * n + e] = stiffness;
+        }
+        ++e;
+      }
+    }
+    places_.upload(at);
+    matrix_.upload(matrix);
+  }
+};
+
+/// Corners with mass of the triangles of the surface, ascending, and the triangles of each.
+struct CornersInAir {
+  std::vector<int> vertices;
+  std::vector<std::uint32_t> start = {0}, of;  // [n + 1]; ascending
+};
+CornersInAir corners_in_air(const Scene& scene) {
+  std::vector<std::vector<std::uint32_t>> of_vertex(scene.mass.size());
+  for (std::size_t t = 0; t < scene.surface_triangles.size(); ++t) {
+    for (const int v : scene.surface_triangles[t]) {
+      of_vertex[static_cast<std::size_t>(v)].push_back(static_cast<std::uint32_t>(t));
+    }
+  }
+  CornersInAir out;
+  for (std::size_t v = 0; v < of_vertex.size(); ++v) {
+    const std::vector<std::uint32_t>& own = of_vertex[v];
+    if (own.empty() || !(scene.mass[v] > 0)) continue;
+    out.vertices.push_back(static_cast<int>(v));
+    out.of.insert(out.of.end(), own.begin(), own.end());
+    out.start.push_back(static_cast<std::uint32_t>(out.of.size()));
+  }
+  return out;
+}
+
+class AirDragFamily final : public QuadraticFamily {
+ public:
+  AirDragFamily(const FamilyPlace& place, const Scene& scene, CornersInAir corners)
+      : QuadraticFamily(place, scene, "air_drag", std::move(corners.vertices)),
+        triangle_(place.executor, "triangles in the air"),
+        start_(place.executor, "triangles of corners in the air, starts"),
+        of_(place.executor, "triangles of corners in the air"),
+        coefficient_(place.executor, "air_drag coefficients", 9 * size()) {
+    triangle_.upload(flat(scene.surface_triangles));
+    start_.upload(corners.start);
+    of_.upload(corners.of);
+  }
+
+  void begin_step(const FamilyStep& step) override {
+    place_.executor.each(
+        size(), DragCoefficients{triangle_.data(), start_.data(), of_.data(), size(), scene_.air.normal,
+                                 scene_.air.tangential, step.x_n, coefficient_.data()});
+    change_step(step);
+  }
+  void change_step(const FamilyStep& step) override {
+    const Air& air = scene_.air;
+    const Vec3d wind = air.wind_keys.empty() ? air.wind : value_at(air.wind_keys, step.t_end);
+    place_.executor.each(
+        size(), DragInWind{elements_, coefficient_.data(), step.x_n, {wind[0], wind[1], wind[2]}, step.dt});
+  }
+
+ private:
+  exec::Buffer<int> triangle_;  // [3 triangles]
+  exec::Buffer<std::uint32_t> start_, of_;
+  exec::Buffer<double> coefficient_;  // [9, n] N s/m
+};
+
+}  // namespace
+
+MadeFamily pull_family(const FamilyPlace& place, const Scene& scene) {
+  return std::make_unique<PullFamily>(place, scene);
+}
+MadeFamily air_drag_family(const FamilyPlace& place, const Scene& scene) {
+  return std::make_unique<AirDragFamily>(place, scene, corners_in_air(scene));
+}
+
+}  // namespace bb
