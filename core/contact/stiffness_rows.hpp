@@ -32,13 +32,14 @@ struct StiffnessRows {
 /// Of a table of the host, which lives as long as the view is used and keeps its size.
 template <class Table>
 StiffnessRows stiffness_rows(Table& of) {
-  constexpr Index by = sizeof(KappaParts) / sizeof(double);
+  if (of.size() == 0) return {};
   KappaParts* const parts = of.parts.data();
+  constexpr Index by = sizeof(KappaParts) / sizeof(double);
   return {static_cast<Index>(of.size()),
           of.pair.data(),
           of.d.data(),
-          parts ? &parts->fixed : nullptr,
-          parts ? &parts->per_gap_sq : nullptr,
+          &parts->fixed,
+          &parts->per_gap_sq,
           by,
           of.kappa.data(),
           of.kappa_before.data()};

@@ -12,6 +12,12 @@ namespace {
 const std::vector<int>& free_vertices(const ContactTable& table) { return table.vertex; }
 const std::vector<int>& free_vertices(const MollifiedTable& table) { return table.free_vertex; }
 
+template <class Table>
+void set_parts(Table& rows, std::size_t r, const KappaParts& parts) {
+  rows.parts[r] = parts;
+  rows.kappa[r] = parts.at(rows.d[r]);
+}
+
 std::array<StiffnessRows, 2> stiffness_rows(const ContactTables& of) {
   return {stiffness_rows(of.rows), stiffness_rows(of.mollified)};
 }
@@ -95,11 +101,10 @@ void ContactStiffness::fill(Table& table, const std::uint8_t* missing, const Hes
     policy_.fill(batch, kappa_.data());
     for (std::size_t i = 0; i < listed_.size(); ++i) parts_[i].fixed = kappa_[i];
   }
-  const StiffnessRows rows = stiffness_rows(table);
   for (std::size_t i = 0; i < listed_.size(); ++i) {
     const auto r = static_cast<std::size_t>(listed_[i]);
     if (!table.share.empty()) parts_[i].fixed *= table.share[r];
-    rows.set(listed_[i], parts_[i]);
+    set_parts(table, r, parts_[i]);
   }
 }
 
@@ -113,11 +118,10 @@ void ContactStiffness::fill_kappa(const ContactTables& rows) const {
   const GapStiffness* const of_gap = policy_.gap_stiffness();
   const double one = policy_.uniform() ? policy_.state().kappa : 0;
   const auto fill_table = [&](auto& of) {
-    const StiffnessRows all = stiffness_rows(of);
     double slope = 0;
     for (std::size_t r = 0; r < of.size(); ++r) {
       if (of_gap) of_gap->eval(of.parts[r], of.d_hat[r], 1, &of.d[r], &of.kappa[r], &slope);
-      if (policy_.uniform()) all.set(static_cast<Index>(r), {of.share.empty() ? one : one * of.share[r], 0});
+      if (policy_.uniform()) set_parts(of, r, {of.share.empty() ? one : one * of.share[r], 0});
     }
   };
   if (!of_gap && !policy_.uniform()) return;
