@@ -2,27 +2,25 @@
 #pragma once
 
 #include "core/barrier/launches.hpp"
+#include "core/energy/families/limit_kernels.hpp"
 #include "core/exec/executor.hpp"
 #include "core/resident/contact/shape_kernels.hpp"
-#include "core/resident/elements/limit_kernels.hpp"
 
 namespace bb {
 
 /// Limited elements with N singular values, in R dimensions.
 template <int R, int N, class S>
 LimitLaunches<N> limit_launches() {
-  using Columns = resident::LimitColumns<N>;
-  return {[](exec::Executor& executor, const Columns& limit, const BarrierFunction& barrier,
-             const KappaParts* parts) {
-            executor.each(N * limit.n,
-                          resident::LimitShape<N, S>{limit, barrier.argument, barrier.literal, parts});
-          },
-          [](exec::Executor& executor, const Columns& limit, const BarrierFunction& barrier,
-             const KappaParts* parts, const resident::MeasureAt& at) {
-            executor.each(limit.n,
-                          resident::MeasureLimit<R, N, S>{
-                              {limit, barrier.argument, barrier.literal, parts}, at.x, at.energy, at.beyond});
-          }};
+  using Columns = LimitColumns<N>;
+  return {
+      [](exec::Executor& executor, const Columns& limit, const BarrierFunction& barrier,
+         const KappaParts* parts) {
+        executor.each(N * limit.n, LimitShape<N, S>{limit, barrier.argument, barrier.literal, parts});
+      },
+      [](exec::Executor& executor, const Columns& limit, const BarrierFunction& barrier,
+         const KappaParts* parts, const MeasureAt& at) {
+        executor.each(limit.n, MeasureLimit<R, N, S>{{limit, barrier.argument, barrier.literal, parts}, at});
+      }};
 }
 
 /// S is a struct of this folder.

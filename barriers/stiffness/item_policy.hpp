@@ -69,19 +69,10 @@ class ItemPolicy final : public StiffnessPolicy {
       }
     }
   }
-  void fill_elements(const ElementStiffnessBatch& of, double* kappa) const override {
-    if constexpr (of_elements) {
-      for (std::size_t e = 0; e < of.n; ++e) {
-        kappa[e] = scaled_.element_kappa(of.sums[e], of.gap[e], of.width[e], of.time);
-      }
-    }
-  }
-  void fill_element_parts(const ElementStiffnessBatch& of, KappaParts* parts) const override {
-    if constexpr (of_elements) {
-      for (std::size_t e = 0; e < of.n; ++e) {
-        parts[e] = scaled_.element_parts(of.sums[e], of.width[e], of.time);
-      }
-    }
+  double element_kappa(const ElementSums<double>& sums, double y, double width,
+                       const StiffnessTime& time) const override {
+    if constexpr (of_elements) return scaled_.element_kappa(sums, y, width, time);
+    return 0;
   }
 
  private:

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/barrier/launches.hpp"
+#include "core/energy/families/limit_kernels.hpp"
 #include "core/exec/executor.hpp"
 #include "core/resident/contact/row_kappa.hpp"
-#include "core/resident/elements/limit_kernels.hpp"
 
 namespace bb {
 
@@ -21,9 +21,8 @@ PolicyLaunches policy_launches() {
   }
   if constexpr (ServesLimits<P>) {
     const auto launch = []<int N>(exec::Executor& executor, const StiffnessPolicy& policy,
-                                  const resident::ElementKappaInputs<N>& of) {
-      executor.each(of.limit.n,
-                    resident::ElementKappa<N, P>{of, static_cast<const Policy&>(policy).scaled()});
+                                  const ElementKappaInputs<N>& of) {
+      executor.each(of.limit.n, ElementKappa<N, P>{of, static_cast<const Policy&>(policy).scaled()});
     };
     out.triangles = launch;
     out.tetrahedra = launch;

@@ -9,8 +9,7 @@
 
 namespace bb {
 
-/// BarrierFunction::eval of one row, S a struct of barriers/shapes. Equal to it bit for bit where the shape has no
-/// logarithm, to rounding elsewhere (batches take four logarithms at a time). Host-device.
+/// BarrierFunction::eval of one row, S a struct of barriers/shapes. Equal to it bit for bit. Host-device.
 template <class S, class T>
 BB_HD ShapeTerms<T> barrier_row(Argument argument, bool literal, T d, T d_hat) {
   if (literal) {

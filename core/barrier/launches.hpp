@@ -14,22 +14,21 @@ class Executor;
 namespace resident {
 struct RowView;
 struct RowKappaInputs;
+}  // namespace resident
 struct MeasureAt;
 template <int N>
 struct LimitColumns;
 template <int N>
 struct ElementKappaInputs;
-}  // namespace resident
 
 /// Of a shape, on the barrier of limited elements with N singular values.
 template <int N>
 struct LimitLaunches {
   /// Barrier terms at the measured pseudo-gaps. parts: [n] J where kappa has a potential, else null.
-  void (*terms)(exec::Executor&, const resident::LimitColumns<N>&, const BarrierFunction&,
-                const KappaParts* parts);
+  void (*terms)(exec::Executor&, const LimitColumns<N>&, const BarrierFunction&, const KappaParts* parts);
   /// Pseudo-gaps, barrier terms and energies of a state whose kappa is known.
-  void (*measure)(exec::Executor&, const resident::LimitColumns<N>&, const BarrierFunction&,
-                  const KappaParts* parts, const resident::MeasureAt&);
+  void (*measure)(exec::Executor&, const LimitColumns<N>&, const BarrierFunction&, const KappaParts* parts,
+                  const MeasureAt&);
 };
 
 struct ShapeLaunches {
@@ -49,10 +48,8 @@ struct PolicyLaunches {
   /// kappa of contact rows; null where the policy does not compute it row by row.
   void (*rows)(exec::Executor&, const StiffnessPolicy&, const resident::RowKappaInputs&) = nullptr;
   /// kappa of limited triangles and tetrahedra; null where the policy serves no strain limit.
-  void (*triangles)(exec::Executor&, const StiffnessPolicy&,
-                    const resident::ElementKappaInputs<2>&) = nullptr;
-  void (*tetrahedra)(exec::Executor&, const StiffnessPolicy&,
-                     const resident::ElementKappaInputs<3>&) = nullptr;
+  void (*triangles)(exec::Executor&, const StiffnessPolicy&, const ElementKappaInputs<2>&) = nullptr;
+  void (*tetrahedra)(exec::Executor&, const StiffnessPolicy&, const ElementKappaInputs<3>&) = nullptr;
 };
 
 }  // namespace bb

@@ -1,5 +1,5 @@
-// What the pipeline knows of a stiffness policy: batch calls over columns that fill the kappa of contacts (N/m) and of
-// limited elements (J).
+// What the pipeline knows of a stiffness policy: batch calls over columns that fill the kappa of contacts (N/m), and kernels for the
+// kappa of limited elements (J).
 // The policies themselves live in barriers/stiffness/.
 #pragma once
 
@@ -38,15 +38,6 @@ struct StiffnessBatch {
   const double* mass = nullptr;     // [4 n] lumped vertex masses, kg
   const double* hessian = nullptr;  // [144 n] 12 x 12 column-major sub-matrix of the elastic Hessian, N/m;
                                     // null unless the policy says needs_hessian
-  StiffnessTime time;
-};
-
-/// Columns of n limited triangles, or tetrahedra.
-struct ElementStiffnessBatch {
-  std::size_t n = 0;
-  const ElementSums<double>* sums = nullptr;  // [n] elastic is 0 unless the policy says needs_hessian
-  const double* gap = nullptr;                // [n] smaller pseudo-gap; not read by fill_element_parts
-  const double* width = nullptr;              // [n] of the limit
   StiffnessTime time;
 };
 
@@ -96,10 +87,12 @@ class StiffnessPolicy {
   /// Where kappa is another function of the gap than KappaParts::at (gap_stiffness.hpp): fill_parts gives what it freezes of
   /// a pair. Lives as long as the policy.
   virtual const GapStiffness* gap_stiffness() const { return nullptr; }
-  /// kappa_e (J) of limited elements: the number at their gap, or where has_potential() as a function of it. A policy
-  /// that does not serve strain limits has none.
-  virtual void fill_elements(const ElementStiffnessBatch&, double*) const {}
-  virtual void fill_element_parts(const ElementStiffnessBatch&, KappaParts*) const {}
+  /// kappa_e (J) of a limited element at its smallest pseudo-gap y. sums: elastic is 0 unless needs_hessian(). A policy that does
+  /// not serve strain limits has none. Those of a family of elements are made by its kernels.
+  virtual double element_kappa(const ElementSums<double>& /*sums*/, double /*y*/, double /*width*/,
+                               const StiffnessTime&) const {
+    return 0;
+  }
 
   /// A pair that has a row at the end of this step and of the one before.
   struct PairEnd {
@@ -107,7 +100,7 @@ class StiffnessPolicy {
     double park = 0;                 // m, ccd_park times the row's d_hat
     bool closing() const { return closes(gap, gap_before); }
   };
-  /// Kernels that do what fill and fill_elements do; null: there are none.
+  /// Kernels that do what fill and element_kappa do; null: there are none.
   virtual const PolicyLaunches* launches() const { return nullptr; }
   /// Whether end_step has to be called: listing the pairs costs a sort a step.
   virtual bool adapts() const { return false; }

@@ -43,23 +43,6 @@ void store_terms(const ElementTerms<T, N>& terms, std::size_t e, PassParts parts
   }
 }
 
-/// terms.operator()<T>(e), the ElementTerms of element e in the scalar T, of n elements: each part in the scalar that
-/// the precision has for it.
-template <class Terms>
-void store_elements(std::size_t n, Precision precision, const Terms& terms, LocalTerms& out) {
-  for_each_pass(precision, [&]<class T>(PassParts parts) {
-    for_each_element(n, [&](std::size_t e) { store_terms(terms.template operator()<T>(e), e, parts, out); });
-  });
-}
-
-/// value.operator()<T>(e), J, of n elements.
-template <class Value>
-void store_energies(std::size_t n, Precision precision, const Value& value, double* energy) {
-  with_value_scalar(precision, [&]<class T>() {
-    for_each_element(n, [&](std::size_t e) { energy[e] = value.template operator()<T>(e); });
-  });
-}
-
 /// ConfigError unless a column has one entry an element and, where `positive`, no entry that is not > 0.
 inline void check_column(const char* where, std::size_t n, std::span<const double> column, bool positive) {
   if (column.size() != n) {

@@ -11,24 +11,12 @@
 
 namespace bb {
 
-/// Rest data in another scalar.
-template <class T>
-TriangleRest<T> rest_in(const TriangleRest<double>& rest) {
-  return {rest.dm_inv.template cast<T>(), static_cast<T>(rest.area)};
-}
-
 /// Rest data of triangles at x_rest [3 x n_vertices] (m). `warp`: [n] warp directions, or empty for each
 /// triangle's first edge. ConfigError when a triangle has no area (or the warp direction is normal to
 /// it).
 std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int, 3>> triangles,
                                                  const PositionsView& x_rest, bool planar,
                                                  std::span<const Vec3d> warp = {});
-
-/// Rest data in another scalar.
-template <class T>
-TetrahedronRest<T> rest_in(const TetrahedronRest<double>& rest) {
-  return {rest.dm_inv.template cast<T>(), static_cast<T>(rest.volume)};
-}
 
 /// Rest data of tetrahedra at x_rest [3 x n_vertices] (m). ConfigError: one whose volume is not positive.
 std::vector<TetrahedronRest<double>> tetrahedron_rests(std::span<const std::array<int, 4>> tetrahedra,

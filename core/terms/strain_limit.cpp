@@ -5,215 +5,93 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/barrier/relative_change.hpp"
 #include "core/math/parallel.hpp"
 #include "core/terms/barrier_load.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
 
-template <class Batch>
-StrainLimitTermOf<Batch>::StrainLimitTermOf(const Scene& scene, const TermOptions& options,
-                                            const std::vector<std::uint8_t>& fixed)
+StrainLimitTerm::StrainLimitTerm(exec::Executor& executor, const Scene& scene, const TermOptions& options,
+                                 const std::vector<std::uint8_t>& fixed, bool of_solids)
     : scene_(scene),
       options_(options),
       fixed_(fixed),
-      batch_(limited_elements(part()), scene.rest, part().onset, part().width, scene.planar,
-             options.precision),
-      kappa_(batch_.size()) {
-  if (policy().has_potential()) {
-    folded_.emplace(Folded{FoldedBarrier(options.limit), std::vector<KappaParts>(Batch::N * batch_.size())});
-  }
+      state_(executor, scene, options, of_solids, scene.mass.data()) {
+  const auto n = static_cast<std::size_t>(state_.family().size());
   TermFamily& family = families_.emplace_back();
-  family.stencils = {batch_.width(), batch_.vertices()};
-  family.local.resize(batch_.size(), batch_.width());
-  family.trial_energy.resize(batch_.size());
+  family.stencils = {state_.family().width(), state_.family().vertices()};
+  family.local.resize(n, state_.family().width());
+  family.trial_energy.resize(n);
 }
 
-template <class Batch>
-void StrainLimitTermOf<Batch>::begin_step(const StepFrame& frame, PhaseClock&) {
+void StrainLimitTerm::begin_step(const StepFrame& frame, PhaseClock&) {
   x_n_ = frame.x_n;
-  change_frame(frame);
-  kappa_fresh_ = false;
-  first_iterate_ = true;
+  state_.begin_step(x_n_.data(), {frame.dt, frame.c});
 }
 
-template <class Batch>
-void StrainLimitTermOf<Batch>::change_frame(const StepFrame& frame) {
-  time_ = {frame.dt, frame.c};
+void StrainLimitTerm::linearise(const PositionsView& x, const TermContext& context) {
+  state_.refresh(x.data(), gather(context), energies());
+  state_.family().derivatives(x.data(), context.projection, families_[0].local);
 }
 
-template <class Batch>
-void StrainLimitTermOf<Batch>::linearise(const PositionsView& x, const TermContext& context) {
-  kappa_change_ = 0;
-  refresh_stiffness(x, context);
-  first_iterate_ = false;
-  fill(x, context.projection, families_[0].local);
+void StrainLimitTerm::clamp(const PositionsView& x) {
+  state_.measure_iterate(x.data(), energies());
+  state_.family().derivatives(x.data(), Projection::psd, families_[0].clamped);
 }
 
-template <class Batch>
-void StrainLimitTermOf<Batch>::clamp(const PositionsView& x) {
-  fill(x, Projection::psd, families_[0].clamped);
-}
-
-template <class Batch>
-void StrainLimitTermOf<Batch>::fill(const PositionsView& x, Projection projection, LocalTerms& out) {
-  if (folded_) {
-    batch_.derivatives(x, *folded_, kappa_.data(), projection, out);
-  } else {
-    batch_.derivatives(x, options_.limit, kappa_.data(), projection, out);
-  }
-}
-
-template <class Batch>
-void StrainLimitTermOf<Batch>::refresh_stiffness(const PositionsView& x, const TermContext& context) {
-  const StiffnessPolicy& policy = this->policy();
-  if (kappa_fresh_ && policy.frozen_in_step()) return;
-  kappa_fresh_ = true;
-  kappa_before_ = kappa_;
-  fill_sums(context, policy.needs_hessian());
-  ElementStiffnessBatch batch{batch_.size(), sums_.data(), nullptr, part().width.data(), time_};
-  if (folded_) {
-    parts_.resize(batch_.size());
-    policy.fill_element_parts(batch, parts_.data());
-    return fold();
-  }
-  batch_.measure(x);
-  smallest_gaps_.resize(batch_.size());
-  for (std::size_t e = 0; e < batch_.size(); ++e) smallest_gaps_[e] = smallest_gap(e);
-  batch.gap = smallest_gaps_.data();
-  policy.fill_elements(batch, kappa_.data());
-  kappa_change_ = first_iterate_ || policy.uniform() ? 0 : stiffness_change();
-}
-
-// What the policy reads of every element.
-template <class Batch>
-void StrainLimitTermOf<Batch>::fill_sums(const TermContext& context, bool with_hessian) {
-  constexpr int size = 3 * Batch::n_points;
-  constexpr auto numbers = static_cast<std::size_t>(size * size);
-  hess_.resize(with_hessian ? numbers * batch_.size() : 0);
-  parallel_items(with_hessian ? batch_.size() : 0, 64, [&](std::size_t e) {
+// H of every element, where the policy reads it.
+ElasticMatrix StrainLimitTerm::gather(const TermContext& context) {
+  if (!state_.asks_for_elastic()) return {};
+  const std::span<const int> vertices = state_.family().vertices();
+  const int width = state_.family().width(), size = 3 * width;
+  const auto n = static_cast<std::size_t>(state_.family().size()),
+             numbers = static_cast<std::size_t>(size * size);
+  hess_.resize(numbers * n);
+  parallel_items(n, 64, [&](std::size_t e) {
     Mat<double, 12, 12> block;
-    context.blocks.submatrix(context.elastic, &batch_.vertices()[Batch::P * e], Batch::n_points,
+    context.blocks.submatrix(context.elastic, &vertices[static_cast<std::size_t>(width) * e], width,
                              block.data());
-    Eigen::Map<Mat<double, size, size>> target(&hess_[numbers * e]);
-    target = block.topLeftCorner<size, size>();
+    Eigen::Map<Eigen::MatrixXd>(&hess_[numbers * e], size, size) = block.topLeftCorner(size, size);
   });
-  sums_.resize(batch_.size());
-  batch_.stiffness_sums(x_n_, with_hessian ? hess_.data() : nullptr, scene_.mass.data(), part().mass.data(),
-                        sums_.data());
+  return {{}, hess_.data()};
 }
 
-template <class Batch>
-void StrainLimitTermOf<Batch>::fold() {
-  folded_->parts.clear();
-  for (const KappaParts& one : parts_) folded_->parts.insert(folded_->parts.end(), Batch::N, one);
-  std::fill(kappa_.begin(), kappa_.end(), 1.0);
-}
-
-// Largest relative change of an active element's kappa.
-template <class Batch>
-double StrainLimitTermOf<Batch>::stiffness_change() const {
-  double change = 0;
-  for (std::size_t e = 0; e < batch_.size(); ++e) {
-    if (!(smallest_gap(e) < part().width[e])) continue;
-    change = std::max(change, relative_change(kappa_before_[e], kappa_[e]));
-  }
-  return change;
-}
-
-template <class Batch>
-double StrainLimitTermOf<Batch>::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
+double StrainLimitTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_bound);
-  const double alpha = batch_.step_bound(motion.x0, motion.dx, 1.0, options_.contact_options.ccd_park);
-  report.alpha_strain = adds() ? std::min(report.alpha_strain, alpha) : alpha;
-  return alpha;
+  state_.look_along(motion.x0.data(), motion.dx.data());
+  return state_.bound(report);
 }
 
-template <class Batch>
-bool StrainLimitTermOf<Batch>::admits(const PositionsView& x, PhaseClock&) {
-  batch_.measure(x);
-  return options_.limit.literal || batch_.min_gap() > 0;
+bool StrainLimitTerm::admits(const PositionsView& x, PhaseClock&) {
+  state_.look_at(x.data(), families_[0].trial_energy.data());
+  return state_.admits();
 }
 
-template <class Batch>
-void StrainLimitTermOf<Batch>::evaluate(const PositionsView& x) {
-  std::vector<double>& energy = families_[0].trial_energy;
-  if (folded_) {
-    batch_.values(x, *folded_, kappa_.data(), energy.data());
-  } else {
-    batch_.values(x, options_.limit, kappa_.data(), energy.data());
-  }
+void StrainLimitTerm::evaluate_iterate(const PositionsView& x) {
+  state_.measure_iterate(x.data(), energies());
+  state_.family().values(x.data(), energies());
 }
 
-// |dS_e/dsigma| at a pseudo-gap, J.
-template <class Batch>
-double StrainLimitTermOf<Batch>::force(std::size_t e, double gap) const {
-  const double kappa = folded_ ? folded_->parts[Batch::N * e].at(gap) : kappa_[e];
-  return -kappa * options_.limit.eval(gap, part().width[e]).db;
-}
-
-template <class Batch>
-double StrainLimitTermOf<Batch>::load_max() const {
-  double largest = 0;
-  for (std::size_t e = 0; e < batch_.size(); ++e) {
-    const double width = part().width[e];
-    for (const double gap : batch_.gaps().subspan(Batch::N * e, Batch::N)) {
-      if (gap >= width) continue;
-      largest = std::max(largest, force(e, gap) / batch_.measure_of(e));
-    }
-  }
-  return largest;
-}
-
-// Stretch and load of the measured state; those of triangles stay where they are said before.
-template <class Batch>
-template <class Numbers>
-void StrainLimitTermOf<Batch>::say_state(Numbers& out) const {
-  const Number stretch = batch_.max_stretch();
-  if (adds()) {
-    keep_larger(out.max_stretch, stretch);
-  } else {
-    out.max_stretch = stretch;
-  }
-  (of_solids ? out.solid_limit_load_max_Pa : out.limit_load_max_N_per_m) = load_max();
-}
-
-template <class Batch>
-void StrainLimitTermOf<Batch>::report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) {
+void StrainLimitTerm::report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_limit);
-  batch_.measure(x);
-  say_state(out);
-  double gap = std::numeric_limits<double>::infinity();
-  for (std::size_t e = 0; e < batch_.size(); ++e) {
-    gap = std::min(gap, smallest_gap(e) / part().width[e]);
-  }
-  if (adds()) {
-    keep_larger(out.limit_kappa_change_rel, Number(kappa_change_));
-    keep_smaller(out.limit_gap_min_rel, Number(gap));
-  } else {
-    out.limit_kappa_change_rel = kappa_change_;
-    out.limit_gap_min_rel = gap;
-  }
+  state_.report(x.data(), energies(), out);
 }
 
-template <class Batch>
-void StrainLimitTermOf<Batch>::report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) {
+void StrainLimitTerm::report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_limit);
-  batch_.measure(x);
-  say_state(out);
+  state_.report_end(x.data(), energies(), out);
 }
 
 // Of element e on its own: how many times larger its force would have to be to balance the rest along itself.
-template <class Batch>
-double StrainLimitTermOf<Batch>::times_larger(std::size_t e, const PositionsView& others) const {
+double StrainLimitTerm::times_larger(std::size_t e, const PositionsView& others) const {
   const std::vector<double>& gradient = families_[0].local.grad;
+  const auto width = static_cast<std::size_t>(state_.family().width());
   double needed = 0, own = 0;
-  for (std::size_t k = 0; k < Batch::P; ++k) {
-    const auto v = static_cast<std::size_t>(batch_.vertices()[Batch::P * e + k]);
+  for (std::size_t k = 0; k < width; ++k) {
+    const auto v = static_cast<std::size_t>(state_.family().vertices()[width * e + k]);
     for (std::size_t c = 0; c < 3; ++c) {
       if (fixed_[3 * v + c]) continue;  // carried by the pin
-      const double g = gradient[3 * (Batch::P * e + k) + c];
+      const double g = gradient[3 * (width * e + k) + c];
       needed -= g * others.data()[3 * v + c];
       own += g * g;
     }
@@ -221,47 +99,50 @@ double StrainLimitTermOf<Batch>::times_larger(std::size_t e, const PositionsView
   return own > std::numeric_limits<double>::min() ? needed / own : 0;
 }
 
-template <class Batch>
-std::string StrainLimitTermOf<Batch>::element_name(std::size_t e) const {
-  const std::span<const int> vertices = batch_.vertices().subspan(Batch::P * e, Batch::P);
+std::string StrainLimitTerm::element_name(std::size_t e) const {
+  const auto width = static_cast<std::size_t>(state_.family().width());
+  const std::span<const int> vertices = state_.family().vertices().subspan(width * e, width);
   const Body& body =
       scene_.bodies[static_cast<std::size_t>(scene_.body[static_cast<std::size_t>(vertices[0])])];
   std::string numbers;
   for (const int v : vertices)
     numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", v - body.first_vertex);
-  return fmt::format("{} {}[{}]", of_solids ? "tetrahedron" : "triangle", body.name, numbers);
+  return fmt::format("{} {}[{}]", state_.of_solids() ? "tetrahedron" : "triangle", body.name, numbers);
+}
+
+std::vector<double> StrainLimitTerm::smallest_gaps(const double* x) {
+  state_.family().measure(x);
+  state_.forget();
+  std::vector<double> out(families_[0].trial_energy.size());
+  for (std::size_t e = 0; e < out.size(); ++e) out[e] = state_.family().smallest_gap(e);
+  return out;
 }
 
 // The larger of two estimates: what everything but the limit puts on an element on its own, and the force at
 // which the Newton model would come to rest.
-template <class Batch>
-void StrainLimitTermOf<Batch>::report_overload(const PositionsView& x, const PositionsView& others,
-                                               const PositionsView& dx, StepNumbers& out) {
-  if (!adds()) out.limit_overload = 0;
-  if (options_.limit.shape.infinite_at_zero || folded_) return;
-  batch_.measure(x);
-  const std::vector<double> gaps(batch_.gaps().begin(), batch_.gaps().end());
-  batch_.measure(Positions(x + dx));
+void StrainLimitTerm::report_overload(const PositionsView& x, const PositionsView& others,
+                                      const PositionsView& dx, StepNumbers& out) {
+  if (!state_.adds()) out.limit_overload = 0;
+  if (options_.limit.shape.infinite_at_zero || state_.policy().has_potential()) return;
+  const Positions moved = x + dx;
+  const std::vector<double> gaps = smallest_gaps(x.data()), next = smallest_gaps(moved.data());
+  const StrainBands& bands =
+      state_.of_solids() ? static_cast<const StrainBands&>(scene_.solid_limit) : scene_.limit;
   LargestSlope slope(options_.limit);
-  double largest = adds() ? out.limit_overload.value : 0;
-  for (std::size_t e = 0; e < batch_.size(); ++e) {
-    const double width = part().width[e],
-                 gap = *std::min_element(&gaps[Batch::N * e], &gaps[Batch::N * e] + Batch::N);
-    if (!(gap < width)) continue;
+  double largest = state_.adds() ? out.limit_overload.value : 0;
+  for (std::size_t e = 0; e < gaps.size(); ++e) {
+    const double width = bands.width[e];
+    if (!(gaps[e] < width)) continue;
     const double capacity = slope(width);
-    const double share = -options_.limit.eval(gap, width).db / capacity;
+    const double share = -options_.limit.eval(gaps[e], width).db / capacity;
     const double times = std::max(share * times_larger(e, others),
-                                  newton_force(options_.limit, gap, smallest_gap(e), width) / capacity);
+                                  newton_force(options_.limit, gaps[e], next[e], width) / capacity);
     if (!(times > largest)) continue;
     largest = times;
     out.limit_overload_at = element_name(e);
   }
-  batch_.measure(x);
   out.limit_overload = largest;
 }
-
-template class StrainLimitTermOf<StrainLimitBatch>;
-template class StrainLimitTermOf<SolidLimitBatch>;
 
 PlanItem needs_strain_limit(const TermNeeds& needs) {
   const std::size_t n = needs.scene.limit.triangles.size(), m = needs.scene.solid_limit.tetrahedra.size();
@@ -272,12 +153,12 @@ PlanItem needs_strain_limit(const TermNeeds& needs) {
 }
 
 void make_strain_limit(const TermInputs& inputs, TermList& terms) {
-  if (!inputs.scene.limit.triangles.empty()) {
-    terms.add(std::make_unique<StrainLimitTerm>(inputs.scene, inputs.options, inputs.fixed));
-  }
-  if (!inputs.scene.solid_limit.tetrahedra.empty()) {
-    terms.add(std::make_unique<SolidLimitTerm>(inputs.scene, inputs.options, inputs.fixed));
-  }
+  const auto add = [&](bool of_solids) {
+    terms.add(std::make_unique<StrainLimitTerm>(inputs.executor, inputs.scene, inputs.options, inputs.fixed,
+                                                of_solids));
+  };
+  if (!inputs.scene.limit.triangles.empty()) add(false);
+  if (!inputs.scene.solid_limit.tetrahedra.empty()) add(true);
 }
 
 }  // namespace bb

@@ -5,9 +5,9 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/energy/families/families.hpp"
+#include "core/energy/families/limit_family.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/energy/solid_model.hpp"
-#include "core/energy/strain_limit_batch.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/mesh/solid_generators.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
@@ -71,35 +71,40 @@ void solid(benchmark::State& state, std::string_view model, bool with_derivative
 void strain_limit(benchmark::State& state, bool with_derivatives) {
   const Sheet sheet;
   const StrainLimitPart& part = sheet.scene.limit;
-  StrainLimitBatch batch(part.triangles, sheet.scene.rest, part.onset, part.width);
+  exec::HostExecutor executor;
+  const auto limit = limited_triangles({executor}, part, sheet.scene.rest, false);
   const BarrierFunction barrier{all_shapes().front(), Argument::gap};
-  const std::vector<double> kappa(batch.size(), 1.0);
+  limit->kappa().upload(std::vector<double>(part.width.size(), 1.0));
   LocalTerms terms;
-  terms.resize(batch.size(), 3);
+  terms.resize(part.width.size(), 3);
+  exec::Key beyond = ~exec::Key{0};
+  const double* x = sheet.scene.x0.data();
   for (auto _ : state) {
-    if (with_derivatives) {
-      batch.derivatives(sheet.scene.x0, barrier, kappa.data(), Projection::psd, terms);
-    } else {
-      batch.values(sheet.scene.x0, barrier, kappa.data(), terms.energy.data());
-    }
+    limit->measure(x, barrier, terms.energy.data(), &beyond);
+    if (with_derivatives) limit->derivatives(x, Projection::psd, terms);
     benchmark::DoNotOptimize(terms.energy.data());
     benchmark::ClobberMemory();
   }
-  count_items(state, batch.size());
-  state.counters["active"] = static_cast<double>(batch.n_active());
+  count_items(state, part.width.size());
+  double active = 0;
+  for (std::size_t e = 0; e < part.width.size(); ++e)
+    active += limit->smallest_gap(e) < part.width[e] ? 1 : 0;
+  state.counters["active"] = active;
 }
 
 void strain_bound(benchmark::State& state) {
   const Sheet sheet;
   const StrainLimitPart& part = sheet.scene.limit;
-  const StrainLimitBatch batch(part.triangles, sheet.scene.rest, part.onset, part.width);
+  exec::HostExecutor executor;
+  const auto limit = limited_triangles({executor}, part, sheet.scene.rest, false);
   const Positions dx = moved(sheet.scene.x0, 2e-3, 2) - sheet.scene.x0;
   double alpha = 0;
   for (auto _ : state) {
-    alpha = batch.step_bound(sheet.scene.x0, dx);
+    limit->look_along(sheet.scene.x0.data(), dx.data(), 0);
+    alpha = limit->bound();
     benchmark::DoNotOptimize(alpha);
   }
-  count_items(state, batch.size());
+  count_items(state, part.width.size());
   state.counters["alpha"] = alpha;
 }
 

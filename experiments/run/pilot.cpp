@@ -8,6 +8,7 @@
 #include "barriers/matching.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "core/archive/archive.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
 #include "core/mesh/topology.hpp"
 #include "core/newton/simulation.hpp"
@@ -110,13 +111,13 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
 
 // The answers of one step's end, each with its force.
 void add_answers(const Pilot& pilot, const StiffnessAnswers& answers, const ContactTable& rows,
-                 StrainLimitBatch* limit, const Scene& scene, const Positions& x, AnswerSums& out) {
+                 LimitFamily* limit, const Scene& scene, const Positions& x, AnswerSums& out) {
   for (std::size_t r = 0; r < rows.size(); ++r)
     out.add_contact(rows, r, -rows.kappa[r] * rows.db[r], answers.contact[r]);
   if (!limit) return;
-  limit->measure(x);
-  for (std::size_t e = 0; e < limit->size(); ++e) {
-    const double y = smallest_gap(*limit, e), width = scene.limit.width[e];
+  limit->measure(x.data());
+  for (std::size_t e = 0; e < scene.limit.width.size(); ++e) {
+    const double y = limit->smallest_gap(e), width = scene.limit.width[e];
     if (y < width)
       out.add_limit(e, -*pilot.stiffness.k_s * log_barrier().eval(y, width).db, answers.limit[e]);
   }
@@ -125,19 +126,18 @@ void add_answers(const Pilot& pilot, const StiffnessAnswers& answers, const Cont
 // How the forces at the ends of all steps answer to stiffness.
 void answer(Pilot& pilot, const Scene& scene, const RunOptions& options) {
   const StrainLimitPart& part = scene.limit;
-  std::optional<StrainLimitBatch> limit;
-  if (!part.triangles.empty())
-    limit.emplace(part.triangles, scene.rest, part.onset, part.width, scene.planar);
-  StrainLimitBatch* const limited = limit ? &*limit : nullptr;
+  exec::HostExecutor executor;
+  std::unique_ptr<LimitFamily> limit;
+  if (!part.triangles.empty()) limit = limited_triangles({executor}, part, scene.rest, scene.planar);
   PilotReplay replay(pilot, scene);
   pilot.answers = AnswerSums(scene.n_vertices(), part.triangles.size());
   for (int step = 0; step < pilot.steps(); ++step) {
     options.limits().look_up(
         this_part, fmt::format("while the forces of its step {} of {} were read", step, pilot.steps()));
     const StiffnessAnswers answers =
-        answers_to_stiffness(replay.assembled(step), limited, log_barrier(), pilot.config.time.dt);
+        answers_to_stiffness(replay.assembled(step), limit.get(), log_barrier(), pilot.config.time.dt);
     pilot.unanswered += answers.known ? 0 : 1;
-    add_answers(pilot, answers, replay.rows(), limited, scene, replay.end(step), pilot.answers);
+    add_answers(pilot, answers, replay.rows(), limit.get(), scene, replay.end(step), pilot.answers);
   }
 }
 

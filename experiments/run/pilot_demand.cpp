@@ -6,7 +6,9 @@
 #include <stdexcept>
 
 #include "core/contact/pair_name.hpp"
-#include "core/energy/strain_limit_batch.hpp"
+#include "core/energy/families/limit_family.hpp"
+#include "core/energy/strain_stiffness.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
 #include "experiments/run/pilot_replay.hpp"
 
@@ -98,9 +100,7 @@ double own_limit_stiffness(const StiffnessPolicy& policy, const Scene& scene, st
   };
   const ElementSums<double> sums =
       element_sums<double>(x, mass, scene.limit.mass[e], area, hessian, policy.needs_hessian());
-  double kappa = 0;
-  policy.fill_elements({1, &sums, &y, &scene.limit.width[e], time}, &kappa);
-  return kappa / area;
+  return policy.element_kappa(sums, y, scene.limit.width[e], time) / area;
 }
 
 }  // namespace
@@ -138,7 +138,8 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
                     const StiffnessPolicy* own, const RunLimits& limits) {
   const BarrierFunction log = log_barrier();
   const StrainLimitPart& part = scene.limit;
-  StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width, scene.planar);
+  exec::HostExecutor executor;
+  const auto limit = limited_triangles({executor}, part, scene.rest, scene.planar);
   const double dt = pilot.config.time.dt;
   PilotReplay replay(pilot, scene);
   Demand out;
@@ -146,13 +147,13 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
   for (int step = 0; step < pilot.steps(); ++step) {
     look_up(limits, pilot, step);
     if (own) replay.find_rows(step, own->refresh());
-    limit.measure(replay.start(step));
-    for (std::size_t e = 0; e < limit.size(); ++e) y_start[e] = smallest_gap(limit, e);
-    limit.measure(replay.end(step));
-    for (std::size_t e = 0; e < limit.size(); ++e) {
-      const double y = smallest_gap(limit, e), width = part.width[e];
+    limit->measure(replay.start(step).data());
+    for (std::size_t e = 0; e < y_start.size(); ++e) y_start[e] = limit->smallest_gap(e);
+    limit->measure(replay.end(step).data());
+    for (std::size_t e = 0; e < y_start.size(); ++e) {
+      const double y = limit->smallest_gap(e), width = part.width[e];
       if (!(y < width)) continue;
-      const double area = limit.rests()[e].area;
+      const double area = limit->measure_of(e);
       const double load = -(*pilot.stiffness.k_s * area) * log.eval(y, width).db / area;
       if (!(load > 0)) continue;
       const auto where = [&] { return name_element(scene, e); };

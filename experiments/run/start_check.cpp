@@ -7,7 +7,8 @@
 #include <string>
 
 #include "core/audit/audit.hpp"
-#include "core/energy/strain_limit_batch.hpp"
+#include "core/energy/families/limit_family.hpp"
+#include "core/exec/host_executor.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
 
@@ -76,15 +77,13 @@ std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene&
 }
 
 // The energy of a limit is infinite at and beyond it.
-template <class Batch, class Elements>
-std::optional<Verdict> beyond_limit(const Scene& scene, const Elements& elements, const StrainBands& bands) {
-  if (elements.empty()) return std::nullopt;
-  Batch batch(elements, scene.rest, bands.onset, bands.width, scene.planar);
-  batch.measure(scene.x0);
-  for (std::size_t e = 0; e < batch.size(); ++e) {
-    if (batch.smallest_gap(e) > 0) continue;
-    const double limit = bands.onset[e] + bands.width[e], stretch = limit - batch.smallest_gap(e);
-    const int body = scene.body[static_cast<std::size_t>(elements[e][0])];
+std::optional<Verdict> beyond_limit(const Scene& scene, LimitFamily& limited, const StrainBands& bands) {
+  limited.measure(scene.x0.data());
+  for (std::size_t e = 0; e < bands.width.size(); ++e) {
+    if (limited.smallest_gap(e) > 0) continue;
+    const double limit = bands.onset[e] + bands.width[e], stretch = limit - limited.smallest_gap(e);
+    const int vertex = limited.vertices()[e * static_cast<std::size_t>(limited.width())];
+    const int body = scene.body[static_cast<std::size_t>(vertex)];
     return Verdict{
         Outcome::invalid_scene,
         fmt::format("body \"{}\": element {} of the strain limit is stretched by {:.4g} at the start, and "
@@ -96,8 +95,11 @@ std::optional<Verdict> beyond_limit(const Scene& scene, const Elements& elements
 
 std::optional<Verdict> too_long(const RunConfig& config, const Scene& scene) {
   if (!config.strain_limit.enabled || config.step_solver.name == "article_literal") return std::nullopt;
-  if (auto found = beyond_limit<StrainLimitBatch>(scene, scene.limit.triangles, scene.limit)) return found;
-  return beyond_limit<SolidLimitBatch>(scene, scene.solid_limit.tetrahedra, scene.solid_limit);
+  exec::HostExecutor executor;
+  const auto triangles = limited_triangles({executor}, scene.limit, scene.rest, scene.planar);
+  if (auto found = beyond_limit(scene, *triangles, scene.limit)) return found;
+  return beyond_limit(scene, *limited_tetrahedra({executor}, scene.solid_limit, scene.rest),
+                      scene.solid_limit);
 }
 
 // Errors: Interrupted; TimeOver.

@@ -64,23 +64,23 @@ void fill_contacts(const ContactTable& rows, const Positions& dx, std::vector<do
   }
 }
 
-std::vector<double> smallest_gaps(StrainLimitBatch& limit, const Positions& x) {
-  limit.measure(x);
-  std::vector<double> out(limit.size());
-  for (std::size_t e = 0; e < limit.size(); ++e) out[e] = smallest_gap(limit, e);
+std::vector<double> smallest_gaps(LimitFamily& limit, const Positions& x) {
+  limit.measure(x.data());
+  std::vector<double> out(static_cast<std::size_t>(limit.size()));
+  for (std::size_t e = 0; e < out.size(); ++e) out[e] = limit.smallest_gap(e);
   return out;
 }
 
 // The gap of an element changes by a difference over a millionth of the side of the smallest element.
-void fill_elements(StrainLimitBatch& limit, const BarrierFunction& barrier, const std::vector<double>& width,
+void fill_elements(LimitFamily& limit, const BarrierFunction& barrier, const std::vector<double>& width,
                    const Positions& x, const Positions& dx, std::vector<double>& out) {
   const double largest = dx.cwiseAbs().maxCoeff();
   double area = std::numeric_limits<double>::infinity();
-  for (const auto& rest : limit.rests()) area = std::min(area, rest.area);
+  for (std::size_t e = 0; e < width.size(); ++e) area = std::min(area, limit.measure_of(e));
   const double t = largest > 0 ? 1e-6 * std::sqrt(area) / largest : 1;
   const std::vector<double> y = smallest_gaps(limit, x), less = smallest_gaps(limit, x - t * dx),
                             more = smallest_gaps(limit, x + t * dx);
-  for (std::size_t e = 0; e < limit.size(); ++e) {
+  for (std::size_t e = 0; e < width.size(); ++e) {
     if (!(y[e] < width[e])) continue;
     const auto b = barrier.eval(y[e], width[e]);
     if (b.db < 0) out[e] = 1 + b.d2b / b.db * (more[e] - less[e]) / (2 * t);
@@ -88,10 +88,6 @@ void fill_elements(StrainLimitBatch& limit, const BarrierFunction& barrier, cons
 }
 
 }  // namespace
-
-double smallest_gap(const StrainLimitBatch& limit, std::size_t element) {
-  return limit.smallest_gap(element);
-}
 
 void AnswerSums::add_contact(const ContactTable& rows, std::size_t row, double force, double answer) {
   for (std::size_t k = 4 * row; k < 4 * row + 4 && rows.vertex[k] >= 0; ++k) {
@@ -109,12 +105,12 @@ double AnswerSums::of_contact(const ContactTable& rows, std::size_t row) const {
   return weights > 0 ? sum / weights : 0;
 }
 
-StiffnessAnswers answers_to_stiffness(Diagnosis& system, StrainLimitBatch* limit,
+StiffnessAnswers answers_to_stiffness(Diagnosis& system, LimitFamily* limit,
                                       const BarrierFunction& limit_barrier, double dt) {
   StiffnessAnswers out;
   const ContactTable& rows = contact_state(system.terms()).rows;
   out.contact.assign(rows.size(), 0.0);
-  if (limit) out.limit.assign(limit->size(), 0.0);
+  if (limit) out.limit.assign(static_cast<std::size_t>(limit->size()), 0.0);
   const Positions push = -gradient_of(system, TermSet(TermGroup::limit) | TermGroup::contact);
   if (push.isZero(0)) return out;
   Positions dx;

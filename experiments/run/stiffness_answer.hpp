@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/contact/contact_table.hpp"
-#include "core/energy/strain_limit_batch.hpp"
+#include "core/energy/families/limit_family.hpp"
 #include "core/newton/newton_system.hpp"
 
 namespace bb {
@@ -48,17 +48,14 @@ class AnswerSums {
   std::vector<Sum> contact_, limit_;  // [vertices], [elements]
 };
 
-/// The pseudo-gap y of the singular value of an element that is closer to its limit, as measured last.
-double smallest_gap(const StrainLimitBatch& limit, std::size_t element);
-
 /// The answers of the quasi-static state: H dx/ds = -(grad B + grad S) with the clamped H of elements, limit and
 /// contacts, and f changes by 1 + b''/b' dd/ds. Inertia is left out but for 1e-6 of M/h^2, which holds bodies that
 /// nothing else holds: within a step it resists every change, over the steps of a run it carries no load.
 /// @param system assembled, with a fixed kappa and a barrier without potential
-/// @param limit  the limited elements of the scene, or null; measured anew
+/// @param limit  the limited triangles of the scene in the host's memory, or null; measured anew
 /// @param dt     s
 /// Cost: an assembly of clamped elements, a factorisation, a solve; none without an active barrier.
-StiffnessAnswers answers_to_stiffness(Diagnosis& system, StrainLimitBatch* limit,
+StiffnessAnswers answers_to_stiffness(Diagnosis& system, LimitFamily* limit,
                                       const BarrierFunction& limit_barrier, double dt);
 
 }  // namespace bb

@@ -20,11 +20,7 @@ inline std::unique_ptr<StiffnessPolicy> elastic_limit(const ElasticityInclusive&
 
 /// kappa_e (J) of an element of 2 m^2 and 1 kg at half of its width, without H.
 inline double kappa_of_element(const StiffnessPolicy& policy) {
-  const ElementSums<double> sums{3, 0, 1, 2};
-  const double gap = 0.5, width = 1;
-  double kappa = 0;
-  policy.fill_elements({1, &sums, &gap, &width, {}}, &kappa);
-  return kappa;
+  return policy.element_kappa({3, 0, 1, 2}, 0.5, 1, {});
 }
 
 }  // namespace bb::test

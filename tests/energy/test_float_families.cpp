@@ -4,9 +4,10 @@
 #include <cmath>
 #include <memory>
 
+#include "barriers/shapes/registry.hpp"
 #include "core/energy/membrane_model.hpp"
-#include "core/energy/strain_limit_batch.hpp"
 #include "tests/energy/host_family.hpp"
+#include "tests/energy/host_limit.hpp"
 #include "tests/energy/strip.hpp"
 
 namespace bb::test::float_families_test {
@@ -62,32 +63,22 @@ TEST(FloatFamilies, every_element_in_float_has_the_terms_of_double_to_the_roundi
   compare(hinges_of(hinges), strip.deformed);
 }
 
-/// (width - y)^2 of each singular value.
-struct Quadratic {
-  void eval(std::size_t n, const double* d, const double* d_hat, double* b, double* db, double* d2b) const {
-    for (std::size_t i = 0; i < n; ++i) {
-      const double y = std::max(0.0, d_hat[i] - d[i]);
-      b[i] = y * y;
-      db[i] = -2 * y;
-      d2b[i] = y > 0 ? 2 : 0;
-    }
-  }
-};
-
 TEST(FloatFamilies, the_strain_limit_measures_and_bounds_in_float) {
   const Strip strip(40);
-  const std::size_t n = strip.triangles.size();
-  const std::vector<double> onset(n, 0.0), width(n, 0.5), kappa(n, 2.0);
+  const StrainLimitPart part = limited(strip.triangles, 0, 0.5);
   const auto make = [&](Precision p) {
-    return std::make_unique<StrainLimitBatch>(strip.triangles, strip.rest, onset, width, false, p);
+    HostLimit out(part, strip.rest, false, p);
+    out.set_kappa(std::vector<double>(part.width.size(), 2));
+    return out;
   };
-  const auto full = make(Precision::full), mixed = make(Precision::mixed), single = make(Precision::single);
-  LocalTerms of_full, of_mixed, of_single;
-  Quadratic barrier;
-  full->derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, of_full);
-  mixed->derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, of_mixed);
-  single->derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, of_single);
-  ASSERT_GT(full->n_active(), 10U);
+  HostLimit full = make(Precision::full), mixed = make(Precision::mixed), single = make(Precision::single);
+  const BarrierFunction barrier{require_shape("quadratic"), Argument::gap};
+  BarrierFunction in_float = barrier;
+  in_float.in_float = true;
+  const LocalTerms of_full = full.derivatives(strip.deformed, barrier),
+                   of_mixed = mixed.derivatives(strip.deformed, barrier),
+                   of_single = single.derivatives(strip.deformed, in_float);
+  ASSERT_GT(full.n_active(), 10U);
   EXPECT_EQ(of_mixed.grad, of_full.grad);
   expect_rounded(of_single.grad, of_full.grad);
   EXPECT_LT(difference(of_single.hess, of_full.hess), 1e-3);
@@ -96,12 +87,12 @@ TEST(FloatFamilies, the_strain_limit_measures_and_bounds_in_float) {
 
   Positions stretch = strip.deformed;
   stretch.row(2).setZero();
-  const double in_double = full->step_bound(strip.deformed, stretch),
-               in_float = single->step_bound(strip.deformed, stretch);
-  ASSERT_LT(in_double, 1);
-  EXPECT_NEAR(in_float, in_double, 1e-5);
-  EXPECT_EQ(static_cast<double>(static_cast<float>(in_float)), in_float);
-  EXPECT_NE(in_float, in_double);
+  const double alpha = full.step_bound(strip.deformed, stretch),
+               alpha_in_float = single.step_bound(strip.deformed, stretch);
+  ASSERT_LT(alpha, 1);
+  EXPECT_NEAR(alpha_in_float, alpha, 1e-5);
+  EXPECT_EQ(static_cast<double>(static_cast<float>(alpha_in_float)), alpha_in_float);
+  EXPECT_NE(alpha_in_float, alpha);
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
 // Strain limiting of a tetrahedron: derivatives against differences of the closed form, inverted states included, exact zeros, the
-// step bound, the batch.
+// step bound.
 #include <gtest/gtest.h>
 
-#include "core/energy/strain_limit_batch.hpp"
-#include "core/math/error.hpp"
-#include "core/mesh/solid_generators.hpp"
+#include "core/energy/strain_limit.hpp"
 #include "tests/energy/energy_cases.hpp"
 #include "tests/energy/strain_shapes.hpp"
 #include "tests/oracle/dense.hpp"
@@ -165,82 +163,6 @@ TEST(SolidLimit, the_step_bound_is_the_last_feasible_number_through_inversion_to
     check_step_bound<float>(from, to);
   }
   EXPECT_GT(through, 3);
-}
-
-struct Block {
-  TriangleMesh mesh = solid_box_mesh({3, 2, 2}, Vec3d(0.6, 0.4, 0.4));
-  Positions deformed = mesh.vertices;
-  Block() {
-    for (Eigen::Index i = 0; i < deformed.size(); ++i)
-      deformed.data()[i] *= 1 + 0.2 * std::sin(static_cast<double>(i));
-  }
-  SolidLimitBatch batch(double onset, double width) const {
-    const std::size_t n = mesh.tetrahedra.size();
-    return {mesh.tetrahedra, mesh.vertices, std::vector<double>(n, onset), std::vector<double>(n, width)};
-  }
-};
-
-TEST(SolidLimitBatch, columns_and_terms_are_those_of_the_elements) {
-  const Block block;
-  SolidLimitBatch batch = block.batch(0.1, 0.9);
-  const std::size_t n = batch.size();
-  ASSERT_EQ(batch.sigma().size(), 3 * n);
-  std::vector<double> stiffness(n, 2.0), energy(n);
-  LocalTerms out;
-  const BatchOf<LogStandIn> barrier;
-  batch.derivatives(block.deformed, barrier, stiffness.data(), Projection::psd, out);
-  batch.values(block.deformed, barrier, stiffness.data(), energy.data());
-  EXPECT_GT(batch.n_active(), 5u);
-  EXPECT_LT(batch.n_active(), n);
-  EXPECT_NEAR(batch.min_gap(), 0.9 - (batch.max_stretch() - 0.1), 1e-15);
-  for (std::size_t e = 0; e < n; ++e) {
-    double expected = 0;
-    for (std::size_t k = 0; k < 3; ++k) expected += 2 * LogStandIn{}(batch.gaps()[3 * e + k], 0.9).b;
-    EXPECT_NEAR(energy[e], expected, 1e-15);
-    EXPECT_NEAR(out.energy[e], expected, 1e-15);
-    EXPECT_EQ(batch.smallest_gap(e), batch.gaps()[3 * e]);
-    EXPECT_NEAR(batch.measure_of(e), 0.096 / static_cast<double>(n), 0.02);
-  }
-  const Positions dx = 20 * (block.deformed - block.mesh.vertices);
-  const double alpha = batch.step_bound(block.mesh.vertices, dx);
-  ASSERT_GT(alpha, 0);
-  ASSERT_LT(alpha, 1);
-  batch.measure(Positions(block.mesh.vertices + alpha * dx));
-  EXPECT_GT(batch.min_gap(), 0);
-  batch.measure(Positions(block.mesh.vertices + std::nextafter(alpha, 1.0) * dx));
-  EXPECT_LE(batch.min_gap(), 0);
-}
-
-TEST(SolidLimitBatch, sums_for_policies_are_over_four_points_and_the_volume) {
-  const Block block;
-  SolidLimitBatch batch = block.batch(0.1, 0.9);
-  const std::size_t n = batch.size();
-  std::vector<double> hess(144 * n, 0.0), element_mass(n, 0.3);
-  for (std::size_t e = 0; e < n; ++e) {
-    for (std::size_t i = 0; i < 12; ++i) hess[144 * e + 13 * i] = 1 + static_cast<double>(e);
-  }
-  const std::vector<double> mass(static_cast<std::size_t>(block.deformed.cols()), 0.01);
-  std::vector<ElementSums<double>> sums(n);
-  batch.stiffness_sums(block.deformed, hess.data(), mass.data(), element_mass.data(), sums.data());
-  const auto& t = block.mesh.tetrahedra[4];
-  Vec3d centroid = Vec3d::Zero();
-  for (const int v : t) centroid += block.deformed.col(v) / 4;
-  double w_sq = 0;
-  for (const int v : t) w_sq += (block.deformed.col(v) - centroid).squaredNorm();
-  ASSERT_GT(w_sq, 0);
-  EXPECT_NEAR(sums[4].elastic, 5 * w_sq, 1e-14);
-  EXPECT_NEAR(sums[4].mass, 0.01 * w_sq, 1e-16);
-  EXPECT_EQ(sums[4].element_mass, 0.3);
-  EXPECT_EQ(sums[4].measure, batch.rests()[4].volume);
-}
-
-TEST(SolidLimitBatch, flat_tetrahedra_and_bad_columns_are_config_errors) {
-  Block block;
-  const std::size_t n = block.mesh.tetrahedra.size();
-  const std::vector<double> good(n, 0.1), bad(n, 0.0);
-  EXPECT_THROW(SolidLimitBatch(block.mesh.tetrahedra, block.mesh.vertices, good, bad), ConfigError);
-  block.mesh.vertices.row(2).setZero();
-  EXPECT_THROW(SolidLimitBatch(block.mesh.tetrahedra, block.mesh.vertices, good, good), ConfigError);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/exec/host_executor.hpp"
 #include "core/terms/contact.hpp"
 #include "tests/experiments/state_at_rest.hpp"
 
@@ -86,13 +87,14 @@ LimitAtRest limit_at_rest(double k_s) {
   LimitAtRest out;
   at_rest(curtain(k_s), [&](const Scene& scene, const Positions& x, NewtonSystem& system, double dt) {
     const StrainLimitPart& part = scene.limit;
-    StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width);
-    const StiffnessAnswers answers = answers_to_stiffness(system.diagnosis(), &limit, log_barrier(), dt);
+    exec::HostExecutor executor;
+    const auto limit = limited_triangles({executor}, part, scene.rest, false);
+    const StiffnessAnswers answers = answers_to_stiffness(system.diagnosis(), limit.get(), log_barrier(), dt);
     EXPECT_TRUE(answers.known);
-    limit.measure(x);
+    limit->measure(x.data());
     out.answer = answers.limit;
-    for (std::size_t e = 0; e < limit.size(); ++e) {
-      const double y = smallest_gap(limit, e), width = part.width[e];
+    for (std::size_t e = 0; e < part.width.size(); ++e) {
+      const double y = limit->smallest_gap(e), width = part.width[e];
       out.force.push_back(y < width ? -k_s * log_barrier().eval(y, width).db : 0);
     }
   });

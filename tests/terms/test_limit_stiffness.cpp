@@ -22,6 +22,7 @@ struct Limited {
   BlockSystem::Values elastic;
   Positions no_gradient = Positions::Zero(3, 4);
   PhaseClock clock;
+  exec::HostExecutor executor;
   std::unique_ptr<StrainLimitTerm> term;
 
   explicit Limited(std::unique_ptr<StiffnessPolicy> policy) {
@@ -30,7 +31,7 @@ struct Limited {
     elastic.assign(9 * 4, 0.0);
     for (std::size_t i = 0; i < elastic.size(); i += 9)
       elastic[i] = elastic[i + 4] = elastic[i + 8] = diagonal;
-    term = std::make_unique<StrainLimitTerm>(scene, options, fixed);
+    term = std::make_unique<StrainLimitTerm>(executor, scene, options, fixed, false);
   }
   static Scene two_triangles() {
     SceneBuilder builder("limited", false, Vec3d::Zero(), "test");
@@ -66,11 +67,11 @@ Rule rule_of(MassTerm mass_term, bool elastic_term, Refresh refresh) {
 
 /// Smaller pseudo-gap of every element.
 std::vector<double> gaps_at(const Scene& scene, const Positions& x) {
-  StrainLimitBatch batch(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width);
-  batch.measure(x);
+  exec::HostExecutor executor;
+  const auto limit = limited_triangles({executor}, scene.limit, scene.rest, false);
+  limit->measure(x.data());
   std::vector<double> out;
-  for (std::size_t e = 0; e < batch.size(); ++e)
-    out.push_back(std::min(batch.gaps()[2 * e], batch.gaps()[2 * e + 1]));
+  for (std::size_t e = 0; e < scene.limit.width.size(); ++e) out.push_back(limit->smallest_gap(e));
   return out;
 }
 

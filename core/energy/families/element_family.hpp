@@ -86,9 +86,9 @@ class ElementFamily {
   virtual void keep(Archive&) {}
 };
 
-/// A family of one kind (element_kernels.hpp).
-template <class Elements>
-class FamilyOf : public ElementFamily {
+/// A family of one kind (element_kernels.hpp). Base: what it is besides.
+template <class Elements, class Base = ElementFamily>
+class FamilyOf : public Base {
  public:
   int width() const override { return Elements::width; }
   std::span<const int> vertices() const override { return vertices_; }
@@ -148,10 +148,11 @@ class FamilyOf : public ElementFamily {
   }
 
  protected:
-  /// name: of the buffer of vertices.
-  template <std::size_t W>
-  FamilyOf(const FamilyPlace& place, const std::string& name, std::span<const std::array<int, W>> elements)
-      : place_(place), vertex_(place.executor, name) {
+  /// name: of the buffer of vertices. of_base: arguments of Base.
+  template <std::size_t W, class... OfBase>
+  FamilyOf(const FamilyPlace& place, const std::string& name, std::span<const std::array<int, W>> elements,
+           OfBase&... of_base)
+      : Base(of_base...), place_(place), vertex_(place.executor, name) {
     static_assert(W == Elements::width);
     if (!elements.empty()) vertices_ = {elements.front().data(), W * elements.size()};
     upload_vertices();
@@ -172,7 +173,7 @@ class FamilyOf : public ElementFamily {
   void upload_vertices() {
     vertex_.upload(to_columns(vertices_, Elements::width));
     elements_.of = vertex_.data();
-    elements_.n = size();
+    elements_.n = this->size();
   }
   template <class F>
   void with_scalar(const F& f) const {

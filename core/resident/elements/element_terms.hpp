@@ -9,7 +9,7 @@ namespace bb::resident {
 MakeResident make_resident_inertia, make_resident_external_force;
 MakeResident make_resident_pull, make_resident_air_drag, make_resident_inflation, make_resident_stitch;
 /// Errors: ConfigError for a barrier shape that is not in barriers/shapes (a plugin's has no kernel), for a policy without
-/// kernel, and those of StrainLimitBatch.
+/// kernel, and those of StrainLimitState.
 MakeResident make_resident_strain_limit;
 
 }  // namespace bb::resident

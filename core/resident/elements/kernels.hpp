@@ -5,6 +5,7 @@
 #include "core/energy/families/element_kernels.hpp"
 #include "core/energy/families/hinges.hpp"
 #include "core/energy/families/inflation.hpp"
+#include "core/energy/families/limit_kernels.hpp"
 #include "core/energy/families/membrane.hpp"
 #include "core/energy/families/quadratics.hpp"
 #include "core/energy/families/rods.hpp"
@@ -13,5 +14,4 @@
 #include "core/exec/sums/sum_kernels.hpp"
 #include "core/exec/sums/vector_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
-#include "core/resident/elements/limit_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"

@@ -1,5 +1,5 @@
 // The strain limit: pseudo-gaps, barrier terms, stiffness, energies and step bound of limited triangles (N = 2 singular values)
-// and tetrahedra (N = 3).
+// and tetrahedra (N = 3). A host may choose the scalar T of what is measured; a card has double alone.
 #pragma once
 
 #include <type_traits>
@@ -9,14 +9,13 @@
 #include "core/barrier/scaled_policy.hpp"
 #include "core/barrier/shape_potential.hpp"
 #include "core/energy/families/element_kernels.hpp"
+#include "core/energy/families/limit_values.hpp"
 #include "core/energy/families/rest_kernels.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/energy/strain_stiffness.hpp"
-#include "core/exec/sums/sum_kernels.hpp"
 #include "core/linear/executor/sub_matrix.hpp"
-#include "core/resident/elements/gather_kernels.hpp"
 
-namespace bb::resident {
+namespace bb {
 
 template <int N>
 using LimitedRest = std::conditional_t<N == 2, TriangleRest<double>, TetrahedronRest<double>>;
@@ -32,22 +31,27 @@ struct LimitColumns : ElementVertices<N + 1> {
   double *b, *db, *d2b;  // [N, n] barrier terms there, for kappa = 1; with kappa where it has a potential
   double* kappa;         // [n] J; 1 where it has a potential
 
-  BB_HD StrainBand<double> band(Index e) const { return {onset[e], band_width[e]}; }
+  template <class T = double>
+  BB_HD StrainBand<T> band(exec::Index e) const {
+    return {static_cast<T>(onset[e]), static_cast<T>(band_width[e])};
+  }
   /// The N numbers of element e.
-  BB_HD Vec<double, N> of_element(const double* column, Index e) const {
-    Vec<double, N> out;
-    for (int k = 0; k < N; ++k) out[k] = column[k * n + e];
+  template <class T>
+  BB_HD Vec<T, N> of_element(const double* column, exec::Index e) const {
+    Vec<T, N> out;
+    for (int k = 0; k < N; ++k) out[k] = static_cast<T>(column[k * n + e]);
     return out;
   }
-  BB_HD StrainShape<double, N> shape(Index e) const {
-    return {of_element(b, e), of_element(db, e), of_element(d2b, e)};
+  template <class T>
+  BB_HD StrainShape<T, N> shape(exec::Index e) const {
+    return {of_element<T>(b, e), of_element<T>(db, e), of_element<T>(d2b, e)};
   }
-  BB_HD double smallest_gap(Index e) const {
+  BB_HD double smallest_gap(exec::Index e) const {
     double least = gap[e];
     for (int k = 1; k < N; ++k) least = gap[k * n + e] < least ? gap[k * n + e] : least;
     return least;
   }
-  BB_HD double energy(Index e) const {
+  BB_HD double energy(exec::Index e) const {
     double sum = b[e];
     for (int k = 1; k < N; ++k) sum += b[k * n + e];
     return kappa[e] * sum;
@@ -57,15 +61,20 @@ struct LimitColumns : ElementVertices<N + 1> {
 /// As a family of elements. x is the measured state. R: 3 in space, 2 in the x-y plane.
 template <int R, int N>
 struct Limit : LimitColumns<N> {
-  BB_HD double value(const double*, Index e) const { return this->energy(e); }
-  BB_HD ElementTerms<double, 3 * (N + 1)> terms(const double* x, Index e, Projection projection) const {
-    Vec3d p[N + 1];
+  template <class T = double>
+  BB_HD double value(const double*, exec::Index e) const {
+    return this->energy(e);
+  }
+  template <class T = double>
+  BB_HD ElementTerms<T, 3 * (N + 1)> terms(const double* x, exec::Index e, Projection projection) const {
+    Vec<T, 3> p[N + 1];
     this->points(x, e, p);
-    const LimitedRest<N> at_rest = this->rest.at(e, this->n);
-    Svd<double, R, N> svd{{}, this->of_element(this->sigma, e), {}};  // an inactive element needs no factors
+    const auto at_rest = this->rest.template at<T>(e, this->n);
+    // an inactive element needs no factors
+    Svd<T, R, N> svd{{}, this->template of_element<T>(this->sigma, e), {}};
     if (this->gap[e] < this->band_width[e]) svd = signed_svd(deformation_gradient<R>(at_rest, p));
-    return strain_limit_terms<R, double>(at_rest, svd, this->band(e), this->shape(e), this->kappa[e],
-                                         projection);
+    return strain_limit_terms<R, T>(at_rest, svd, this->template band<T>(e), this->template shape<T>(e),
+                                    static_cast<T>(this->kappa[e]), projection);
   }
 };
 using SpaceLimit = Limit<3, 2>;
@@ -73,21 +82,21 @@ using PlanarLimit = Limit<2, 2>;
 using SolidLimit = Limit<3, 3>;
 
 /// Singular values and pseudo-gaps of an element at x.
-template <int R, int N>
-BB_HD void measure_stretch(const LimitColumns<N>& limit, const double* x, Index e) {
-  Vec3d p[N + 1];
+template <int R, class T, int N>
+BB_HD void measure_stretch(const LimitColumns<N>& limit, const double* x, exec::Index e) {
+  Vec<T, 3> p[N + 1];
   limit.points(x, e, p);
-  const Vec<double, N> sigma = signed_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
+  const Vec<T, N> sigma = signed_svd(deformation_gradient<R>(limit.rest.template at<T>(e, limit.n), p)).sigma;
   for (int k = 0; k < N; ++k) {
     limit.sigma[k * limit.n + e] = sigma[k];
-    limit.gap[k * limit.n + e] = stretch_gap(sigma[k], limit.band(e));
+    limit.gap[k * limit.n + e] = stretch_gap(sigma[k], limit.template band<T>(e));
   }
 }
-template <int R, int N>
+template <int R, int N, class T = double>
 struct MeasureStretch {
   LimitColumns<N> limit;
   const double* x;
-  BB_HD void operator()(Index e) const { measure_stretch<R, N>(limit, x, e); }
+  BB_HD void operator()(exec::Index e) const { measure_stretch<R, T>(limit, x, e); }
 };
 
 /// Barrier terms at the measured pseudo-gaps, one an item of [N, n]; infinite at or beyond the limit.
@@ -97,8 +106,8 @@ struct LimitShape {
   Argument argument;
   bool literal;
   const KappaParts* parts;  // [n] J, where kappa has a potential; else null
-  BB_HD void operator()(Index i) const {
-    const Index e = i % limit.n;
+  BB_HD void operator()(exec::Index i) const {
+    const exec::Index e = i % limit.n;
     const double gap = limit.gap[i], width = limit.band_width[e];
     const bool inside = literal || gap > 0;
     ShapeTerms<double> terms = barrier_row<S, double>(argument, literal, inside ? gap : width, width);
@@ -119,25 +128,29 @@ struct LimitShape {
 struct MeasureAt {
   const double* x;
   double* energy;
-  Key* beyond;
+  exec::Key* beyond;
 };
 
-/// Both, and energies and the first element at or beyond its limit, or without a number: of a state whose kappa is known.
+/// Energies, and the first element at or beyond its limit, or without a number.
+template <int N>
+BB_HD void finish_measure(const LimitColumns<N>& limit, const MeasureAt& at, exec::Index e) {
+  at.energy[e] = limit.energy(e);
+  if (!(limit.smallest_gap(e) > 0)) exec::atomic_min(at.beyond, static_cast<exec::Key>(e));
+}
+
+/// Pseudo-gaps, barrier terms and energies of a state whose kappa is known.
 template <int R, int N, class S>
 struct MeasureLimit {
   LimitShape<N, S> shape;
-  const double* x;
-  double* energy;  // [n] J
-  Key* beyond;
-  BB_HD void operator()(Index e) const {
+  MeasureAt at;
+  BB_HD void operator()(exec::Index e) const {
     const LimitColumns<N>& limit = shape.limit;
-    measure_stretch<R, N>(limit, x, e);
+    measure_stretch<R, double>(limit, at.x, e);
 #ifdef __CUDACC__
 #pragma unroll 1  // the code of the shape once, and not once a singular value
 #endif
     for (int k = 0; k < N; ++k) shape(k * limit.n + e);
-    energy[e] = limit.energy(e);
-    if (!(limit.smallest_gap(e) > 0)) exec::atomic_min(beyond, static_cast<Key>(e));
+    finish_measure(limit, at, e);
   }
 };
 
@@ -145,11 +158,8 @@ template <int N>
 struct ElementKappaInputs {
   LimitColumns<N> limit;
   bool with_hessian;
-  StiffnessTime time;
-  const double* x_n;           // [3 n_vertices] m, start of the step
-  const double* vertex_mass;   // [n_vertices] kg
+  KappaSources from;
   const double* element_mass;  // [n] kg; null where the policy is uniform
-  MatrixPart elastic;          // read where the policy needs it
   KappaParts* parts;           // [n] J, written where kappa has a potential; else null
   double* before;              // [n] J, kappa before this refresh; null where the policy is uniform
 };
@@ -159,21 +169,24 @@ template <int N, class P>
 struct ElementKappa {
   ElementKappaInputs<N> of;
   ScaledPolicy<P> policy;
-  BB_HD void operator()(Index e) const {
+  BB_HD void operator()(exec::Index e) const {
     const LimitColumns<N>& limit = of.limit;
     const ElementSums<double> sums = sums_of(e);
     if (of.before) of.before[e] = limit.kappa[e];
     if (of.parts) {
-      of.parts[e] = policy.element_parts(sums, limit.band_width[e], of.time);
+      of.parts[e] = policy.element_parts(sums, limit.band_width[e], of.from.time);
       limit.kappa[e] = 1;
       return;
     }
-    limit.kappa[e] = policy.element_kappa(sums, limit.smallest_gap(e), limit.band_width[e], of.time);
+    limit.kappa[e] = policy.element_kappa(sums, limit.smallest_gap(e), limit.band_width[e], of.from.time);
   }
 
  private:
+  static constexpr int size = 3 * (N + 1);
+  using Block = Mat<double, size, size>;
+
   /// A policy of one stiffness reads the area or volume alone.
-  BB_HD ElementSums<double> sums_of(Index e) const {
+  BB_HD ElementSums<double> sums_of(exec::Index e) const {
     const LimitColumns<N>& limit = of.limit;
     if constexpr (requires { policy.values.uniform_kappa(); }) {
       ElementSums<double> out;
@@ -182,19 +195,23 @@ struct ElementKappa {
     } else {
       Vec3d p[N + 1];
       Vec<double, N + 1> mass;
-      limit.points(of.x_n, e, p);
-      for (int k = 0; k <= N; ++k) mass[k] = of.vertex_mass[limit.vertex(k, e)];
+      limit.points(of.from.x_n, e, p);
+      for (int k = 0; k <= N; ++k) mass[k] = of.from.vertex_mass[limit.vertex(k, e)];
       return element_sums<double>(
           p, mass, of.element_mass ? of.element_mass[e] : 0.0, limit.rest.measure[e],
           [&] { return elastic_block(e); }, of.with_hessian);
     }
   }
-  BB_HD Mat<double, 3 * (N + 1), 3 * (N + 1)> elastic_block(Index e) const {
-    constexpr int size = 3 * (N + 1);
+  BB_HD Block elastic_block(exec::Index e) const {
+    Block out;
+    if (of.from.elastic.gathered) {
+      const double* block = of.from.elastic.gathered + size * size * e;
+      for (int i = 0; i < size * size; ++i) out.data()[i] = block[i];
+      return out;
+    }
     int vertices[N + 1];
     for (int k = 0; k <= N; ++k) vertices[k] = of.limit.vertex(k, e);
-    const SubMatrix h(of.elastic, vertices, N + 1);
-    Mat<double, size, size> out;
+    const resident::SubMatrix h(of.from.elastic.part, vertices, N + 1);
     for (int j = 0; j < size; ++j) {
       for (int i = 0; i < size; ++i) out(i, j) = h(i, j);
     }
@@ -203,61 +220,51 @@ struct ElementKappa {
 };
 
 /// Least of the elements' step bounds below `alpha`, as ordered bits. R as in Limit.
-template <int R, int N>
+template <int R, int N, class T = double>
 struct StretchBound {
   LimitColumns<N> limit;
   const double *x, *dx;
   double alpha, park;
-  const Key* before;  // the bits of alpha instead, all ones where this is no bound; or null
-  Key* smallest;
-  BB_HD void operator()(Index e) const {
-    if (before && *before == ~Key{0}) return;
-    const double most = before ? exec::from_ordered_bits(*before) : alpha;
-    Vec3d p[N + 1], step[N + 1];
+  const exec::Key* before;  // the bits of alpha instead, all ones where this is no bound; or null
+  exec::Key* smallest;
+  BB_HD void operator()(exec::Index e) const {
+    if (before && *before == ~exec::Key{0}) return;
+    const T most = static_cast<T>(before ? exec::from_ordered_bits(*before) : alpha);
+    Vec<T, 3> p[N + 1], step[N + 1];
     limit.points(x, e, p);
     limit.points(dx, e, step);
-    const double bound =
-        strain_step_bound<R, double>(limit.rest.at(e, limit.n), p, step, limit.band(e), most, park);
+    const T bound = strain_step_bound<R, T>(limit.rest.template at<T>(e, limit.n), p, step,
+                                            limit.template band<T>(e), most, static_cast<T>(park));
     if (bound < most) exec::atomic_min(smallest, exec::ordered_bits(bound));
   }
 };
 
-// --- keys (sum_kernels.hpp)
+// --- keys and sums (sum_kernels.hpp)
 /// Largest change of the kappa of active elements.
 template <int N>
 struct LimitKappaChange {
   LimitColumns<N> limit;
   const double* before;
-  BB_HD Key operator()(Index e) const {
+  BB_HD exec::Key operator()(exec::Index e) const {
     const bool active = limit.smallest_gap(e) < limit.band_width[e];
-    return largest_key(active ? relative_change(before[e], limit.kappa[e]) : 0.0);
-  }
-};
-/// What is said of a state: complements of keys (sum_kernels.hpp) of the largest singular value, of the largest force of
-/// an active element over its rest area or volume, N/m or Pa, and of the smallest pseudo-gap in units of the width.
-struct LimitNumbers {
-  Key stretch, load, gap;
-  BB_HD static LimitNumbers zero() { return {0, 0, 0}; }
-  friend BB_HD LimitNumbers operator+(const LimitNumbers& a, const LimitNumbers& b) {
-    LimitNumbers out = a;
-    raise_key(out.stretch, b.stretch), raise_key(out.load, b.load), raise_key(out.gap, b.gap);
-    return out;
+    return resident::largest_key(active ? relative_change(before[e], limit.kappa[e]) : 0.0);
   }
 };
 template <int N>
 struct LimitParts {
   using Sum = LimitNumbers;
   LimitColumns<N> limit;
-  BB_HD double load(Index i, Index e) const {
+  BB_HD double load(exec::Index i, exec::Index e) const {
     using std::abs;
     const bool active = limit.gap[i] < limit.band_width[e];
     return active ? abs(limit.kappa[e] * limit.db[i]) / limit.rest.measure[e] : 0.0;
   }
-  BB_HD void operator()(Index e, LimitNumbers& sum) const {
-    raise_key(sum.stretch, ~largest_key(limit.sigma[e]));
-    for (int k = 0; k < N; ++k) raise_key(sum.load, ~largest_key(load(k * limit.n + e, e)));
-    raise_key(sum.gap, ~smallest_key(limit.smallest_gap(e) / limit.band_width[e]));
+  BB_HD void operator()(exec::Index e, LimitNumbers& sum) const {
+    resident::raise_key(sum.stretch, ~resident::largest_key(limit.sigma[e]));
+    for (int k = 0; k < N; ++k)
+      resident::raise_key(sum.load, ~resident::largest_key(load(k * limit.n + e, e)));
+    resident::raise_key(sum.gap, ~resident::smallest_key(limit.smallest_gap(e) / limit.band_width[e]));
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb
