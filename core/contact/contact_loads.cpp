@@ -29,7 +29,7 @@ void ContactLoads::clear() {
 void add_loads(const ContactTable& rows, ContactLoads& out) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     add_row(rows, r, out);
-    out.load.push_back(-rows.kappa[r] * rows.db[r]);
+    out.load.push_back(-rows.force(r));
   }
 }
 

@@ -62,13 +62,16 @@ struct ContactTable {
   /// [n] N/m: what kappa the row came with when its iterate was accepted; 0: it was not there before. Empty
   /// of meaning in rows that no stiffness was given to.
   std::vector<double> kappa_before;
-  /// [n] m^2, m, 1. kappa times these are energy, force and curvature, kappa'(d) included where the policy has a
+  /// [n] m^2, m, 1. kappa times these are energy, force and stiffness, kappa'(d) included where the policy has a
   /// potential.
   std::vector<double> b, db, d2b;
   // obstacle rows only, else 0; of vertices grad^2 d = curvature (I - n n^T - flat flat^T)
   std::vector<double> curvature;  // [n] 1/m
   std::vector<double> flat;       // [3 n] axis of a cylinder, else 0
 
+  /// kappa b' (N) and kappa b'' (N/m): what columns in an executor's memory are called (resident_rows.hpp).
+  double force(std::size_t r) const { return kappa[r] * db[r]; }
+  double stiffness(std::size_t r) const { return kappa[r] * d2b[r]; }
   std::size_t size() const { return d.size(); }
   ContactKey key(std::size_t r) const { return key_of(pair[r], &stencil[4 * r], &stencil_weight[4 * r]); }
   void resize(std::size_t n);
@@ -93,6 +96,8 @@ struct MollifiedTable {
   std::vector<double> normal;    // [3 n]
 
   ContactKey key(std::size_t r) const { return key_of(pair[r], &stencil[4 * r], &stencil_weight[4 * r]); }
+  double force(std::size_t r) const { return kappa[r] * db[r]; }  // of b alone
+  double stiffness(std::size_t r) const { return kappa[r] * d2b[r]; }
   bool of_axis(std::size_t r) const {
     return axis[3 * r] != 0 || axis[3 * r + 1] != 0 || axis[3 * r + 2] != 0;
   }

@@ -121,9 +121,9 @@ void add_given_motion(const ContactTable& rows, const PositionsView& motion, Pos
       if (vertex >= 0) closing += rows.stencil_weight[4 * r + k] * normal.dot(motion.col(vertex));
     }
     if (closing == 0) continue;
-    const double curvature = rows.kappa[r] * rows.d2b[r];
+    const double stiffness = rows.stiffness(r);
     for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
-      force.col(rows.vertex[4 * r + k]) += (curvature * closing * rows.weight[4 * r + k]) * normal;
+      force.col(rows.vertex[4 * r + k]) += (stiffness * closing * rows.weight[4 * r + k]) * normal;
     }
   }
 }

@@ -64,7 +64,7 @@ void BarrierMultipliers::collect(const Table& rows, bool join) {
     const Entry* known = find(rows.pair[r]);
     if (!known && (!join || rows.d[r] >= rules_.near * rows.d_hat[r])) continue;
     const double before = known ? known->force : 0, share = known ? 2 : 1;
-    const double of_barrier = -rows.kappa[r] * rows.db[r] + before * fade(rows.d[r], rows.d_hat[r]).slope;
+    const double of_barrier = -rows.force(r) + before * fade(rows.d[r], rows.d_hat[r]).slope;
     next_.push_back({rows.pair[r], before + std::max(0.0, of_barrier) / share});
   }
 }

@@ -15,8 +15,7 @@ namespace {
 RowTotals totals_of(const ContactState& state) {
   RowTotals out = RowTotals::zero();
   const auto add = [&out](std::uint8_t kind, const auto& rows, std::size_t r) {
-    out.add({kind, rows.d[r], rows.d_hat[r], rows.kappa[r], rows.kappa[r] * rows.db[r],
-             rows.kappa[r] * rows.d2b[r]});
+    out.add({kind, rows.d[r], rows.d_hat[r], rows.kappa[r], rows.force(r), rows.stiffness(r)});
   };
   for (std::size_t r = 0; r < state.rows.size(); ++r)
     add(static_cast<std::uint8_t>(state.rows.kind[r]), state.rows, r);
@@ -54,7 +53,7 @@ void report_end_of(const ContactState& state, Precision precision, const Positio
   out.contact_loads.clear();
   const ContactTable& rows = state.rows;
   for (std::size_t r = 0; r < rows.size(); ++r)
-    add_load(rows.key(r), rows.d[r] / rows.d_hat[r], -rows.kappa[r] * rows.db[r], out);
+    add_load(rows.key(r), rows.d[r] / rows.d_hat[r], -rows.force(r), out);
 }
 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and

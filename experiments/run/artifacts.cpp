@@ -68,7 +68,7 @@ ContactFields contact_fields(const ContactState& state, int n_vertices) {
   gather(state.mollified);
   const auto add_load = [&fields](const auto& rows, const std::vector<int>& vertex) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const double force = -rows.kappa[r] * rows.db[r];
+      const double force = -rows.force(r);
       for (std::size_t k = 4 * r; k < 4 * r + 4; ++k) {
         if (vertex[k] >= 0)
           fields.load[static_cast<std::size_t>(vertex[k])] += std::abs(rows.weight[k]) * force;

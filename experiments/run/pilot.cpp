@@ -112,8 +112,7 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
 // The answers of one step's end, each with its force.
 void add_answers(const Pilot& pilot, const StiffnessAnswers& answers, const ContactTable& rows,
                  LimitFamily* limit, const Scene& scene, const Positions& x, AnswerSums& out) {
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    out.add_contact(rows, r, -rows.kappa[r] * rows.db[r], answers.contact[r]);
+  for (std::size_t r = 0; r < rows.size(); ++r) out.add_contact(rows, r, -rows.force(r), answers.contact[r]);
   if (!limit) return;
   limit->measure(x.data());
   for (std::size_t e = 0; e < scene.limit.width.size(); ++e) {

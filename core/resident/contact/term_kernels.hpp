@@ -32,10 +32,12 @@ BB_HD inline Vec<double, 4> weights_of(const RowView& rows, Index r) {
                         rows.weight[3 * rows.n + r]);
 }
 
-BB_HD inline Mat<double, 3, 4> row_points(const RowView& rows, Index r, const double* x) {
-  const int vertex[4] = {rows.vertex[r], rows.vertex[rows.n + r], rows.vertex[2 * rows.n + r],
-                         rows.vertex[3 * rows.n + r]};
-  return points_of<4>(x, vertex);
+/// The first N vertices of a row, m.
+template <int N>
+BB_HD Mat<double, 3, N> leading_points(const RowView& rows, Index r, const double* x) {
+  int vertex[N];
+  for (int k = 0; k < N; ++k) vertex[k] = rows.vertex[k * rows.n + r];
+  return points_of<N>(x, vertex);
 }
 
 /// Offset of a pair that is not one with an obstacle, m.
@@ -64,13 +66,6 @@ BB_HD inline bool of_axis(const RowView& rows, Index r) {
   return pair_list(rows.pair[r]) == obstacle_pairs_of<2>;
 }
 
-template <int N>
-BB_HD Mat<double, 3, N> leading_points(const RowView& rows, Index r, const double* x) {
-  int vertex[N];
-  for (int k = 0; k < N; ++k) vertex[k] = rows.vertex[k * rows.n + r];
-  return points_of<N>(x, vertex);
-}
-
 /// Value and derivatives of a mollified row at a state.
 struct MollifiedRowAt {
   RowView rows;
@@ -80,19 +75,20 @@ struct MollifiedRowAt {
   BB_HD MollifiedDerivatives<double> derivatives(Index r) const {
     const double b = rows.energy[r], db = rows.force[r], d2b = rows.stiffness[r];
     if (!of_axis(rows, r)) {
-      return mollified_derivatives<double>(row_points(rows, r, x), threshold(r), b, db, d2b);
+      return mollified_derivatives<double>(leading_points<4>(rows, r, x), threshold(r), b, db, d2b);
     }
     return mollified_derivatives<double>(across_axis(r), obstacle_of(surface, rows.pair[r], x).axis,
                                          threshold_of_axis(r), b, db, d2b);
   }
   BB_HD double mollifier(Index r) const {
-    if (!of_axis(rows, r)) return edge_edge_mollifier_value<double>(row_points(rows, r, x), threshold(r));
+    if (!of_axis(rows, r))
+      return edge_edge_mollifier_value<double>(leading_points<4>(rows, r, x), threshold(r));
     return edge_axis_mollifier_value<double>(across_axis(r), threshold_of_axis(r));
   }
 
  private:
   BB_HD double threshold(Index r) const {
-    return edge_edge_mollifier_threshold<double>(row_points(rows, r, surface.rest));
+    return edge_edge_mollifier_threshold<double>(leading_points<4>(rows, r, surface.rest));
   }
   BB_HD double threshold_of_axis(Index r) const {
     return edge_axis_mollifier_threshold<double>(leading_points<2>(rows, r, surface.rest));
