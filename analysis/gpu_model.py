@@ -26,9 +26,10 @@ COPY_RATES = {"A100 80 GB": 1.83e12, "H100": 3.0e12, "H200": 4.3e12}
 PART_OF_COPY = 0.8  # that kernels are assumed to reach
 PRECONDITIONERS = {
     "block Jacobi": "block_jacobi",
-    "Schwarz": "schwarz",
+    "multilevel Schwarz": "multilevel_schwarz",
 }  # as the table and as a record name them
 SCHWARZ_COST = 1.15  # of an iteration, over block Jacobi: assumed
+RENAMED = {"schwarz": "multilevel_schwarz"}  # what records before 3.9.0 say
 NO_RECORD = "no record"
 
 
@@ -109,7 +110,7 @@ def pattern_bytes(size: Size, m: Measured) -> float:
 def newton_seconds(size: Size, m: Measured, rate: float, preconditioner: str) -> tuple[float, float]:
     """(solve, everything else) with a new pattern. preconditioner: as a record names it."""
     effective = PART_OF_COPY * rate
-    cost = SCHWARZ_COST if preconditioner == "schwarz" else 1
+    cost = SCHWARZ_COST if preconditioner == "multilevel_schwarz" else 1
     solve = m.pcg_a_newton[preconditioner] * cost * solver_bytes(size, m) / effective
     return solve, (assembly_bytes(size, m) + pattern_bytes(size, m)) / effective
 
@@ -185,10 +186,10 @@ def measure(source: str, records: list[dict], costs: str) -> dict:
     """An entry of gpu_model_inputs.json."""
     first = records[0]
     candidates, blocks_a_contact = costs_of(costs)
-    solves = {
-        r["config"]["linear_solver"]["resident_preconditioner"]: r["summary"]["linear_per_solve"]
-        for r in records
-    }
+    solves = {}
+    for r in records:
+        name = r["config"]["linear_solver"]["resident_preconditioner"]
+        solves[RENAMED.get(name, name)] = r["summary"]["linear_per_solve"]
     return {
         "source": source,
         "contacts_a_vertex": first["summary"]["contacts"]["sum"]

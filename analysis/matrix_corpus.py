@@ -27,7 +27,7 @@ from .whole_file import copy_whole, write_whole
 MOST_BYTES = 8 << 20
 DIRECT = ["cholmod", "lagged_cholesky"]
 PCG = ["none", "jacobi", "block_jacobi", "ic0", "schwarz", "mas"]
-RESIDENT = ["pcg_resident block_jacobi", "pcg_resident schwarz"]
+RESIDENT = ["pcg_resident block_jacobi", "pcg_resident multilevel_schwarz"]
 SOLVERS = DIRECT + PCG + RESIDENT
 HEAD = """# Hard systems as data
 

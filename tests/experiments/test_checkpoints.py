@@ -15,9 +15,9 @@ SOLVERS = {
     **{f"pcg {name}": {"/linear_solver/name": "pcg", "/linear_solver/preconditioner": name}
        for name in ("none", "jacobi", "block_jacobi", "ic0", "schwarz", "mas")},
     **{f"pcg_resident {name}": {"/linear_solver/name": "pcg_resident", "/linear_solver/resident_preconditioner": name}
-       for name in ("block_jacobi", "schwarz")},
+       for name in ("block_jacobi", "multilevel_schwarz")},
     **{f"device host {name}": {"/device": "host", "/linear_solver/resident_preconditioner": name}
-       for name in ("block_jacobi", "schwarz")},
+       for name in ("block_jacobi", "multilevel_schwarz")},
     "retries": {"/linear_solver/name": "lagged_cholesky", "/step_solver/retries": 8, "/step_solver/max_iterations": 5},
 }
 
@@ -92,7 +92,7 @@ def stop_again_and_again(program: str, config: Path, folder: Path, more: list[st
     raise AssertionError("it is never over")
 
 
-@pytest.mark.parametrize("name", ["cholmod", "lagged_cholesky", "pcg schwarz", "pcg_resident schwarz", "device host schwarz"])
+@pytest.mark.parametrize("name", ["cholmod", "lagged_cholesky", "pcg schwarz", "pcg_resident multilevel_schwarz", "device host multilevel_schwarz"])
 def test_a_run_that_time_stops_goes_on_where_it_was(program, config, tmp_path, name):
     """Without any checkpoint but those that the time limit itself leaves."""
     more = settings({**GIVEN, **SOLVERS[name], "/output/checkpoint_every": 0, "/output/frames_every": 5, "/time/steps": 20})

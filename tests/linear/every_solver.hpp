@@ -22,7 +22,7 @@ inline std::vector<NamedSolver> every_solver() {
       for (const std::string& with : preconditioners().names())
         out.push_back({name + " " + with, {name, {{"preconditioner", with}}}});
     } else if (name == "pcg_resident") {
-      for (const char* with : {"block_jacobi", "schwarz"})
+      for (const char* with : {"block_jacobi", "multilevel_schwarz"})
         out.push_back({name + " " + with, {name, {{"resident_preconditioner", with}}}});
     } else {
       out.push_back({name, {name, {}}});

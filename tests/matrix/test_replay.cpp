@@ -34,7 +34,7 @@ TEST(Replay, EverySolverPreconditionerAndEstimatorHasALine) {
   EXPECT_GE(usable, 4U);
   EXPECT_EQ(solvers.size(), usable);
   EXPECT_EQ(conditioners.size(), preconditioners().names().size());
-  EXPECT_EQ(resident, (std::set<std::string>{"block_jacobi", "schwarz"}));
+  EXPECT_EQ(resident, (std::set<std::string>{"block_jacobi", "multilevel_schwarz"}));
   ASSERT_EQ(r.estimates.size(), 15u);  // tiers 0 to 4, three scalings
   const double pi = std::acos(-1.0), exact = (2.1 + 2 * std::cos(pi / 31)) / (2.1 - 2 * std::cos(pi / 31));
   for (const ReplayedEstimate& row : r.estimates) {

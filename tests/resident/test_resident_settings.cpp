@@ -251,7 +251,7 @@ TEST(ResidentSettings, StiffnessOfTheStrainLimit) {
 }
 
 TEST(ResidentSettings, InexactSolvesAndClusters) {
-  for (const char* preconditioner : {"block_jacobi", "schwarz"}) {
+  for (const char* preconditioner : {"block_jacobi", "multilevel_schwarz"}) {
     SCOPED_TRACE(preconditioner);
     Method on_host = cubic(), resident = cubic();
     test::use_resident_solver(on_host);

@@ -1,21 +1,21 @@
 #include "core/linear/executor/resident_preconditioner.hpp"
 
 #include "core/linear/executor/block_jacobi.hpp"
-#include "core/linear/executor/schwarz.hpp"
+#include "core/linear/executor/multilevel_schwarz.hpp"
 
 namespace bb::resident {
 
 std::vector<Parameter> preconditioner_parameters() {
-  return {{"resident_preconditioner", word({"block_jacobi", "schwarz"}), "block_jacobi",
+  return {{"resident_preconditioner", word({"block_jacobi", "multilevel_schwarz"}), "block_jacobi",
            "the 3 x 3 blocks of the diagonal, or clusters of vertices on several levels"},
-          {"resident_cluster_vertices", count(1, Schwarz::most_cluster_vertices), 8,
-           "vertices of a cluster of schwarz, and clusters of one on the level above"}};
+          {"resident_cluster_vertices", count(1, MultilevelSchwarz::most_cluster_vertices), 8,
+           "vertices of a cluster of multilevel_schwarz, and clusters of one on the level above"}};
 }
 
 std::unique_ptr<ResidentPreconditioner> make_preconditioner(exec::Executor& executor,
                                                             const ParameterMap& parameters) {
-  if (text(parameters, "resident_preconditioner") == "schwarz" && !executor.counts_only()) {
-    return std::make_unique<Schwarz>(executor, integer(parameters, "resident_cluster_vertices"));
+  if (text(parameters, "resident_preconditioner") == "multilevel_schwarz" && !executor.counts_only()) {
+    return std::make_unique<MultilevelSchwarz>(executor, integer(parameters, "resident_cluster_vertices"));
   }
   return std::make_unique<BlockJacobi>(executor);
 }

@@ -13,11 +13,11 @@ namespace bb::resident {
 
 /// Clusters are made on the host when the pattern changes, from norms that come down: O(blocks log blocks), serial.
 /// Memory: 72 bytes a vertex and vertex of its cluster on level 0, about a seventh of that above.
-class Schwarz final : public ResidentPreconditioner {
+class MultilevelSchwarz final : public ResidentPreconditioner {
  public:
   static constexpr int most_cluster_vertices = 11;  // clusters grow by half of it (ClusterLevel::most_nodes)
   /// cluster_vertices: 1 to most_cluster_vertices.
-  Schwarz(exec::Executor& executor, int cluster_vertices)
+  MultilevelSchwarz(exec::Executor& executor, int cluster_vertices)
       : executor_(executor), cluster_vertices_(cluster_vertices) {}
   void setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
              FactorFaults* faults) override;

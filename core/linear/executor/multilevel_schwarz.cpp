@@ -1,4 +1,4 @@
-#include "core/linear/executor/schwarz.hpp"
+#include "core/linear/executor/multilevel_schwarz.hpp"
 
 #include <algorithm>
 
@@ -29,7 +29,7 @@ bool has_couplings(const BlockGraph& graph) {
 }  // namespace
 
 /// All parts as one graph, those of the first part first in a row.
-HostPattern Schwarz::download(const ResidentMatrix& matrix, Index n) const {
+HostPattern MultilevelSchwarz::download(const ResidentMatrix& matrix, Index n) const {
   std::vector<Index> begin[most_parts];
   std::vector<int> column[most_parts];
   for (int p = 0; p < most_parts; ++p) {
@@ -52,7 +52,8 @@ HostPattern Schwarz::download(const ResidentMatrix& matrix, Index n) const {
   return out;
 }
 
-void Schwarz::download_norms(const ResidentMatrix& matrix, const FixedMask* fixed, HostPattern& pattern) {
+void MultilevelSchwarz::download_norms(const ResidentMatrix& matrix, const FixedMask* fixed,
+                                       HostPattern& pattern) {
   std::vector<double> norm[most_parts];
   for (int p = 0; p < most_parts; ++p) {
     if (!matrix.part[p].row_begin) continue;
@@ -68,7 +69,7 @@ void Schwarz::download_norms(const ResidentMatrix& matrix, const FixedMask* fixe
   }
 }
 
-void Schwarz::keep(Archive& archive) {
+void MultilevelSchwarz::keep(Archive& archive) {
   std::uint64_t n = clusters_.size();
   archive(pattern_id_, n);
   clusters_.resize(n);
@@ -77,7 +78,7 @@ void Schwarz::keep(Archive& archive) {
 }
 
 // Levels of clusters that are known, or else new ones.
-void Schwarz::build(const ResidentMatrix& matrix, const PcgVectors& v) {
+void MultilevelSchwarz::build(const ResidentMatrix& matrix, const PcgVectors& v) {
   levels_.clear();
   const std::size_t n_known = clusters_.size();
   ++version_;
@@ -105,8 +106,8 @@ void Schwarz::build(const ResidentMatrix& matrix, const PcgVectors& v) {
   }
 }
 
-void Schwarz::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
-                    FactorFaults* faults) {
+void MultilevelSchwarz::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
+                              FactorFaults* faults) {
   if (pattern_id == 0 || pattern_id != pattern_id_) clusters_.clear();
   if (clusters_.empty() || levels_.empty()) build(matrix, v);
   pattern_id_ = pattern_id;
@@ -121,7 +122,7 @@ void Schwarz::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint
   }
 }
 
-void Schwarz::launch(const PcgVectors& v, const CgState* state) {
+void MultilevelSchwarz::launch(const PcgVectors& v, const CgState* state) {
   AddLevels add{};
   add.partition = v.partition, add.fixed = v.fixed, add.r = v.r, add.z = v.z;
   add.partial_rz = v.partial_rz, add.state = state, add.n_above = n_levels() - 1;
@@ -135,13 +136,13 @@ void Schwarz::launch(const PcgVectors& v, const CgState* state) {
   executor_.blocks(v.partition.n_blocks(), add);
 }
 
-void Schwarz::update(const PcgVectors& v, int k) {
+void MultilevelSchwarz::update(const PcgVectors& v, int k) {
   executor_.blocks(v.partition.n_blocks(),
                    UpdateResidual{v.partition, v.p, v.q, v.partial_pq, v.x, v.r, v.partial_rr, v.scalars, k});
   launch(v, v.scalars->state + k % 2);
 }
 
-std::string Schwarz::fault_text(Index number) const {
+std::string MultilevelSchwarz::fault_text(Index number) const {
   const Index level = number >> 48, node = number - level_fault(level, 0);
   if (level == 0) return "vertex " + std::to_string(node);
   return "cluster " + std::to_string(node) + " on level " + std::to_string(level);

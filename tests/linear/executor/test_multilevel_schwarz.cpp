@@ -4,13 +4,13 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/linear/executor/schwarz.hpp"
+#include "core/linear/executor/multilevel_schwarz.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/executor/linear_cases.hpp"
 #include "tests/oracle/dense.hpp"
 #include "tests/resident/tested_executor.hpp"
 
-namespace bb::resident::resident_schwarz_test {
+namespace bb::resident::multilevel_schwarz_test {
 namespace {
 
 using exec::Buffer;
@@ -30,8 +30,8 @@ Solved solve(const ReducedSystem& system, const std::vector<FixedMask>& fixed, O
   const OwnedSystem owned(executor, system, fixed, split);
   Buffer<double> rhs(executor, "b"), x(executor, "x", 3 * owned.n());
   rhs.upload(plain(random_vector(system.lower.rows(), 4)));
-  auto schwarz = std::make_unique<Schwarz>(executor, cluster);
-  const Schwarz& levels = *schwarz;
+  auto schwarz = std::make_unique<MultilevelSchwarz>(executor, cluster);
+  const MultilevelSchwarz& levels = *schwarz;
   ResidentPcg pcg(executor, owned.n(), std::move(schwarz));
   Solved out;
   out.report = pcg.solve(owned.matrix(), owned.fixed.data(), rhs.data(), x.data(), 1e-6, 20000);
@@ -52,7 +52,7 @@ int host_iterations(const ReducedSystem& system, const std::string& precondition
 }
 
 /// M^-1 column by column.
-Eigen::MatrixXd inverse(exec::Executor& executor, Schwarz& schwarz, const OwnedSystem& owned,
+Eigen::MatrixXd inverse(exec::Executor& executor, MultilevelSchwarz& schwarz, const OwnedSystem& owned,
                         std::uint64_t pattern_id = 0) {
   const Index n = 3 * owned.n();
   Buffer<double> vectors(executor, "vectors", 5 * n), partial(executor, "sums", 3 * 1024);
@@ -86,12 +86,12 @@ Eigen::MatrixXd inverse(exec::Executor& executor, Schwarz& schwarz, const OwnedS
   return out;
 }
 
-TEST(ResidentSchwarz, IsSymmetricPositiveDefinite) {
+TEST(MultilevelSchwarz, IsSymmetricPositiveDefinite) {
   const ReducedSystem system = folded_grid(12, 1e3);
   for (const auto& fixed : {no_fixed(144), some_fixed(144)}) {
     TestedExecutor executor(Order::shuffled);
     const OwnedSystem owned(executor, system, fixed, true);
-    Schwarz schwarz(executor, 4);
+    MultilevelSchwarz schwarz(executor, 4);
     const Eigen::MatrixXd m = inverse(executor, schwarz, owned);
     EXPECT_GE(schwarz.n_levels(), 3);
     const double scale = m.cwiseAbs().maxCoeff();
@@ -102,12 +102,12 @@ TEST(ResidentSchwarz, IsSymmetricPositiveDefinite) {
 }
 
 /// One level of one cluster is the inverse.
-TEST(ResidentSchwarz, IsExactWhereOneClusterHoldsAll) {
+TEST(MultilevelSchwarz, IsExactWhereOneClusterHoldsAll) {
   for (const auto& fixed : {no_fixed(9), some_fixed(9)}) {
     const ReducedSystem system = grid_system(3, 0.1, 1);
     TestedExecutor executor(Order::reverse);
     const OwnedSystem owned(executor, system, fixed, true);
-    Schwarz schwarz(executor, 11);
+    MultilevelSchwarz schwarz(executor, 11);
     const Eigen::MatrixXd m = inverse(executor, schwarz, owned), a = restricted(system, fixed);
     EXPECT_EQ(schwarz.n_levels(), 1);
     EXPECT_LT((m * a - Eigen::MatrixXd::Identity(27, 27)).cwiseAbs().maxCoeff(), 1e-11);
@@ -164,12 +164,12 @@ Eigen::MatrixXd dense_schwarz(const Eigen::MatrixXd& a, const Eigen::MatrixXd& s
 }
 
 /// Also when values change and the pattern stays: twice the matrix has half the inverse.
-TEST(ResidentSchwarz, IsTheSumOverItsLevels) {
+TEST(MultilevelSchwarz, IsTheSumOverItsLevels) {
   for (const auto& mask : {no_fixed(49), some_fixed(49)}) {
     ReducedSystem system = grid_system(7, 0.3, 1);
     TestedExecutor executor;
     const OwnedSystem owned(executor, system, mask, false);
-    Schwarz schwarz(executor, 4);
+    MultilevelSchwarz schwarz(executor, 4);
     const Eigen::MatrixXd m = inverse(executor, schwarz, owned, 1);
     EXPECT_GE(schwarz.n_levels(), 2);
     Eigen::MatrixXd a = restricted(system, mask);
@@ -199,7 +199,7 @@ TEST(ResidentSchwarz, IsTheSumOverItsLevels) {
   }
 }
 
-TEST(ResidentSchwarz, GivesTheSameBitsInEveryOrder) {
+TEST(MultilevelSchwarz, GivesTheSameBitsInEveryOrder) {
   const ReducedSystem system = folded_grid(18, 1e3);
   const auto fixed = some_fixed(18 * 18);
   const Solved first = solve(system, fixed);
@@ -216,7 +216,7 @@ TEST(ResidentSchwarz, GivesTheSameBitsInEveryOrder) {
   EXPECT_LT((truth - first.x).norm(), 1e-3 * truth.norm());
 }
 
-TEST(ResidentSchwarz, NeedsFewerIterationsThanBlockJacobiHoweverStiffContactsAre) {
+TEST(MultilevelSchwarz, NeedsFewerIterationsThanBlockJacobiHoweverStiffContactsAre) {
   for (const int m : {24, 60}) {
     for (const double stiffness : {0.0, 1.0, 1e3, 1e6}) {
       const ReducedSystem system = folded_grid(m, stiffness);
@@ -233,7 +233,7 @@ TEST(ResidentSchwarz, NeedsFewerIterationsThanBlockJacobiHoweverStiffContactsAre
   }
 }
 
-TEST(ResidentSchwarz, NamesTheVertexWithoutAFactor) {
+TEST(MultilevelSchwarz, NamesTheVertexWithoutAFactor) {
   Eigen::MatrixXd a = Eigen::MatrixXd::Identity(12, 12);
   a.block<3, 3>(6, 6).setZero();
   Solved got = solve(from_dense(a), no_fixed(4), Order::threads, false);
@@ -258,7 +258,7 @@ TEST(PcgResident, KeepsLevelsWhileThePatternStays) {
   options.name = "pcg_resident";
   options.parameters = {{"forcing", std::string("fixed")},
                         {"tol_rel", 1e-9},
-                        {"resident_preconditioner", std::string("schwarz")}};
+                        {"resident_preconditioner", std::string("multilevel_schwarz")}};
   const auto solver = make_linear_solver(options);
   int n = 0;
   for (const double stiffness : {1.0, 50.0, 0.0}) {
@@ -281,4 +281,4 @@ TEST(PcgResident, KeepsLevelsWhileThePatternStays) {
 }
 
 }  // namespace
-}  // namespace bb::resident::resident_schwarz_test
+}  // namespace bb::resident::multilevel_schwarz_test
