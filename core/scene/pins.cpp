@@ -23,6 +23,11 @@ std::vector<int> holding_pins(const Scene& scene, double middle) {
   return out;
 }
 
+std::size_t free_dofs(const Scene& scene) {
+  const std::size_t per_vertex = scene.planar ? 2 : 3;
+  return per_vertex * (static_cast<std::size_t>(scene.n_vertices()) - holding_pins(scene, 0).size());
+}
+
 Scene held_scene(const Scene& scene, const std::vector<int>& holding) {
   Scene out = scene;
   out.pins.clear();

@@ -173,6 +173,8 @@ Vec3d pin_pose(const Scene& scene, const Pin& pin, double t);
 Vec3d pin_velocity(const Scene& scene, const Pin& pin, double t, double dt);
 /// Which pins hold in a step whose middle is at that time (s), as indices into Scene::pins, ascending.
 std::vector<int> holding_pins(const Scene& scene, double middle);
+/// Degrees of freedom that no pin holds at the start of a run: three a vertex, two in the plane.
+std::size_t free_dofs(const Scene& scene);
 /// The scene while these pins hold and no other, as if it were so for the whole run: what is held has no mass.
 Scene held_scene(const Scene& scene, const std::vector<int>& holding);
 /// Gravity at time t (s), m/s^2.

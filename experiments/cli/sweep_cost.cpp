@@ -8,7 +8,6 @@
 #include "core/record/writer.hpp"
 #include "experiments/cli/sweep_folder.hpp"
 #include "experiments/config/parse.hpp"
-#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
 
 namespace bb::cli {

@@ -10,7 +10,6 @@
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/run/calibration.hpp"
-#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/stored_run.hpp"
 
 namespace bb {

@@ -12,11 +12,6 @@ constexpr std::size_t fewest_unknowns_of_pcg = 1000;
 
 }  // namespace
 
-std::size_t free_dofs(const Scene& scene) {
-  const std::size_t per_vertex = scene.planar ? 2 : 3;
-  return per_vertex * (static_cast<std::size_t>(scene.n_vertices()) - holding_pins(scene, 0).size());
-}
-
 void decide_linear_solver(RunConfig& config) {
   if (config.linear_solver.name != linear_solver_auto) return;
   const std::size_t unknowns = free_dofs(build_scene(config));

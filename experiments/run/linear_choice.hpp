@@ -8,9 +8,6 @@
 
 namespace bb {
 
-/// Degrees of freedom that nothing holds at the start of a run: three a vertex, two in the plane.
-std::size_t free_dofs(const Scene& scene);
-
 /// Replaces `auto` by lagged_cholesky below 1000 unknowns and by pcg from there on, with the reason in linear_solver_reason; the
 /// other settings of /linear_solver stay. So a record has the solver that ran, and repeats it anywhere. Any other solver stays as
 /// it is, at no cost. docs/design.md has the measurement behind it.

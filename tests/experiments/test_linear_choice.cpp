@@ -35,6 +35,21 @@ TEST(LinearChoice, GoesByTheNumberOfUnknowns) {
   }
 }
 
+/// A planar sheet of n_x x 20 vertices, one of them held or none.
+std::string sheet(int n_x, bool held) {
+  return R"({"name": "bodies", "planar": true, "bodies": [{"name": "sheet", "mesh": {"generator": "grid", "n_x": )" +
+         std::to_string(n_x) + R"(, "n_y": 20})" + (held ? R"(, "pins": [{"vertices": [0]}])" : "") + "}]}";
+}
+
+TEST(LinearChoice, ChangesAtAThousandUnknowns) {
+  const RunConfig below = decided(sheet(25, true), {"/linear_solver/name=auto"}),
+                  at = decided(sheet(25, false), {"/linear_solver/name=auto"});
+  EXPECT_EQ(free_dofs(build_scene(below)), 998U);
+  EXPECT_EQ(below.linear_solver.name, "lagged_cholesky");
+  EXPECT_EQ(free_dofs(build_scene(at)), 1000U);
+  EXPECT_EQ(at.linear_solver.name, "pcg");
+}
+
 TEST(LinearChoice, VerticesInThePlaneHaveTwoUnknowns) {
   const RunConfig config = decided(R"({"name": "drape2d"})", {"/linear_solver/name=auto"});
   const Scene scene = build_scene(config);
@@ -50,6 +65,10 @@ TEST(LinearChoice, KeepsThePreconditionerThatIsAskedFor) {
       decided(hanging(19), {"/linear_solver/name=auto", "/linear_solver/preconditioner=ic0"});
   EXPECT_EQ(given.linear_solver.name, "pcg");
   EXPECT_EQ(text(given.linear_solver.parameters, "preconditioner"), "ic0");
+  const RunConfig small =
+      decided(hanging(18), {"/linear_solver/name=auto", "/linear_solver/preconditioner=ic0"});
+  EXPECT_EQ(small.linear_solver.name, "lagged_cholesky");
+  EXPECT_EQ(text(small.linear_solver.parameters, "preconditioner"), "ic0");
   EXPECT_EQ(preconditioner_of({"pcg", {}}), "block_jacobi");
   EXPECT_EQ(preconditioner_of({"pcg_resident", {}}), "block_jacobi");
   EXPECT_EQ(preconditioner_of({"cholmod", {}}), "none");
