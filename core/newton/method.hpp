@@ -14,6 +14,7 @@
 #include "core/newton/saddle_rule.hpp"
 #include "core/parameters/parameter.hpp"
 #include "core/terms/step_hessian.hpp"
+#include "core/terms/step_needs.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {
@@ -47,6 +48,7 @@ struct Method : TermOptions {
   }
   std::unique_ptr<Integrator> integrator;
   StepSolverOptions step_solver;
+  StepNeeds step_needs;  // of the step solver (fit_terms, choose_step_solver)
   LinearOptions linear;
   /// Where E is summed and solved; empty: on the host (HostPotential).
   MakePotential make_potential;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/newton/step_solver.hpp"
 #include "core/scene/pinned_vertices.hpp"
 
 namespace bb {
@@ -44,7 +43,7 @@ ExactHessians exact_hessians(const Plan& plan, const Method& method) {
 
 PlanOptions plan_options(const Method& method) {
   PlanOptions options;
-  options.step = step_solvers().require(method.step_solver.name, "/step_solver/name").needs;
+  options.step = method.step_needs;
   options.end_check = method.step_solver.saddle != SaddleRule::ignore;
   options.linear = method.linear;
   return options;

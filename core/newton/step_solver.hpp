@@ -1,4 +1,5 @@
-// A step solver drives one time step to its end. One file each; line_search.cpp is the one to read first.
+// A step solver drives one time step to its end: what it is, what it declares. line_search.cpp is the one to read first; the others
+// are in core/step_solvers.
 #pragma once
 
 #include <functional>
@@ -70,13 +71,5 @@ struct StepSolverEntry {
                     TermOptions&) = nullptr;  // what it asks of terms by numbers
   std::function<std::unique_ptr<StepSolver>(const StepSolverOptions& complete)> make;
 };
-/// Those of registry.inc, then what Python added before the first run that names it (python/src/python_step_solver.cpp).
-Registry<StepSolverEntry>& step_solvers();
-/// Those of all of them, in the order of registry.inc. Errors: std::logic_error for a name that two declare.
-std::vector<SolverCounter> step_solver_counters();
-/// Makes the terms those that the method's step solver needs: how barriers are read beyond contact, multipliers.
-void fit_terms(Method& method);
-/// Errors: ConfigError for an unknown name. Ranges are checked where a config is read.
-std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
 
 }  // namespace bb

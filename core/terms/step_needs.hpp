@@ -11,6 +11,7 @@ struct StepNeeds {
   bool multipliers = false;  // contact has multipliers in the place of its barrier or beside it: on the host
   bool overlap =
       false;  // without a step bound: states beyond contact are as good as others, a bounded shape goes on there
+  bool operator==(const StepNeeds&) const = default;
 };
 
 }  // namespace bb

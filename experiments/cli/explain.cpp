@@ -12,7 +12,7 @@
 #include "core/exec/memory_ledger.hpp"
 #include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
-#include "core/newton/step_solver.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/terminal.hpp"

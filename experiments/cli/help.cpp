@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/math/error.hpp"
-#include "core/newton/step_solver.hpp"
 #include "core/parameters/check.hpp"
 #include "core/parameters/registry.hpp"
 #include "core/record/schema.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/terminal.hpp"

@@ -6,7 +6,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/integrators/registry.hpp"
-#include "core/newton/step_solver.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/complain.hpp"
 #include "experiments/config/enum_words.hpp"

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input/read_file.hpp"
-#include "core/newton/step_solver.hpp"
 #include "core/record/provenance.hpp"
 #include "core/solvers/linear_solvers.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/enum_words.hpp"

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/run/method.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "core/exec/metered_executor.hpp"
 #include "core/linear/executor/solver_launches.hpp"
-#include "core/newton/simulation.hpp"
 #include "core/resident/system/resident_potential.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 

@@ -3,8 +3,8 @@
 #include "barriers/shapes/registry.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
-#include "core/newton/step_solver.hpp"
 #include "core/resident/system/resident_potential.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/run/device_run.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/run/method.hpp"
 #include "experiments/run/outcome.hpp"
 #include "experiments/run/recorder.hpp"

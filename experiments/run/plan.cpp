@@ -3,7 +3,7 @@
 #include "core/linear/linear_solver.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/newton/step_solver.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {

@@ -1,7 +1,7 @@
 #include "experiments/run/recorder.hpp"
 
 #include "core/newton/newton_system.hpp"
-#include "core/newton/step_solver.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/run/keep_record.hpp"
 #include "experiments/run/run_summary.hpp"

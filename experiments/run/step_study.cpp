@@ -7,8 +7,8 @@
 
 #include "core/archive/archive.hpp"
 #include "core/math/error.hpp"
-#include "core/newton/simulation.hpp"
 #include "core/record/provenance.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "core/archive/archive.hpp"
-#include "core/newton/simulation.hpp"
 #include "core/record/folder_lock.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/run/method.hpp"
 #include "experiments/run/outcome.hpp"

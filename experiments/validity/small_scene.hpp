@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/method.hpp"
 

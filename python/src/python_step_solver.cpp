@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/math/error.hpp"
-#include "core/newton/step_solver.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "python/src/python_step.hpp"
 
 namespace bb::python {

@@ -1,7 +1,7 @@
 // A scene that one quasi-static step has brought to rest, assembled there: how its forces answer to a stiffness.
 #pragma once
 
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/run/stiffness_answer.hpp"
 #include "tests/experiments/calibrated.hpp"
 

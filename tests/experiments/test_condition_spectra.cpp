@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/linear/condition.hpp"
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "tests/linear/scaled_spectrum.hpp"

@@ -2,7 +2,7 @@
 #include "experiments/run/pilot_replay.hpp"
 
 #include "core/newton/energy_sum.hpp"
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "tests/experiments/calibrated.hpp"
 
 namespace bb::pilot_replay_test {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/newton/simulation.hpp"
 #include "core/record/writer.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/recorder.hpp"
 #include "tests/contact/contact_scenes.hpp"

@@ -1,7 +1,7 @@
 // The recorder's audit follows the run without a hole: every state has to be the end of a judged motion.
 #include <gtest/gtest.h>
 
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/recorder.hpp"

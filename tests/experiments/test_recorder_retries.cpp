@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/archive/archive.hpp"
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/recorder.hpp"
 #include "tests/newton/thrown_particle.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/run/spectrum_ends.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/newton/small_scenes.hpp"

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/newton/simulation.hpp"
 #include "core/record/provenance.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "experiments/run/plan.hpp"
 #include "tests/experiments/calibrated.hpp"
 

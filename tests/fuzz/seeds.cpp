@@ -11,9 +11,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/newton/step_solver.hpp"
 #include "core/record/schema.hpp"
 #include "core/record/writer.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/eval/eval.hpp"
 #include "experiments/matrix/matrix_market.hpp"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 
 namespace bb::test {
 

@@ -9,7 +9,7 @@
 #include "core/integrators/registry.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/newton/method.hpp"
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "core/terms/contact.hpp"
 #include "tests/barriers/limit_policies.hpp"
 

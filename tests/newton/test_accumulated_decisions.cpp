@@ -19,7 +19,7 @@ class Watch final : public StepObserver {
 
 Method accumulated(double kappa = 1) {
   Method method = test::fixed_method("cubic", kappa);
-  method.step_solver.name = "accumulated_toi";
+  choose_step_solver(method, "accumulated_toi");
   method.step_solver.parameters["max_dx_m"] = 1.0;
   return method;
 }

@@ -36,7 +36,7 @@ Flight fly(const StepSolverOptions& options, double speed, const std::vector<Gra
   Method method = test::fixed_method("cubic", 1);
   const double tolerance = method.step_solver.tol_velocity;
   method.step_solver = options;
-  method.step_solver.name = "accumulated_toi";
+  choose_step_solver(method, "accumulated_toi");
   method.step_solver.tol_velocity = tolerance;
   method.step_solver.parameters["max_dx_m"] = 1.0;
   Simulation simulation(scene, method, dt, 1);
@@ -126,7 +126,7 @@ TEST(AccumulatedToi, the_extension_is_room_that_is_kept_and_not_way_that_is_gone
   Scene scene = test::particle_over_plane(0.2, 0.02, 0.001);
   scene.v0(2, 0) = -10;
   Method method = test::fixed_method("cubic", 1);
-  method.step_solver.name = "accumulated_toi";
+  choose_step_solver(method, "accumulated_toi");
   method.step_solver.max_iterations = 1;
   Simulation simulation(scene, method, dt, 1);
   Watch watch;
@@ -139,7 +139,7 @@ TEST(AccumulatedToi, the_extension_is_room_that_is_kept_and_not_way_that_is_gone
 
 Method sheet_method(SaddleRule rule) {
   Method method = test::saddle_method(rule);
-  method.step_solver.name = "accumulated_toi";
+  choose_step_solver(method, "accumulated_toi");
   return method;
 }
 

@@ -16,7 +16,7 @@ constexpr double d_hat = 0.01, mass = 0.2, weight = 2;  // m, kg, N
 
 Method method_of(double kappa, const std::string& solver = "al_barrier") {
   Method method = test::fixed_method("log", kappa);
-  method.step_solver.name = solver;
+  choose_step_solver(method, solver);
   method.step_solver.tol_velocity = 1e-9;
   method.step_solver.max_iterations = 500;
   fit_terms(method);
@@ -177,7 +177,7 @@ TEST(BarrierMultipliers, take_up_what_is_near_grow_by_the_force_of_their_barrier
 
 TEST(AlBarrier, refuses_a_release_that_is_no_wider_than_near) {
   Method method = test::fixed_method("log", 1);
-  method.step_solver.name = "al_barrier";
+  choose_step_solver(method, "al_barrier");
   method.step_solver.parameters["al_barrier_release"] = 0.01;
   EXPECT_THROW(fit_terms(method), ConfigError);
 }

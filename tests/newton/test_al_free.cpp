@@ -20,7 +20,7 @@ constexpr double d_hat = 0.01, mass = 0.2, weight = 2, standoff = 0.1 * d_hat;  
 
 Method method_of(double settled = 1, double penalty = 0) {
   Method method = test::fixed_method("log", 1);
-  method.step_solver.name = "al_free";
+  choose_step_solver(method, "al_free");
   method.step_solver.tol_velocity = 1e-8;
   method.step_solver.max_iterations = 2000;
   method.step_solver.saddle = SaddleRule::ignore;

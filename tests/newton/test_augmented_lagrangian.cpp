@@ -15,7 +15,7 @@ constexpr double d_hat = 0.01, mass = 0.2, weight = 2, tolerance = 1e-6;  // m, 
 
 Method method_of(double initial = 0, const std::string& integrator = "implicit_euler") {
   Method method = test::fixed_method("log", 100, integrator);
-  method.step_solver.name = "augmented_lagrangian";
+  choose_step_solver(method, "augmented_lagrangian");
   method.step_solver.tol_velocity = 1e-8;
   method.step_solver.max_iterations = 500;
   if (initial > 0) method.step_solver.parameters["al_penalty_initial_N_per_m"] = initial;

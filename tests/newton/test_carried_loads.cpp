@@ -12,7 +12,7 @@ constexpr double d_hat = 0.01, mass = 0.2, mu = 0.3, dt = 0.01;  // m, kg, 1, s
 
 Method method_of(const std::string& solver, int lag_iterations) {
   Method method = test::fixed_method("quadratic", 50);
-  method.step_solver.name = solver;
+  choose_step_solver(method, solver);
   method.step_solver.tol_velocity = 1e-9;
   method.step_solver.max_iterations = 500;
   method.friction.mu = mu;

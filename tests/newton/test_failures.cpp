@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/math/error.hpp"
-#include "core/newton/step_solver.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::failures_test {

@@ -43,7 +43,7 @@ class TrialEnergies final : public StepObserver {
 TrialEnergies step_of(const std::string& solver) {
   const Scene scene = test::driven_sheet({.jitter = 1e-4});
   Method method = test::saddle_method(SaddleRule::ignore);
-  method.step_solver.name = solver;
+  choose_step_solver(method, solver);
   Simulation simulation(scene, method, test::sheet_dt, 1);
   TrialEnergies out;
   EXPECT_EQ(simulation.step(out).status, StepStatus::converged);

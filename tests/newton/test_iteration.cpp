@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/newton/iteration.hpp"
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::iteration_test {

@@ -38,7 +38,7 @@ Ran run(const std::string& solver, double L, double speed = 0) {
   Scene scene = net(L);
   if (speed > 0) scene.v0.row(0).array() += speed * L;
   Method method = test::fixed_method(solver == "penalty" ? "quadratic" : "log", 20);
-  method.step_solver.name = solver;
+  choose_step_solver(method, solver);
   method.step_solver.tol_velocity = 1e-4 * L;
   method.step_solver.max_iterations = 400;
   method.step_solver.saddle = SaddleRule::ignore;

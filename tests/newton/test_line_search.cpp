@@ -175,7 +175,7 @@ TEST(LineSearch, takes_the_first_halved_step_whose_fall_is_armijos_share_of_the_
     for (const Case& c : {Case{0.4, 1, 1}, Case{0.6, 0.5, 2}, Case{0.9, 0.125, 4}}) {
       Scene scene = test::particle_over_plane(0.2, 1, 0.01);
       Method method = test::fixed_method("log", 1);
-      method.step_solver.name = solver;
+      choose_step_solver(method, solver);
       method.step_solver.parameters["armijo"] = c.armijo;
       Simulation simulation(scene, method, 0.01, 1);
       FirstIteration watch;
@@ -197,7 +197,7 @@ TEST(LineSearch, takes_the_first_halved_step_whose_fall_is_armijos_share_of_the_
 TEST(LineSearch, the_articles_direction_is_that_of_its_own_matrix) {
   Scene scene = test::particle_over_plane(0.2, 1, 0.01);
   Method method = test::fixed_method("log", 1);
-  method.step_solver.name = "article_literal";
+  choose_step_solver(method, "article_literal");
   const double dt = 0.01;
   Simulation simulation(scene, method, dt, 1);
   FirstIteration watch;
@@ -273,7 +273,7 @@ TEST(LineSearch, a_direction_without_any_decrease_is_a_failed_line_search_at_onc
     int calls = 0;
     method.contact.shape.batch_double = once;
     method.contact.shape.self = &calls;
-    method.step_solver.name = solver;
+    choose_step_solver(method, solver);
     Simulation simulation(scene, method, 0.01, 1);
     StepObserver observer;
     const StepReport report = simulation.step(observer);
@@ -288,7 +288,7 @@ TEST(LineSearch, accumulated_toi_reaches_the_same_state_without_contact) {
   builder.add_body(test::cloth_spec(5, 10, 0.001));
   Scene scene = builder.finish();
   Method method = test::fixed_method("cubic", 1);
-  method.step_solver.name = "accumulated_toi";
+  choose_step_solver(method, "accumulated_toi");
   Simulation simulation(scene, method, 0.01, 3);
   StepObserver observer;
   for (int i = 0; i < 3; ++i) {
@@ -307,7 +307,7 @@ TEST(LineSearch, accumulated_toi_drapes_without_touching) {
   policy.name = "elasticity_inclusive";
   method.stiffness = make_policy(policy);
   method.limit_stiffness = test::elastic_limit();
-  method.step_solver.name = "accumulated_toi";
+  choose_step_solver(method, "accumulated_toi");
   Simulation simulation(scene, method, 0.01, 15);
   StepObserver observer;
   std::size_t contacts = 0;

@@ -14,7 +14,7 @@ constexpr double d_hat = 0.01, mass = 0.2, weight = 2;  // m, kg, N
 
 Method penalty(double k, const std::string& shape = "quadratic") {
   Method method = test::fixed_method(shape, k / 2);
-  method.step_solver.name = "penalty";
+  choose_step_solver(method, "penalty");
   method.step_solver.tol_velocity = 1e-9;
   fit_terms(method);
   return method;
@@ -88,7 +88,7 @@ TEST(Penalty, what_is_faster_than_d_hat_a_step_comes_out_behind_a_sheet) {
       builder.add_obstacle(plane);
     }
     Method method = penalty(k);
-    method.step_solver.name = solver;
+    choose_step_solver(method, solver);
     fit_terms(method);
     return run(builder.finish(), std::move(method), 0.01, 3);
   };

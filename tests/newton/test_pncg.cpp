@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/math/error.hpp"
-#include "core/newton/dai_kou.hpp"
+#include "core/step_solvers/dai_kou.hpp"
 #include "tests/newton/converged_steps.hpp"
 #include "tests/newton/small_scenes.hpp"
 
@@ -20,7 +20,7 @@ constexpr double d_hat = 0.01;  // m
 Method method_of(double epsilon, const std::string& bound = "accd",
                  const std::string& preconditioner = "jacobi") {
   Method method = test::fixed_method("log", 100);
-  method.step_solver.name = "pncg";
+  choose_step_solver(method, "pncg");
   method.step_solver.max_iterations = 5000;
   method.step_solver.saddle = SaddleRule::ignore;
   method.step_solver.parameters["pncg_epsilon"] = epsilon;

@@ -103,7 +103,7 @@ TEST(PolicyStart, is_not_repeated_where_the_end_of_a_step_is_measured) {
   std::vector<StiffnessGlobals> heard;
   Method method = test::fixed_method("quadratic", 1);
   method.stiffness = std::make_unique<Balancing>(heard);
-  method.step_solver.name = "accumulated_toi";
+  choose_step_solver(method, "accumulated_toi");
   Simulation simulation(scene, method, dt, 3);
   StepObserver nobody;
   for (int i = 0; i < 3; ++i) {
@@ -125,7 +125,7 @@ TEST(PolicyStart, of_ipc_adaptive_is_what_later_steps_go_on_from) {
     config.parameters["kappa_min_N_per_m"] = 1;
     config.parameters["doubling_gap_m"] = d_hat;  // doubles while the gap shrinks
     method.stiffness = make_policy(config);
-    method.step_solver.name = solver;
+    choose_step_solver(method, solver);
     Simulation simulation(scene, method, dt, 12);
     StepObserver nobody;
     simulation.step(nobody);

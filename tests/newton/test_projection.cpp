@@ -47,7 +47,7 @@ struct Ran {
 
 Ran run(const Scene& scene, double stiffness, int sweeps, int steps) {
   Method method = test::fixed_method("cubic", 100);
-  method.step_solver.name = "projection";
+  choose_step_solver(method, "projection");
   method.step_solver.max_iterations = sweeps;
   method.step_solver.saddle = SaddleRule::ignore;
   method.step_solver.parameters["projection_stiffness"] = stiffness;
@@ -105,7 +105,7 @@ TEST(Projection, refuses_by_name_what_is_no_constraint) {
   builder.add_body(test::cloth_spec(3, 1, d_hat));
   const Scene cloth = builder.finish();
   Method method = test::fixed_method("cubic", 100);
-  method.step_solver.name = "projection";
+  choose_step_solver(method, "projection");
   try {
     Simulation(cloth, method, dt, 1);
     FAIL() << "accepted";

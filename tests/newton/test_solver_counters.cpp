@@ -13,7 +13,7 @@ constexpr double dt = 0.01;
 
 StepReport step_of(const std::string& solver, const Scene& scene, int retries = 0, int most = 200) {
   Method method = test::fixed_method("cubic", 2000);
-  method.step_solver.name = solver;
+  choose_step_solver(method, solver);
   method.step_solver.retries = retries;
   method.step_solver.max_iterations = most;
   method.step_solver.saddle = SaddleRule::ignore;

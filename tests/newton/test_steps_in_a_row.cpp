@@ -8,9 +8,9 @@
 #include <set>
 
 #include "core/archive/archive.hpp"
-#include "core/newton/step_solver.hpp"
 #include "core/record/run_record.hpp"
 #include "core/record/writer.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/feature_scenes.hpp"
 
 namespace bb::steps_in_a_row_test {
@@ -63,7 +63,7 @@ Method method_of(const Choice& of) {
   method.limit_stiffness = test::elastic_limit({.refresh = Refresh::per_step});
   method.friction.mu = of.friction;
   method.friction.lag_iterations = entry.needs.minimum ? 2 : 1;
-  method.step_solver.name = of.solver;
+  choose_step_solver(method, of.solver);
   method.step_solver.max_iterations = 40;
   method.step_solver.tol_velocity = 1e-4;
   method.step_solver.saddle = entry.needs.minimum ? SaddleRule::escape : SaddleRule::ignore;

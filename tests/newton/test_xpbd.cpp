@@ -44,7 +44,7 @@ Scene chain(double height, const Vec3d& along, bool held, bool floor, double spe
 
 Method method_of(const std::string& solver, int sweeps = 200) {
   Method method = test::fixed_method("cubic", 100);
-  method.step_solver.name = solver;
+  choose_step_solver(method, solver);
   method.step_solver.max_iterations = sweeps;
   method.step_solver.saddle = SaddleRule::ignore;
   method.step_solver.tol_velocity = 1e-10;

@@ -7,9 +7,9 @@
 #include <set>
 #include <sstream>
 
-#include "core/newton/step_solver.hpp"
 #include "core/record/run_record.hpp"
 #include "core/record/schema.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "tests/folders.hpp"
 
 namespace bb::schema_text_test {

@@ -124,7 +124,7 @@ TEST(ResidentSettings, PrescribedMotionIsSolvedForFurther) {
 
 Method with_step_solver(const std::string& name, const ParameterMap& parameters) {
   Method method = cubic();
-  method.step_solver.name = name;
+  choose_step_solver(method, name);
   method.step_solver.parameters = parameters;
   return method;
 }

@@ -1,11 +1,12 @@
-#include "core/newton/simulation.hpp"
+#include "core/step_solvers/simulation.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "core/archive/archive.hpp"
 #include "core/newton/iteration.hpp"
-#include "core/newton/velocity_damping.hpp"
+#include "core/step_solvers/registry.hpp"
+#include "core/step_solvers/velocity_damping.hpp"
 
 namespace bb {
 
@@ -64,6 +65,9 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       parts_(method.step_solver.retries),
       entry_(step_solvers().require(method.step_solver.name, "/step_solver/name")),
       solver_(make_step_solver(method.step_solver)) {
+  if (method.step_needs != entry_.needs) {
+    throw std::logic_error("the method has step_needs of another step solver than " + entry_.name);
+  }
   if (entry_.settings.unmoved) require_unmoved(scene, entry_.name);
   make_system();
   history_.x = scene.x0;

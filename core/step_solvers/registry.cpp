@@ -1,18 +1,19 @@
+#include "core/step_solvers/registry.hpp"
+
 #include <stdexcept>
 
-#include "core/newton/step_solver.hpp"
 #include "core/parameters/check.hpp"
 
 namespace bb {
 
 #define ENTRY(name, doc) StepSolverEntry step_solver_##name();
-#include "core/newton/registry.inc"
+#include "core/step_solvers/registry.inc"
 #undef ENTRY
 
 Registry<StepSolverEntry>& step_solvers() {
 #define ENTRY(name, doc) named(step_solver_##name(), #name, doc),
   static Registry<StepSolverEntry> all({
-#include "core/newton/registry.inc"
+#include "core/step_solvers/registry.inc"
   });
 #undef ENTRY
   return all;
@@ -41,8 +42,14 @@ StepSolverOptions completed(const StepSolverEntry& entry, const StepSolverOption
 
 }  // namespace
 
+void choose_step_solver(Method& method, std::string_view name) {
+  method.step_needs = step_solvers().require(std::string(name), "/step_solver/name").needs;
+  method.step_solver.name = name;
+}
+
 void fit_terms(Method& method) {
   const StepSolverEntry& entry = step_solvers().require(method.step_solver.name, "/step_solver/name");
+  method.step_needs = entry.needs;
   method.contact.literal = method.limit.literal = !entry.needs.step_bound && !entry.needs.overlap;
   method.overlap = entry.needs.overlap;
   if (entry.set_terms) entry.set_terms(completed(entry, method.step_solver), method);

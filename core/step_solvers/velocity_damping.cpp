@@ -1,4 +1,4 @@
-#include "core/newton/velocity_damping.hpp"
+#include "core/step_solvers/velocity_damping.hpp"
 
 #include <algorithm>
 #include <cmath>

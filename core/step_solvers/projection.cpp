@@ -8,7 +8,7 @@
 // the mesh, not with its N/m. Contact is found before every sweep; theirs is found once a step.
 #include <cmath>
 
-#include "core/newton/position_sweeps.hpp"
+#include "core/step_solvers/position_sweeps.hpp"
 
 namespace bb {
 namespace {

@@ -17,10 +17,10 @@
 
 #include "core/linear/preconditioner.hpp"
 #include "core/math/error.hpp"
-#include "core/newton/dai_kou.hpp"
 #include "core/newton/iteration.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/newton/step_solver.hpp"
+#include "core/step_solvers/dai_kou.hpp"
 
 namespace bb {
 namespace {

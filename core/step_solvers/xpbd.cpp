@@ -11,7 +11,7 @@
 // step bound and energies are not asked for. max_iterations is the number of sweeps.
 #include <algorithm>
 
-#include "core/newton/position_sweeps.hpp"
+#include "core/step_solvers/position_sweeps.hpp"
 
 namespace bb {
 namespace {

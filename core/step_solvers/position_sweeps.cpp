@@ -1,4 +1,4 @@
-#include "core/newton/position_sweeps.hpp"
+#include "core/step_solvers/position_sweeps.hpp"
 
 #include <algorithm>
 #include <cmath>
