@@ -1,4 +1,4 @@
-// Membrane models by name, as tables of element functions: what batches, eval and tests loop over.
+// Membrane models by name, as tables of element functions: what eval and tests loop over.
 #pragma once
 
 #include <string_view>

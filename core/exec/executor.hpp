@@ -1,4 +1,4 @@
-// Where kernels run and where their data lives: the one interface between the resident pipeline and threads or a
+// Where kernels run and where their data lives: the one interface between what is launched and threads or a
 // device. Launches are in order; a call that returns numbers to the host waits for all before it. Library algorithms
 // (sort, scan) see integers only, so that their results are unique.
 #pragma once

@@ -23,14 +23,17 @@ void HostExecutor::launch(const KernelInfo& kernel, Index n, const void* f) {
   run(kernel, n, f);
 }
 
-// On threads a launch of few items runs at once: one that is small costs less than to hand it out.
+// On threads a launch of few items runs at once: one that is small costs less than to hand it out. Ranges begin at multiples of
+// the lanes, so that the last one alone has items that are taken one by one.
 void HostExecutor::run(const KernelInfo& kernel, Index n, const void* f) {
   if (order_ == Order::threads) {
-    const Index grain = kernel.blocks ? 1 : 256;
-    if (n <= grain) return kernel.run(f, nullptr, 0, n, nullptr);
-    tbb::parallel_for(
-        tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)),
-        [&](const auto& range) { kernel.run(f, nullptr, range.begin(), range.end(), nullptr); });
+    if (n <= kernel.grain) return kernel.run(f, nullptr, 0, n, nullptr);
+    const Index lanes = kernel.lanes, groups = (n + lanes - 1) / lanes;
+    tbb::parallel_for(tbb::blocked_range<Index>(0, groups, static_cast<std::size_t>(kernel.grain / lanes)),
+                      [&](const auto& range) {
+                        kernel.run(f, nullptr, lanes * range.begin(), std::min(lanes * range.end(), n),
+                                   nullptr);
+                      });
     return;
   }
   std::vector<int> threads;

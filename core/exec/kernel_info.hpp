@@ -19,6 +19,8 @@ struct KernelInfo {
   std::size_t bytes;  // of the struct
   bool blocks;        // else each
   RunRange run;
+  Index grain = 1;                   // items or blocks that a host thread takes at least, one after the other
+  Index lanes = 1;                   // items that a host takes at a time; grain is a multiple of it
   const DeviceCode* code = nullptr;  // of a kernel that no list of the program has; null: the program's own
   /// As C++ writes it: "bb::resident::SpmvDot".
   std::string name() const;
@@ -30,6 +32,24 @@ template <class F>
 concept HasLaneForm = requires(const F& f, Index i) {
   f.abreast(i);
 };
+
+/// Of a kernel over items, as KernelInfo has it: 256, or `static constexpr Index grain` of a kernel whose items are dear.
+template <class F>
+constexpr Index grain_of() {
+  if constexpr (requires { F::grain; }) {
+    return F::grain;
+  } else {
+    return 256;
+  }
+}
+template <class F>
+constexpr Index lanes_of_kernel() {
+  if constexpr (HasLaneForm<F>) {
+    return F::lanes;
+  } else {
+    return 1;
+  }
+}
 
 namespace detail {
 template <class F>
@@ -56,7 +76,9 @@ void run_blocks(const void* f, const Index* order, Index begin, Index end, const
 template <class F>
 const KernelInfo& each_info() {
   static_assert(std::is_trivially_copyable_v<F> && sizeof(F) <= 4000, "a kernel travels as its bytes");
-  static const KernelInfo info{typeid(F), sizeof(F), false, &detail::run_each<F>};
+  static_assert(grain_of<F>() % lanes_of_kernel<F>() == 0);
+  static const KernelInfo info{typeid(F),     sizeof(F),           false, &detail::run_each<F>,
+                               grain_of<F>(), lanes_of_kernel<F>()};
   return info;
 }
 template <class F>

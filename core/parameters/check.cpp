@@ -36,9 +36,12 @@ bool is_word(const std::string& found, const std::vector<std::string>& words) {
                           (holds(found.substr(0, colon) + ":A") || holds(found.substr(0, colon) + ":TEXT")));
 }
 
-bool check_word(const json& value, const Rule& rule, const std::string& where,
-                std::vector<Violation>& violations) {
+bool check_word(json& value, const Rule& rule, const std::string& where, std::vector<Violation>& violations) {
   const std::vector<std::string> words = rule.words();
+  if (value.is_string()) {
+    if (const auto now = rule.renamed.find(value.get<std::string>()); now != rule.renamed.end())
+      value = now->second;
+  }
   const std::string found = value.is_string() ? value.get<std::string>() : "";
   if (value.is_string() && is_word(found, words)) return true;
   Rule alone = rule;

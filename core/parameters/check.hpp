@@ -11,7 +11,8 @@
 namespace bb {
 
 /// Appends every violation: unknown key (nearest suggested), wrong kind, out of range, missing; where/KEY,
-/// the value found, what is allowed. What is wrong is removed, so that the rest can be read.
+/// the value found, what is allowed. What is wrong is removed, so that the rest can be read; a word of before becomes
+/// the one of now.
 void check_object(nlohmann::json& object, const ParameterList& list, const std::string& where,
                   std::vector<Violation>& violations);
 

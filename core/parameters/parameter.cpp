@@ -116,8 +116,9 @@ Rule count(std::int64_t low, std::int64_t high) {
   return rule;
 }
 Rule flag() { return of_kind(Kind::boolean); }
-Rule word(std::vector<std::string> words) {
+Rule word(std::vector<std::string> words, std::map<std::string, std::string> renamed) {
   Rule rule = of_kind(Kind::word);
+  rule.renamed = std::move(renamed);
   rule.words = [words = std::move(words)] { return words; };
   return rule;
 }

@@ -51,6 +51,7 @@ struct Rule {
   std::size_t min_size = 0, max_size = 0;           // bytes of a text, elements of a list; 0: no bound
   std::function<std::vector<std::string>()> words;  // asked when needed: plugins add names
   bool names = false;                               // the words are names of a registry
+  std::map<std::string, std::string> renamed;       // words of before: what is read in the place of each
   bool several_lines = false;                       // a text may have line ends and tabs
   std::function<ParameterList(const nlohmann::json&)>
       list;              // of an object, which may decide by what it holds; of one in the place of a word
@@ -66,7 +67,8 @@ Rule any_number(std::string unit);
 Rule number_in(double low, double high, std::string unit);  // both bounds allowed
 Rule count(std::int64_t low, std::int64_t high);
 Rule flag();
-Rule word(std::vector<std::string> words);
+/// renamed: words of configs and records of before, and what is read in the place of each.
+Rule word(std::vector<std::string> words, std::map<std::string, std::string> renamed = {});
 Rule words(std::vector<std::string> words);
 Rule any_text();
 Rule text_up_to(std::size_t bytes);  // and not empty

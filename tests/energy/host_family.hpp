@@ -37,11 +37,12 @@ class HostFamily {
     Archive(written.bytes())(now, next);
     return now;
   }
-  /// Steps of dt (s) that end at x.
-  void step(const Positions& x, double dt, int n = 1) {
+  std::vector<std::size_t> cusps(const Positions& x) const { return family_->cusps(x.data()); }
+  /// Steps of dt (s) that end at x, while what is given over time is that of t (s).
+  void step(const Positions& x, double dt, int n = 1, double t = 0) {
     for (int i = 0; i < n; ++i) {
       family_->end_step(x.data(), dt);
-      family_->begin_step({});
+      family_->begin_step({.t_end = t});
     }
   }
 

@@ -1,4 +1,4 @@
-// A strip of triangles with its edges and hinges, at rest (flat) and deformed: the mesh of the batch tests.
+// A strip of triangles with its edges and hinges, at rest (flat) and deformed: the mesh of the tests of families.
 #pragma once
 
 #include <array>

@@ -36,7 +36,7 @@ void expect_stored(const LocalTerms& out, std::size_t e, double energy, const au
 /// moves no memory.
 void expect_consistent(const HostFamily::Make& make, const Positions& x) {
   const HostFamily family(make);
-  ASSERT_GT(family.size(), 64u);
+  ASSERT_GT(family.size(), static_cast<std::size_t>(elements_of_a_thread));
   LocalTerms many, one;
   family.derivatives(x, Projection::psd, many);
   EXPECT_EQ(family.values(x), many.energy);

@@ -221,6 +221,7 @@ TEST(TetrahedronFamily, stores_the_element_terms_whatever_the_threads) {
     const HostFamily family(
         [&](const FamilyPlace& place) { return tetrahedron_family(place, part, row.rest); });
     ASSERT_EQ(family.size(), 80u);
+    ASSERT_GT(family.size(), static_cast<std::size_t>(elements_of_a_thread));
     LocalTerms many, one;
     family.derivatives(row.deformed, Projection::psd, many);
     {

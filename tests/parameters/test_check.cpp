@@ -137,6 +137,19 @@ TEST(Check, KeysThatAreUnknownMissingOrOfSeveralForms) {
   EXPECT_EQ(said_of(R"({"cases": {"n": 1}})", list), "");
 }
 
+TEST(Check, WordsOfBeforeAreReadAsThoseOfNow) {
+  const ParameterList list = {
+      "", {{"row", word({"new_name", "other"}, {{"old_name", "new_name"}}), "other", ""}}, false, {}, ""};
+  std::vector<Violation> violations;
+  json object = {{"row", "old_name"}};
+  check_object(object, list, "a.json#", violations);
+  EXPECT_TRUE(violations.empty());
+  EXPECT_EQ(object, json({{"row", "new_name"}}));
+  EXPECT_EQ(said(list.rows[0].rule, "\"old\""), "a.json#/row: found \"old\"; allowed: one of new_name, other");
+  EXPECT_EQ(own_parameters(list.rows, {{"row", std::string("old_name")}}, "/here"),
+            (ParameterMap{{"row", std::string("new_name")}}));
+}
+
 TEST(Check, LongTextsAreCut) {
   const std::string long_key(1000, 'x'), text = "{\"" + long_key + "\": 1}";
   EXPECT_LT(said_of(text.c_str(), inner(json())).size(), 400u);

@@ -1,6 +1,7 @@
 // Springs of cloth: their columns, rest lengths that shrink and creep.
 #include "core/energy/families/cloth_springs.hpp"
 
+#include "core/energy/element_loop.hpp"
 #include "core/energy/families/families.hpp"
 #include "core/energy/families/rest_memory.hpp"
 
@@ -64,6 +65,15 @@ class ClothSpringFamily final : public FamilyOf<ClothSprings> {
 }  // namespace
 
 MadeFamily cloth_spring_family(const FamilyPlace& place, const ClothSpringPart& part) {
+  const std::size_t n = part.pairs.size();
+  check_column("cloth_springs/rest_length", n, part.rest_length, false);
+  check_column("cloth_springs/tension", n, part.tension, false);
+  check_column("cloth_springs/tension_growing", n, part.tension_growing, false);
+  check_column("cloth_springs/compression", n, part.compression, false);
+  check_column("cloth_springs/compression_growing", n, part.compression_growing, false);
+  check_column("cloth_springs/exponent", n, part.exponent, false);
+  check_column("cloth_springs/yield", n, part.yield, false);
+  check_column("cloth_springs/creep", n, part.creep, false);
   return std::make_unique<ClothSpringFamily>(place, part);
 }
 

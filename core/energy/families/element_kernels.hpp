@@ -83,9 +83,13 @@ concept IsEveryVertex = requires {
   requires Elements::every_vertex;
 };
 
+/// Elements that a host thread takes at least: an energy costs a decomposition or a logarithm.
+constexpr exec::Index elements_of_a_thread = 64;
+
 /// T: the scalar that it is computed in; a card has double alone.
 template <class Elements, class T = double>
 struct ElementValues {
+  static constexpr exec::Index grain = elements_of_a_thread;
   Elements elements;
   const double* x;  // [3 n_vertices] m
   double* energy;   // [n] J
@@ -101,6 +105,7 @@ struct ElementValues {
 /// The local terms of an element side by side, as an assembly in the host's cache reads them. Of a host alone.
 template <class Elements, class T>
 struct ElementLocalTerms {
+  static constexpr exec::Index grain = elements_of_a_thread;
   Elements elements;
   Projection projection;
   PassParts parts;
@@ -161,6 +166,7 @@ struct ElementChanges {
 /// Item i: element piece.begin + i.
 template <class Elements>
 struct ElementGradients {
+  static constexpr exec::Index grain = elements_of_a_thread;
   Elements elements;
   Piece piece;
   const double* x;
@@ -187,6 +193,7 @@ struct ElementGradients {
 /// Item i: element piece.begin + i; its lower blocks (core/math/lower_blocks.hpp).
 template <class Elements>
 struct ElementHessians {
+  static constexpr exec::Index grain = elements_of_a_thread;
   Elements elements;
   Piece piece;
   HessianRequest request;

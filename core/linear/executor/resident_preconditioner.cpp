@@ -6,7 +6,8 @@
 namespace bb::resident {
 
 std::vector<Parameter> preconditioner_parameters() {
-  return {{"resident_preconditioner", word({"block_jacobi", "multilevel_schwarz"}), "block_jacobi",
+  return {{"resident_preconditioner",
+           word({"block_jacobi", "multilevel_schwarz"}, {{"schwarz", "multilevel_schwarz"}}), "block_jacobi",
            "the 3 x 3 blocks of the diagonal, or clusters of vertices on several levels"},
           {"resident_cluster_vertices", count(1, MultilevelSchwarz::most_cluster_vertices), 8,
            "vertices of a cluster of multilevel_schwarz, and clusters of one on the level above"}};
