@@ -74,7 +74,8 @@ class Part {
   virtual std::string_view elements() const = 0;
   virtual std::string_view no_elements() const = 0;
   /// One family a term of E; none without elements. The scene outlives them.
-  virtual void add_families(const Scene&, const FamilyPlace&, std::vector<std::unique_ptr<ElementFamily>>& out) const = 0;
+  virtual void add_families(const Scene&, const FamilyPlace&,
+                            std::vector<std::unique_ptr<ElementFamily>>& out) const = 0;
   virtual void add_frame_fields(const Scene&, const Positions& /*x*/, FrameFields&) const {}
 
   // --- a single element, as `eval` asks for it

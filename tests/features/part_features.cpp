@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/features/feature.hpp"
 
 namespace bb::features {

@@ -1,4 +1,5 @@
 #include "tests/features/table.hpp"
+#include "core/step_solvers/registry.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/features/table.hpp"
 #include "tests/folders.hpp"
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/newton/step_system.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::test {

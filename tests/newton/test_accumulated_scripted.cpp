@@ -2,6 +2,7 @@
 // what of a direction counts as advanced, and what ends the step without that.
 #include <gtest/gtest.h>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/scripted_system.hpp"
 
 namespace bb::accumulated_scripted_test {

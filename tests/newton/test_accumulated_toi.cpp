@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/saddle_scenes.hpp"
 
 namespace bb::accumulated_toi_test {

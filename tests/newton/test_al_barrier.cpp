@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/step_solvers/registry.hpp"
 #include "core/terms/barrier_multipliers.hpp"
 #include "tests/newton/small_scenes.hpp"
 

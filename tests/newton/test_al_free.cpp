@@ -10,6 +10,7 @@
 #include "core/contact/motion_pairs.hpp"
 #include "core/contact/step_bound.hpp"
 #include "core/math/error.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "core/terms/linear_contact.hpp"
 #include "tests/newton/small_scenes.hpp"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/step_solvers/registry.hpp"
 #include "core/terms/contact_multipliers.hpp"
 #include "tests/newton/small_scenes.hpp"
 

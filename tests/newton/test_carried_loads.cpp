@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/archive/archive.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::carried_loads_test {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/saddle_scenes.hpp"
 #include "tests/terms/all_terms.hpp"
 

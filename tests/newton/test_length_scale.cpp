@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::length_scale_test {

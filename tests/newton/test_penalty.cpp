@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/converged_steps.hpp"
 #include "tests/newton/small_scenes.hpp"
 

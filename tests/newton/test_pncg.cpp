@@ -9,6 +9,7 @@
 
 #include "core/math/error.hpp"
 #include "core/step_solvers/dai_kou.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/converged_steps.hpp"
 #include "tests/newton/small_scenes.hpp"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::policy_start_test {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/math/error.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/converged_steps.hpp"
 #include "tests/newton/small_scenes.hpp"
 

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::solver_counters_test {

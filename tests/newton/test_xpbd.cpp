@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/math/error.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::xpbd_test {

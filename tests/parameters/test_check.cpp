@@ -145,7 +145,8 @@ TEST(Check, WordsOfBeforeAreReadAsThoseOfNow) {
   check_object(object, list, "a.json#", violations);
   EXPECT_TRUE(violations.empty());
   EXPECT_EQ(object, json({{"row", "new_name"}}));
-  EXPECT_EQ(said(list.rows[0].rule, "\"old\""), "a.json#/row: found \"old\"; allowed: one of new_name, other");
+  EXPECT_EQ(said(list.rows[0].rule, "\"old\""),
+            "a.json#/row: found \"old\"; allowed: one of new_name, other");
   EXPECT_EQ(own_parameters(list.rows, {{"row", std::string("old_name")}}, "/here"),
             (ParameterMap{{"row", std::string("new_name")}}));
 }

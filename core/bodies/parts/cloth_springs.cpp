@@ -148,7 +148,8 @@ class ClothSprings final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.cloth_springs.pairs.size(); }
   std::string_view elements() const override { return "cloth springs"; }
   std::string_view no_elements() const override { return "no spring of cloth"; }
-  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place,
+                    std::vector<MadeFamily>& out) const override {
     if (!scene.cloth_springs.pairs.empty()) out.push_back(cloth_spring_family(place, scene.cloth_springs));
   }
 

@@ -76,7 +76,8 @@ class Hinges final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.hinges.hinges.size(); }
   std::string_view elements() const override { return "hinges"; }
   std::string_view no_elements() const override { return "no bending"; }
-  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place,
+                    std::vector<MadeFamily>& out) const override {
     if (!scene.hinges.hinges.empty()) out.push_back(hinge_family(place, scene.hinges));
   }
 

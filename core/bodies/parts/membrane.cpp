@@ -289,7 +289,8 @@ class Membrane final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.membrane_triangles().size(); }
   std::string_view elements() const override { return "triangles"; }
   std::string_view no_elements() const override { return "no membrane element"; }
-  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place,
+                    std::vector<MadeFamily>& out) const override {
     for (const MembranePart& part : scene.membranes) {
       if (!part.triangles.empty()) out.push_back(membrane_family(place, part, scene.rest, scene.planar));
     }

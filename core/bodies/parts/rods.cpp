@@ -71,7 +71,8 @@ class Rods final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.rods.corners.size(); }
   std::string_view elements() const override { return "rod bends"; }
   std::string_view no_elements() const override { return "no rod that bends"; }
-  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place,
+                    std::vector<MadeFamily>& out) const override {
     if (!scene.rods.corners.empty()) out.push_back(rod_family(place, scene.rods));
   }
 

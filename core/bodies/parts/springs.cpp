@@ -77,7 +77,8 @@ class Springs final : public Part {
   std::size_t size(const Scene& scene) const override { return scene.springs.edges.size(); }
   std::string_view elements() const override { return "springs"; }
   std::string_view no_elements() const override { return "no spring"; }
-  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place,
+                    std::vector<MadeFamily>& out) const override {
     const SpringPart& part = scene.springs;
     if (part.edges.empty()) return;
     out.push_back(spring_family(place, {}, part.edges, part.stiffness, lengths_of(part.edges, scene.rest)));

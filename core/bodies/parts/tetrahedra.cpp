@@ -135,7 +135,8 @@ class Tetrahedra final : public Part {
   }
   std::string_view elements() const override { return "tetrahedra"; }
   std::string_view no_elements() const override { return "no tetrahedron"; }
-  void add_families(const Scene& scene, const FamilyPlace& place, std::vector<MadeFamily>& out) const override {
+  void add_families(const Scene& scene, const FamilyPlace& place,
+                    std::vector<MadeFamily>& out) const override {
     for (const SolidPart& part : scene.solids) {
       if (!part.tetrahedra.empty()) out.push_back(tetrahedron_family(place, part, scene.rest));
     }

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "core/energy/families/element_kernels.hpp"
 #include "core/exec/buffer.hpp"
 #include "core/linear/block_system.hpp"
-#include "core/energy/families/element_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
 
 namespace bb::resident {
