@@ -51,6 +51,11 @@ def kernel_name(text: str) -> str:
     return m[1].strip() if m else text
 
 
+def short_name(name: str) -> str:
+    """Without our namespaces."""
+    return re.sub(r"\bbb::(resident::)?", "", name)
+
+
 def fp64_counts(ptx: str) -> dict[str, int]:
     """Mangled name -> FP64 instructions of its text; device functions that it calls are not counted."""
     out = {}
@@ -168,7 +173,7 @@ def differences(before: dict, now: dict) -> list[str]:
 
 def reason(name: str, buffer: str, gathers: list[dict]) -> str:
     """Why a buffer is not read in order; empty when that is not known."""
-    return next((g["reason"] for g in gathers if g["kernel"] == name.removeprefix("bb::resident::") and {buffer, "*"} & set(g["buffers"])), "")
+    return next((g["reason"] for g in gathers if g["kernel"] == short_name(name) and {buffer, "*"} & set(g["buffers"])), "")
 
 
 def unexplained(table: dict, gathers: list[dict]) -> list[str]:
@@ -197,7 +202,7 @@ def markdown(table: dict, gathers: list[dict]) -> str:
         "| kernel | room | registers | stack | spills | local | FP64 | lines | sectors | of least |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
-    short = {name: name.replace("bb::resident::", "") for name in table["kernels"]}
+    short = {name: short_name(name) for name in table["kernels"]}
     for name, row in table["kernels"].items():
         cells = [row.get(key, "") for key in ("room", "registers", "stack", "spills", "local", "fp64", "lines", "sectors", "over_least")]
         lines.append(f"| `{short[name]}` | " + " | ".join(str(c) for c in cells) + " |")
