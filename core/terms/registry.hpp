@@ -23,7 +23,7 @@ struct TermNeeds {
 
 /// What a term is made from. All of it outlives the term.
 struct TermInputs {
-  exec::Executor& executor;  // in whose memory families are, which is the host's
+  exec::Executor& executor;  // families are in its memory, which has to be the host's
   const Scene& scene;
   TermOptions& options;
   const ContactPlan& contacts;

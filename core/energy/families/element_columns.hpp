@@ -26,7 +26,7 @@ std::vector<T> to_columns(std::span<const T> rows, std::size_t width) {
   return out;
 }
 
-/// Whether a column says something of an element for which 0 says nothing.
+/// Whether an entry of the column is above 0.
 inline bool any_positive(std::span<const double> column) {
   return std::any_of(column.begin(), column.end(), [](double value) { return value > 0; });
 }
@@ -41,15 +41,11 @@ inline void upload_pair(std::span<const double> first, std::span<const double> s
 
 /// Element-major vertices of elements of a scene.
 template <std::size_t W>
-std::vector<int> flat(std::span<const std::array<int, W>> elements) {
+std::vector<int> flat(const std::vector<std::array<int, W>>& elements) {
   std::vector<int> out;
   out.reserve(W * elements.size());
   for (const auto& element : elements) out.insert(out.end(), element.begin(), element.end());
   return out;
-}
-template <std::size_t W>
-std::vector<int> flat(const std::vector<std::array<int, W>>& elements) {
-  return flat(std::span(elements));
 }
 
 /// Rest shapes as they are stored: TriangleRest or TetrahedronRest.
@@ -79,7 +75,7 @@ struct RestShapes {
 /// Factors on rest lengths that a time gives, as kernels read them.
 class ShrinkFactors {
  public:
-  /// n: elements. The schedule outlives it.
+  /// n: elements.
   ShrinkFactors(exec::Executor& executor, const std::string& name, const ShrinkSchedule& schedule,
                 std::size_t n)
       : lists_(schedule.lists), list_(executor, name), factor_(executor, "factors of shrinkage") {

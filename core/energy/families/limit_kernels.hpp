@@ -94,6 +94,7 @@ BB_HD void measure_stretch(const LimitColumns<N>& limit, const double* x, exec::
 }
 template <int R, int N, class T = double>
 struct MeasureStretch {
+  static constexpr exec::Index grain = elements_of_a_thread;
   LimitColumns<N> limit;
   const double* x;
   BB_HD void operator()(exec::Index e) const { measure_stretch<R, T>(limit, x, e); }
@@ -141,6 +142,7 @@ BB_HD void finish_measure(const LimitColumns<N>& limit, const MeasureAt& at, exe
 /// Pseudo-gaps, barrier terms and energies of a state whose kappa is known.
 template <int R, int N, class S>
 struct MeasureLimit {
+  static constexpr exec::Index grain = elements_of_a_thread;
   LimitShape<N, S> shape;
   MeasureAt at;
   BB_HD void operator()(exec::Index e) const {
@@ -167,6 +169,7 @@ struct ElementKappaInputs {
 /// kappa_e at the measured pseudo-gaps by a policy of strain limits, P its struct of values.
 template <int N, class P>
 struct ElementKappa {
+  static constexpr exec::Index grain = elements_of_a_thread;
   ElementKappaInputs<N> of;
   ScaledPolicy<P> policy;
   BB_HD void operator()(exec::Index e) const {
@@ -222,6 +225,7 @@ struct ElementKappa {
 /// Least of the elements' step bounds below `alpha`, as ordered bits. R as in Limit.
 template <int R, int N, class T = double>
 struct StretchBound {
+  static constexpr exec::Index grain = elements_of_a_thread;
   LimitColumns<N> limit;
   const double *x, *dx;
   double alpha, park;

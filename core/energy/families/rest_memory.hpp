@@ -1,4 +1,4 @@
-// What rest shapes remember from step to step on an executor: plastic parts and lengths that creep.
+// What rest shapes remember from step to step: plastic parts and lengths that creep.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,7 @@ class RestMemory {
     flowed_ = true;
     return next_.data();
   }
-  /// As the host's terms keep it.
+  /// What the step has, and what it leaves once it is over.
   void keep(Archive& archive) {
     std::vector<double> now = now_.download(), next;
     if (flowed_) next = next_.download();
