@@ -23,6 +23,7 @@ KnownPairs StiffnessUpdate::memory() const {
 
 void StiffnessUpdate::refresh(Tables rows, const Compute& compute) {
   compares_ = false;
+  rows_have_kappa_ = true;
   if (policy_.uniform()) return;
   for (std::size_t t = 0; t < rows.size(); ++t) {
     const StiffnessRows& of = rows[t];
@@ -50,7 +51,7 @@ void StiffnessUpdate::freeze(Tables trial, Tables iterate, const Compute& comput
     if (of.n == 0) continue;
     RecallKappa recall{of, {}, missing_.counts(of.n)};
     if (!rows_are_memory()) recall.known[0] = memory();
-    for (std::size_t k = 0; rows_are_memory() && k < iterate.size(); ++k)
+    for (std::size_t k = 0; rows_are_memory() && rows_have_kappa_ && k < iterate.size(); ++k)
       recall.known[k] = {iterate[k].n, iterate[k].pair, iterate[k].fixed, nullptr, iterate[k].by};
     executor_.each(of.n, recall);
     compute(t, recall.missing, true);
@@ -60,6 +61,7 @@ void StiffnessUpdate::freeze(Tables trial, Tables iterate, const Compute& comput
 }
 
 void StiffnessUpdate::keep(Tables rows) {
+  rows_have_kappa_ = true;
   if (policy_.uniform() || rows_are_memory()) return;
   for (const StiffnessRows& of : rows) keep(of);
 }

@@ -33,7 +33,7 @@ class StiffnessUpdate {
   /// Forgets the kappa and the matrix of the step before.
   void begin_step() {
     n_known_ = 0;
-    has_matrix_ = false;
+    has_matrix_ = rows_have_kappa_ = false;
   }
   /// Whether the elastic matrix of this iterate is what the policy reads from now on, and has to be kept: a policy with a potential
   /// reads that of the step's first one all through the step.
@@ -46,7 +46,8 @@ class StiffnessUpdate {
   /// one kappa, or kappa is kept for the step. Waits.
   double change() const;
   /// kappa of the rows of a trial: known pairs keep theirs, new ones get the policy's value at d = d_hat, so that it does not depend
-  /// on the trial. iterate: rows of the last refresh, or those accepted since. What is known of a trial stays in its own rows; only
+  /// on the trial. iterate: rows of the last refresh, or those accepted since; rows of the step's start that no refresh has
+  /// seen have no kappa yet. What is known of a trial stays in its own rows; only
   /// of a policy with a potential a new pair is known from then on, whether the trial is accepted or not: its weights belong
   /// to the state where it was first met, and E has to be one function of x for the rest of the step.
   void freeze(Tables trial, Tables iterate, const Compute& compute);
@@ -74,6 +75,7 @@ class StiffnessUpdate {
   exec::Reading<exec::Key> change_;
   bool compares_ = false;  // change_ is that of the last refresh()
   bool has_matrix_ = false;
+  bool rows_have_kappa_ = false;  // of the iterate
 };
 
 }  // namespace bb

@@ -48,6 +48,11 @@ struct Memory {
   std::vector<int> missing, missing_mollified;
 };
 
+/// Refreshed in every iteration: the rows of the iterate are the memory.
+struct IterationPolicy final : HostPolicy {
+  Refresh refresh() const override { return Refresh::per_iteration; }
+};
+
 // A point (vertex 0) above two triangles that share the edge x = 0.
 Scene point_over_fan() {
   Scene scene;
@@ -120,6 +125,41 @@ TEST(KappaMemory, OfPairsWithOneFeatureIsThatOfEach) {
   EXPECT_EQ(known.parts[0].fixed, 3);
   EXPECT_EQ(known.parts[1].fixed, 7);
   EXPECT_EQ(known.parts[1].per_gap_sq, 0.02);
+}
+
+TEST(KappaMemory, RowsOfAStepsStartThatNothingRefreshedHaveNone) {
+  const Scene scene = point_over_fan();
+  ContactSystem contacts(scene, {});
+  Rows start = at(contacts, scene, -1e-9);
+  ASSERT_EQ(start.table.size(), 2U);
+  exec::HostExecutor executor;
+  const IterationPolicy policy;
+  StiffnessUpdate update(executor, policy);
+  const auto kappa_after_freeze = [&] {
+    Rows trial = at(contacts, scene, 1e-9);
+    const std::array<StiffnessRows, 2> trials = Memory::views(trial), iterates = Memory::views(start);
+    update.freeze(trials, iterates, [&](std::size_t of, const std::uint8_t* marked, bool) {
+      for (Index r = 0; r < trials[of].n; ++r) {
+        if (marked[r] != 0) trials[of].set(r, {5, 0});
+      }
+    });
+    return trial.table.kappa;
+  };
+  const auto refresh = [&] {
+    const std::array<StiffnessRows, 2> iterates = Memory::views(start);
+    update.refresh(iterates, [&](std::size_t of, const std::uint8_t*, bool) {
+      for (Index r = 0; r < iterates[of].n; ++r) iterates[of].set(r, {3, 0});
+    });
+  };
+  update.begin_step();
+  EXPECT_EQ(kappa_after_freeze(), (std::vector<double>{5, 5}));
+  refresh();
+  EXPECT_EQ(kappa_after_freeze(), (std::vector<double>{3, 3}));
+  update.begin_step();
+  EXPECT_EQ(kappa_after_freeze(), (std::vector<double>{5, 5}));
+  const std::array<StiffnessRows, 2> accepted = Memory::views(start);
+  update.keep(accepted);
+  EXPECT_EQ(kappa_after_freeze(), (std::vector<double>{3, 3}));
 }
 
 template <class Table>
