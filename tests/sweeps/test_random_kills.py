@@ -29,7 +29,7 @@ def kill_after(seconds: float, sweep, whole_group: bool) -> bool:
 
 
 def test_kills_at_random_moments_leave_the_records_of_an_undisturbed_sweep(program, tmp_path):
-    runs = {"pointer": "/time/steps", "range": {"from": 900, "to": 900 + KILLS - 1, "count": KILLS}}
+    runs = {"pointer": "/time/steps", "range": {"from": 1500, "to": 1500 + KILLS - 1, "count": KILLS}}
     file, out, alone = write_sweep(tmp_path, runs, settings={"/output/checkpoint_every": 20}), tmp_path / "out", tmp_path / "alone"
     assert bench(program, "sweep", file, "--out", alone, "--jobs", 2).returncode == 0
     draw, killed, finished_before = random.Random(7), 0, []
