@@ -15,7 +15,7 @@ struct ReportedRow {
 };
 
 /// Sums of rows in any order but for the last digits of the loads. Of extremes the complement of their key (sum_kernels.hpp), so that
-/// the greatest wins, and what is no number beats all; 0: there is no row.
+/// the greatest wins, and NaN beats all; 0: there is no row.
 struct RowTotals {
   exec::Key gap_rel_min, kappa_min, kappa_max, load_max, curvature_max;
   exec::Key of_kind[mollified_kind + 1];  // rows

@@ -20,7 +20,7 @@ using Real = long double;
 using RVec = Vec<Real, 3>;
 using Reals = Eigen::Matrix<Real, 3, Eigen::Dynamic>;
 
-/// A strip of more vertices than a block has threads, with every load, and given vertices without mass.
+/// A strip of more vertices than a block has threads, with every load, and prescribed vertices without mass.
 Scene loaded_scene() {
   static const Strip strip(150);
   Scene scene;
