@@ -15,13 +15,12 @@ void add_row(const Table& rows, std::size_t r, ContactLoads& out) {
   append(rows.stencil_weight, 4, out.weight);
   append(rows.normal, 3, out.normal);
   out.pair.push_back(rows.pair[r]);
-  out.obstacle.push_back(pair_obstacle(rows.pair[r]));
 }
 
 }  // namespace
 
 void ContactLoads::clear() {
-  for (auto* column : {&stencil, &obstacle}) column->clear();
+  stencil.clear();
   pair.clear();
   for (auto* column : {&weight, &normal, &load}) column->clear();
 }

@@ -14,7 +14,6 @@ struct ContactLoads {
   std::vector<double> weight;  // [4 n] w_i, 0 padded: a motion dx opens the gap by sum w_i n . dx_i
   std::vector<double> normal;  // [3 n] unit
   std::vector<PairId> pair;    // [n]
-  std::vector<int> obstacle;   // [n] number of the obstacle that presses; -1: another surface
   std::vector<double> load;    // [n] N, kappa |b'|; of mollified rows e times that
 
   std::size_t size() const { return load.size(); }

@@ -1,145 +1,119 @@
 // Friction: mu load f0(slide) of every contact that a step begins with (docs/design.md, Friction). Normal, weights and load are
 // those of the start of the step, so that E stays one function of x within a step; contacts that come later rub from the next step on.
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "core/contact/obstacle_arm.hpp"
-#include "core/energy/friction_law.hpp"
-#include "core/terms/contact_sides.hpp"
+#include "core/energy/friction_list.hpp"
+#include "core/exec/sums/resident_sum.hpp"
+#include "core/math/error.hpp"
 #include "core/terms/lagged_contacts.hpp"
+#include "core/terms/lagged_family_of.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
 namespace {
 
-class Friction final : public LaggedContacts {
+template <class Law>
+class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
+  using Base = LaggedFamilyOf<FrictionRows<Law>>;
+  using Base::kind_, Base::place_, Base::rows_;
+
  public:
-  Friction(const Scene& scene, const TermOptions& options, const TermList& before)
-      : LaggedContacts(scene, options.precision, before), options_(options.friction) {}
-  std::string_view name() const override { return "friction"; }
+  FrictionFamily(const FamilyPlace& place, const Scene& scene, const FrictionOptions& options,
+                 const int* body)
+      : Base(place, body, options.combine, coefficients(scene.bodies, options.mu),
+             coefficients(scene.obstacles, options.mu)),
+        options_(options),
+        obstacles_(scene.obstacles),
+        turns_(std::any_of(obstacles_.begin(), obstacles_.end(),
+                           [](const Obstacle& o) { return o.motion.most_turning() != 0; })),
+        turn_(place.executor, "turns of obstacles"),
+        spin_(place.executor, "lagged spins"),
+        numbers_(place.executor) {}
 
-  void begin_step(const StepFrame& frame, PhaseClock& clock) override {
-    const ScopedPhase timer(clock, Phase::contact_terms);
-    begin_at(frame.x_n);
-    take_frame(frame);
+  void begin_step(const FamilyStep& step) override {
+    this->x_n_ = step.x_n;
     solved_ = 0;
-    t_lag_ = frame.t_end - frame.dt;
-    take_rows(frame.x_n);
+    take_step(step);
+    t_lag_ = step.t_end - step.dt;
+  }
+  void change_step(const FamilyStep& step) override {
+    take_step(step);
     find_spins();
   }
-  void change_frame(const StepFrame& frame) override {
-    take_frame(frame);
-    find_spins();
-  }
-  void adopt_from(const Term& other) override {
-    t_lag_ = static_cast<const Friction&>(other).t_lag_;
-    LaggedContacts::adopt_from(other);
-    find_spins();
-  }
-  bool renew_lag(const PositionsView& x) override {
+  bool renews() override {
     if (++solved_ >= options_.lag_iterations) return false;
-    const bool had_rows = size() > 0;
     t_lag_ = t_end_;
-    take_rows(x);
-    find_spins();
-    return had_rows || size() > 0;
+    return true;
   }
 
-  void linearise(const PositionsView& x, const TermContext&) override {
-    learn_loads();
-    for_each_pass(precision(), [&]<class T>(PassParts parts) {
-      const Law<T> law = this->law<T>();
-      store_motion_terms<T>(parts, [&](std::size_t e) {
-        return friction_of_slide<T>(slide<T>(e, x), normal<T>(e), static_cast<T>(strength(e)), law);
-      });
-    });
-  }
-  void evaluate(const PositionsView& x) override {
-    with_value_scalar(precision(), [&]<class T>() {
-      const Law<T> law = this->law<T>();
-      store_trial(
-          [&](std::size_t e) { return friction_value<T>(slide<T>(e, x), static_cast<T>(strength(e)), law); });
-    });
-  }
-
-  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override {
-    if (!loads_known()) return;  // the step ended where a lag was taken anew
-    const Law<double> law = this->law<double>();
-    double work = 0;
-    for (std::size_t e = 0; e < size(); ++e) {
-      if (!(strength(e) > 0)) continue;
-      const double y = slide<double>(e, x).norm();
-      work += friction_work(y, strength(e), law);
-      ++(y < eps_ ? out.friction_sticking : out.friction_sliding);
-    }
-    out.friction_dissipation_J = work;
+  void report_end(const double* x, StepNumbers& out) override {
+    numbers_.clear();
+    numbers_.add(Base::size(), FrictionOfRows<Law>{Base::of_kind(), x});
+    const FrictionNumbers found = numbers_.get();
+    out.friction_sticking += static_cast<int>(found.sticking);
+    out.friction_sliding += static_cast<int>(found.sliding);
+    out.friction_dissipation_J = found.work.value();
   }
 
  private:
-  template <class T>
-  struct Law {
-    FrictionProfile<T> (*eval)(T y, T eps);
-    T eps;
-    FrictionProfile<T> operator()(T y) const { return eval(y, eps); }
-  };
-  template <class T>
-  Law<T> law() const {
-    return {friction_laws_in<T>().require(options_.law, "/friction/law").eval, static_cast<T>(eps_)};
+  template <class Sides>
+  static std::vector<double> coefficients(const Sides& sides, double otherwise) {
+    std::vector<double> out;
+    for (const auto& side : sides) out.push_back(side.friction.value_or(otherwise));
+    return out;
   }
-
-  void take_frame(const StepFrame& frame) {
-    eps_ = options_.eps_v * frame.dt;
-    t_end_ = frame.t_end;
-    dt_ = frame.dt;
+  void take_step(const FamilyStep& step) {
+    kind_.eps = options_.eps_v * step.dt;
+    t_end_ = step.t_end;
+    dt_ = step.dt;
   }
+  void rows_changed() override { find_spins(); }
+  void add_known(KnownLag& out) const override { out.t = t_lag_; }
+  void adopt_known(const KnownLag& known) override { t_lag_ = known.t; }
 
-  template <class T>
-  Vec<T, 3> slide(std::size_t e, const PositionsView& x) const {
-    return slide_of<T>(motion<T>(e, x) - spin_[e].template cast<T>(), normal<T>(e));
-  }
-
-  /// What the turn of an obstacle takes its surface along by in this step where each element is, beside the way of its
-  /// point.
+  /// Of the rows as they are, in the step as it is.
   void find_spins() {
-    spin_.assign(size(), Vec3d::Zero());
-    for (std::size_t e = 0; e < size(); ++e) {
-      const int obstacle = contacts().obstacle[contact(e)];
-      if (obstacle < 0) continue;
-      const Obstacle& o = scene().obstacles[static_cast<std::size_t>(obstacle)];
-      if (o.motion.most_turning() == 0) continue;
-      spin_[e] = way_of_turn<double>(arm_of(contact(e), o), o.motion.turn(t_lag_),
-                                     o.motion.turn(t_end_ - dt_), o.motion.turn(t_end_));
+    if (!turns_) return;
+    std::vector<ObstacleTurn> all;
+    for (const Obstacle& o : obstacles_) {
+      ObstacleTurn& turn = all.emplace_back();
+      turn.kind = o.kind;
+      turn.radius = o.radius;
+      turn.turns = o.motion.most_turning() != 0;
+      Vec3d::Map(turn.axis) = o.axis;
+      Mat3d::Map(turn.lag) = o.motion.turn(t_lag_);
+      Mat3d::Map(turn.begin) = o.motion.turn(t_end_ - dt_);
+      Mat3d::Map(turn.end) = o.motion.turn(t_end_);
     }
-  }
-  /// From the point of an obstacle that moves to its surface at a contact, m.
-  Vec3d arm_of(std::size_t r, const Obstacle& o) const {
-    Vec3d arm = Vec3d::Zero();  // to the other side of the contact
-    for (std::size_t k = 4 * r; k < 4 * r + 4 && contacts().stencil[k] >= 0; ++k) {
-      arm += contacts().weight[k] * lagged().col(contacts().stencil[k]);
-    }
-    return arm_to_surface<double>(analytic_surface<double>(o), arm);
-  }
-
-  void lag_is_adopted(double t) override {
-    t_lag_ = t;
-    find_spins();
-  }
-
-  double coefficient(std::size_t r) const override {
-    const auto of = [this](const auto& side) { return side.friction.value_or(options_.mu); };
-    return combined_of_sides(scene(), contacts(), r, options_.combine, of);
+    turn_.upload(all);
+    spin_.fit(3 * Base::size());
+    kind_.spin = spin_.data();
+    place_.executor.each(Base::size(), FindSpins{Base::view(), rows_.pair.data(), turn_.data(),
+                                                 Base::lagged().data(), spin_.data()});
   }
 
   const FrictionOptions& options_;
-  double eps_ = 0;             // m
+  const std::vector<Obstacle>& obstacles_;
+  bool turns_;  // some obstacle does
+  exec::Buffer<ObstacleTurn> turn_;
+  exec::Buffer<double> spin_;  // [3, n] m
+  resident::ResidentSums<FrictionNumbers> numbers_;
   double t_end_ = 0, dt_ = 0;  // s
   double t_lag_ = 0;           // s, of lagged()
-  std::vector<Vec3d> spin_;    // [n] m
   int solved_ = 0;             // times that this step converged
 };
 
 }  // namespace
+
+std::unique_ptr<LaggedFamily> friction_family(const FamilyPlace& place, const Scene& scene,
+                                              const FrictionOptions& options, const int* body) {
+#define ENTRY(id, doc)    \
+  if (options.law == #id) \
+    return std::make_unique<FrictionFamily<friction_laws::id>>(place, scene, options, body);
+#include "core/energy/friction_laws/registry.inc"
+#undef ENTRY
+  throw ConfigError("/friction/law", options.law, "a law of core/energy/friction_laws/registry.inc");
+}
 
 PlanItem needs_friction(const TermNeeds& needs) {
   const FrictionOptions& options = needs.options.friction;
@@ -154,7 +128,10 @@ PlanItem needs_friction(const TermNeeds& needs) {
 }
 
 void make_friction(const TermInputs& inputs, TermList& terms) {
-  terms.add(std::make_unique<Friction>(inputs.scene, inputs.options, terms));
+  const FamilyPlace place{inputs.executor, inputs.options.precision};
+  terms.add(std::make_unique<LaggedContacts>(
+      "friction", friction_family(place, inputs.scene, inputs.options.friction, inputs.scene.body.data()),
+      terms));
 }
 
 }  // namespace bb

@@ -4,18 +4,22 @@
 #include <string_view>
 #include <vector>
 
-#include "core/contact/contact_loads.hpp"
+#include "core/contact/pair_id.hpp"
 #include "core/contact/stiffness_update.hpp"
 
 namespace bb {
 
-/// Contacts that a term took from one state (lagged_contacts.hpp), of which it knows how strong each is.
+/// The rows that a term took from the contacts of one state (lagged_family.hpp); columns as there.
 struct KnownLag {
   std::string_view term;
-  Positions lagged;              // m, the state
-  double t = 0;                  // s, of it
-  ContactLoads contacts;         // all of them
-  std::vector<double> strength;  // [n contacts]
+  std::vector<double> lagged;  // [3 n_vertices] m, the state
+  std::vector<int> vertex;
+  std::vector<double> weight, normal;
+  std::vector<PairId> pair;
+  std::vector<double> load, strength;
+  bool loads_known = false;
+  double t = 0;             // s, of the state; of friction
+  std::vector<double> met;  // [n] m/s, the speed at which each pair met; of restitution
 };
 
 struct KnownStep {

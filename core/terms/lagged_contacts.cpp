@@ -1,76 +1,113 @@
 #include "core/terms/lagged_contacts.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace bb {
+namespace {
 
-LaggedContacts::LaggedContacts(const Scene& scene, Precision precision, const TermList& before)
-    : scene_(scene), precision_(precision) {
+/// The contacts that have a coefficient, in the order of their pairs: as an executor finds them.
+std::vector<std::size_t> acting(const ContactLoads& contacts, const SideCoefficients& sides) {
+  std::vector<std::size_t> out;
+  for (std::size_t r = 0; r < contacts.size(); ++r) {
+    if (sides.of(&contacts.stencil[4 * r], 1, contacts.pair[r]) != 0) out.push_back(r);
+  }
+  std::sort(out.begin(), out.end(),
+            [&](std::size_t a, std::size_t b) { return contacts.pair[a] < contacts.pair[b]; });
+  return out;
+}
+
+}  // namespace
+
+LaggedContacts::LaggedContacts(std::string_view name, std::unique_ptr<LaggedFamily> family,
+                               const TermList& before)
+    : name_(name), family_(std::move(family)) {
   for (const auto& term : before) before_.push_back(term.get());
   families_.resize(1);
 }
 
+void LaggedContacts::begin_step(const StepFrame& frame, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::contact_terms);
+  family_->begin_step(frame.of_families());
+  take_rows(frame.x_n);
+}
+
+bool LaggedContacts::renew_lag(const PositionsView& x) {
+  if (!family_->renews()) return false;
+  const bool had_rows = size() > 0;
+  take_rows(x);
+  return had_rows || size() > 0;
+}
+
 void LaggedContacts::adopt(const KnownStep& known) {
   for (const KnownLag& lag : known.lags) {
-    if (lag.term != name()) continue;
-    lagged_ = lag.lagged;
-    make_elements(lag.contacts);
-    for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = lag.strength[row_[e]];
-    loads_known_ = true;
-    lag_is_adopted(lag.t);
+    if (lag.term == name_) adopt(lag);
   }
 }
 
 void LaggedContacts::adopt_from(const Term& other) {
   const auto& same = static_cast<const LaggedContacts&>(other);
-  lagged_ = same.lagged_;
-  make_elements(same.contacts_);
-  strength_ = same.strength_;
-  loads_known_ = same.loads_known_;
+  contact_ = same.contact_;
+  pairs_ = same.pairs_;
+  adopt(same.family_->known(name_));
 }
 
-// The rows of a step stay.
-void LaggedContacts::change(const PositionsView&, const PositionsView&, EnergyParts& out) const {
-  compare_elements(families_[0], out);
+void LaggedContacts::adopt(const KnownLag& lag) {
+  family_->adopt(lag);
+  make_elements();
+}
+
+void LaggedContacts::linearise(const PositionsView& x, const TermContext&) {
+  learn_loads();
+  family_->derivatives(x.data(), families_[0].local);
 }
 
 void LaggedContacts::take_rows(const PositionsView& x) {
-  lagged_ = x;
-  make_elements(contacts_now());
-  loads_known_ = false;
+  const ContactLoads contacts = contacts_at(x);
+  contact_ = acting(contacts, family_->sides());
+  pairs_ = contacts.pair;
+  LaggedColumns& rows = family_->rows();
+  const std::size_t n = contact_.size();
+  rows.fit(static_cast<exec::Index>(n));
+  for (std::size_t e = 0; e < n; ++e) {
+    const std::size_t r = contact_[e];
+    for (std::size_t k = 0; k < 4; ++k) {
+      rows.vertex.data()[k * n + e] = contacts.stencil[4 * r + k];
+      rows.weight.data()[k * n + e] = contacts.weight[4 * r + k];
+    }
+    for (std::size_t c = 0; c < 3; ++c) rows.normal.data()[c * n + e] = contacts.normal[3 * r + c];
+    rows.pair.data()[e] = contacts.pair[r];
+  }
+  family_->take(x.data(), x.size());
+  make_elements();
 }
 
 void LaggedContacts::learn_loads() {
-  if (loads_known_) return;
-  ContactLoads now = contacts_now();
-  if (now.stencil != contacts_.stencil)
-    throw std::logic_error("the rows of a lag changed before their loads");
-  contacts_.load.swap(now.load);
-  for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = coefficient_[e] * load(e);
-  loads_are_known(strength_);
-  loads_known_ = true;
+  if (family_->loads_known()) return;
+  const exec::Buffer<double>& lagged = family_->lagged();
+  const ContactLoads now = contacts_at(PositionsView(lagged.data(), lagged.size() / 3));
+  if (now.pair != pairs_) throw std::logic_error("the rows of a lag changed before their loads");
+  double* const load = family_->rows().load.data();
+  for (std::size_t e = 0; e < contact_.size(); ++e) load[e] = now.load[contact_[e]];
+  family_->know_loads();
 }
 
-ContactLoads LaggedContacts::contacts_now() const {
+ContactLoads LaggedContacts::contacts_at(const PositionsView& x) const {
   ContactLoads out;
-  for (const Term* term : before_) term->add_loads(lagged_, out);
+  for (const Term* term : before_) term->add_loads(x, out);
   return out;
 }
 
-void LaggedContacts::make_elements(ContactLoads contacts) {
-  contacts_ = std::move(contacts);
-  row_.clear(), coefficient_.clear(), vertices_.clear();
-  for (std::size_t r = 0; r < contacts_.size(); ++r) {
-    const double of_contact = coefficient(r);
-    if (of_contact == 0) continue;
-    row_.push_back(r);
-    coefficient_.push_back(of_contact);
-    vertices_.insert(vertices_.end(), &contacts_.stencil[4 * r], &contacts_.stencil[4 * r] + 4);
+void LaggedContacts::make_elements() {
+  const LaggedColumns& rows = family_->rows();
+  const auto n = static_cast<std::size_t>(rows.size());
+  vertices_.resize(4 * n);
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t e = 0; e < n; ++e) vertices_[4 * e + k] = rows.vertex.data()[k * n + e];
   }
-  strength_.assign(row_.size(), 0.0);
   families_[0].stencils = {4, vertices_};
-  families_[0].local.resize(row_.size(), 4);
-  families_[0].trial_energy.resize(row_.size());
+  families_[0].local.resize(n, 4);
+  families_[0].trial_energy.resize(n);
 }
 
 }  // namespace bb

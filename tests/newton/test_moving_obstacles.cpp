@@ -126,7 +126,7 @@ TEST(MovingObstacles, the_momentum_of_a_cloth_that_a_plane_hits_is_what_its_cont
       for (const auto& term : terms) term->add_loads(x, loads);
       force.setZero();
       for (std::size_t r = 0; r < loads.size(); ++r) {
-        if (loads.obstacle[r] >= 0) force += loads.load[r] * Vec3d::Map(&loads.normal[3 * r]);
+        if (pair_obstacle(loads.pair[r]) >= 0) force += loads.load[r] * Vec3d::Map(&loads.normal[3 * r]);
       }
     }
   } watch;

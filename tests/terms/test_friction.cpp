@@ -49,8 +49,8 @@ TEST(ContactLoads, AreTheForcesOfTheRowsOnceTheTermIsLinearised) {
       sum += loads.weight[k];
     }
     EXPECT_GT(loads.load[r], 0);
-    EXPECT_NEAR(sum, loads.obstacle[r] == 0 ? 1 : 0, 1e-12);
-    of_floor += loads.obstacle[r] == 0;
+    EXPECT_NEAR(sum, pair_obstacle(loads.pair[r]) == 0 ? 1 : 0, 1e-12);
+    of_floor += pair_obstacle(loads.pair[r]) == 0;
   }
   EXPECT_EQ(of_floor, 9U);  // every vertex of the lower cloth
   const TermFamily& rows = at.contact().families()[0];
@@ -140,7 +140,7 @@ TEST(Friction, CombinesTheCoefficientsOfTheTwoSides) {
     const ContactLoads loads = at.loads();
     double expected = 0;
     for (std::size_t r = 0; r < loads.size(); ++r) {
-      expected += (loads.obstacle[r] == 0 ? e.with_floor : e.between) * loads.load[r] * eps / 3;
+      expected += (pair_obstacle(loads.pair[r]) == 0 ? e.with_floor : e.between) * loads.load[r] * eps / 3;
     }
     ASSERT_GT(expected, 1e-6);
     EXPECT_NEAR(iterate_energy(at.friction()), expected, 1e-13 * expected);
@@ -153,7 +153,8 @@ TEST(Friction, LeavesOutWhatHasNoCoefficientAndIsMadeOnlyWhereSomeContactCanRub)
   AtStart at(scene, [](TermOptions&) {});
   at.linearise();
   const ContactLoads loads = at.loads();
-  const auto of_floor = std::count(loads.obstacle.begin(), loads.obstacle.end(), 0);
+  const auto of_floor = std::count_if(loads.pair.begin(), loads.pair.end(),
+                                      [](PairId pair) { return pair_obstacle(pair) == 0; });
   EXPECT_EQ(at.friction().size() + static_cast<std::size_t>(of_floor), loads.size());
 
   TermOptions options = test::term_options();
