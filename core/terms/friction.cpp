@@ -5,7 +5,7 @@
 #include "core/energy/friction_list.hpp"
 #include "core/exec/sums/resident_sum.hpp"
 #include "core/math/error.hpp"
-#include "core/terms/lagged_contacts.hpp"
+#include "core/terms/friction_rows.hpp"
 #include "core/terms/lagged_family_of.hpp"
 #include "core/terms/registry.hpp"
 
@@ -68,8 +68,8 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
     dt_ = step.dt;
   }
   void rows_changed() override { find_spins(); }
-  void add_known(KnownLag& out) const override { out.t = t_lag_; }
-  void adopt_known(const KnownLag& known) override { t_lag_ = known.t; }
+  std::vector<double> kept() const override { return {t_lag_}; }
+  void adopt_kept(const KnownLag& known) override { t_lag_ = known.kept.at(0); }
 
   /// Of the rows as they are, in the step as it is.
   void find_spins() {
@@ -92,7 +92,7 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
                                                  Base::lagged().data(), spin_.data()});
   }
 
-  const FrictionOptions& options_;
+  const FrictionOptions options_;
   const std::vector<Obstacle>& obstacles_;
   bool turns_;  // some obstacle does
   exec::Buffer<ObstacleTurn> turn_;
@@ -106,13 +106,14 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
 }  // namespace
 
 std::unique_ptr<LaggedFamily> friction_family(const FamilyPlace& place, const Scene& scene,
-                                              const FrictionOptions& options, const int* body) {
-#define ENTRY(id, doc)    \
-  if (options.law == #id) \
-    return std::make_unique<FrictionFamily<friction_laws::id>>(place, scene, options, body);
+                                              const TermOptions& options, const int* body) {
+  const FrictionOptions& friction = options.friction;
+#define ENTRY(id, doc)     \
+  if (friction.law == #id) \
+    return std::make_unique<FrictionFamily<friction_laws::id>>(place, scene, friction, body);
 #include "core/energy/friction_laws/registry.inc"
 #undef ENTRY
-  throw ConfigError("/friction/law", options.law, "a law of core/energy/friction_laws/registry.inc");
+  throw ConfigError("/friction/law", friction.law, "a law of core/energy/friction_laws/registry.inc");
 }
 
 PlanItem needs_friction(const TermNeeds& needs) {
@@ -125,13 +126,6 @@ PlanItem needs_friction(const TermNeeds& needs) {
       (options.combine != CombineRule::min && std::any_of(obstacles.begin(), obstacles.end(), rubs));
   return plan_item(needs.contacts.any() && some, options.law,
                    needs.contacts.any() ? "no coefficient of friction is > 0" : "nothing can touch");
-}
-
-void make_friction(const TermInputs& inputs, TermList& terms) {
-  const FamilyPlace place{inputs.executor, inputs.options.precision};
-  terms.add(std::make_unique<LaggedContacts>(
-      "friction", friction_family(place, inputs.scene, inputs.options.friction, inputs.scene.body.data()),
-      terms));
 }
 
 }  // namespace bb

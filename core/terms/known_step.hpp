@@ -18,8 +18,7 @@ struct KnownLag {
   std::vector<PairId> pair;
   std::vector<double> load, strength;
   bool loads_known = false;
-  double t = 0;             // s, of the state; of friction
-  std::vector<double> met;  // [n] m/s, the speed at which each pair met; of restitution
+  std::vector<double> kept;  // what its kind keeps besides
 };
 
 struct KnownStep {

@@ -110,4 +110,10 @@ void LaggedContacts::make_elements() {
   families_[0].trial_energy.resize(n);
 }
 
+void add_lagged(std::string_view name, MakeLagged make, const TermInputs& inputs, TermList& terms) {
+  const FamilyPlace place{inputs.executor, inputs.options.precision};
+  auto family = make(place, inputs.scene, inputs.options, inputs.scene.body.data());
+  terms.add(std::make_unique<LaggedContacts>(name, std::move(family), terms));
+}
+
 }  // namespace bb

@@ -6,7 +6,7 @@
 
 #include "core/contact/contact_loads.hpp"
 #include "core/terms/lagged_family.hpp"
-#include "core/terms/term.hpp"
+#include "core/terms/registry.hpp"
 
 namespace bb {
 
@@ -55,5 +55,8 @@ class LaggedContacts final : public Term {
   std::vector<PairId> pairs_;         // of all contacts, as they were taken
   std::vector<int> vertices_;         // [4 n], row by row
 };
+
+/// Makes the term of a line of registry.inc.
+void add_lagged(std::string_view name, MakeLagged make, const TermInputs& inputs, TermList& terms);
 
 }  // namespace bb

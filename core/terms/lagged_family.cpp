@@ -52,7 +52,7 @@ KnownLag LaggedFamily::known(std::string_view term) const {
   out.normal = rows_.normal.download(), out.pair = rows_.pair.download();
   out.load = rows_.load.download(), out.strength = rows_.strength.download();
   out.loads_known = loads_known_;
-  add_known(out);
+  out.kept = kept();
   return out;
 }
 
@@ -61,7 +61,7 @@ void LaggedFamily::adopt(const KnownLag& known) {
   rows_.vertex.upload(known.vertex), rows_.weight.upload(known.weight), rows_.normal.upload(known.normal);
   rows_.pair.upload(known.pair), rows_.load.upload(known.load), rows_.strength.upload(known.strength);
   loads_known_ = known.loads_known;
-  adopt_known(known);
+  adopt_kept(known);
   rows_changed();
 }
 

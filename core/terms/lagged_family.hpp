@@ -12,7 +12,7 @@
 #include "core/exec/buffer.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/known_step.hpp"
-#include "core/terms/lagged_kernels.hpp"
+#include "core/terms/lagged_rows.hpp"
 #include "core/terms/report.hpp"
 #include "core/terms/term_options.hpp"
 
@@ -88,8 +88,9 @@ class LaggedFamily {
   virtual void rows_changed() {}
   /// Strengths are coefficients times loads; they become those of the term.
   virtual void strengthen() {}
-  virtual void add_known(KnownLag&) const {}
-  virtual void adopt_known(const KnownLag&) {}
+  /// What the kind keeps of a step besides its rows, and takes over with those of another system.
+  virtual std::vector<double> kept() const = 0;
+  virtual void adopt_kept(const KnownLag& known) = 0;
   LaggedRows view() const {
     return {rows_.size(),
             rows_.vertex.data(),
@@ -111,10 +112,15 @@ class LaggedFamily {
   bool loads_known_ = false;
 };
 
-/// inputs as those of terms. Errors: ConfigError at /friction/law.
-std::unique_ptr<LaggedFamily> friction_family(const FamilyPlace& place, const Scene& scene,
-                                              const FrictionOptions& options, const int* body);
-std::unique_ptr<LaggedFamily> restitution_family(const FamilyPlace& place, const Scene& scene,
-                                                 const int* body);
+/// Makes the rows of a line of registry.inc. body [n_vertices]: of the executor. All of it outlives them. Errors: ConfigError.
+using MakeLagged = std::unique_ptr<LaggedFamily>(const FamilyPlace& place, const Scene& scene,
+                                                 const TermOptions& options, const int* body);
+#define ENTRY(...)
+#define PART(...)
+#define LAGGED(name, ...) MakeLagged name##_family;
+#include "core/terms/registry.inc"
+#undef ENTRY
+#undef PART
+#undef LAGGED
 
 }  // namespace bb

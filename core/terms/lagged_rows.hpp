@@ -2,8 +2,9 @@
 // keeps what its contact was in the state that it was taken from. Number k of a row is column[k n + row].
 #pragma once
 
+#include "core/contact/combine_rule.hpp"
+#include "core/contact/pair_id.hpp"
 #include "core/energy/friction.hpp"
-#include "core/energy/restitution.hpp"
 #include "core/exec/kernel.hpp"
 
 namespace bb {
@@ -54,50 +55,35 @@ struct LaggedRows {
   }
 };
 
-/// Friction. Law: of core/energy/friction_laws.
-template <class Law>
-struct FrictionRows : LaggedRows {
-  const double*
-      spin;    // [3, n] m, what the turn of an obstacle takes its surface along by; null: nothing turns
-  double eps;  // m
-
-  template <class T = double>
-  BB_HD LawWithEps<Law, T> law() const {
-    return {static_cast<T>(eps)};
-  }
-  template <class T = double>
-  BB_HD Vec<T, 3> slide(const double* x, exec::Index r) const {
-    Vec<T, 3> way = motion<T>(x, r);
-    if (spin) {
-      way -= Vec<T, 3>(static_cast<T>(spin[r]), static_cast<T>(spin[n + r]), static_cast<T>(spin[2 * n + r]));
+/// The coefficient of a contact from those of its two sides: the body of its first vertex, and its obstacle or the body of its last
+/// vertex.
+struct SideCoefficients {
+  const double* of_body;      // [bodies] 1
+  const double* of_obstacle;  // [obstacles]
+  const int* body;            // [n_vertices]
+  CombineRule rule;
+  /// vertex[k stride]: vertex k of four, -1 padded.
+  BB_HD double of(const int* vertex, exec::Index stride, PairId pair) const {
+    const double first = of_body[body[vertex[0]]];
+    const int obstacle = pair_obstacle(pair);
+    if (obstacle >= 0) return combined(rule, first, of_obstacle[obstacle]);
+    int last = vertex[0];
+    for (int k = 1; k < 4; ++k) {
+      const int v = vertex[k * stride];
+      if (v >= 0) last = v;
     }
-    return slide_of<T>(way, normal_of<T>(r));
-  }
-  template <class T = double>
-  BB_HD T value(const double* x, exec::Index r) const {
-    return friction_value<T>(slide<T>(x, r), static_cast<T>(strength[r]), law<T>());
-  }
-  template <class T = double>
-  BB_HD MotionTerms<T> terms(const double* x, exec::Index r) const {
-    return friction_of_slide<T>(slide<T>(x, r), normal_of<T>(r), static_cast<T>(strength[r]), law<T>());
+    return combined(rule, first, of_body[body[last]]);
   }
 };
 
-/// Restitution.
-struct RestitutionRows : LaggedRows {
-  double dt;  // s
-
-  template <class T = double>
-  BB_HD ContactDamping<T> damping(exec::Index r) const {
-    return {static_cast<T>(strength[r] / dt), static_cast<T>(load[r])};
-  }
-  template <class T = double>
-  BB_HD T value(const double* x, exec::Index r) const {
-    return damping_value<T>(motion<T>(x, r), normal_of<T>(r), damping<T>(r));
-  }
-  template <class T = double>
-  BB_HD MotionTerms<T> terms(const double* x, exec::Index r) const {
-    return damping_terms<T>(motion<T>(x, r), normal_of<T>(r), damping<T>(r));
+/// strength [n]: coefficient times load.
+struct RowStrengths {
+  LaggedRows rows;
+  SideCoefficients sides;
+  const PairId* pair;
+  double* strength;
+  BB_HD void operator()(exec::Index r) const {
+    strength[r] = sides.of(rows.vertex + r, rows.n, pair[r]) * rows.load[r];
   }
 };
 

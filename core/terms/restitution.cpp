@@ -5,9 +5,9 @@
 
 #include "core/archive/archive.hpp"
 #include "core/exec/sums/resident_sum.hpp"
-#include "core/terms/lagged_contacts.hpp"
 #include "core/terms/lagged_family_of.hpp"
 #include "core/terms/registry.hpp"
+#include "core/terms/restitution_rows.hpp"
 
 namespace bb {
 namespace {
@@ -66,10 +66,10 @@ class RestitutionFamily final : public LaggedFamilyOf<RestitutionRows> {
     place_.executor.copy(known_pair_.data(), rows_.pair.data(), n * sizeof(PairId));
     place_.executor.copy(known_speed_.data(), met_.data(), n * sizeof(double));
   }
-  void add_known(KnownLag& out) const override { out.met = met_.download(); }
-  void adopt_known(const KnownLag& known) override {
+  std::vector<double> kept() const override { return met_.download(); }
+  void adopt_kept(const KnownLag& known) override {
     known_pair_.upload(known.pair);
-    known_speed_.upload(known.met);
+    known_speed_.upload(known.kept);
   }
 
   exec::Buffer<double> speed_;  // [3 n_vertices] m/s, of the step before; at first that of the scene
@@ -99,7 +99,7 @@ void RestitutionFamily::keep(Archive& archive) {
 }  // namespace
 
 std::unique_ptr<LaggedFamily> restitution_family(const FamilyPlace& place, const Scene& scene,
-                                                 const int* body) {
+                                                 const TermOptions&, const int* body) {
   return std::make_unique<RestitutionFamily>(place, scene, body);
 }
 
@@ -111,12 +111,6 @@ PlanItem needs_restitution(const TermNeeds& needs) {
                     std::any_of(obstacles.begin(), obstacles.end(), damps);
   return plan_item(needs.contacts.any() && some, "speeds are kept in part",
                    needs.contacts.any() ? "no restitution is below 1" : "nothing can touch");
-}
-
-void make_restitution(const TermInputs& inputs, TermList& terms) {
-  const FamilyPlace place{inputs.executor, inputs.options.precision};
-  terms.add(std::make_unique<LaggedContacts>(
-      "restitution", restitution_family(place, inputs.scene, inputs.scene.body.data()), terms));
 }
 
 }  // namespace bb

@@ -11,7 +11,9 @@
 #include "core/energy/friction_list.hpp"
 #include "core/exec/sums/resident_sum.hpp"
 #include "core/resident/contact/lagged_assembly.hpp"
-#include "core/terms/lagged_family_of.hpp"
+#include "core/terms/friction_rows.hpp"
+#include "core/terms/lagged_family.hpp"
+#include "core/terms/restitution_rows.hpp"
 #include "tests/resident/assembled.hpp"
 
 namespace bb::lagged_rows_test {
@@ -198,12 +200,15 @@ struct OnRows {
 };
 OnRows friction_on(exec::Executor& executor, const Scene& scene, const Positions& x,
                    const FrictionOptions& options) {
-  return {executor, scene, x, dt,
-          [&](const int* body) { return friction_family({executor}, scene, options, body); }};
+  return {executor, scene, x, dt, [&](const int* body) {
+            TermOptions all;
+            all.friction = options;
+            return friction_family({executor}, scene, all, body);
+          }};
 }
 OnRows restitution_on(exec::Executor& executor, const Scene& scene, const Positions& x, double length) {
   return {executor, scene, x, length,
-          [&](const int* body) { return restitution_family({executor}, scene, body); }};
+          [&](const int* body) { return restitution_family({executor}, scene, {}, body); }};
 }
 
 void expect_same(const Sums& found, const Sums& expected) {
@@ -294,10 +299,10 @@ TEST(LaggedRows, RememberHowFastPairsMet) {
   OnRows on = restitution_on(executor, scene, x, dt);
   KnownLag some = on.family->known("restitution");
   const std::vector<PairId> all = some.pair;
-  const std::vector<double> first = some.met;
-  some.pair.clear(), some.met.clear();
+  const std::vector<double> first = some.kept;
+  some.pair.clear(), some.kept.clear();
   for (std::size_t r = 0; r < all.size(); r += 3)
-    some.pair.push_back(all[r]), some.met.push_back(7 + static_cast<double>(r));
+    some.pair.push_back(all[r]), some.kept.push_back(7 + static_cast<double>(r));
   const std::size_t n = some.pair.size();
   some.vertex.assign(4 * n, 0), some.weight.assign(4 * n, 0), some.normal.assign(3 * n, 0);
   some.load.assign(n, 0), some.strength.assign(n, 0);
@@ -317,7 +322,7 @@ TEST(LaggedRows, RememberHowFastPairsMet) {
     const double expected = r % 3 == 0 ? 7 + static_cast<double>(r) : closing;
     largest = std::max(largest, std::abs(closing));
     apart = std::max(apart, std::abs(first[r] - closing));
-    EXPECT_NEAR(found.met[r], expected, 1e-12);
+    EXPECT_NEAR(found.kept[r], expected, 1e-12);
     EXPECT_NEAR(found.strength[r], host.strength[of_host] / std::max(expected, 0.01),
                 1e-12 * host.strength[of_host]);
   }

@@ -16,3 +16,5 @@
 #include "core/resident/contact/sum_kernels.hpp"
 #include "core/resident/contact/term_kernels.hpp"
 #include "core/resident/contact/tree_kernels.hpp"
+#include "core/terms/friction_rows.hpp"
+#include "core/terms/restitution_rows.hpp"

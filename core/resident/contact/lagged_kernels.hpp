@@ -4,7 +4,7 @@
 #include "core/resident/contact/pattern_view.hpp"
 #include "core/resident/contact/slot_kernels.hpp"
 #include "core/resident/contact/sum_kernels.hpp"
-#include "core/terms/lagged_kernels.hpp"
+#include "core/terms/lagged_rows.hpp"
 
 namespace bb::resident {
 

@@ -94,20 +94,11 @@ ResidentContact& contact_of(ResidentTermList& terms) {
 
 }  // namespace
 
-void make_resident_friction(const ResidentInputs& inputs, ResidentTermList& terms) {
+void add_lagged(std::string_view name, MakeLagged make, const ResidentInputs& inputs,
+                ResidentTermList& terms) {
   ResidentContact& contact = contact_of(terms);
-  terms.add(
-      std::make_unique<LaggedTerm>(inputs, "friction",
-                                   friction_family({inputs.executor}, inputs.scene, inputs.options.friction,
-                                                   contact.surface().view().body),
-                                   contact));
-}
-
-void make_resident_restitution(const ResidentInputs& inputs, ResidentTermList& terms) {
-  ResidentContact& contact = contact_of(terms);
-  terms.add(std::make_unique<LaggedTerm>(
-      inputs, "restitution",
-      restitution_family({inputs.executor}, inputs.scene, contact.surface().view().body), contact));
+  auto family = make({inputs.executor}, inputs.scene, inputs.options, contact.surface().view().body);
+  terms.add(std::make_unique<LaggedTerm>(inputs, name, std::move(family), contact));
 }
 
 }  // namespace bb::resident

@@ -64,4 +64,8 @@ class LaggedTerm final : public ResidentTerm {
   bool taken_ = false, pattern_changed_ = false;
 };
 
+/// Makes the term of a line of registry.inc. Errors: std::logic_error without contact before it.
+void add_lagged(std::string_view name, MakeLagged make, const ResidentInputs& inputs,
+                ResidentTermList& terms);
+
 }  // namespace bb::resident

@@ -162,6 +162,6 @@ class ResidentContact final : public ResidentTerm {
   bool has_pattern_ = false;  // that of the rows
 };
 
-MakeResident make_resident_contact, make_resident_friction, make_resident_restitution;
+MakeResident make_resident_contact;
 
 }  // namespace bb::resident

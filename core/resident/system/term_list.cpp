@@ -5,7 +5,7 @@
 #include "core/math/error.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/family_term.hpp"
-#include "core/resident/system/resident_contact.hpp"
+#include "core/resident/system/lagged_term.hpp"
 
 namespace bb::resident {
 namespace {
@@ -17,15 +17,24 @@ namespace {
 #define BB_PART_kernels(name) &make_resident_part<parts::name::part>
 #define BB_PART_host_only(name) nullptr
 #define PART(name, doc, convex, where, ...) BB_PART_##where(name),
+#define BB_LAGGED_kernels(name)                               \
+  [](const ResidentInputs& inputs, ResidentTermList& terms) { \
+    add_lagged(#name, name##_family, inputs, terms);          \
+  }
+#define BB_LAGGED_host_only(name) nullptr
+#define LAGGED(name, doc, convex, where) BB_LAGGED_##where(name),
 constexpr MakeResident* makers[] = {
 #include "core/terms/registry.inc"
 };
 #undef ENTRY
 #undef PART
+#undef LAGGED
 #undef BB_MAKE_kernels
 #undef BB_MAKE_host_only
 #undef BB_PART_kernels
 #undef BB_PART_host_only
+#undef BB_LAGGED_kernels
+#undef BB_LAGGED_host_only
 
 }  // namespace
 
