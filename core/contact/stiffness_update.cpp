@@ -6,9 +6,8 @@ StiffnessUpdate::StiffnessUpdate(exec::Executor& executor, const StiffnessPolicy
     : executor_(executor),
       policy_(policy),
       missing_(executor, "rows without kappa"),
-      known_pair_(executor, "known pairs"),
-      known_fixed_(executor, "known kappa"),
-      known_per_gap_(executor, "known kappa per gap"),
+      known_(executor),
+      merged_(executor),
       change_(executor) {}
 
 bool StiffnessUpdate::takes_matrix() {
@@ -17,8 +16,8 @@ bool StiffnessUpdate::takes_matrix() {
 }
 
 KnownPairs StiffnessUpdate::memory() const {
-  return {n_known_, known_pair_.data(), known_fixed_.data(),
-          policy_.has_potential() ? known_per_gap_.data() : nullptr};
+  return {n_known_, known_.pair.data(), known_.fixed.data(),
+          policy_.has_potential() ? known_.per_gap.data() : nullptr};
 }
 
 void StiffnessUpdate::refresh(Tables rows, const Compute& compute) {
@@ -74,14 +73,13 @@ void StiffnessUpdate::keep(const StiffnessRows& rows) {
   const Index n_fresh = missing_.rank(n_known_ == 0 ? rows.n : 0);
   if (n_fresh == 0) return;
   const Index n = n_known_ + n_fresh;
-  exec::Buffer<PairId> pair(executor_, "known pairs", n);
-  exec::Buffer<double> fixed(executor_, "known kappa", n), per_gap(executor_, "known kappa per gap");
-  if (policy_.has_potential()) per_gap.resize(n);
-  const KnownPlaces to{pair.data(), fixed.data(), policy_.has_potential() ? per_gap.data() : nullptr};
+  merged_.pair.fit(n), merged_.fixed.fit(n);
+  if (policy_.has_potential()) merged_.per_gap.fit(n);
+  const KnownPlaces to{merged_.pair.data(), merged_.fixed.data(),
+                       policy_.has_potential() ? merged_.per_gap.data() : nullptr};
   executor_.each(n_known_, MergeKnown{known, rows, missing_.places(), n_fresh, to});
   executor_.each(rows.n, MergeFresh{known, rows, mark, missing_.places(), to});
-  executor_.synchronize();
-  known_pair_.swap(pair), known_fixed_.swap(fixed), known_per_gap_.swap(per_gap);
+  known_.pair.swap(merged_.pair), known_.fixed.swap(merged_.fixed), known_.per_gap.swap(merged_.per_gap);
   n_known_ = n;
 }
 
@@ -89,11 +87,11 @@ KnownStiffness StiffnessUpdate::known() const {
   KnownStiffness out;
   if (n_known_ == 0) return out;
   const auto n = static_cast<std::size_t>(n_known_);
-  out.pair = known_pair_.download();
+  out.pair = known_.pair.download();
   out.pair.resize(n);
-  const std::vector<double> fixed = known_fixed_.download();
+  const std::vector<double> fixed = known_.fixed.download();
   const std::vector<double> per_gap_sq =
-      policy_.has_potential() ? known_per_gap_.download() : std::vector<double>(n, 0.0);
+      policy_.has_potential() ? known_.per_gap.download() : std::vector<double>(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) out.parts.push_back({fixed[i], per_gap_sq[i]});
   return out;
 }
@@ -105,9 +103,9 @@ void StiffnessUpdate::adopt(const KnownStiffness& known) {
     fixed.push_back(parts.fixed);
     per_gap_sq.push_back(parts.per_gap_sq);
   }
-  known_pair_.upload(known.pair);
-  known_fixed_.upload(fixed);
-  known_per_gap_.upload(per_gap_sq);
+  known_.pair.upload(known.pair);
+  known_.fixed.upload(fixed);
+  known_.per_gap.upload(per_gap_sq);
 }
 
 }  // namespace bb

@@ -61,6 +61,14 @@ class StiffnessUpdate {
   void adopt(const KnownStiffness& known);
 
  private:
+  struct KnownColumns {
+    explicit KnownColumns(exec::Executor& executor)
+        : pair(executor, "known pairs"),
+          fixed(executor, "known kappa"),
+          per_gap(executor, "known kappa per gap") {}
+    exec::Buffer<PairId> pair;
+    exec::Buffer<double> fixed, per_gap;
+  };
   /// One kappa a pair and iterate: the rows of the iterate are the memory.
   bool rows_are_memory() const { return !policy_.frozen_in_step(); }
   KnownPairs memory() const;
@@ -69,8 +77,7 @@ class StiffnessUpdate {
   exec::Executor& executor_;
   const StiffnessPolicy& policy_;
   resident::Compaction missing_;
-  exec::Buffer<PairId> known_pair_;
-  exec::Buffer<double> known_fixed_, known_per_gap_;
+  KnownColumns known_, merged_;  // merged_: room for what known_ becomes
   Index n_known_ = 0;
   exec::Reading<exec::Key> change_;
   bool compares_ = false;  // change_ is that of the last refresh()

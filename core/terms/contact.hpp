@@ -109,7 +109,6 @@ class ContactTerm final : public Term {
   void scale_multipliers();
   void start_policy(const PositionsView& x, const TermContext& context);
   StartSums start_sums(const PositionsView& others) const;
-  std::vector<PairGap> pair_gaps() const;
   void carry_loads(const PositionsView& x);
 
   const Scene& scene_;

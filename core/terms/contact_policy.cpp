@@ -53,7 +53,11 @@ void ContactTerm::end_step(const PositionsView& x, PhaseClock& clock) {
   if (has_multipliers()) carry_loads(x);
   if (!stiffness_.policy().adapts()) return;
   const ScopedPhase timer(clock, Phase::stiffness);
-  stiffness_.policy().end_step(gaps_.end_step(pair_gaps()));
+  state_.for_each_table([&](const auto& rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      gaps_.add({rows.pair[r], rows.d[r], options_.contact_options.ccd_park * rows.d_hat[r]});
+  });
+  stiffness_.policy().end_step(gaps_.end_step());
 }
 
 // The rows of a state that was reached without energies have none of their shape.
@@ -72,15 +76,6 @@ void ContactTerm::keep(Archive& archive) {
   policy_start_.set_started(started);
   stiffness_.policy().keep(archive);
   if (has_multipliers()) carried_.keep(archive);
-}
-
-std::vector<PairGap> ContactTerm::pair_gaps() const {
-  std::vector<PairGap> out;
-  state_.for_each_table([&](const auto& rows) {
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      out.push_back({rows.pair[r], rows.d[r], options_.contact_options.ccd_park * rows.d_hat[r]});
-  });
-  return out;
 }
 
 }  // namespace bb

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <numeric>
 
 #include "core/barrier/gap_stiffness.hpp"
@@ -108,10 +109,9 @@ void ContactStiffness::fill(Table& table, const std::uint8_t* missing, const Hes
   }
 }
 
-StiffnessUpdate::Compute ContactStiffness::fill(const ContactTables& rows, const Hessian& hessian) {
-  return [this, rows, hessian](std::size_t of, const std::uint8_t* missing, bool at_d_hat) {
-    of == 0 ? fill(rows.rows, missing, hessian, at_d_hat) : fill(rows.mollified, missing, hessian, at_d_hat);
-  };
+void ContactStiffness::Fill::operator()(std::size_t table, const std::uint8_t* missing, bool at_d_hat) const {
+  table == 0 ? of.fill(rows.rows, missing, hessian, at_d_hat)
+             : of.fill(rows.mollified, missing, hessian, at_d_hat);
 }
 
 void ContactStiffness::fill_kappa(const ContactTables& rows) const {
@@ -131,14 +131,16 @@ void ContactStiffness::fill_kappa(const ContactTables& rows) const {
 
 double ContactStiffness::refresh(const ContactTables& rows, const BlockSystem& blocks,
                                  const BlockSystem::Values& elastic) {
-  update_.refresh(stiffness_rows(rows), fill(rows, hessian_of(blocks, elastic)));
+  const Fill fill{*this, rows, hessian_of(blocks, elastic)};
+  update_.refresh(stiffness_rows(rows), std::cref(fill));
   fill_kappa(rows);
   return update_.change();
 }
 
 void ContactStiffness::freeze(const ContactTables& trial, const ContactTables& iterate,
                               const BlockSystem& blocks, const BlockSystem::Values& elastic) {
-  update_.freeze(stiffness_rows(trial), stiffness_rows(iterate), fill(trial, hessian_of(blocks, elastic)));
+  const Fill fill{*this, trial, hessian_of(blocks, elastic)};
+  update_.freeze(stiffness_rows(trial), stiffness_rows(iterate), std::cref(fill));
   fill_kappa(trial);
 }
 

@@ -61,13 +61,19 @@ class ContactStiffness {
     bool of_elements = false;  // values as element_values() has them
     void submatrix(const int* vertices, int k, double* out) const;
   };
+  /// A StiffnessUpdate::Compute, handed over by reference so that nothing is allocated.
+  struct Fill {
+    ContactStiffness& of;
+    ContactTables rows;
+    Hessian hessian;
+    void operator()(std::size_t table, const std::uint8_t* missing, bool at_d_hat) const;
+  };
   /// Of the iterate, or for a policy with a potential of the step's first one.
   Hessian hessian_of(const BlockSystem& blocks, const BlockSystem::Values& elastic);
   template <class Table>
   void gather(const Table& table, std::span<const int> rows, const Hessian& hessian, bool at_d_hat);
   template <class Table>
   void fill(Table& table, const std::uint8_t* missing, const Hessian& hessian, bool at_d_hat);
-  StiffnessUpdate::Compute fill(const ContactTables& rows, const Hessian& hessian);
   /// kappa of the rows where it is no function of their parts alone.
   void fill_kappa(const ContactTables& rows) const;
 

@@ -18,13 +18,14 @@ struct PairGap {
 
 class StepEndGaps {
  public:
-  /// The pairs that have a row at this step end, in any order. Those of them that had one at the end before, ascending by pair; valid
-  /// until the next call.
-  std::span<const StiffnessPolicy::PairEnd> end_step(std::vector<PairGap> now);
+  /// A pair that has a row at this step end, in any order.
+  void add(const PairGap& pair) { now_.push_back(pair); }
+  /// The step is over: the pairs that were added and had a row at the end before, ascending by pair; valid until the next call.
+  std::span<const StiffnessPolicy::PairEnd> end_step();
   void keep(Archive& archive);
 
  private:
-  std::vector<PairGap> before_;  // ascending by pair
+  std::vector<PairGap> before_, now_;  // ascending by pair; those that were added
   std::vector<StiffnessPolicy::PairEnd> ends_;
 };
 

@@ -96,7 +96,7 @@ struct ExecutorForm {
     mass.upload(scene.mass);
   }
   StiffnessUpdate::Compute kappa_of(ResidentRows& rows) {
-    return resident::kappa_of(rows, executor, *policy, time, mass.data(), matrix);
+    return resident::KernelKappa{rows, executor, *policy, time, mass.data(), matrix};
   }
   void begin_step(const StiffnessTime& of) {
     update.begin_step();

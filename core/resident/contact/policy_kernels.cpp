@@ -10,12 +10,9 @@ void require_kernel(const StiffnessPolicy& policy, const std::string& where) {
   throw ConfigError(where, std::string(policy.name()), host_policy_words);
 }
 
-StiffnessUpdate::Compute kappa_of(ResidentRows& rows, exec::Executor& executor, const StiffnessPolicy& policy,
-                                  const StiffnessTime& time, const double* mass, const MatrixPart& elastic) {
-  return [&, mass](std::size_t, const std::uint8_t* missing, bool at_d_hat) {
-    policy.launches()->rows(executor, policy,
-                            {rows.view(), missing, policy.needs_hessian(), time, at_d_hat, mass, elastic});
-  };
+void KernelKappa::operator()(std::size_t, const std::uint8_t* missing, bool at_d_hat) const {
+  policy.launches()->rows(executor, policy,
+                          {rows.view(), missing, policy.needs_hessian(), time, at_d_hat, mass, elastic});
 }
 
 }  // namespace bb::resident

@@ -18,9 +18,15 @@ inline KappaColumns columns_of(const StiffnessPolicy& policy) {
 /// Errors: ConfigError at `where` for a policy that has no kernel: one of a plugin.
 void require_kernel(const StiffnessPolicy& policy, const std::string& where);
 
-/// What computes kappa of these rows in a StiffnessUpdate, by the policy's kernel. mass: [n_vertices] kg. elastic: the matrix that the
-/// policy reads. All of it outlives the call that it is handed to.
-StiffnessUpdate::Compute kappa_of(ResidentRows& rows, exec::Executor& executor, const StiffnessPolicy& policy,
-                                  const StiffnessTime& time, const double* mass, const MatrixPart& elastic);
+/// A StiffnessUpdate::Compute: kappa of these rows by the policy's kernel. All of it outlives the call that it is handed to.
+struct KernelKappa {
+  ResidentRows& rows;
+  exec::Executor& executor;
+  const StiffnessPolicy& policy;
+  const StiffnessTime& time;
+  const double* mass;         // [n_vertices] kg
+  const MatrixPart& elastic;  // the matrix that the policy reads
+  void operator()(std::size_t table, const std::uint8_t* missing, bool at_d_hat) const;
+};
 
 }  // namespace bb::resident

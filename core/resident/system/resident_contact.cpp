@@ -154,7 +154,8 @@ void ResidentContact::keep_elastic(const ResidentContext& context) {
 void ResidentContact::refresh_kappa() {
   rows_.uniform_kappa = policy_kappa();
   const StiffnessRows of[] = {rows_.stiffness_rows()};
-  stiffness_.refresh(of, kappa_of(rows_));
+  const KernelKappa kappa = kappa_of(rows_);
+  stiffness_.refresh(of, std::cref(kappa));
 }
 
 void ResidentContact::linearise(const Column& x, const ResidentContext& context, Column& g) {
@@ -254,7 +255,8 @@ bool ResidentContact::admits(const Column&, const Column&, PhaseClock& clock) {
 void ResidentContact::freeze() {
   trial_.uniform_kappa = policy_kappa();
   const StiffnessRows trial[] = {trial_.stiffness_rows()}, iterate[] = {rows_.stiffness_rows()};
-  stiffness_.freeze(trial, iterate, kappa_of(trial_));
+  const KernelKappa kappa = kappa_of(trial_);
+  stiffness_.freeze(trial, iterate, std::cref(kappa));
 }
 
 void ResidentContact::evaluate(const Column&) {
@@ -286,10 +288,9 @@ void ResidentContact::end_step(const Column&, PhaseClock& clock) {
   StiffnessPolicy& policy = *options_.stiffness;
   if (!policy.adapts() || executor_.counts_only()) return;
   const HostRows rows = rows_.on_host();
-  std::vector<PairGap> gaps;
   for (std::size_t r = 0; r < rows.size(); ++r)
-    gaps.push_back({rows.pair[r], rows.d[r], options_.contact_options.ccd_park * rows.d_hat[r]});
-  policy.end_step(gaps_.end_step(std::move(gaps)));
+    gaps_.add({rows.pair[r], rows.d[r], options_.contact_options.ccd_park * rows.d_hat[r]});
+  policy.end_step(gaps_.end_step());
 }
 
 void make_resident_contact(const ResidentInputs& inputs, ResidentTermList& terms) {

@@ -115,8 +115,8 @@ class ResidentContact final : public ResidentTerm {
     return options_.stiffness->uniform() ? options_.stiffness->state().kappa : 0;
   }
   void refresh_kappa();
-  StiffnessUpdate::Compute kappa_of(ResidentRows& rows) {
-    return resident::kappa_of(rows, executor_, *options_.stiffness, time_, mass_.data(), elastic_);
+  KernelKappa kappa_of(ResidentRows& rows) {
+    return {rows, executor_, *options_.stiffness, time_, mass_.data(), elastic_};
   }
   void give_back_motion();
 
