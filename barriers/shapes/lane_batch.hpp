@@ -5,16 +5,10 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/barrier/normalized_gap.hpp"
+#include "core/barrier/barrier_row.hpp"
 #include "core/math/lanes_log.hpp"
 
 namespace bb {
-
-/// A shape whose formula takes the logarithm as an argument, on numbers or on several side by side.
-template <class S>
-concept HasTerms = requires(const shapes::NormalizedGap<double>& gap) {
-  S::terms(gap, 1.0, 1.0);
-};
 
 namespace detail {
 
@@ -56,6 +50,18 @@ void lane_batch(void*, std::size_t n, const double* d, const double* d_hat, doub
       d2b[i] = one.d2b;
     }
   }
+}
+
+template <HasTerms S>
+void barrier_rows(Argument argument, const double* d, const double* d_hat, double* b, double* db,
+                  double* d2b) {
+  constexpr std::size_t n = rows_abreast;
+  if (argument == Argument::gap) return lane_batch<S>(nullptr, n, d, d_hat, b, db, d2b);
+  double d_sq[n], d_hat_sq[n];
+  for (std::size_t k = 0; k < n; ++k) d_sq[k] = d[k] * d[k], d_hat_sq[k] = d_hat[k] * d_hat[k];
+  lane_batch<S>(nullptr, n, d_sq, d_hat_sq, b, db, d2b);
+  for (std::size_t k = 0; k < n; ++k)
+    chain_squared_gap(S::infinite_at_zero, d[k], d_sq[k], d_hat_sq[k], b[k], db[k], d2b[k]);
 }
 
 /// Evaluates a built-in shape by lane_batch where it can.

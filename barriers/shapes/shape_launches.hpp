@@ -15,7 +15,7 @@ LimitLaunches<N> limit_launches() {
   return {
       [](exec::Executor& executor, const Columns& limit, const BarrierFunction& barrier,
          const KappaParts* parts) {
-        executor.each(N * limit.n, LimitShape<N, S>{limit, barrier.argument, barrier.literal, parts});
+        executor.each(limit.n, LimitShape<N, S>{limit, barrier.argument, barrier.literal, parts});
       },
       [](exec::Executor& executor, const Columns& limit, const BarrierFunction& barrier,
          const KappaParts* parts, const MeasureAt& at) {

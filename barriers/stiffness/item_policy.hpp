@@ -69,11 +69,6 @@ class ItemPolicy final : public StiffnessPolicy {
       }
     }
   }
-  double element_kappa(const ElementSums<double>& sums, double y, double width,
-                       const StiffnessTime& time) const override {
-    if constexpr (of_elements) return scaled_.element_kappa(sums, y, width, time);
-    return 0;
-  }
 
  private:
   ContactSums<double> sums(const StiffnessBatch& rows, std::size_t r) const {

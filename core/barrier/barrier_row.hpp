@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "core/barrier/normalized_gap.hpp"
 #include "core/barrier/shape.hpp"
 #include "core/barrier/squared_gap.hpp"
 #include "core/barrier/stiffness_policy.hpp"
@@ -23,6 +24,20 @@ BB_HD ShapeTerms<T> barrier_row(Argument argument, bool literal, T d, T d_hat) {
   chain_squared_gap(S::infinite_at_zero, d, d * d, d_hat * d_hat, out.b, out.db, out.d2b);
   return out;
 }
+
+/// A shape whose formula takes the logarithm as an argument, on numbers or on several side by side.
+template <class S>
+concept HasTerms = requires(const shapes::NormalizedGap<double>& gap) {
+  S::terms(gap, 1.0, 1.0);
+};
+
+constexpr int rows_abreast = 4;
+
+/// barrier_row of so many rows, not literal, with its bits. Of a host; its definition is beside the shapes
+/// (barriers/shapes/lane_batch.hpp), where kernels are launched.
+template <HasTerms S>
+void barrier_rows(Argument argument, const double* d, const double* d_hat, double* b, double* db,
+                  double* d2b);
 
 /// FoldedBarrier::eval of one row: b its barrier, psi its potential. Host-device.
 template <class T>

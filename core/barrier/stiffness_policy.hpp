@@ -87,12 +87,6 @@ class StiffnessPolicy {
   /// Where kappa is another function of the gap than KappaParts::at (gap_stiffness.hpp): fill_parts gives what it freezes of
   /// a pair. Lives as long as the policy.
   virtual const GapStiffness* gap_stiffness() const { return nullptr; }
-  /// kappa_e (J) of a limited element at its smallest pseudo-gap y. sums: elastic is 0 unless needs_hessian(). A policy that does
-  /// not serve strain limits has none. Those of a family of elements are made by its kernels.
-  virtual double element_kappa(const ElementSums<double>& /*sums*/, double /*y*/, double /*width*/,
-                               const StiffnessTime&) const {
-    return 0;
-  }
 
   /// A pair that has a row at the end of this step and of the one before.
   struct PairEnd {
@@ -100,7 +94,7 @@ class StiffnessPolicy {
     double park = 0;                 // m, ccd_park times the row's d_hat
     bool closing() const { return closes(gap, gap_before); }
   };
-  /// Kernels that do what fill and element_kappa do; null: there are none.
+  /// Kernels that do what fill does, and those of limited elements; null: there are none.
   virtual const PolicyLaunches* launches() const { return nullptr; }
   /// Whether end_step has to be called: listing the pairs costs a sort a step.
   virtual bool adapts() const { return false; }

@@ -25,12 +25,15 @@ StrainLimitTerm::StrainLimitTerm(exec::Executor& executor, const Scene& scene, c
 }
 
 void StrainLimitTerm::begin_step(const StepFrame& frame, PhaseClock&) {
-  x_n_ = frame.x_n;
-  state_.begin_step(x_n_.data(), {frame.dt, frame.c});
+  state_.begin_step(frame.x_n.data(), {frame.dt, frame.c});
 }
 
 void StrainLimitTerm::linearise(const PositionsView& x, const TermContext& context) {
-  state_.refresh(x.data(), gather(context), energies());
+  ElasticMatrix elastic;
+  if (state_.asks_for_elastic()) {
+    elastic = gather_elastic(state_.family(), context.blocks, context.elastic, hess_);
+  }
+  state_.refresh(x.data(), elastic, energies());
   state_.family().derivatives(x.data(), context.projection, families_[0].local);
 }
 
@@ -39,21 +42,18 @@ void StrainLimitTerm::clamp(const PositionsView& x) {
   state_.family().derivatives(x.data(), Projection::psd, families_[0].clamped);
 }
 
-// H of every element, where the policy reads it.
-ElasticMatrix StrainLimitTerm::gather(const TermContext& context) {
-  if (!state_.asks_for_elastic()) return {};
-  const std::span<const int> vertices = state_.family().vertices();
-  const int width = state_.family().width(), size = 3 * width;
-  const auto n = static_cast<std::size_t>(state_.family().size()),
-             numbers = static_cast<std::size_t>(size * size);
-  hess_.resize(numbers * n);
+ElasticMatrix gather_elastic(const LimitFamily& family, const BlockSystem& blocks,
+                             const BlockSystem::Values& elastic, std::vector<double>& out) {
+  const std::span<const int> vertices = family.vertices();
+  const int width = family.width(), size = 3 * width;
+  const auto n = static_cast<std::size_t>(family.size()), numbers = static_cast<std::size_t>(size * size);
+  out.resize(numbers * n);
   parallel_items(n, 64, [&](std::size_t e) {
     Mat<double, 12, 12> block;
-    context.blocks.submatrix(context.elastic, &vertices[static_cast<std::size_t>(width) * e], width,
-                             block.data());
-    Eigen::Map<Eigen::MatrixXd>(&hess_[numbers * e], size, size) = block.topLeftCorner(size, size);
+    blocks.submatrix(elastic, &vertices[static_cast<std::size_t>(width) * e], width, block.data());
+    Eigen::Map<Eigen::MatrixXd>(&out[numbers * e], size, size) = block.topLeftCorner(size, size);
   });
-  return {{}, hess_.data()};
+  return {{}, out.data()};
 }
 
 double StrainLimitTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
@@ -110,14 +110,6 @@ std::string StrainLimitTerm::element_name(std::size_t e) const {
   return fmt::format("{} {}[{}]", state_.of_solids() ? "tetrahedron" : "triangle", body.name, numbers);
 }
 
-std::vector<double> StrainLimitTerm::smallest_gaps(const double* x) {
-  state_.family().measure(x);
-  state_.forget();
-  std::vector<double> out(families_[0].trial_energy.size());
-  for (std::size_t e = 0; e < out.size(); ++e) out[e] = state_.family().smallest_gap(e);
-  return out;
-}
-
 // The larger of two estimates: what everything but the limit puts on an element on its own, and the force at
 // which the Newton model would come to rest.
 void StrainLimitTerm::report_overload(const PositionsView& x, const PositionsView& others,
@@ -125,7 +117,9 @@ void StrainLimitTerm::report_overload(const PositionsView& x, const PositionsVie
   if (!state_.adds()) out.limit_overload = 0;
   if (options_.limit.shape.infinite_at_zero || state_.policy().has_potential()) return;
   const Positions moved = x + dx;
-  const std::vector<double> gaps = smallest_gaps(x.data()), next = smallest_gaps(moved.data());
+  const std::vector<double> gaps = state_.family().smallest_gaps(x.data()),
+                            next = state_.family().smallest_gaps(moved.data());
+  state_.forget();
   const StrainBands& bands =
       state_.of_solids() ? static_cast<const StrainBands&>(scene_.solid_limit) : scene_.limit;
   LargestSlope slope(options_.limit);

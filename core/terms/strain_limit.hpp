@@ -10,6 +10,10 @@
 
 namespace bb {
 
+/// H of every limited element, as a policy reads it. out: [(3 width)^2 n] N/m, resized, where the result lies.
+ElasticMatrix gather_elastic(const LimitFamily& family, const BlockSystem& blocks,
+                             const BlockSystem::Values& elastic, std::vector<double>& out);
+
 class StrainLimitTerm final : public Term {
  public:
   /// All arguments must outlive the term. fixed: [3 n] prescribed or locked degrees of freedom.
@@ -39,9 +43,7 @@ class StrainLimitTerm final : public Term {
   const LimitFamily& family() const { return state_.family(); }
 
  private:
-  ElasticMatrix gather(const TermContext& context);
   double* energies() { return families_[0].local.energy.data(); }
-  std::vector<double> smallest_gaps(const double* x);
   double times_larger(std::size_t e, const PositionsView& others) const;
   std::string element_name(std::size_t e) const;
 
@@ -49,8 +51,7 @@ class StrainLimitTerm final : public Term {
   const TermOptions& options_;
   const std::vector<std::uint8_t>& fixed_;
   StrainLimitState state_;
-  Positions x_n_;
-  std::vector<double> hess_;  // [(3 width)^2 n] N/m
+  std::vector<double> hess_;  // of gather_elastic()
 };
 
 }  // namespace bb

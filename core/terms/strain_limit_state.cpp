@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "core/barrier/folded_barrier.hpp"
+#include "core/barrier/launches.hpp"
+#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
@@ -34,6 +36,10 @@ StrainLimitState::StrainLimitState(exec::Executor& executor, const Scene& scene,
       vertex_mass_(vertex_mass),
       family_(limited({executor, options.precision}, scene, of_solids)),
       beyond_(executor) {
+  if (!policy().launches() || !policy().launches()->triangles) {
+    throw ConfigError("stiffness_policy/name", std::string(policy().name()),
+                      "a policy that serves a strain limit");
+  }
   if (policy().has_potential() && !has_potential(options.limit)) {
     throw std::logic_error("no potential: " + options.limit.shape.name);
   }
@@ -48,7 +54,7 @@ void StrainLimitState::begin_step(const double* x_n, const StiffnessTime& time) 
 }
 
 // kappa of a rule that keeps it is that of the first iterate of the step. What was measured of a trial is not measured again where it is
-// the iterate; where kappa is folded into the barrier terms these are made anew with it.
+// the iterate; any other state may be handed over, so it is. Where kappa is folded into the barrier terms these are made anew with it.
 void StrainLimitState::refresh(const double* x, const ElasticMatrix& elastic, double* energy) {
   const bool first = first_, keep = keeps_kappa();
   const bool measured = accepted_ && measured_ == State::iterate;

@@ -17,8 +17,8 @@ namespace bb {
 /// energy: [n] J, of the state x, written where it has to be measured.
 class StrainLimitState {
  public:
-  /// scene and options outlive it, vertex_mass [n_vertices] (kg) too. Errors: those of limited_triangles; std::logic_error where
-  /// kappa has a potential and the barrier has none.
+  /// scene and options outlive it, vertex_mass [n_vertices] (kg) too. Errors: those of limited_triangles; ConfigError
+  /// for a policy that serves no strain limit; std::logic_error where kappa has a potential and the barrier has none.
   StrainLimitState(exec::Executor& executor, const Scene& scene, const TermOptions& options, bool of_solids,
                    const double* vertex_mass);
   LimitFamily& family() { return *family_; }

@@ -7,9 +7,9 @@
 
 #include "core/contact/pair_name.hpp"
 #include "core/energy/families/limit_family.hpp"
-#include "core/energy/strain_stiffness.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
+#include "core/terms/strain_limit.hpp"
 #include "experiments/run/pilot_replay.hpp"
 
 namespace bb {
@@ -82,25 +82,24 @@ std::string name_element(const Scene& scene, std::size_t e) {
   return out;
 }
 
-/// kappa_e/area (N/m) by the policy of the limit, with w from the start of the step, at the gap y.
-double own_limit_stiffness(const StiffnessPolicy& policy, const Scene& scene, std::size_t e, double area,
-                           double y, const StiffnessTime& time, const Positions& x_start,
-                           const PilotReplay& replay) {
-  const std::array<int, 3>& vertices = scene.limit.triangles[e];
-  Vec3d x[3], mass;
-  for (int k = 0; k < 3; ++k) {
-    const int v = vertices[static_cast<std::size_t>(k)];
-    x[k] = x_start.col(v);
-    mass[k] = scene.mass[static_cast<std::size_t>(v)];
-  }
-  const auto hessian = [&]() -> Mat<double, 9, 9> {
-    Mat<double, 12, 12> block = Mat<double, 12, 12>::Zero();
-    replay.blocks().submatrix(replay.elastic(), vertices.data(), 3, block.data());
-    return block.topLeftCorner<9, 9>();
-  };
-  const ElementSums<double> sums =
-      element_sums<double>(x, mass, scene.limit.mass[e], area, hessian, policy.needs_hessian());
-  return policy.element_kappa(sums, y, scene.limit.width[e], time) / area;
+/// kappa_e (J) of all elements by the policy of the limit, with w from the start of the step, at these pseudo-gaps.
+std::vector<double> own_limit_kappa(const StiffnessPolicy& policy, const Scene& scene, LimitFamily& limit,
+                                    std::span<const double> gaps, int step, double dt,
+                                    const PilotReplay& replay) {
+  ElasticMatrix elastic;
+  std::vector<double> gathered;
+  if (policy.needs_hessian()) elastic = gather_elastic(limit, replay.blocks(), replay.elastic(), gathered);
+  return limit.kappa_at(gaps, policy,
+                        {{dt, replay.c(step)}, replay.start(step).data(), scene.mass.data(), elastic});
+}
+
+/// The pseudo-gaps at which it is asked: a frozen number may be that of the step's start.
+std::vector<double> softest_gaps(const StiffnessPolicy& policy, const StrainLimitPart& part,
+                                 std::span<const double> at_start) {
+  std::vector<double> out = part.width;
+  if (!policy.frozen_in_step() || policy.has_potential()) return out;
+  for (std::size_t e = 0; e < out.size(); ++e) out[e] = std::max(out[e], at_start[e]);
+  return out;
 }
 
 }  // namespace
@@ -143,15 +142,17 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
   const double dt = pilot.config.time.dt;
   PilotReplay replay(pilot, scene);
   Demand out;
-  std::vector<double> y_start(part.width.size());
   for (int step = 0; step < pilot.steps(); ++step) {
     look_up(limits, pilot, step);
-    if (own) replay.find_rows(step, own->refresh());
-    limit->measure(replay.start(step).data());
-    for (std::size_t e = 0; e < y_start.size(); ++e) y_start[e] = limit->smallest_gap(e);
-    limit->measure(replay.end(step).data());
-    for (std::size_t e = 0; e < y_start.size(); ++e) {
-      const double y = limit->smallest_gap(e), width = part.width[e];
+    std::vector<double> kappa;
+    if (own) {
+      replay.find_rows(step, own->refresh());
+      const std::vector<double> at_start = limit->smallest_gaps(replay.start(step).data());
+      kappa = own_limit_kappa(*own, scene, *limit, softest_gaps(*own, part, at_start), step, dt, replay);
+    }
+    const std::vector<double> at_end = limit->smallest_gaps(replay.end(step).data());
+    for (std::size_t e = 0; e < at_end.size(); ++e) {
+      const double y = at_end[e], width = part.width[e];
       if (!(y < width)) continue;
       const double area = limit->measure_of(e);
       const double load = -(*pilot.stiffness.k_s * area) * log.eval(y, width).db / area;
@@ -161,10 +162,7 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
       if (!is_load(answer, load, step, where, out)) continue;
       double k_s = 1;
       if (own) {
-        const bool frozen = own->frozen_in_step() && !own->has_potential();
-        const double softest = frozen ? std::max(width, y_start[e]) : width;
-        k_s = own_limit_stiffness(*own, scene, e, area, softest, {dt, replay.c(step)}, replay.start(step),
-                                  replay);
+        k_s = kappa[e] / area;
         if (too_soft(k_s, matched(load, width))) refuse(k_s * area, "kappa_e", step, where());
       }
       if (compare(matched(load, width), k_s, load, width, answer, step, out)) out.where = where();

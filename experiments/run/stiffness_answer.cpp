@@ -64,13 +64,6 @@ void fill_contacts(const ContactTable& rows, const Positions& dx, std::vector<do
   }
 }
 
-std::vector<double> smallest_gaps(LimitFamily& limit, const Positions& x) {
-  limit.measure(x.data());
-  std::vector<double> out(static_cast<std::size_t>(limit.size()));
-  for (std::size_t e = 0; e < out.size(); ++e) out[e] = limit.smallest_gap(e);
-  return out;
-}
-
 // The gap of an element changes by a difference over a millionth of the side of the smallest element.
 void fill_elements(LimitFamily& limit, const BarrierFunction& barrier, const std::vector<double>& width,
                    const Positions& x, const Positions& dx, std::vector<double>& out) {
@@ -78,8 +71,9 @@ void fill_elements(LimitFamily& limit, const BarrierFunction& barrier, const std
   double area = std::numeric_limits<double>::infinity();
   for (std::size_t e = 0; e < width.size(); ++e) area = std::min(area, limit.measure_of(e));
   const double t = largest > 0 ? 1e-6 * std::sqrt(area) / largest : 1;
-  const std::vector<double> y = smallest_gaps(limit, x), less = smallest_gaps(limit, x - t * dx),
-                            more = smallest_gaps(limit, x + t * dx);
+  const Positions back = x - t * dx, forth = x + t * dx;
+  const std::vector<double> y = limit.smallest_gaps(x.data()), less = limit.smallest_gaps(back.data()),
+                            more = limit.smallest_gaps(forth.data());
   for (std::size_t e = 0; e < width.size(); ++e) {
     if (!(y[e] < width[e])) continue;
     const auto b = barrier.eval(y[e], width[e]);

@@ -18,9 +18,4 @@ inline std::unique_ptr<StiffnessPolicy> elastic_limit(const ElasticityInclusive&
   return std::make_unique<ItemPolicy<ElasticityInclusive>>("elasticity_inclusive", values, multiplier);
 }
 
-/// kappa_e (J) of an element of 2 m^2 and 1 kg at half of its width, without H.
-inline double kappa_of_element(const StiffnessPolicy& policy) {
-  return policy.element_kappa({3, 0, 1, 2}, 0.5, 1, {});
-}
-
 }  // namespace bb::test

@@ -27,14 +27,16 @@ class HostLimit {
   LimitFamily& operator*() { return *family_; }
   LimitFamily* operator->() { return family_.get(); }
   std::size_t size() const { return bands_.width.size(); }
-  std::size_t stretches() const { return static_cast<std::size_t>(family_->n_sigma()); }
-  /// Of an element, the k-th largest.
-  double sigma(std::size_t e, std::size_t k = 0) const { return family_->sigma()[k * size() + e]; }
-  double gap(std::size_t e, std::size_t k = 0) const { return family_->gaps()[k * size() + e]; }
   double smallest_gap(std::size_t e) const { return family_->smallest_gap(e); }
-  double min_gap() const { return *std::min_element(family_->gaps().begin(), family_->gaps().end()); }
-  double max_stretch() const {
-    return *std::max_element(family_->sigma().begin(), family_->sigma().end()) - 1;
+  double min_gap() const {
+    double out = std::numeric_limits<double>::infinity();
+    for (std::size_t e = 0; e < size(); ++e) out = std::min(out, smallest_gap(e));
+    return out;
+  }
+  /// Of the measured state.
+  LimitReport report() {
+    family_->announce();
+    return family_->report();
   }
   std::size_t n_active() const {
     std::size_t n = 0;

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "core/energy/families/element_kernels.hpp"
 #include "core/energy/hinge.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/energy/spring.hpp"

@@ -250,6 +250,40 @@ TEST(LoadFamilies, have_the_closed_form_of_every_step) {
   }
 }
 
+/// What acts within a span acts in the whole step whose middle is in it; where no step is made, in the one that would begin.
+TEST(LoadFamilies, pull_where_the_middle_of_their_step_is_in_their_span) {
+  const Steps steps;
+  HostFamily pulls(on(loads[2], steps.scene));
+  const auto acts = [&](double t_end, double dt, bool at_start) {
+    FamilyStep step = steps.first.view();
+    step.t_end = t_end, step.dt = dt, step.at_start = at_start;
+    pulls->begin_step(step);
+    const std::vector<double> energy = pulls.values(steps.x);
+    EXPECT_GT(energy[0], 0);
+    EXPECT_EQ(energy[3] > 0, energy[4] > 0);
+    return energy[3] > 0;
+  };
+  // the span is 0.29 to 2
+  EXPECT_TRUE(acts(0.32, 0.05, false));
+  EXPECT_FALSE(acts(0.31, 0.05, false));
+  EXPECT_TRUE(acts(0.29, 0.05, true));
+  EXPECT_TRUE(acts(0.27, 0.05, true));
+  EXPECT_FALSE(acts(0.26, 0.05, true));
+  EXPECT_FALSE(acts(2, 0.05, true));
+  EXPECT_TRUE(acts(2, 0.05, false));
+}
+
+/// Weights are those of the step's own length and factor, whichever of them has changed.
+TEST(LoadFamilies, weigh_inertia_by_the_length_and_the_factor_of_each_step) {
+  Steps steps;
+  HostFamily family(on(loads[0], steps.scene));
+  for (const auto& [dt, c] : {std::pair{0.05, 0.7}, {0.02, 0.7}, {0.02, 0.3}, {0.02, 0.0}, {0.05, 0.7}}) {
+    steps.first.dt = dt, steps.first.c = c;
+    family->change_step(steps.first.view());
+    EXPECT_GE(expect_exact(loads[0], steps.scene, steps.first, family, *family, steps.x), c == 0 ? 0 : 10);
+  }
+}
+
 /// Columns of pieces, other threads and other orders have the bits of the terms element by element.
 TEST(LoadFamilies, have_the_same_bits_on_every_executor_and_in_every_piece) {
   const Steps steps;

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/barriers/limit_policies.hpp"
+#include "tests/energy/kappa_of_element.hpp"
 #include "tests/experiments/calibrated.hpp"
 #include "tests/oracle/dense.hpp"
 

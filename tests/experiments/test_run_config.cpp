@@ -10,7 +10,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/method.hpp"
 #include "experiments/run/runner.hpp"
-#include "tests/barriers/limit_policies.hpp"
+#include "tests/energy/kappa_of_element.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace bb::run_config_test {

@@ -42,7 +42,7 @@ Names listed() {
 bool of_host(const std::string& entry) {
   if (entry.starts_with("each bb::resident")) return false;
   return entry.starts_with("each bb::ElementLocalTerms<") || entry.ends_with(",float>") ||
-         entry.find("<bb::InertiaLoads") != std::string::npos ||
+         entry.find("<bb::InertiaOf<") != std::string::npos ||
          entry.find("<bb::WeightLoads") != std::string::npos;
 }
 

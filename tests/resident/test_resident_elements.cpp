@@ -221,6 +221,21 @@ TEST(ResidentElements, AreCountedWithoutMemory) {
   }
 }
 
+TEST(ResidentElements, AreToldTheStepThatItIs) {
+  test::TestedExecutor executor;
+  exec::Buffer<double> x_n(executor, "start"), x_tilde(executor, "prediction");
+  x_n.upload(std::vector<double>(6, 1));
+  x_tilde.upload(std::vector<double>(6, 2));
+  const FamilyStep step = resident::ResidentFrame{&x_n, &x_tilde, 0.1, 0.25, 0.5, 3, true}.of_families();
+  EXPECT_EQ(step.x_n, x_n.data());
+  EXPECT_EQ(step.x_tilde, x_tilde.data());
+  EXPECT_EQ(step.dt, 0.1);
+  EXPECT_EQ(step.c, 0.25);
+  EXPECT_EQ(step.load_factor, 0.5);
+  EXPECT_EQ(step.t_end, 3);
+  EXPECT_TRUE(step.at_start);
+}
+
 TEST(ResidentElements, NameTheFirstElementThatIsNoNumber) {
   const Scene scene = cloth_scene("arap", true, 4);
   const TermOptions options = element_options();

@@ -22,6 +22,7 @@ struct Limited {
   BlockSystem::Values elastic;
   Positions no_gradient = Positions::Zero(3, 4);
   PhaseClock clock;
+  StepFrame frame;
   exec::HostExecutor executor;
   std::unique_ptr<StrainLimitTerm> term;
 
@@ -46,7 +47,6 @@ struct Limited {
     return builder.finish();
   }
   void begin(const Positions& x_n) {
-    StepFrame frame;
     frame.x_n = frame.x_tilde = x_n;
     frame.dt = dt, frame.c = c;
     term->begin_step(frame, clock);
@@ -68,11 +68,7 @@ Rule rule_of(MassTerm mass_term, bool elastic_term, Refresh refresh) {
 /// Smaller pseudo-gap of every element.
 std::vector<double> gaps_at(const Scene& scene, const Positions& x) {
   exec::HostExecutor executor;
-  const auto limit = limited_triangles({executor}, scene.limit, scene.rest, false);
-  limit->measure(x.data());
-  std::vector<double> out;
-  for (std::size_t e = 0; e < scene.limit.width.size(); ++e) out.push_back(limit->smallest_gap(e));
-  return out;
+  return limited_triangles({executor}, scene.limit, scene.rest, false)->smallest_gaps(x.data());
 }
 
 /// kappa of every element by the formula: w of x_n, the gap of `x_gap`; and the energy at x that it makes.

@@ -2,7 +2,10 @@
 // state is measured, what bounds a motion, what is reported of two kinds of elements.
 #include <gtest/gtest.h>
 
+#include "core/barrier/launches.hpp"
+#include "core/math/error.hpp"
 #include "core/terms/strain_limit_state.hpp"
+#include "tests/barriers/host_policy.hpp"
 #include "tests/terms/all_terms.hpp"
 
 namespace bb::strain_limit_state_test {
@@ -69,6 +72,13 @@ constexpr ElasticityInclusive every_iteration{.elastic_term = false};
 constexpr ElasticityInclusive once{.elastic_term = false, .refresh = Refresh::per_step};
 constexpr ElasticityInclusive folded{
     .elastic_term = false, .refresh = Refresh::per_step, .derivative = KappaDerivative::included};
+
+struct ContactsAlone final : test::HostPolicy {
+  const PolicyLaunches* launches() const override {
+    static const PolicyLaunches none;
+    return &none;
+  }
+};
 
 /// f(of_solids, order) of both kinds and every order.
 template <class F>
@@ -137,6 +147,48 @@ TEST(StrainLimitState, MeasuresEachStateOnce) {
   });
 }
 
+/// A trial that becomes the iterate after something was said of the iterate before is measured as what it is.
+TEST(StrainLimitState, AnAcceptedTrialIsNotTheStateThatWasReportedLast) {
+  for_each_kind([](bool of_solids, exec::Order order) {
+    Limited limit(of_solids, every_iteration, order);
+    limit.refresh(1.05 * limit.scene.x0);
+    const Positions trial = 1.1 * limit.scene.x0;
+    EXPECT_TRUE(limit.look_at(trial));
+    EXPECT_NEAR(limit.report().max_stretch.value, 0.05, 1e-12);
+    limit.state.accept();
+    limit.refresh(trial);
+    EXPECT_NEAR(limit.report().max_stretch.value, 0.1, 1e-12);
+    Limited fresh(of_solids, every_iteration, order);
+    fresh.refresh(trial);
+    EXPECT_EQ(limit.energy, fresh.energy);
+    EXPECT_EQ(limit.kappa(), fresh.kappa());
+  });
+}
+
+/// What was measured in the step before, or before kappa was made, is not taken for the first iterate of a step.
+TEST(StrainLimitState, TheFirstIterateOfAStepIsWhatItsStiffnessMakesOfIt) {
+  for_each_kind([](bool of_solids, exec::Order order) {
+    for (const ElasticityInclusive& rule : {every_iteration, once, folded}) {
+      Limited limit(of_solids, rule, order), fresh(of_solids, rule, order);
+      const Positions last = 1.05 * limit.scene.x0, first = 1.1 * limit.scene.x0;
+      limit.refresh(last);
+      limit.state.begin_step(limit.x_n.data(), {0.05, 0.7});
+      limit.refresh(first);
+      fresh.refresh(first);
+      ASSERT_GT(fresh.energy[0], 0);
+      EXPECT_EQ(limit.energy, fresh.energy);
+      EXPECT_EQ(limit.kappa(), fresh.kappa());
+      EXPECT_NEAR(limit.report().max_stretch.value, 0.1, 1e-12);
+      limit.state.begin_step(limit.x_n.data(), {0.05, 0.7});
+      EXPECT_TRUE(limit.look_at(first));  // which measures it with the kappa of before
+      limit.state.accept();
+      limit.refresh(first);
+      EXPECT_EQ(limit.energy, fresh.energy);
+      EXPECT_EQ(limit.kappa(), fresh.kappa());
+    }
+  });
+}
+
 TEST(StrainLimitState, AdmitsWhatIsWithinTheLimitAndAnythingWhereTheArticleDoes) {
   for_each_kind([](bool of_solids, exec::Order order) {
     Limited limit(of_solids, once, order);
@@ -176,6 +228,25 @@ TEST(StrainLimitState, TwoKindsOfElementsReportTogether) {
     EXPECT_GT(out.limit_load_max_N_per_m.value, 0);
     EXPECT_GT(out.solid_limit_load_max_Pa.value, 0);
     EXPECT_EQ(end.solid_limit_load_max_Pa.value, out.solid_limit_load_max_Pa.value);
+  }
+}
+
+/// A policy without kernels, as one of a plugin, and one whose kernels are those of contacts alone.
+TEST(StrainLimitState, APolicyThatServesNoLimitIsRefusedByName) {
+  Limited limit(false, once);
+  const auto refused = [&](std::unique_ptr<StiffnessPolicy> policy) -> std::string {
+    limit.options.limit_stiffness = std::move(policy);
+    try {
+      StrainLimitState(limit.executor, limit.scene, limit.options, false, limit.scene.mass.data());
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const std::string& said :
+       {refused(std::make_unique<test::HostPolicy>()), refused(std::make_unique<ContactsAlone>())}) {
+    EXPECT_NE(said.find("host_only"), std::string::npos) << said;
+    EXPECT_NE(said.find("serves a strain limit"), std::string::npos) << said;
   }
 }
 

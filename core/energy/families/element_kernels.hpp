@@ -6,6 +6,7 @@
 // where a host may choose the scalar T, those of the first two as templates of it; where energies have cusps, bool is_cusp<T>(x, e);
 // where a change between two states has a closed form, which does not cancel as a difference of energies does,
 //   ValueChange<double> change(const double* x0, const double* x1, Index e)         J
+// where energy and derivatives of many elements are 0, whatever x is, bool is_slack<T>(Index e);
 // where there is no Hessian, linear = true; where elements are all vertices, in their order, every_vertex = true;
 // where a host takes several abreast, with the bits of terms(),
 //   lanes, void terms_abreast<T>(const double* x, Index first, Projection, TermsAbreast<T, lanes, width>& out)
@@ -13,8 +14,8 @@
 
 #include <cstring>
 
+#include "core/energy/families/pieces.hpp"
 #include "core/energy/terms.hpp"
-#include "core/exec/kernel.hpp"
 #include "core/math/precision.hpp"
 
 namespace bb {
@@ -37,20 +38,6 @@ struct ElementVertices {
   }
 };
 
-/// Neighbouring elements of a family: what has local terms at a time.
-struct Piece {
-  exec::Index begin, n;
-};
-
-/// Which Hessian of an element goes into the matrix: `first`; where t > 0, first + t (clamped - first); where a vertex
-/// of the element has a force of at least `threshold`, the clamped one.
-struct HessianRequest {
-  Projection first = Projection::psd;
-  double t = 0;
-  double threshold = -1;          // N; below 0: no vertex is asked
-  const double* force = nullptr;  // [n_vertices] N, read where there is a threshold
-};
-
 /// How many a host takes abreast; 1: there is no such form.
 template <class Elements>
 constexpr int lanes_of() {
@@ -69,6 +56,10 @@ concept HasScalars = requires(const Elements& of, const double* x) {
 template <class Elements>
 concept HasCusps = requires(const Elements& of, const double* x) {
   of.template is_cusp<double>(x, exec::Index{});
+};
+template <class Elements>
+concept MayBeSlack = requires(const Elements& of) {
+  of.template is_slack<double>(exec::Index{});
 };
 template <class Elements>
 concept HasChange = requires(const Elements& of, const double* x) {
@@ -115,6 +106,9 @@ struct ElementLocalTerms {
   double* hess;    // [9 width (width + 1)/2 n] N/m, lower blocks, element by element
 
   void operator()(exec::Index e) const {
+    if constexpr (MayBeSlack<Elements>) {
+      if (elements.template is_slack<T>(e)) return store_zeros(e);
+    }
     const ElementTerms<T, size> terms = terms_of(e);
     if (parts.values) {
       energy[e] = terms.energy;
@@ -141,6 +135,13 @@ struct ElementLocalTerms {
  private:
   static constexpr int size = 3 * Elements::width;
   static constexpr exec::Index numbers = n_lower_numbers(Elements::width);
+  void store_zeros(exec::Index e) const {
+    if (parts.values) {
+      energy[e] = 0;
+      memset(grad + size * e, 0, sizeof(double) * size);
+    }
+    if (parts.hessians) memset(hess + numbers * e, 0, sizeof(double) * numbers);
+  }
   ElementTerms<T, size> terms_of(exec::Index e) const {
     if constexpr (HasScalars<Elements>) {
       return elements.template terms<T>(x, e, projection);

@@ -2,6 +2,7 @@
 #include "core/energy/families/inflation.hpp"
 
 #include "core/energy/families/families.hpp"
+#include "core/energy/families/family_of.hpp"
 
 namespace bb {
 namespace {

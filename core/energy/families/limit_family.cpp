@@ -7,6 +7,7 @@
 #include "core/barrier/folded_barrier.hpp"
 #include "core/barrier/launches.hpp"
 #include "core/energy/element_loop.hpp"
+#include "core/energy/families/family_of.hpp"
 #include "core/energy/families/limit_kernels.hpp"
 #include "core/energy/rest_shapes.hpp"
 
@@ -18,7 +19,7 @@ using exec::Index, exec::Key;
 /// What LimitShape does, of a shape or a scalar without kernels: stretches of a column by the shape's batch call. Of a host alone.
 template <int N>
 struct LimitBatch {
-  static constexpr Index most = 64;
+  static constexpr Index most = elements_of_a_thread, grain = 1;
   LimitColumns<N> limit;
   const BarrierFunction *barrier, *potential;  // potential: read where there are parts
   const KappaParts* parts;
@@ -91,7 +92,6 @@ class LimitFamilyOf final : public FamilyOf<Limit<R, N>, LimitFamily> {
     }
     elements_.kappa = kappa_.data();
   }
-  int n_sigma() const override { return N; }
 
   void measure(const double* x) override {
     ++sweeps_;
@@ -119,18 +119,15 @@ class LimitFamilyOf final : public FamilyOf<Limit<R, N>, LimitFamily> {
   }
 
   void make_kappa(const StiffnessPolicy& policy, const KappaSources& from) override {
-    if (!policy.uniform() && before_.size() == 0) {
-      mass_.upload(bands_.mass);
-      before_.resize(elements_.n);
-    }
     parts_.resize(policy.has_potential() ? elements_.n : 0);
-    const ElementKappaInputs<N> of{elements_, policy.needs_hessian(), from, mass_.data(),
-                                   parts(),   before_.data()};
-    if constexpr (N == 3) {
-      policy.launches()->tetrahedra(executor_, policy, of);
-    } else {
-      policy.launches()->triangles(executor_, policy, of);
-    }
+    launch_kappa(policy, from);
+  }
+  std::vector<double> kappa_at(std::span<const double> gaps, const StiffnessPolicy& policy,
+                               const KappaSources& from) override {
+    for (int k = 0; k < N; ++k) std::copy(gaps.begin(), gaps.end(), elements_.gap + k * elements_.n);
+    parts_.resize(0);
+    launch_kappa(policy, from);
+    return kappa_.download();
   }
   double kappa_change() override {
     least_.clear();
@@ -138,8 +135,6 @@ class LimitFamilyOf final : public FamilyOf<Limit<R, N>, LimitFamily> {
     return least_.largest();
   }
 
-  std::span<const double> sigma() const override { return column(elements_.sigma); }
-  std::span<const double> gaps() const override { return column(elements_.gap); }
   double smallest_gap(std::size_t e) const override { return elements_.smallest_gap(static_cast<Index>(e)); }
   double measure_of(std::size_t e) const override { return elements_.rest.measure[e]; }
 
@@ -155,8 +150,18 @@ class LimitFamilyOf final : public FamilyOf<Limit<R, N>, LimitFamily> {
   }
 
  private:
-  std::span<const double> column(const double* of) const {
-    return {of, static_cast<std::size_t>(N * elements_.n)};
+  void launch_kappa(const StiffnessPolicy& policy, const KappaSources& from) {
+    if (!policy.uniform() && before_.size() == 0) {
+      mass_.upload(bands_.mass);
+      before_.resize(elements_.n);
+    }
+    const ElementKappaInputs<N> of{elements_, policy.needs_hessian(), from, mass_.data(),
+                                   parts(),   before_.data()};
+    if constexpr (N == 3) {
+      policy.launches()->tetrahedra(executor_, policy, of);
+    } else {
+      policy.launches()->triangles(executor_, policy, of);
+    }
   }
   /// Null where the folded kappa is a number.
   KappaParts* parts() { return parts_.size() > 0 ? parts_.data() : nullptr; }
@@ -209,6 +214,13 @@ double LimitFamily::bound() {
     launch_bound(motion_.x, motion_.dx, alpha, motion_.park, nullptr, least_.data());
   }
   return alpha;
+}
+
+std::vector<double> LimitFamily::smallest_gaps(const double* x) {
+  measure(x);
+  std::vector<double> out(static_cast<std::size_t>(size()));
+  for (std::size_t e = 0; e < out.size(); ++e) out[e] = smallest_gap(e);
+  return out;
 }
 
 void LimitFamily::announce() {

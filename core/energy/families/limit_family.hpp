@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/barrier/shape.hpp"
 #include "core/barrier/stiffness_policy.hpp"
@@ -30,9 +31,6 @@ class LimitFamily : public ElementFamily {
         bounds_(executor),
         numbers_(executor) {}
 
-  /// N, 2 of triangles and 3 of tetrahedra.
-  virtual int n_sigma() const = 0;
-
   /// Singular values and pseudo-gaps at x. Cost: one SVD an element.
   virtual void measure(const double* x) = 0;
   /// Barrier terms at the measured pseudo-gaps; infinite at or beyond the limit.
@@ -47,6 +45,10 @@ class LimitFamily : public ElementFamily {
   /// kappa_e at the measured pseudo-gaps; where the policy has a potential it is folded into the barrier terms from here on, which
   /// are to be filled then.
   virtual void make_kappa(const StiffnessPolicy& policy, const KappaSources& from) = 0;
+  /// [n] J, what the policy has for these pseudo-gaps [n]; a number also where it has a potential. In the host's memory alone; a state is to
+  /// be measured and its kappa to be made before anything else is asked.
+  virtual std::vector<double> kappa_at(std::span<const double> gaps, const StiffnessPolicy& policy,
+                                       const KappaSources& from) = 0;
   /// Largest relative change of an active element's kappa by the last make_kappa(). Of a policy that is not uniform. Waits.
   virtual double kappa_change() = 0;
   /// [n] J.
@@ -65,11 +67,10 @@ class LimitFamily : public ElementFamily {
   LimitReport report() const;
 
   // --- in the host's memory alone
-  /// [N, n] singular values, descending in size within an element, and pseudo-gaps.
-  virtual std::span<const double> sigma() const = 0;
-  virtual std::span<const double> gaps() const = 0;
   /// Smallest pseudo-gap of an element.
   virtual double smallest_gap(std::size_t e) const = 0;
+  /// Those of all elements at x, which is measured.
+  std::vector<double> smallest_gaps(const double* x);
   /// Area (m^2) or volume (m^3) of an element at rest.
   virtual double measure_of(std::size_t e) const = 0;
 

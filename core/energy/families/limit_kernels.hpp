@@ -65,6 +65,12 @@ struct Limit : LimitColumns<N> {
   BB_HD double value(const double*, exec::Index e) const {
     return this->energy(e);
   }
+  /// As strain_limit_terms has it.
+  template <class T>
+  bool is_slack(exec::Index e) const {
+    const StrainBand<T> band = this->template band<T>(e);
+    return !(strain_gap(static_cast<T>(this->sigma[e]), band) < band.width);
+  }
   template <class T = double>
   BB_HD ElementTerms<T, 3 * (N + 1)> terms(const double* x, exec::Index e, Projection projection) const {
     Vec<T, 3> p[N + 1];
@@ -86,10 +92,10 @@ template <int R, class T, int N>
 BB_HD void measure_stretch(const LimitColumns<N>& limit, const double* x, exec::Index e) {
   Vec<T, 3> p[N + 1];
   limit.points(x, e, p);
-  const Vec<T, N> sigma = signed_svd(deformation_gradient<R>(limit.rest.template at<T>(e, limit.n), p)).sigma;
+  const Svd<T, R, N> svd = signed_svd(deformation_gradient<R>(limit.rest.template at<T>(e, limit.n), p));
   for (int k = 0; k < N; ++k) {
-    limit.sigma[k * limit.n + e] = sigma[k];
-    limit.gap[k * limit.n + e] = stretch_gap(sigma[k], limit.template band<T>(e));
+    limit.sigma[k * limit.n + e] = svd.sigma[k];
+    limit.gap[k * limit.n + e] = stretch_gap(svd.sigma[k], limit.template band<T>(e));
   }
 }
 template <int R, int N, class T = double>
@@ -100,15 +106,28 @@ struct MeasureStretch {
   BB_HD void operator()(exec::Index e) const { measure_stretch<R, T>(limit, x, e); }
 };
 
-/// Barrier terms at the measured pseudo-gaps, one an item of [N, n]; infinite at or beyond the limit.
+/// Barrier terms of an element at its measured pseudo-gaps; infinite at or beyond the limit.
 template <int N, class S>
 struct LimitShape {
+  static constexpr exec::Index grain = elements_of_a_thread;
   LimitColumns<N> limit;
   Argument argument;
   bool literal;
   const KappaParts* parts;  // [n] J, where kappa has a potential; else null
-  BB_HD void operator()(exec::Index i) const {
-    const exec::Index e = i % limit.n;
+  BB_HD void operator()(exec::Index e) const {
+#ifdef __CUDACC__
+#pragma unroll 1  // the code of the shape once, and not once a singular value
+#endif
+    for (int k = 0; k < N; ++k) row(k * limit.n + e, e);
+  }
+  static constexpr int lanes = HasTerms<S> ? rows_abreast : 1;
+  void abreast(exec::Index first) const requires(lanes > 1) {
+    for (int k = 0; k < N; ++k) rows(k * limit.n + first, first);
+  }
+
+ private:
+  /// Item i of [N, n], of element e.
+  BB_HD void row(exec::Index i, exec::Index e) const {
     const double gap = limit.gap[i], width = limit.band_width[e];
     const bool inside = literal || gap > 0;
     ShapeTerms<double> terms = barrier_row<S, double>(argument, literal, inside ? gap : width, width);
@@ -122,6 +141,21 @@ struct LimitShape {
     limit.b[i] = inside ? terms.b : infinity;
     limit.db[i] = inside ? terms.db : -infinity;
     limit.d2b[i] = inside ? terms.d2b : infinity;
+  }
+  /// Items i to i + lanes - 1, of elements e to e + lanes - 1.
+  void rows(exec::Index i, exec::Index e) const requires(lanes > 1) {
+    const double *gap = limit.gap + i, *width = limit.band_width + e;
+    bool plain = !literal && !parts, slack = true;
+    for (int lane = 0; lane < lanes; ++lane) {
+      plain = plain && gap[lane] > 0;
+      slack = slack && gap[lane] >= width[lane];
+    }
+    if (plain && !slack) {
+      barrier_rows<S>(argument, gap, width, limit.b + i, limit.db + i, limit.d2b + i);
+      return;
+    }
+    for (int lane = 0; lane < lanes; ++lane)
+      row(i + lane, e + lane);  // which costs nothing where all are slack
   }
 };
 
@@ -146,13 +180,15 @@ struct MeasureLimit {
   LimitShape<N, S> shape;
   MeasureAt at;
   BB_HD void operator()(exec::Index e) const {
-    const LimitColumns<N>& limit = shape.limit;
-    measure_stretch<R, double>(limit, at.x, e);
-#ifdef __CUDACC__
-#pragma unroll 1  // the code of the shape once, and not once a singular value
-#endif
-    for (int k = 0; k < N; ++k) shape(k * limit.n + e);
-    finish_measure(limit, at, e);
+    measure_stretch<R, double>(shape.limit, at.x, e);
+    shape(e);
+    finish_measure(shape.limit, at, e);
+  }
+  static constexpr int lanes = LimitShape<N, S>::lanes;
+  void abreast(exec::Index first) const requires(lanes > 1) {
+    for (int lane = 0; lane < lanes; ++lane) measure_stretch<R, double>(shape.limit, at.x, first + lane);
+    shape.abreast(first);
+    for (int lane = 0; lane < lanes; ++lane) finish_measure(shape.limit, at, first + lane);
   }
 };
 

@@ -4,6 +4,8 @@
 #include <numeric>
 
 #include "core/energy/families/families.hpp"
+#include "core/energy/families/family_of.hpp"
+#include "core/energy/families/inertia_weights.hpp"
 
 namespace bb {
 namespace {
@@ -14,16 +16,25 @@ std::vector<int> all_vertices(const Scene& scene) {
   return out;
 }
 
-template <class Load>
-class LoadFamily final : public FamilyOf<Load> {
-  using Base = FamilyOf<Load>;
-  using Base::elements_;
-
+class InertiaFamily final : public FamilyOf<InertiaOf<StoredWeight>> {
  public:
-  LoadFamily(const FamilyPlace& place, const Scene& scene)
-      : Base(place, "loaded vertices", all_vertices(scene)),
+  InertiaFamily(const FamilyPlace& place, const Scene& scene)
+      : FamilyOf(place, "inertia vertices", all_vertices(scene)), weights_(place.executor, scene.mass) {}
+  void change_step(const FamilyStep& step) override {
+    elements_.weight.of = weights_.of(step);
+    elements_.x_tilde = step.x_tilde;
+  }
+
+ private:
+  InertiaWeights weights_;
+};
+
+class WeightFamily final : public FamilyOf<WeightLoads> {
+ public:
+  WeightFamily(const FamilyPlace& place, const Scene& scene)
+      : FamilyOf(place, "weight vertices", all_vertices(scene)),
         scene_(scene),
-        mass_(place.executor, "masses of loaded vertices") {
+        mass_(place.executor, "weight masses") {
     mass_.upload(scene.mass);
     elements_.mass = mass_.data();
   }
@@ -39,10 +50,10 @@ class LoadFamily final : public FamilyOf<Load> {
 }  // namespace
 
 MadeFamily inertia_family(const FamilyPlace& place, const Scene& scene) {
-  return std::make_unique<LoadFamily<InertiaLoads>>(place, scene);
+  return std::make_unique<InertiaFamily>(place, scene);
 }
 MadeFamily weight_family(const FamilyPlace& place, const Scene& scene) {
-  return std::make_unique<LoadFamily<WeightLoads>>(place, scene);
+  return std::make_unique<WeightFamily>(place, scene);
 }
 
 }  // namespace bb

@@ -14,17 +14,25 @@ BB_HD inline Vec3d point_at(const double* x, exec::Index v) {
 /// Element v is vertex v. Convex: no projection changes the Hessian.
 struct EveryVertex : ElementVertices<1> {
   static constexpr bool every_vertex = true;
-  const double* mass;  // [n] kg, 0 for prescribed vertices
 };
 
-struct InertiaLoads : EveryVertex {
-  const double* x_tilde;  // [3 n] m
-  double dt, c;           // s; as in StepFrame
+/// Weights of inertia that are divided out where they are read: on a card, where a column of them would cost more.
+struct MassOverStep {
+  const double* mass;  // [n] kg, 0 for prescribed vertices
+  double dt, c;        // s; as in StepFrame
+  BB_HD double operator()(exec::Index v) const { return inertia_weight(mass[v], c, dt); }
+};
+/// The same as a column (inertia_weights.hpp).
+struct StoredWeight {
+  const double* of;  // [n] N/m
+  BB_HD double operator()(exec::Index v) const { return of[v]; }
+};
 
-  void set_step(const FamilyStep& step, const Vec3d& /*gravity*/) {
-    x_tilde = step.x_tilde, dt = step.dt, c = step.c;
-  }
-  BB_HD double weight(exec::Index v) const { return inertia_weight(mass[v], c, dt); }
+template <class Weight>
+struct InertiaOf : EveryVertex {
+  Weight weight;
+  const double* x_tilde;  // [3 n] m
+
   BB_HD Vec3d off_target(const double* x, exec::Index v) const {
     return point_at(x, v) - point_at(x_tilde, v);
   }
@@ -43,13 +51,15 @@ struct InertiaLoads : EveryVertex {
 
 struct WeightLoads : EveryVertex {
   static constexpr bool linear = true;
-  const double* x_n;  // [3 n] m, start of the step
+  const double* mass;  // [n] kg, 0 for prescribed vertices
+  const double* x_n;   // [3 n] m, start of the step
   double load_factor;
   double gravity[3];  // m/s^2
 
-  void set_step(const FamilyStep& step, const Vec3d& of_step) {
+  /// at_end: gravity at the end of the step.
+  void set_step(const FamilyStep& step, const Vec3d& at_end) {
     x_n = step.x_n, load_factor = step.load_factor;
-    for (int k = 0; k < 3; ++k) gravity[k] = of_step[k];
+    for (int k = 0; k < 3; ++k) gravity[k] = at_end[k];
   }
   BB_HD Vec3d force(exec::Index v) const {
     return weight_force(load_factor, mass[v], Vec3d(gravity[0], gravity[1], gravity[2]));

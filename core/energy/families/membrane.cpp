@@ -3,6 +3,7 @@
 
 #include "core/energy/element_loop.hpp"
 #include "core/energy/families/families.hpp"
+#include "core/energy/families/family_of.hpp"
 #include "core/energy/families/rest_memory.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/energy/rest_shapes.hpp"

@@ -3,6 +3,7 @@
 #include "core/energy/families/quadratics.hpp"
 
 #include "core/energy/families/families.hpp"
+#include "core/energy/families/family_of.hpp"
 
 namespace bb {
 namespace {
@@ -39,11 +40,12 @@ double stiffness_of(const Pull& pull, const FamilyStep& step) {
 class PullFamily final : public QuadraticFamily {
  public:
   PullFamily(const FamilyPlace& place, const Scene& scene)
-      : QuadraticFamily(place, scene, "pull", pulled_vertices(scene)) {}
+      : QuadraticFamily(place, scene, "pull", pulled_vertices(scene)),
+        at_(3 * static_cast<std::size_t>(size())),
+        stiffness_(9 * static_cast<std::size_t>(size())) {}
 
   void change_step(const FamilyStep& step) override {
     const auto n = static_cast<std::size_t>(size());
-    std::vector<double> at(3 * n), matrix(9 * n);
     std::size_t e = 0;
     for (const Pull& pull : scene_.pulls) {
       const RigidMotion& motion = scene_.motions[static_cast<std::size_t>(pull.motion)];
@@ -51,15 +53,18 @@ class PullFamily final : public QuadraticFamily {
       for (const int v : pull.vertices) {
         const Vec3d to = motion(scene_.x0.col(v), step.t_end);
         for (std::size_t c = 0; c < 3; ++c) {
-          at[c * n + e] = to[static_cast<Eigen::Index>(c)];
-          matrix[4 * c * n + e] = stiffness;
+          at_[c * n + e] = to[static_cast<Eigen::Index>(c)];
+          stiffness_[4 * c * n + e] = stiffness;
         }
         ++e;
       }
     }
-    places_.upload(at);
-    matrix_.upload(matrix);
+    places_.upload(at_);
+    matrix_.upload(stiffness_);
   }
+
+ private:
+  std::vector<double> at_, stiffness_;  // of places_ and matrix_, on the host
 };
 
 /// Corners with mass of the triangles of the surface, ascending, and the triangles of each.

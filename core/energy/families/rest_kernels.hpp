@@ -18,9 +18,12 @@ struct RestColumnsOf<Rest<double>> {
   const double* measure;  // [n] m^2 or m^3
   template <class T = double>
   BB_HD Rest<T> at(exec::Index e, exec::Index n) const {
-    decltype(Rest<T>::dm_inv) inverse;
+    Rest<T>
+        out;  // written in its place: numbers that are stored one by one and copied two by two wait for each other
+    auto& [inverse, size] = out;
     for (int k = 0; k < n_inverse; ++k) inverse.data()[k] = static_cast<T>(dm_inv[k * n + e]);
-    return {inverse, static_cast<T>(measure[e])};
+    size = static_cast<T>(measure[e]);
+    return out;
   }
 };
 using RestColumns = RestColumnsOf<TriangleRest<double>>;

@@ -9,7 +9,7 @@ namespace bb::resident {
 
 /// The loads of a step.
 struct Loads {
-  InertiaLoads inertia;
+  InertiaOf<MassOverStep> inertia;
   WeightLoads weight;
   bool has_weight;
 };
@@ -29,7 +29,7 @@ struct LoadGradient {
 
 /// Adds the weights of inertia to the diagonal blocks.
 struct InertiaDiagonal {
-  InertiaLoads inertia;
+  InertiaOf<MassOverStep> inertia;
   const Index* row_begin;
   const int* column;
   double* value;

@@ -13,7 +13,7 @@ class LoadTerm final : public ResidentTerm {
         scene_(inputs.scene),
         matrix_(inputs.matrix),
         n_vertices_(inputs.mass.size()) {
-    loads_.inertia.mass = loads_.weight.mass = inputs.mass.data();
+    loads_.inertia.weight.mass = loads_.weight.mass = inputs.mass.data();
   }
   void add_weight() { loads_.has_weight = true; }
 
@@ -21,9 +21,10 @@ class LoadTerm final : public ResidentTerm {
   TermGroup group() const override { return TermGroup::load; }
   Phase phase() const override { return Phase::assembly; }
   void change_frame(const ResidentFrame& frame) override {
-    const Vec3d gravity = gravity_at(scene_, frame.t_end);
-    loads_.inertia.set_step(frame.of_families(), gravity);
-    loads_.weight.set_step(frame.of_families(), gravity);
+    const FamilyStep step = frame.of_families();
+    loads_.inertia.weight.dt = step.dt, loads_.inertia.weight.c = step.c;
+    loads_.inertia.x_tilde = step.x_tilde;
+    loads_.weight.set_step(step, gravity_at(scene_, step.t_end));
   }
   void keep(Archive& archive) override {
     ResidentTerm::keep(archive);
