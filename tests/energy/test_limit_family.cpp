@@ -5,6 +5,7 @@
 #include <random>
 
 #include "barriers/shapes/registry.hpp"
+#include "core/energy/families/limit_kernels.hpp"
 #include "core/math/error.hpp"
 #include "tests/energy/energy_cases.hpp"
 #include "tests/energy/limit_cases.hpp"
@@ -116,6 +117,59 @@ TEST(LimitFamily, BitsDependOnNothingButTheState) {
       }
     }
   }
+}
+
+/// Triangles within some roundings of where their limit begins to act, which is another place in float than in double.
+TEST(LimitFamily, WhatIsLeftOutAsSlackHasNoTermsInEitherScalar) {
+  constexpr exec::Index n = 4000;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  std::vector<int> vertices;
+  std::vector<double> x, inverse(4 * n, 0), area(n, 0.5), onset(n, 0.1), width(n, 0.9), kappa(n, 3),
+      state(10 * n);
+  for (exec::Index e = 0; e < n; ++e) {
+    inverse[static_cast<std::size_t>(e)] = inverse[static_cast<std::size_t>(3 * n + e)] = 1;
+    const Mat3d turn = (1.1 + 3e-7 * any(random)) * random_rotation(random);
+    for (const Vec3d& at : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 0.8, 0)}) {
+      const Vec3d to = turn * at;
+      x.insert(x.end(), to.data(), to.data() + 3);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    for (int e = 0; e < n; ++e) vertices.push_back(3 * e + k);
+  }
+  SpaceLimit limit;
+  limit.of = vertices.data(), limit.n = n;
+  limit.rest = {inverse.data(), area.data()};
+  limit.onset = onset.data(), limit.band_width = width.data(), limit.kappa = kappa.data();
+  double* column = state.data();
+  for (double** of : {&limit.sigma, &limit.gap, &limit.b, &limit.db, &limit.d2b})
+    *of = column, column += 2 * n;
+  std::fill(limit.b, limit.d2b + 2 * n, 0.7);
+  exec::HostExecutor executor;
+  executor.each(n, MeasureStretch<3, 2>{limit, x.data()});
+  LocalTerms out;
+  const auto count = [&]<class T>(T) {
+    out.resize(n, 3);
+    executor.each(n, ElementLocalTerms<SpaceLimit, T>{limit, Projection::psd, PassParts{true, true}, x.data(),
+                                                      out.energy.data(), out.grad.data(), out.hess.data()});
+    int acting = 0;
+    for (exec::Index e = 0; e < n; ++e) {
+      const auto terms = limit.terms<T>(x.data(), e, Projection::psd);
+      const auto i = static_cast<std::size_t>(e);
+      EXPECT_EQ(out.energy[i], terms.energy);
+      for (std::size_t k = 0; k < 9; ++k) EXPECT_EQ(out.grad[9 * i + k], terms.grad[static_cast<int>(k)]);
+      EXPECT_EQ(out.hess[n_lower_numbers(3) * i], terms.hess(0, 0));
+      acting += terms.energy != 0;
+    }
+    return acting;
+  };
+  const int in_double = count(1.0), in_float = count(1.0F);
+  EXPECT_GT(in_double, n / 4);
+  EXPECT_LT(in_double, 3 * n / 4);
+  EXPECT_GT(in_float, n / 4);
+  EXPECT_LT(in_float, 3 * n / 4);
+  EXPECT_NE(in_float, in_double);
 }
 
 /// Elements that are slack have exact zeros; the others have the derivatives of the sum of energies.

@@ -65,9 +65,10 @@ struct Limit : LimitColumns<N> {
   BB_HD double value(const double*, exec::Index e) const {
     return this->energy(e);
   }
-  /// As strain_limit_terms has it.
+  /// Where terms<T>() are 0 without factors.
   template <class T>
   bool is_slack(exec::Index e) const {
+    if (this->gap[e] < this->band_width[e]) return false;  // its factors in T say whether it acts
     const StrainBand<T> band = this->template band<T>(e);
     return !(strain_gap(static_cast<T>(this->sigma[e]), band) < band.width);
   }
