@@ -21,10 +21,21 @@ using VecXd = Eigen::VectorXd;
 /// [3 x n_vertices] positions (m), velocities (m/s) or forces (N); contiguous, 3 numbers a vertex.
 using Positions = Eigen::Matrix3Xd;
 
-/// Positions in memory that another object owns (a column of an executor on the host): nothing is copied.
+/// A buffer of 3 n_vertices numbers (core/exec/buffer.hpp).
+template <class Column>
+concept IsColumn = requires(Column& column) {
+  column.data();
+  column.size();
+  column.bytes();
+};
+
+/// Positions in memory that another object owns, nothing is copied: the host's, or that of an executor, whose kernels alone read
+/// them then.
 class PositionsView : public Eigen::Map<const Positions> {
  public:
-  PositionsView(const Positions& x) : Map(x.data(), 3, x.cols()) {}  // NOLINT(google-explicit-constructor)
+  template <IsColumn Column>
+  PositionsView(const Column& x) : Map(x.data(), 3, x.size() / 3) {}  // NOLINT(google-explicit-constructor)
+  PositionsView(const Positions& x) : Map(x.data(), 3, x.cols()) {}   // NOLINT(google-explicit-constructor)
   /// x: 3 n_vertices numbers.
   PositionsView(const double* x, Eigen::Index n_vertices) : Map(x, 3, n_vertices) {}
 };
@@ -32,7 +43,9 @@ class PositionsView : public Eigen::Map<const Positions> {
 /// The same to write to.
 class PositionsSpan : public Eigen::Map<Positions> {
  public:
-  PositionsSpan(Positions& x) : Map(x.data(), 3, x.cols()) {}  // NOLINT(google-explicit-constructor)
+  template <IsColumn Column>
+  PositionsSpan(Column& x) : Map(x.data(), 3, x.size() / 3) {}  // NOLINT(google-explicit-constructor)
+  PositionsSpan(Positions& x) : Map(x.data(), 3, x.cols()) {}   // NOLINT(google-explicit-constructor)
   PositionsSpan(double* x, Eigen::Index n_vertices) : Map(x, 3, n_vertices) {}
   using Map::operator=;
   operator PositionsView() const { return {data(), cols()}; }  // NOLINT(google-explicit-constructor)

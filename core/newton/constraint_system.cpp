@@ -9,7 +9,7 @@
 namespace bb {
 namespace {
 
-bool is_vertex_load(const Term& term) { return term.group() == TermGroup::load && term.on_vertices(); }
+bool is_vertex_load(const HostTerm& term) { return term.group() == TermGroup::load && term.on_vertices(); }
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void ConstraintSystem::require_constraints() const {
 
 // Energies of loads are quadratic, with a diagonal Hessian: one Newton step from any state ends in their minimum.
 ConstraintSystem::FreeMotion ConstraintSystem::free_motion(const Positions& given) {
-  const Positions& from = potential_.frame_.x_tilde;
+  const PositionsView from = state_.x_tilde;
   Positions force = Positions::Zero(3, from.cols()), stiffness = force;
   for (const auto& term : potential_.terms_) {
     if (!is_vertex_load(*term)) continue;

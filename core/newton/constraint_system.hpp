@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/energy/constraint_batch.hpp"
-#include "core/terms/term.hpp"
+#include "core/terms/host_term.hpp"
 
 namespace bb {
 

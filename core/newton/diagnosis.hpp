@@ -7,7 +7,7 @@
 
 #include "core/linear/block_system.hpp"
 #include "core/newton/report.hpp"
-#include "core/terms/term.hpp"
+#include "core/terms/host_term.hpp"
 
 namespace bb {
 
@@ -43,7 +43,7 @@ class Diagnosis {
   /// Calls visit for every family of the set's terms that has Hessians, with those that clamped(set) sums: lower blocks,
   /// element by element. Cost: the clamped elements if no attempt needed them.
   using VisitHessians =
-      std::function<void(const Term& term, std::size_t family, std::span<const double> hess)>;
+      std::function<void(const HostTerm& term, std::size_t family, std::span<const double> hess)>;
   void visit_clamped(TermSet set, const VisitHessians& visit);
 
   /// Right-hand side of the system that was set up last, with what prescribed motion adds; free degrees of freedom.

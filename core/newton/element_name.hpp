@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/scene/scene.hpp"
-#include "core/terms/term.hpp"
+#include "core/terms/host_term.hpp"
 
 namespace bb {
 

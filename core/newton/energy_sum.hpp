@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/newton/energy_change.hpp"
-#include "core/terms/term.hpp"
+#include "core/terms/host_term.hpp"
 
 namespace bb {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "core/terms/host_term.hpp"
 #include "core/terms/step_hessian.hpp"
-#include "core/terms/term.hpp"
 
 namespace bb {
 

@@ -5,7 +5,7 @@
 
 namespace bb {
 
-void HostPotential::linearise(const Column& x, Column& g) {
+void HostPotential::linearise_terms(const Column& x, Column& g) {
   x_ = &x;
   for (Slot& slot : slots_) {
     if (slot.term->group() == TermGroup::elastic) linearise(slot, x, g);
@@ -23,7 +23,6 @@ void HostPotential::linearise(const Column& x, Column& g) {
     if (slot.term->group() != TermGroup::elastic) linearise(slot, x, g);
     add_gradient(slot, g);
   }
-  energies_known_ = true;
 }
 
 void HostPotential::linearise(Slot& slot, const Column& x, const Column& g) {
@@ -138,10 +137,6 @@ double HostPotential::add_tikhonov(double relative, double absolute) {
 void HostPotential::multiply(const Column& v, Column& out) {
   out.fill_zero();
   blocks_->multiply_add(*filled_, points(v), points(out));
-}
-
-void HostPotential::add_given_motion(const Column& x, const Column& motion, Column& force) {
-  for (const auto& term : terms_) term->add_given_motion(points(x), points(motion), points(force));
 }
 
 const ReducedSystem& HostPotential::reduced() {

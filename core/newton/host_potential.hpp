@@ -13,14 +13,14 @@
 #include "core/newton/incremental_potential.hpp"
 #include "core/newton/method.hpp"
 #include "core/scene/scene.hpp"
+#include "core/terms/host_term.hpp"
 #include "core/terms/plan.hpp"
-#include "core/terms/term.hpp"
 
 namespace bb {
 
 /// A column of the host's memory as points; nothing is copied.
-inline PositionsView points(const Column& column) { return {column.data(), column.size() / 3}; }
-inline PositionsSpan points(Column& column) { return {column.data(), column.size() / 3}; }
+inline PositionsView points(const Column& column) { return column; }
+inline PositionsSpan points(Column& column) { return column; }
 
 class HostPotential final : public IncrementalPotential {
  public:
@@ -29,44 +29,24 @@ class HostPotential final : public IncrementalPotential {
                 PhaseClock& clock);
   exec::Executor& executor() override { return executor_; }
 
-  void begin_step(const StepColumns& step) override;
-  void change_step(const StepColumns& step) override;
-  bool renew_lag(const Column& x) override;
-  void end_step(const Column& x) override;
-  void keep(Archive& archive) override;
   void keep_solver(Archive& archive) override;
   void drop_caches() override;
   /// The step that has begun is that of another potential: what is frozen there is known here.
   void adopt(const KnownStep& known);
   void adopt(const HostPotential& other);
 
-  void linearise(const Column& x, Column& g) override;
   bool pattern_changed() const override { return pattern_changed_; }
   void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
   void fill_exact(const Column& x, const Column& force) override;
   double add_tikhonov(double relative, double absolute) override;
   void multiply(const Column& v, Column& out) override;
-  void add_given_motion(const Column& x, const Column& motion, Column& force) override;
   void solve(const Column& b, RightSide of, Column& step, SolveReport& report) override;
   Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
                        Column& step, Column& direction) override;
   std::size_t nnz() const override { return nnz_; }
 
-  void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) override;
-  double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
   bool bounds_each_vertex() const override;
   double truncate(Column& dx) override;
-  double bound_truncated(const Column& x0, const Column& x1, const Column& dx,
-                         IterationReport& report) override;
-  std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
-  bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
-  bool admits(const Column& x, Column& trial) override;
-  EnergyChange change(const Column& x, const Column& trial) override;
-  void accept() override;
-
-  double energy(TermSet set, const Column& x) override;
-  void report(const Column& x, IterateNumbers& out) override;
-  void report_end(const Column& x, StepNumbers& out) override;
   Cusps cusps(const Column& x) override;
   std::string describe_non_finite() override;
   KnownStep known_step() const override;
@@ -79,11 +59,17 @@ class HostPotential final : public IncrementalPotential {
   friend class ConstraintSystem;
   /// Where the families of a term are in the block system, whose families are fixed or changing.
   struct Slot {
-    Term* term;
+    HostTerm* term;
     std::size_t first;
     StepHessian hessian;
     bool clamped;  // the term's clamped Hessians are those of this iterate
   };
+  void solver_begins_step() override;
+  void linearise_terms(const Column& x, Column& g) override;
+  bool is_finite(Column& trial, bool seen_by_terms) override;
+  bool bounds_each_vertex_of(const Term& term) const override;
+  EnergyChange sum_change(const Column& x, const Column& trial) override;
+  double sum_energy(TermSet set, const Column& x, bool announced) override;
   void set_fixed_families(const Method& method);
   void make_solver();
   bool set_changing_families();
@@ -91,8 +77,6 @@ class HostPotential final : public IncrementalPotential {
     return {*blocks_, elastic_, gradient, first_projection(hessian), clock()};
   }
   void linearise(Slot& slot, const Column& x, const Column& g);
-  double smallest_bound(const Motion& motion, IterationReport& report, bool truncated);
-  void know_energies(const Column& x);
   void add_families(const Slot& slot, PositionsSpan gradient) const;
   void add_gradient(const Slot& slot, Column& g);
   void clamp(Slot& slot);
@@ -114,18 +98,15 @@ class HostPotential final : public IncrementalPotential {
   std::unique_ptr<BlockSystem> blocks_;
   std::unique_ptr<LinearSolver> solver_;  // where the plan needs one
 
-  StepFrame frame_;
   const Column* x_ = nullptr;  // the iterate that was linearised last
   Positions part_;
   BlockSystem::Values elastic_, full_;           // H where the plan needs it; all terms
   const BlockSystem::Values* filled_ = nullptr;  // the matrix that was filled last
   ReducedSystem examined_;                       // the matrix that examine() asks about
   EnergySums sums_;
-  const Term* holder_ = nullptr;  // of the last bound
   std::size_t nnz_ = 0;
   std::vector<double> hess_buffer_;
   bool pattern_changed_ = false;
-  bool energies_known_ = false, trial_evaluated_ = false;  // of the iterate; of the trial
   VecXd rhs_, solution_;
 };
 

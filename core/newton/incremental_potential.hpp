@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/exec/buffer.hpp"
 #include "core/linear/definiteness.hpp"
@@ -12,7 +13,7 @@
 #include "core/newton/hessian_level.hpp"
 #include "core/newton/report.hpp"
 #include "core/record/phase_times.hpp"
-#include "core/terms/term_set.hpp"
+#include "core/terms/term.hpp"
 
 namespace bb {
 
@@ -22,14 +23,6 @@ struct Cusps;
 struct KnownStep;
 
 using Column = exec::Buffer<double>;
-
-/// One time step: where it starts and leads without force, s, inertia weight c, factor of the external force, and the time
-/// at its end, s. at_start: as in Prediction.
-struct StepColumns {
-  const Column &x_n, &x_tilde;
-  double dt = 0, c = 1, load_factor = 1, t_end = 0;
-  bool at_start = false;
-};
 
 class IncrementalPotential {
  public:
@@ -41,14 +34,15 @@ class IncrementalPotential {
   virtual exec::Executor& executor() = 0;
 
   // --- a step
-  virtual void begin_step(const StepColumns& step) = 0;
+  void begin_step(const StepColumns& step);
   /// The same step and iterate with another prediction and length.
-  virtual void change_step(const StepColumns& step) = 0;
-  /// The step has converged at x: whether terms take what they lag from there, so that it has to go on.
-  virtual bool renew_lag(const Column& /*x*/) { return false; }
-  virtual void end_step(const Column& x) = 0;
+  void change_step(const StepColumns& step);
+  /// The step has converged at x: whether terms take what they lag from there, so that it has to go on. One term at a time: what
+  /// friction takes from contact, and how often, does not depend on how often contact was renewed.
+  bool renew_lag(const Column& x);
+  void end_step(const Column& x);
   /// What the terms remember from step to step.
-  virtual void keep(Archive& archive) = 0;
+  void keep(Archive& archive);
   /// What earlier solves decide of later ones.
   virtual void keep_solver(Archive&) {}
   /// Makes the linear solver anew and forgets the pattern of the contacts: between steps.
@@ -56,7 +50,7 @@ class IncrementalPotential {
 
   // --- an iterate x
   /// Every term at x; g (N) becomes the gradient of E.
-  virtual void linearise(const Column& x, Column& g) = 0;
+  void linearise(const Column& x, Column& g);
   virtual bool pattern_changed() const = 0;
   /// The matrix of all terms at x, at a level. force: [n_vertices] N, what a level that asks vertices compares.
   virtual void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) = 0;
@@ -67,7 +61,7 @@ class IncrementalPotential {
   /// out = A v over free rows at least, A the matrix that was filled last.
   virtual void multiply(const Column& v, Column& out) = 0;
   /// force (N) += how the gradient changes along the motion of prescribed vertices, as far as it is in no block of A.
-  virtual void add_given_motion(const Column& x, const Column& motion, Column& force) = 0;
+  void add_given_motion(const Column& x, const Column& motion, Column& force);
   /// step = A^-1 b over free degrees of freedom, A of the last fill_matrix(); of: what b is. Adds its work to the report.
   virtual void solve(const Column& b, RightSide of, Column& step, SolveReport& report) = 0;
   /// Whether the exact matrix at x is positive definite; if not, `direction` becomes one of negative curvature. near: the
@@ -79,36 +73,37 @@ class IncrementalPotential {
 
   // --- the motion x0 -> x1, x1 = x0 + dx up to rounding
   /// Before the calls below. to_bound: bound() will be asked for, and no trial goes beyond it.
-  virtual void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) = 0;
+  void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound);
   /// Largest feasible fraction, in [0, 1]; each term says its own in the report.
-  virtual double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) = 0;
+  double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
+    return smallest_bound({x0, x1, dx}, report, false);
+  }
   /// Whether some term bounds each vertex by itself; then dx of each becomes the part of it that the last bound() lets it go,
   /// and prescribed vertices go the smallest of theirs, which is returned.
   virtual bool bounds_each_vertex() const { return false; }
   virtual double truncate(Column& /*dx*/) { return 1; }
   /// bound() of the terms that said nothing about each vertex, of a motion that was truncated.
-  virtual double bound_truncated(const Column& /*x0*/, const Column& /*x1*/, const Column& /*dx*/,
-                                 IterationReport&) {
-    return 1;
+  double bound_truncated(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
+    return smallest_bound({x0, x1, dx}, report, true);
   }
-  virtual std::string describe_bound() const = 0;
+  std::string describe_bound() const { return holder_ ? holder_->describe_bound() : std::string(); }
   /// force (N) becomes what makes room for gaps that are curved along dx, of a motion that bound() ends at `bound`. Whether
   /// curvature is what holds it. The matrix is that of the last fill_matrix() again, whatever was filled since.
-  virtual bool make_room(const Column& x, const Column& dx, double bound, Column& force) = 0;
+  bool make_room(const Column& x, const Column& dx, double bound, Column& force);
   /// Whether the trial, which is rounded to the precision of the run first, is finite and feasible, and what the terms
   /// keep of it then. No energy of the trial is evaluated.
-  virtual bool admits(const Column& x, Column& trial) = 0;
+  bool admits(const Column& x, Column& trial);
   /// E(trial) - E(x) of the trial that was admitted last.
-  virtual EnergyChange change(const Column& x, const Column& trial) = 0;
+  EnergyChange change(const Column& x, const Column& trial);
   /// The trial that was admitted last is the iterate. What is said of it holds whether its energies were asked for or not.
-  virtual void accept() = 0;
+  void accept();
 
   // --- what is said of the iterate x
   /// As StepView::announce.
-  virtual void announce(const Column& /*x*/) {}
-  virtual double energy(TermSet set, const Column& x) = 0;
-  virtual void report(const Column& x, IterateNumbers& out) = 0;
-  virtual void report_end(const Column& x, StepNumbers& out) = 0;
+  void announce(const Column& x);
+  double energy(TermSet set, const Column& x);
+  void report(const Column& x, IterateNumbers& out);
+  void report_end(const Column& x, StepNumbers& out);
   /// Elements at a cusp.
   virtual Cusps cusps(const Column& x) = 0;
   /// The first element with a number that is not finite; empty without one.
@@ -118,9 +113,37 @@ class IncrementalPotential {
 
  protected:
   PhaseClock& clock() const { return clock_; }
+  /// Once, in the order of registry.inc. They stay where they are.
+  template <class Terms>
+  void set_terms(const Terms& terms) {
+    for (const auto& term : terms) terms_.push_back(term.get());
+  }
+
+  // --- what a matrix engine has of its own
+  virtual void solver_begins_step() {}
+  virtual void linearise_terms(const Column& x, Column& g) = 0;
+  /// Rounds the trial; whether all its numbers are finite, as far as no term sees that.
+  virtual bool is_finite(Column& trial, bool seen_by_terms) = 0;
+  virtual bool bounds_each_vertex_of(const Term&) const { return false; }
+  /// What add_detour() needed may be gone: the matrix is filled again.
+  virtual void room_was_made(const Column& /*x*/) {}
+  /// Sums of what the terms evaluated at x and at the trial.
+  virtual EnergyChange sum_change(const Column& x, const Column& trial) = 0;
+  /// Whether what is said of a state is launched before it is read; then announce_energy() launches the sum of E at x.
+  virtual bool launches() const { return false; }
+  virtual void announce_energy(const Column& /*x*/) {}
+  /// announced: announce_energy() was of this x.
+  virtual double sum_energy(TermSet set, const Column& x, bool announced) = 0;
 
  private:
+  void know_energies(const Column& x);
+  double smallest_bound(const Motion& motion, IterationReport& report, bool truncated);
+
   PhaseClock& clock_;
+  std::vector<Term*> terms_;
+  const Term* holder_ = nullptr;                           // of the last bound
+  bool energies_known_ = false, trial_evaluated_ = false;  // of the iterate; of the trial
+  bool announced_ = false;                                 // E of the iterate
 };
 
 }  // namespace bb

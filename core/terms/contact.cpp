@@ -70,28 +70,30 @@ void ContactTerm::use_state() {
   families_[1].stencils = {4, state_.mollified.free_vertex};
 }
 
-void ContactTerm::begin_step(const StepFrame& frame, PhaseClock& clock) {
+void ContactTerm::begin_step(const StepColumns& step, PhaseClock& clock) {
   stiffness_.begin_step();
   if (multipliers_) multipliers_->begin_step();
   if (beside_) beside_->begin_step();
-  change_frame(frame);
+  change_step(step);
   first_iterate_ = true;
   carries_ = has_multipliers();
   {
     const ScopedPhase timer(clock, Phase::broad_phase);
-    contacts_.update_candidates(frame.x_n, frame.x_n);
+    contacts_.update_candidates(step.x_n, step.x_n);
   }
   const ScopedPhase timer(clock, Phase::contact_rows);
-  state_.gap_min = contacts_.find_rows(frame.x_n, state_.rows, state_.mollified);
+  state_.gap_min = contacts_.find_rows(step.x_n, state_.rows, state_.mollified);
   use_state();
 }
 
-void ContactTerm::change_frame(const StepFrame& frame) {
-  time_ = {frame.dt, frame.c};
+void ContactTerm::change_step(const StepColumns& step) {
+  time_ = {step.dt, step.c};
   stiffness_.set_time(time_);
 }
 
 void ContactTerm::linearise(const PositionsView& x, const TermContext& context) {
+  blocks_ = &context.blocks;
+  elastic_ = &context.elastic;
   {
     const ScopedPhase timer(context.clock, Phase::stiffness);
     start_policy(x, context);
@@ -165,8 +167,7 @@ void ContactTerm::clamp(const PositionsView& x) {
   mollified_terms(state_.mollified, x, Projection::psd, mollified.grad, mollified.hess, options_.precision);
 }
 
-void ContactTerm::add_given_motion(const PositionsView& x, const PositionsView& motion,
-                                   PositionsSpan force) const {
+void ContactTerm::add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) {
   bb::add_given_motion(state_.rows, motion, force);
   bb::add_given_motion(state_.mollified, x, motion, force);
 }
@@ -200,7 +201,7 @@ double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClo
 }
 
 bool ContactTerm::add_detour(const PositionsView& x, const PositionsView& dx, double bound,
-                             PositionsSpan force) const {
+                             PositionsSpan force) {
   return bb::add_detour(state_.rows, x, dx, force).by_curvature(bound);
 }
 
@@ -217,9 +218,10 @@ bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
   return trial_.gap_min > 0 || options_.contact.literal || options_.overlap;
 }
 
-void ContactTerm::freeze(const BlockSystem& blocks, const BlockSystem::Values& elastic, PhaseClock& clock) {
+void ContactTerm::freeze(PhaseClock& clock) {
+  if (!blocks_) return;  // no iterate was linearised, so no row has a kappa
   const ScopedPhase timer(clock, Phase::stiffness);
-  stiffness_.freeze(trial_.tables(), state_.tables(), blocks, elastic);
+  stiffness_.freeze(trial_.tables(), state_.tables(), *blocks_, *elastic_);
 }
 
 void ContactTerm::evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,

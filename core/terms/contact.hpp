@@ -14,11 +14,11 @@
 #include "core/terms/carried_loads.hpp"
 #include "core/terms/contact_constraints.hpp"
 #include "core/terms/contact_stiffness.hpp"
+#include "core/terms/host_term.hpp"
 #include "core/terms/known_step.hpp"
 #include "core/terms/policy_start.hpp"
 #include "core/terms/registry.hpp"
 #include "core/terms/step_end_gaps.hpp"
-#include "core/terms/term.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {
@@ -39,7 +39,7 @@ struct ContactState {
   }
 };
 
-class ContactTerm final : public Term {
+class ContactTerm final : public HostTerm {
  public:
   /// All arguments must outlive the term. terms: with those of lines before.
   ContactTerm(const TermInputs& inputs, const TermList& terms);
@@ -48,15 +48,15 @@ class ContactTerm final : public Term {
   Phase phase() const override { return Phase::contact_terms; }
   bool fixed_stencils() const override { return false; }
 
-  void begin_step(const StepFrame& frame, PhaseClock& clock) override;
-  void change_frame(const StepFrame& frame) override;
+  void begin_step(const StepColumns& step, PhaseClock& clock) override;
+  void change_step(const StepColumns& step) override;
   /// Updates multipliers, where there are some (contact_multipliers.hpp).
   bool renew_lag(const PositionsView& x) override;
   /// Keeps the loads where multipliers are part of them, and tells a policy that adapts which pairs had a row at two step ends in a
   /// row.
   void end_step(const PositionsView& x, PhaseClock& clock) override;
   void adopt(const KnownStep& known) override { adopt_stiffness(known.stiffness); }
-  void adopt_from(const Term& other) override {
+  void adopt_from(const HostTerm& other) override {
     const auto& of = static_cast<const ContactTerm&>(other);
     adopt_stiffness(of.stiffness_.known());
     if (beside_) beside_->adopt(*of.beside_);
@@ -64,17 +64,16 @@ class ContactTerm final : public Term {
   void keep(Archive& archive) override;
   void linearise(const PositionsView& x, const TermContext& context) override;
   void clamp(const PositionsView& x) override;
-  void add_given_motion(const PositionsView& x, const PositionsView& motion,
-                        PositionsSpan force) const override;
+  void add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) override;
   void add_loads(const PositionsView& x, ContactLoads& out) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
   std::span<const double> vertex_parts() const override;
   bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
-                  PositionsSpan force) const override;
+                  PositionsSpan force) override;
   std::string describe_bound() const override;
   bool admits(const PositionsView& x, PhaseClock& clock) override;
-  void freeze(const BlockSystem& blocks, const BlockSystem::Values& elastic, PhaseClock& clock) override;
+  void freeze(PhaseClock& clock) override;
   void evaluate(const PositionsView& x) override;
   void evaluate_iterate(const PositionsView& x) override;
   void accept(PhaseClock& clock) override;
@@ -117,6 +116,8 @@ class ContactTerm final : public Term {
   const TermList& terms_;
   ContactSystem contacts_;
   ContactStiffness stiffness_;
+  const BlockSystem* blocks_ = nullptr;  // of the iterate that was linearised last, and H there
+  const BlockSystem::Values* elastic_ = nullptr;
   std::optional<FoldedBarrier> folded_;  // where the policy has a potential: of kappa that falls as 1/d^2,
   std::optional<GapPotential> gap_potential_;  // of any kappa(d)
   std::optional<ContactMultipliers> multipliers_;

@@ -5,7 +5,7 @@
 namespace bb {
 
 FamilyTerm::FamilyTerm(std::string_view name, TermGroup group, std::unique_ptr<ElementFamily> family)
-    : name_(name), group_(group), family_(std::move(family)) {
+    : FamilySteps(std::move(family)), name_(name), group_(group) {
   const auto n = static_cast<std::size_t>(family_->size());
   TermFamily& out = families_.emplace_back();
   out.stencils = {family_->width(), family_->vertices()};
@@ -13,29 +13,13 @@ FamilyTerm::FamilyTerm(std::string_view name, TermGroup group, std::unique_ptr<E
   out.trial_energy.resize(n);
 }
 
-void FamilyTerm::begin_step(const StepFrame& frame, PhaseClock&) {
-  dt_ = frame.dt;
-  family_->begin_step(frame.of_families());
-}
-
-void FamilyTerm::change_frame(const StepFrame& frame) {
-  dt_ = frame.dt;
-  family_->change_step(frame.of_families());
-}
-
 void FamilyTerm::change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const {
-  if (!family_->has_changes()) return Term::change(x0, x1, out);
+  if (!family_->has_changes()) return HostTerm::change(x0, x1, out);
   const std::size_t start = out.size();
   out.resize(start + size());
   EnergyPart* const parts = out.data() + start;
   family_->changes(x0.data(), x1.data(), &parts->change, &parts->magnitude,
                    sizeof(EnergyPart) / sizeof(double));
-}
-
-void FamilyTerm::end_step(const PositionsView& x, PhaseClock& clock) {
-  if (!family_->flows()) return;
-  const ScopedPhase timer(clock, Phase::elastic);
-  family_->end_step(x.data(), dt_);
 }
 
 void FamilyTerm::add_cusps(const PositionsView& x, Cusps& out) const { out.add(name_, *family_, x); }

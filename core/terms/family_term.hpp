@@ -1,12 +1,12 @@
 // A term of elements that stay: one family (core/energy/families) in the host's memory.
 #pragma once
 
-#include "core/energy/families/element_family.hpp"
-#include "core/terms/term.hpp"
+#include "core/terms/family_steps.hpp"
+#include "core/terms/host_term.hpp"
 
 namespace bb {
 
-class FamilyTerm final : public Term {
+class FamilyTerm final : public FamilySteps<HostTerm> {
  public:
   /// name: that of registry.inc. group: load or elastic.
   FamilyTerm(std::string_view name, TermGroup group, std::unique_ptr<ElementFamily> family);
@@ -14,18 +14,11 @@ class FamilyTerm final : public Term {
   TermGroup group() const override { return group_; }
   Phase phase() const override { return phase_of(group_); }
   bool on_vertices() const override { return family_->on_vertices(); }
-  void begin_step(const StepFrame& frame, PhaseClock& clock) override;
-  void change_frame(const StepFrame& frame) override;
-  void end_step(const PositionsView& x, PhaseClock& clock) override;
-  void keep(Archive& archive) override { family_->keep(archive); }
   void linearise(const PositionsView& x, const TermContext& context) override {
     family_->derivatives(x.data(), context.projection, families_[0].local);
   }
   void clamp(const PositionsView& x) override {
     family_->derivatives(x.data(), Projection::psd, families_[0].clamped);
-  }
-  void evaluate(const PositionsView& x) override {
-    family_->values(x.data(), families_[0].trial_energy.data());
   }
   void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const override;
   void add_cusps(const PositionsView& x, Cusps& out) const override;
@@ -37,8 +30,6 @@ class FamilyTerm final : public Term {
  private:
   std::string_view name_;
   TermGroup group_;
-  std::unique_ptr<ElementFamily> family_;
-  double dt_ = 0;  // s, of the step
 };
 
 }  // namespace bb

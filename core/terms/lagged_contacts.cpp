@@ -21,22 +21,9 @@ std::vector<std::size_t> acting(const ContactLoads& contacts, const SideCoeffici
 
 LaggedContacts::LaggedContacts(std::string_view name, std::unique_ptr<LaggedFamily> family,
                                const TermList& before)
-    : name_(name), family_(std::move(family)) {
+    : LaggedSteps(name, std::move(family)) {
   for (const auto& term : before) before_.push_back(term.get());
   families_.resize(1);
-}
-
-void LaggedContacts::begin_step(const StepFrame& frame, PhaseClock& clock) {
-  const ScopedPhase timer(clock, Phase::contact_terms);
-  family_->begin_step(frame.of_families());
-  take_rows(frame.x_n);
-}
-
-bool LaggedContacts::renew_lag(const PositionsView& x) {
-  if (!family_->renews()) return false;
-  const bool had_rows = size() > 0;
-  take_rows(x);
-  return had_rows || size() > 0;
 }
 
 void LaggedContacts::adopt(const KnownStep& known) {
@@ -45,7 +32,7 @@ void LaggedContacts::adopt(const KnownStep& known) {
   }
 }
 
-void LaggedContacts::adopt_from(const Term& other) {
+void LaggedContacts::adopt_from(const HostTerm& other) {
   const auto& same = static_cast<const LaggedContacts&>(other);
   contact_ = same.contact_;
   pairs_ = same.pairs_;
@@ -94,7 +81,7 @@ void LaggedContacts::learn_loads() {
 
 ContactLoads LaggedContacts::contacts_at(const PositionsView& x) const {
   ContactLoads out;
-  for (const Term* term : before_) term->add_loads(x, out);
+  for (const HostTerm* term : before_) term->add_loads(x, out);
   return out;
 }
 

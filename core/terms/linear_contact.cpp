@@ -41,7 +41,7 @@ void LinearContact::Constraint::keep(Archive& archive) { archive(pair, force, qu
 
 void LinearContact::keep(Archive& archive) { archive(constraints_, penalty_); }
 
-void LinearContact::adopt_from(const Term& other) {
+void LinearContact::adopt_from(const HostTerm& other) {
   const auto& of = static_cast<const LinearContact&>(other);
   constraints_ = of.constraints_;
   anchor_ = of.anchor_;
@@ -52,14 +52,14 @@ void LinearContact::adopt_from(const Term& other) {
   list_stencils();
 }
 
-void LinearContact::begin_step(const StepFrame& frame, PhaseClock&) {
+void LinearContact::begin_step(const StepColumns& step, PhaseClock&) {
   stalled_ = adaptations_ = 0;
   standoff_ = rules_.standoff;
   if (rules_.penalty > 0) penalty_ = rules_.penalty;
-  x_n_ = frame.x_n;
-  dt_ = frame.dt;
+  x_n_ = step.x_n;
+  dt_ = step.dt;
   for (Constraint& each : constraints_) each.most = most_asked(each.pair);
-  set_anchor(frame.x_n);
+  set_anchor(step.x_n);
 }
 
 void LinearContact::set_penalty(double penalty) {

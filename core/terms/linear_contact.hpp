@@ -23,12 +23,12 @@
 
 #include "core/contact/motion_pairs.hpp"
 #include "core/terms/contact.hpp"
-#include "core/terms/term.hpp"
+#include "core/terms/host_term.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {
 
-class LinearContact final : public Term {
+class LinearContact final : public HostTerm {
  public:
   /// All must outlive it. Errors: ConfigError for collisions of chosen bodies.
   LinearContact(const Scene& scene, const TermOptions& options, const ContactPlan& plan);
@@ -37,8 +37,8 @@ class LinearContact final : public Term {
   Phase phase() const override { return Phase::contact_terms; }
   bool fixed_stencils() const override { return false; }
 
-  void begin_step(const StepFrame& frame, PhaseClock& clock) override;
-  void adopt_from(const Term& other) override;
+  void begin_step(const StepColumns& step, PhaseClock& clock) override;
+  void adopt_from(const HostTerm& other) override;
   void keep(Archive& archive) override;
   void linearise(const PositionsView& x, const TermContext& context) override;
   void clamp(const PositionsView& x) override;

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/bodies/part.hpp"
-#include "core/terms/registry.hpp"
+#include "core/terms/host_term.hpp"
+#include "core/terms/term_inputs.hpp"
 
 namespace bb {
 

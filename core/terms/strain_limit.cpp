@@ -13,33 +13,29 @@ namespace bb {
 
 StrainLimitTerm::StrainLimitTerm(exec::Executor& executor, const Scene& scene, const TermOptions& options,
                                  const std::vector<std::uint8_t>& fixed, bool of_solids)
-    : scene_(scene),
+    : LimitSteps(std::make_unique<StrainLimitState>(executor, scene, options, of_solids, scene.mass.data())),
+      scene_(scene),
       options_(options),
-      fixed_(fixed),
-      state_(executor, scene, options, of_solids, scene.mass.data()) {
-  const auto n = static_cast<std::size_t>(state_.family().size());
+      fixed_(fixed) {
+  const auto n = static_cast<std::size_t>(state_->family().size());
   TermFamily& family = families_.emplace_back();
-  family.stencils = {state_.family().width(), state_.family().vertices()};
-  family.local.resize(n, state_.family().width());
+  family.stencils = {state_->family().width(), state_->family().vertices()};
+  family.local.resize(n, state_->family().width());
   family.trial_energy.resize(n);
-}
-
-void StrainLimitTerm::begin_step(const StepFrame& frame, PhaseClock&) {
-  state_.begin_step(frame.x_n.data(), {frame.dt, frame.c});
 }
 
 void StrainLimitTerm::linearise(const PositionsView& x, const TermContext& context) {
   ElasticMatrix elastic;
-  if (state_.asks_for_elastic()) {
-    elastic = gather_elastic(state_.family(), context.blocks, context.elastic, hess_);
+  if (state_->asks_for_elastic()) {
+    elastic = gather_elastic(state_->family(), context.blocks, context.elastic, hess_);
   }
-  state_.refresh(x.data(), elastic, energies());
-  state_.family().derivatives(x.data(), context.projection, families_[0].local);
+  state_->refresh(x.data(), elastic, energies());
+  state_->family().derivatives(x.data(), context.projection, families_[0].local);
 }
 
 void StrainLimitTerm::clamp(const PositionsView& x) {
-  state_.measure_iterate(x.data(), energies());
-  state_.family().derivatives(x.data(), Projection::psd, families_[0].clamped);
+  state_->measure_iterate(x.data(), energies());
+  state_->family().derivatives(x.data(), Projection::psd, families_[0].clamped);
 }
 
 ElasticMatrix gather_elastic(const LimitFamily& family, const BlockSystem& blocks,
@@ -56,39 +52,13 @@ ElasticMatrix gather_elastic(const LimitFamily& family, const BlockSystem& block
   return {{}, out.data()};
 }
 
-double StrainLimitTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
-  const ScopedPhase timer(clock, Phase::strain_bound);
-  state_.look_along(motion.x0.data(), motion.dx.data());
-  return state_.bound(report);
-}
-
-bool StrainLimitTerm::admits(const PositionsView& x, PhaseClock&) {
-  state_.look_at(x.data(), families_[0].trial_energy.data());
-  return state_.admits();
-}
-
-void StrainLimitTerm::evaluate_iterate(const PositionsView& x) {
-  state_.measure_iterate(x.data(), energies());
-  state_.family().values(x.data(), energies());
-}
-
-void StrainLimitTerm::report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) {
-  const ScopedPhase timer(clock, Phase::strain_limit);
-  state_.report(x.data(), energies(), out);
-}
-
-void StrainLimitTerm::report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) {
-  const ScopedPhase timer(clock, Phase::strain_limit);
-  state_.report_end(x.data(), energies(), out);
-}
-
 // Of element e on its own: how many times larger its force would have to be to balance the rest along itself.
 double StrainLimitTerm::times_larger(std::size_t e, const PositionsView& others) const {
   const std::vector<double>& gradient = families_[0].local.grad;
-  const auto width = static_cast<std::size_t>(state_.family().width());
+  const auto width = static_cast<std::size_t>(state_->family().width());
   double needed = 0, own = 0;
   for (std::size_t k = 0; k < width; ++k) {
-    const auto v = static_cast<std::size_t>(state_.family().vertices()[width * e + k]);
+    const auto v = static_cast<std::size_t>(state_->family().vertices()[width * e + k]);
     for (std::size_t c = 0; c < 3; ++c) {
       if (fixed_[3 * v + c]) continue;  // carried by the pin
       const double g = gradient[3 * (width * e + k) + c];
@@ -100,30 +70,30 @@ double StrainLimitTerm::times_larger(std::size_t e, const PositionsView& others)
 }
 
 std::string StrainLimitTerm::element_name(std::size_t e) const {
-  const auto width = static_cast<std::size_t>(state_.family().width());
-  const std::span<const int> vertices = state_.family().vertices().subspan(width * e, width);
+  const auto width = static_cast<std::size_t>(state_->family().width());
+  const std::span<const int> vertices = state_->family().vertices().subspan(width * e, width);
   const Body& body =
       scene_.bodies[static_cast<std::size_t>(scene_.body[static_cast<std::size_t>(vertices[0])])];
   std::string numbers;
   for (const int v : vertices)
     numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", v - body.first_vertex);
-  return fmt::format("{} {}[{}]", state_.of_solids() ? "tetrahedron" : "triangle", body.name, numbers);
+  return fmt::format("{} {}[{}]", state_->of_solids() ? "tetrahedron" : "triangle", body.name, numbers);
 }
 
 // The larger of two estimates: what everything but the limit puts on an element on its own, and the force at
 // which the Newton model would come to rest.
 void StrainLimitTerm::report_overload(const PositionsView& x, const PositionsView& others,
                                       const PositionsView& dx, StepNumbers& out) {
-  if (!state_.adds()) out.limit_overload = 0;
-  if (options_.limit.shape.infinite_at_zero || state_.policy().has_potential()) return;
+  if (!state_->adds()) out.limit_overload = 0;
+  if (options_.limit.shape.infinite_at_zero || state_->policy().has_potential()) return;
   const Positions moved = x + dx;
-  const std::vector<double> gaps = state_.family().smallest_gaps(x.data()),
-                            next = state_.family().smallest_gaps(moved.data());
-  state_.forget();
+  const std::vector<double> gaps = state_->family().smallest_gaps(x.data()),
+                            next = state_->family().smallest_gaps(moved.data());
+  state_->forget();
   const StrainBands& bands =
-      state_.of_solids() ? static_cast<const StrainBands&>(scene_.solid_limit) : scene_.limit;
+      state_->of_solids() ? static_cast<const StrainBands&>(scene_.solid_limit) : scene_.limit;
   LargestSlope slope(options_.limit);
-  double largest = state_.adds() ? out.limit_overload.value : 0;
+  double largest = state_->adds() ? out.limit_overload.value : 0;
   for (std::size_t e = 0; e < gaps.size(); ++e) {
     const double width = bands.width[e];
     if (!(gaps[e] < width)) continue;

@@ -23,7 +23,8 @@ double element_energy(std::span<const int> vertex, const double* hess, const Pos
   return sum;
 }
 
-std::string element_name(const Diagnosis& system, const Term& term, std::size_t family, std::size_t element) {
+std::string element_name(const Diagnosis& system, const HostTerm& term, std::size_t family,
+                         std::size_t element) {
   const Scene& scene = system.scene();
   if (term.group() == TermGroup::contact && family == 0) {
     const ContactTable& rows = contact_state(system.terms()).rows;
@@ -45,9 +46,9 @@ std::string element_name(const Diagnosis& system, const Term& term, std::size_t 
 /// The parts of lambda: of each term, and of the element with the largest one.
 void add_terms(Diagnosis& system, TermSet set, const Positions& u, SpectrumEnd& end) {
   double largest = 0, total = 0;
-  const Term* holder = nullptr;
+  const HostTerm* holder = nullptr;
   std::size_t holder_family = 0, holder_element = 0;
-  system.visit_clamped(set, [&](const Term& term, std::size_t family, std::span<const double> hess) {
+  system.visit_clamped(set, [&](const HostTerm& term, std::size_t family, std::span<const double> hess) {
     const Stencils& stencils = term.families()[family].stencils;
     const std::size_t width = static_cast<std::size_t>(stencils.width);
     double sum = 0;

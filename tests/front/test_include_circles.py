@@ -23,7 +23,6 @@ core/newton/newton_system core/newton/newton_view
 core/parameters/check core/parameters/parameter
 core/record/kept_hash core/record/provenance
 core/terms/contact core/terms/linear_contact
-core/terms/part_term core/terms/registry
 experiments/cli/sweep_cases experiments/cli/sweep_spec
 experiments/config/document experiments/config/methods experiments/config/parse experiments/config/presets experiments/config/sections
 experiments/matrix/side_car experiments/matrix/system_file

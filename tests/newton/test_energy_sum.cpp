@@ -9,7 +9,7 @@ namespace bb::energy_sum_test {
 namespace {
 
 /// Energies that are given, in one family.
-class Given final : public Term {
+class Given final : public HostTerm {
  public:
   Given(std::vector<double> from, std::vector<double> to, bool vertices, bool fixed = true)
       : vertices_(vertices), fixed_(fixed) {

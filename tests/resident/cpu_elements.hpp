@@ -13,6 +13,7 @@
 #include "core/newton/hessian_level.hpp"
 #include "core/terms/plan.hpp"
 #include "tests/barriers/limit_policies.hpp"
+#include "tests/terms/asked.hpp"
 
 namespace bb::test {
 

@@ -32,7 +32,7 @@ struct OnExecutor {
       : OnExecutor(on, scene, options, piece) {
     x_n.upload(numbers_of(frame.x_n));
     x_tilde.upload(numbers_of(frame.x_tilde));
-    for (const auto& term : terms) term->begin_step(resident_frame(frame));
+    for (const auto& term : terms) term->begin_step(step_of(frame), clock);
   }
   /// Before a step.
   OnExecutor(exec::Executor& on, const Scene& scene, const TermOptions& options,
@@ -72,8 +72,8 @@ struct OnExecutor {
     make("stitch", resident::make_resident_stitch);
     make("strain_limit", resident::make_resident_strain_limit);
   }
-  resident::ResidentFrame resident_frame(const StepFrame& frame) const {
-    return {&x_n, &x_tilde, frame.dt, frame.c, frame.load_factor, frame.t_end};
+  StepColumns step_of(const StepFrame& frame) const {
+    return {x_n, x_tilde, frame.dt, frame.c, frame.load_factor, frame.t_end};
   }
   /// H, kappa of the limit, gradient and energies at x. Returns how far kappa of the limit has moved; 0 without one.
   double linearise(const Positions& at) {
@@ -111,7 +111,7 @@ struct OnExecutor {
     trial.upload(numbers_of(at));
     for (const auto& term : terms) term->look_at(x, trial, clock);
     for (const auto& term : terms) {
-      if (!term->admits(x, trial, clock)) return false;
+      if (!term->admits(trial, clock)) return false;
     }
     for (const auto& term : terms) term->evaluate(trial);
     return true;
@@ -124,7 +124,7 @@ struct OnExecutor {
     return sum.get();
   }
   void accept() {
-    for (const auto& term : terms) term->accept(), term->take_energies();
+    for (const auto& term : terms) term->accept(clock), term->take_energies();
     x.swap(trial);
   }
   /// options.contact_options.ccd_park is read.

@@ -39,7 +39,7 @@ struct Pair {
   EnergyParts parts(const Positions& to) {
     EnergyParts out;
     for (const auto& term : cpu.terms) {
-      EXPECT_TRUE(term->admits(to, cpu.clock));
+      EXPECT_TRUE(admits(*term, cpu.scene.x0, to, cpu.clock));
       term->evaluate(to);
     }
     for (const auto& term : cpu.terms) term->change(x, to, out);
@@ -97,7 +97,7 @@ void expect_change_of_limit(Pair& pair, const Positions& to, const std::string& 
   double change = 0, magnitude = 0, of_limit = 0;
   for (const auto& term : pair.cpu.terms) {
     EnergyParts parts;
-    EXPECT_TRUE(term->admits(to, pair.cpu.clock));
+    EXPECT_TRUE(admits(*term, pair.cpu.scene.x0, to, pair.cpu.clock));
     term->evaluate(to);
     term->change(pair.x, to, parts);
     for (const EnergyPart& part : parts) {

@@ -82,7 +82,7 @@ struct Both {
     frame.t_end += frame.dt;
     for (const auto& term : cpu.terms) term->begin_step(frame, cpu.clock);
     resident.x_n.upload(numbers_of(x));
-    for (const auto& term : resident.terms) term->begin_step(resident.resident_frame(frame));
+    for (const auto& term : resident.terms) term->begin_step(resident.step_of(frame), resident.clock);
   }
   void expect_same() {
     ASSERT_GT(largest(cpu.gradient), 1e-3);
@@ -174,9 +174,9 @@ TEST(ResidentCreep, IsKept) {
     both.end_step(x);
     Archive of_cpu, of_resident;
     for (const auto& term : both.cpu.terms) of_cpu.section(term->name()), term->keep(of_cpu);
-    for (const auto& term : both.resident.terms) term->keep(of_resident);
+    for (const auto& term : both.resident.terms) of_resident.section(term->name()), term->keep(of_resident);
     Archive from_cpu(of_cpu.bytes()), from_resident(of_resident.bytes());
-    for (const auto& term : fresh.resident.terms) term->keep(from_cpu);
+    for (const auto& term : fresh.resident.terms) from_cpu.section(term->name()), term->keep(from_cpu);
     for (const auto& term : fresh.cpu.terms) from_resident.section(term->name()), term->keep(from_resident);
     EXPECT_TRUE(from_cpu.at_end());
     EXPECT_TRUE(from_resident.at_end());

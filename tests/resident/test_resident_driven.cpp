@@ -156,8 +156,8 @@ TEST(ResidentDriven, HasTheGradientAndEnergiesOfTheTerms) {
     const Positions before = both.cpu.gradient;
     both.frame.dt = 0.02;
     both.frame.t_end = 0.6;
-    for (const auto& term : both.cpu.terms) term->change_frame(both.frame);
-    for (const auto& term : both.resident.terms) term->change_frame(both.resident.resident_frame(both.frame));
+    for (const auto& term : both.cpu.terms) term->change_step(both.frame);
+    for (const auto& term : both.resident.terms) term->change_step(both.resident.step_of(both.frame));
     both.expect_same();
     EXPECT_EQ(both.cpu.gradient == before, std::string(one.term) == "stitch");
   }

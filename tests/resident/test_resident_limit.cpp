@@ -29,9 +29,9 @@ TEST(ResidentLimit, HasTheTermsOfTheCpuForEveryRule) {
         cpu.linearise(x, StepHessian::clamped);
         const double moved = resident.linearise(x);
         IterateNumbers report;
-        const Term& term = cpu.terms[cpu.terms.size() - 1];
+        const HostTerm& term = cpu.terms[cpu.terms.size() - 1];
         ASSERT_EQ(term.name(), "strain_limit");
-        const_cast<Term&>(term).report(x, report, cpu.clock);
+        const_cast<HostTerm&>(term).report(x, report, cpu.clock);
         const IterateNumbers numbers = resident.report();
         const double load_max = numbers.limit_load_max_N_per_m.value;
         ASSERT_GT(load_max, 0);
@@ -66,13 +66,13 @@ TEST(ResidentLimit, BoundsAStepAsTheCpuDoes) {
     const Positions x = strained(scene);
     cpu.linearise(x, StepHessian::clamped);
     resident.linearise(x);
-    Term& term = const_cast<Term&>(cpu.terms[cpu.terms.size() - 1]);
+    HostTerm& term = const_cast<HostTerm&>(cpu.terms[cpu.terms.size() - 1]);
     for (const double park : {0.0, 1e-4, 0.3}) {
       options.contact_options.ccd_park = park;
       for (const double size : {1e-4, 0.03, 0.1, 0.7, 20.0}) {
         const Positions dx = wave(scene, size), x1 = x + dx;
         IterateNumbers report;
-        const double expected = term.bound({x, x1, dx}, report, cpu.clock);
+        const double expected = bound(term, {x, x1, dx}, report, cpu.clock);
         const double found = resident.bound(dx);
         EXPECT_EQ(found, expected) << size << " " << park;
         n_below += found > 0 && found < 1;

@@ -53,10 +53,10 @@ struct Both {
     cpu.emplace(scene, options, frame);
     resident.emplace(executor, scene, options, frame);
   }
-  std::vector<Term*> limits() {
-    std::vector<Term*> out;
+  std::vector<HostTerm*> limits() {
+    std::vector<HostTerm*> out;
     for (std::size_t i = 0; i < cpu->terms.size(); ++i) {
-      if (cpu->terms[i].name() == "strain_limit") out.push_back(&const_cast<Term&>(cpu->terms[i]));
+      if (cpu->terms[i].name() == "strain_limit") out.push_back(&const_cast<HostTerm&>(cpu->terms[i]));
     }
     return out;
   }
@@ -80,7 +80,7 @@ TEST(ResidentSolidLimit, HasTheTermsOfTheCpuForEveryRule) {
         both.resident->linearise(x);
         IterateNumbers expected;
         double energy = 0;
-        for (Term* term : both.limits()) {
+        for (HostTerm* term : both.limits()) {
           term->report(x, expected, both.cpu->clock);
           for (const double e : term->families()[0].local.energy) energy += e;
         }
@@ -138,8 +138,8 @@ TEST(ResidentSolidLimit, BoundsAStepAsTheCpuDoes) {
         const Positions dx = wave(both.scene, size), x1 = x + dx;
         IterateNumbers report;
         const double by_cloth =
-            with_cloth ? both.limits()[0]->bound({x, x1, dx}, report, both.cpu->clock) : 1;
-        const double by_block = both.limits().back()->bound({x, x1, dx}, report, both.cpu->clock);
+            with_cloth ? bound(*both.limits()[0], {x, x1, dx}, report, both.cpu->clock) : 1;
+        const double by_block = bound(*both.limits().back(), {x, x1, dx}, report, both.cpu->clock);
         const double expected = std::min(by_cloth, by_block);
         IterateNumbers said;
         const double found = both.resident->bound(dx, &said);

@@ -11,6 +11,7 @@
 #include "core/mesh/solid_generators.hpp"
 #include "core/terms/plan.hpp"
 #include "tests/barriers/limit_policies.hpp"
+#include "tests/terms/asked.hpp"
 
 namespace bb::test {
 
@@ -139,13 +140,13 @@ inline double magnitude_of(const EnergyParts& parts) {
   return sum;
 }
 
-inline double iterate_energy(const Term& term) {
+inline double iterate_energy(const HostTerm& term) {
   double sum = 0;
   for (const TermFamily& family : term.families()) sum += sum_of(family.local.energy);
   return sum;
 }
 
-inline double trial_energy(const Term& term) {
+inline double trial_energy(const HostTerm& term) {
   double sum = 0;
   for (const TermFamily& family : term.families()) sum += sum_of(family.trial_energy);
   return sum;

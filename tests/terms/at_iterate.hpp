@@ -38,8 +38,8 @@ struct AtIterate : TermsOf {
     const Positions dx = to - scene.x0;
     for (const auto& term : terms) {
       term->prepare({scene.x0, to, dx}, clock);
-      ASSERT_TRUE(term->admits(to, clock)) << term->name();
-      term->freeze(context().blocks, context().elastic, clock);
+      ASSERT_TRUE(admits(*term, x, to, clock)) << term->name();
+      term->freeze(clock);
       term->evaluate(to);
     }
   }
@@ -55,7 +55,7 @@ inline Eigen::VectorXd eigenvalues(int width, const double* blocks) {
   return eigenvalues(lower);
 }
 
-inline Positions gradient_of(const Term& term, Eigen::Index n_vertices) {
+inline Positions gradient_of(const HostTerm& term, Eigen::Index n_vertices) {
   Positions out = Positions::Zero(3, n_vertices);
   for (const TermFamily& family : term.families()) {
     const std::span<const int> vertices = family.stencils.vertices;
@@ -67,7 +67,7 @@ inline Positions gradient_of(const Term& term, Eigen::Index n_vertices) {
 }
 
 /// dx^T H dx over all elements, H with the lower blocks of each.
-inline double curvature_along(const Term& term, const Positions& dx) {
+inline double curvature_along(const HostTerm& term, const Positions& dx) {
   double sum = 0;
   for (const TermFamily& family : term.families()) {
     const auto width = static_cast<std::size_t>(family.stencils.width);

@@ -26,7 +26,7 @@ Batches constraints_of(AtIterate& at, std::string_view name, const Positions& x,
   return out;
 }
 
-const Term& term_of(const AtIterate& at, std::string_view name) {
+const HostTerm& term_of(const AtIterate& at, std::string_view name) {
   for (const auto& term : at.terms) {
     if (term->name() == name) return *term;
   }

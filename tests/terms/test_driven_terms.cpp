@@ -22,7 +22,7 @@ StepFrame frame_of(const Scene& scene, double t_end) {
 /// A term of a scene, linearised at x with its exact Hessian.
 struct Linearised {
   test::TermsOf all;
-  const Term* term = nullptr;
+  const HostTerm* term = nullptr;
   Linearised(const Scene& scene, const char* name, const Positions& x, double t_end = dt)
       : all(scene, scene.x0, frame_of(scene, t_end)) {
     for (const auto& each : all.terms) {

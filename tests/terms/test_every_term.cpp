@@ -50,8 +50,8 @@ TEST(EveryTerm, has_the_gradient_of_its_energy) {
       for (const int side : {0, 1}) {
         Positions to = at.x;
         to.data()[i] += side == 0 ? -h : h;
-        ASSERT_TRUE(term->admits(to, at.clock));
-        term->freeze(at.context().blocks, at.context().elastic, at.clock);
+        ASSERT_TRUE(test::admits(*term, at.x, to, at.clock));
+        term->freeze(at.clock);
         term->evaluate(to);
         energy[side] = test::trial_energy(*term);
       }
@@ -138,12 +138,12 @@ TEST(EveryTerm, has_the_same_energy_of_an_iterate_that_was_accepted_without) {
   const Positions to = test::disturbed(at.scene, 0.006);
   at.trial(to);
   for (std::size_t i = 0; i < at.terms.size(); ++i) {
-    Term &known = **(at.terms.begin() + static_cast<std::ptrdiff_t>(i)),
-         &late = **(other.terms.begin() + static_cast<std::ptrdiff_t>(i));
+    HostTerm &known = **(at.terms.begin() + static_cast<std::ptrdiff_t>(i)),
+             &late = **(other.terms.begin() + static_cast<std::ptrdiff_t>(i));
     const double before = test::iterate_energy(late);
     late.prepare({other.scene.x0, to, Positions(to - other.scene.x0)}, other.clock);
-    ASSERT_TRUE(late.admits(to, other.clock)) << late.name();
-    late.freeze(other.context().blocks, other.context().elastic, other.clock);
+    ASSERT_TRUE(test::admits(late, other.x, to, other.clock)) << late.name();
+    late.freeze(other.clock);
     late.accept(other.clock);
     late.evaluate_iterate(to);
     EXPECT_EQ(test::iterate_energy(late), test::trial_energy(known)) << late.name();
@@ -162,13 +162,13 @@ TEST(EveryTerm, allows_a_motion_up_to_its_bound_and_says_what_held_it) {
     IterateNumbers report;
     const Motion motion{at.x, x1, dx};
     term->prepare(motion, at.clock);
-    const double alpha = term->bound(motion, report, at.clock);
+    const double alpha = test::bound(*term, motion, report, at.clock);
     EXPECT_EQ(alpha, std::min(report.alpha_ccd, report.alpha_strain)) << term->name();
     if (alpha == 1) continue;
     ++bounded;
     EXPECT_FALSE(term->describe_bound().empty()) << term->name();
-    EXPECT_TRUE(term->admits(Positions(at.x + 0.99 * alpha * dx), at.clock)) << term->name();
-    EXPECT_FALSE(term->admits(Positions(at.x + dx), at.clock)) << term->name();
+    EXPECT_TRUE(test::admits(*term, at.x, Positions(at.x + 0.99 * alpha * dx), at.clock)) << term->name();
+    EXPECT_FALSE(test::admits(*term, at.x, Positions(at.x + dx), at.clock)) << term->name();
   }
   EXPECT_EQ(bounded, 2);  // contact and strain limit
 }

@@ -25,7 +25,7 @@ struct AtStart : test::TermsOf {
     for (const auto& term : terms) term->add_loads(scene.x0, out);
     return out;
   }
-  const Term& friction() const {
+  const HostTerm& friction() const {
     for (const auto& term : terms) {
       if (term->name() == "friction") return *term;
     }

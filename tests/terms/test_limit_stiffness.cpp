@@ -46,6 +46,7 @@ struct Limited {
     builder.add_body(body);
     return builder.finish();
   }
+  StepFrame frame;  // of the step
   void begin(const Positions& x_n) {
     frame.x_n = frame.x_tilde = x_n;
     frame.dt = dt, frame.c = c;

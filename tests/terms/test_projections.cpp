@@ -22,7 +22,7 @@ struct Compressed : test::AtIterate {
   Positions compressed;
 };
 
-bool has_choice(const Term& term) {
+bool has_choice(const HostTerm& term) {
   for (const HessianChoice& choice : hessian_choices()) {
     if (choice.name == term.name()) return true;
   }
@@ -80,7 +80,7 @@ TEST(Projections, clamp_gives_what_linearising_with_psd_gives) {
   int judged = 0, changed = 0;
   for (std::size_t i = 0; i < exact.terms.size(); ++i) {
     if (!has_choice(exact.terms[i])) continue;
-    const_cast<Term&>(exact.terms[i]).clamp(exact.x);
+    const_cast<HostTerm&>(exact.terms[i]).clamp(exact.x);
     for (std::size_t f = 0; f < exact.terms[i].families().size(); ++f) {
       const TermFamily &of_exact = exact.terms[i].families()[f], &of_clamped = clamped.terms[i].families()[f];
       EXPECT_EQ(of_exact.clamped.hess, of_clamped.local.hess) << exact.terms[i].name();

@@ -71,7 +71,7 @@ TEST(ContactDamping, HoldsAnOpeningGapBackByTheLoadAtMost) {
   EXPECT_EQ(damping_terms<double>(n, n, ContactDamping<double>{0, 0}).grad, Vec3d::Zero());
 }
 
-const Term& restitution(const TermList& terms) {
+const HostTerm& restitution(const TermList& terms) {
   return **std::find_if(terms.begin(), terms.end(),
                         [](const auto& term) { return term->name() == "restitution"; });
 }
@@ -99,7 +99,7 @@ TEST(Restitution, DampsEveryContactBySpeedAtMeetingAndLoad) {
     scene.v0(2, v) = v < 9 ? -2.0 : -0.3;  // the lower cloth faster
   const ContactLoads loads = loads_at_start(scene);
   AtIterate at(scene);
-  const Term& term = restitution(at.terms);
+  const HostTerm& term = restitution(at.terms);
   ASSERT_GT(term.size(), 20U);
   ASSERT_EQ(term.size(), loads.size());
   const double dt = AtIterate::frame(scene).dt;
@@ -122,7 +122,7 @@ TEST(Restitution, DampsEveryContactBySpeedAtMeetingAndLoad) {
 
 TEST(Restitution, HasTheGradientAndHessianOfItsEnergy) {
   AtIterate at;
-  const Term& term = restitution(at.terms);
+  const HostTerm& term = restitution(at.terms);
   const Positions x = at.x, gradient = gradient_of(term, x.cols());
   const Positions along = test::disturbed(at.scene, 1e-5) - at.scene.x0;
   const double curvature = curvature_along(term, along), slope = gradient.cwiseProduct(along).sum();

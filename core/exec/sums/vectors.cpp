@@ -81,7 +81,7 @@ DirectionSizes VectorTools::direction_sizes() const {
           largest_of(keys.vertex)};
 }
 
-double VectorTools::max(const Buffer<double>& column) {
+double VectorTools::max(const PositionsView& column) {
   least_.clear();
   least_.add(column.size(), ColumnSize{column.data()});
   return least_.largest();

@@ -57,7 +57,7 @@ class VectorTools {
     return free_largest();
   }
   /// Largest |value| over all.
-  double max(const Buffer<double>& column);
+  double max(const PositionsView& column);
   /// Over free degrees of freedom: value() is a . b.
   Compensated free_dot(const Buffer<double>& a, const Buffer<double>& b);
   /// First number of a column that is not finite, -1 without one.

@@ -26,7 +26,7 @@ void ContactAssembly::set_pattern(ResidentRows& rows, bool blocks) {
   }
 }
 
-void ContactAssembly::mollify(ResidentRows& rows, const exec::Buffer<double>& x) {
+void ContactAssembly::mollify(ResidentRows& rows, const PositionsView& x) {
   const Index n = rows.list.size();
   mollified_.fit(12 * n);
   mollifier_.fit(n);
@@ -37,27 +37,26 @@ void ContactAssembly::mollify(ResidentRows& rows, const exec::Buffer<double>& x)
                                        mollifier_.data()});
 }
 
-RowEnergy ContactAssembly::row_energy(ResidentRows& rows, const exec::Buffer<double>& x) {
+RowEnergy ContactAssembly::row_energy(ResidentRows& rows, const PositionsView& x) {
   mollify(rows, x);
   return {rows.view(), {rows.list.data(), rows.list.size(), mollifier_.data()}};
 }
 
-void ContactAssembly::add_gradient(ResidentRows& rows, const exec::Buffer<double>& x,
-                                   exec::Buffer<double>& gradient) {
+void ContactAssembly::add_gradient(ResidentRows& rows, const PositionsView& x, PositionsSpan gradient) {
   mollify(rows, x);
   gather(rows, RowForce{}, gradient);
 }
 
 /// Requires the numbers of the mollified rows.
 template <class Term>
-void ContactAssembly::gather(ResidentRows& rows, const Term& term, exec::Buffer<double>& out) {
+void ContactAssembly::gather(ResidentRows& rows, const Term& term, PositionsSpan out) {
   const MollifiedColumn mollified{rows.list.data(), rows.list.size(), mollified_.data()};
   executor_.each(pattern_.n_vertices(),
                  GatherRows<Term>{rows.view(), pattern_.slots(), mollified, term, out.data()});
 }
 
-void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<double>& x,
-                                       const exec::Buffer<double>& motion, exec::Buffer<double>& force) {
+void ContactAssembly::add_given_motion(ResidentRows& rows, const PositionsView& x,
+                                       const PositionsView& motion, PositionsSpan force) {
   const Index n = rows.list.size();
   mollified_.fit(12 * n);
   executor_.each(
@@ -67,8 +66,7 @@ void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<do
   gather(rows, RowGivenMotion{motion.data()}, force);
 }
 
-MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double>& x,
-                                   const HessianChoice& choice) {
+MatrixPart ContactAssembly::matrix(ResidentRows& rows, const PositionsView& x, const HessianChoice& choice) {
   if (is_numeric(choice.mode)) {
     throw std::invalid_argument(
         "numeric projections of contact Hessians have no kernel; gauss_newton and projected_full have");
@@ -86,8 +84,7 @@ MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double
 }
 
 // Without those of sliding rows a list of the mollified ones is all that there is; with them nearly every row has one.
-void ContactAssembly::add_hessians(ResidentRows& rows, const exec::Buffer<double>& x,
-                                   const HessianChoice& choice) {
+void ContactAssembly::add_hessians(ResidentRows& rows, const PositionsView& x, const HessianChoice& choice) {
   const bool listed = choice.mode == HessianMode::gauss_newton;
   const Index n = listed ? rows.list.size() : rows.size(), stride = std::min(options_.hessians_a_chunk, n);
   row_hessians_.fit(row_numbers * stride);

@@ -26,16 +26,16 @@ class ContactAssembly {
   void set_pattern(ResidentRows& rows, bool blocks = true);
 
   /// gradient [3 n_vertices] (N) += that of B at x.
-  void add_gradient(ResidentRows& rows, const exec::Buffer<double>& x, exec::Buffer<double>& gradient);
+  void add_gradient(ResidentRows& rows, const PositionsView& x, PositionsSpan gradient);
   /// The Hessian of B at x, both triangles; valid until the next call. Errors: std::invalid_argument for the
   /// modes that project numerically, which have no kernel.
-  MatrixPart matrix(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice);
+  MatrixPart matrix(ResidentRows& rows, const PositionsView& x, const HessianChoice& choice);
   Index n_blocks() const { return pattern_.n_blocks(); }
   /// force [3 n_vertices] (N) += how the gradient changes along motion [3 n_vertices] (m, 0 at free vertices).
-  void add_given_motion(ResidentRows& rows, const exec::Buffer<double>& x, const exec::Buffer<double>& motion,
-                        exec::Buffer<double>& force);
+  void add_given_motion(ResidentRows& rows, const PositionsView& x, const PositionsView& motion,
+                        PositionsSpan force);
   /// Energies of the rows at x: parts of a sum.
-  RowEnergy row_energy(ResidentRows& rows, const exec::Buffer<double>& x);
+  RowEnergy row_energy(ResidentRows& rows, const PositionsView& x);
 
   /// Gives back values and scratch memory of matrix().
   void free_matrix() { row_hessians_.free(), value_.free(); }
@@ -45,10 +45,10 @@ class ContactAssembly {
   const ContactPattern& pattern() const { return pattern_; }
 
  private:
-  void mollify(ResidentRows& rows, const exec::Buffer<double>& x);
+  void mollify(ResidentRows& rows, const PositionsView& x);
   template <class Term>
-  void gather(ResidentRows& rows, const Term& term, exec::Buffer<double>& out);
-  void add_hessians(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice);
+  void gather(ResidentRows& rows, const Term& term, PositionsSpan out);
+  void add_hessians(ResidentRows& rows, const PositionsView& x, const HessianChoice& choice);
 
   exec::Executor& executor_;
   const ResidentSurface& surface_;

@@ -9,12 +9,12 @@ Compensated RowSums::sum(Index n, const Parts& parts) {
   return sum_.get();
 }
 
-void RowSums::look_at_energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly) {
+void RowSums::look_at_energy(ResidentRows& rows, const PositionsView& x, ContactAssembly& assembly) {
   energy_.clear();
   energy_.add(rows.size(), assembly.row_energy(rows, x));
 }
 
-double RowSums::product(const exec::Buffer<double>& a, const exec::Buffer<double>& b,
+double RowSums::product(const PositionsView& a, const PositionsView& b,
                         const exec::Buffer<std::uint8_t>& fixed) {
   return sum(a.size(), FreeDot{a.data(), b.data(), fixed.data()}).value();
 }

@@ -12,16 +12,15 @@ class RowSums {
   explicit RowSums(exec::Executor& executor) : sum_(executor), energy_(executor) {}
 
   /// Energy of all rows at x, J. Sums of two tables are compared as sums: rows come and go.
-  Compensated energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly) {
+  Compensated energy(ResidentRows& rows, const PositionsView& x, ContactAssembly& assembly) {
     look_at_energy(rows, x, assembly);
     return energy();
   }
   /// The same in two calls: a launch, and what it found.
-  void look_at_energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly);
+  void look_at_energy(ResidentRows& rows, const PositionsView& x, ContactAssembly& assembly);
   Compensated energy() const { return energy_.get(); }
   /// a . b over free degrees of freedom; both [3 n_vertices], fixed: 3 bits a vertex.
-  double product(const exec::Buffer<double>& a, const exec::Buffer<double>& b,
-                 const exec::Buffer<std::uint8_t>& fixed);
+  double product(const PositionsView& a, const PositionsView& b, const exec::Buffer<std::uint8_t>& fixed);
   /// Mean mass of the free vertices of the rows, counted once a row, kg. Requires rows.
   double mean_mass(ResidentRows& rows, const exec::Buffer<double>& mass);
 

@@ -29,7 +29,7 @@ void LaggedAssembly::learn(const RowEnergy& contact) {
   executor_.each(columns_.size(), LoadsOfRows{contact, columns_.load.data()});
 }
 
-void LaggedAssembly::add_forces(const double* force, exec::Buffer<double>& out) {
+void LaggedAssembly::add_forces(const double* force, PositionsSpan out) {
   if (columns_.size() == 0) return;
   executor_.each(pattern_.n_vertices(),
                  GatherMotions{columns_.weight.data(), columns_.size(), pattern_.slots(), force, out.data()});

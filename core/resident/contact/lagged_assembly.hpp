@@ -18,7 +18,7 @@ class LaggedAssembly {
   /// The loads become those that the rows carry, which were taken.
   void learn(const RowEnergy& contact);
   /// out [3 n_vertices] (N) += forces [3, n] of the rows.
-  void add_forces(const double* force, exec::Buffer<double>& out);
+  void add_forces(const double* force, PositionsSpan out);
   /// hess [6, n] N/m. Both triangles; valid until the next call.
   MatrixPart matrix(const double* hess);
   Index n_blocks() const { return pattern_.n_blocks(); }

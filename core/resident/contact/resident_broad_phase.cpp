@@ -49,7 +49,7 @@ ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentS
 }
 
 /// The frame in which the boxes are shortest: what most points share of the motion is taken off. As BroadPhase does.
-void ResidentBroadPhase::find_frame(const Column& x0, const Column& x1) {
+void ResidentBroadPhase::find_frame(const PositionsView& x0, const PositionsView& x1) {
   const PrimitiveView<1> points = surface_.view().points;
   if (points.n == 0) return frame_.fill_zero();
   Key* displacement = nullptr;
@@ -63,7 +63,7 @@ void ResidentBroadPhase::find_frame(const Column& x0, const Column& x1) {
       1, FindFrame{points.vertex, points.n, x0.data(), displacement, surface_.element_size(), frame_.data()});
 }
 
-void ResidentBroadPhase::fit(const Column& x0, const Column& x1) {
+void ResidentBroadPhase::fit(const PositionsView& x0, const PositionsView& x1) {
   if (!plan_.broad_phase.needed) return;
   find_frame(x0, x1);
   const SurfaceView s = surface_.view();
@@ -123,7 +123,7 @@ Askers ResidentBroadPhase::askers() const {
   return out;
 }
 
-CandidateCounts ResidentBroadPhase::count(const Column& x0, const Column& x1) {
+CandidateCounts ResidentBroadPhase::count(const PositionsView& x0, const PositionsView& x1) {
   static_assert(sizeof(CandidateCounts) == n_candidate_lists * sizeof(Index), "one number a list");
   x0_ = x0.data();
   x1_ = x1.data();
@@ -167,7 +167,7 @@ void ResidentBroadPhase::free() {
   places_.free(), held_.free();
 }
 
-void ResidentBroadPhase::update(const Column& x0, const Column& x1, ResidentCandidates& out) {
+void ResidentBroadPhase::update(const PositionsView& x0, const PositionsView& x1, ResidentCandidates& out) {
   count(x0, x1);
   fill(out);
 }

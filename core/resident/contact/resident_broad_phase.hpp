@@ -30,11 +30,11 @@ class ResidentBroadPhase {
 
   /// Fits the trees to x0 -> x1 ([3 n_vertices] m; the same buffer: a state) and counts the candidates: how long
   /// their lists would be is known before there is one. Errors: OutOfMemory.
-  CandidateCounts count(const Column& x0, const Column& x1);
+  CandidateCounts count(const PositionsView& x0, const PositionsView& x1);
   /// Writes the candidates of the last count; positions unchanged since. Errors: OutOfMemory.
   void fill(ResidentCandidates& out);
   /// Both. The lists are those of BroadPhase::update in double, entry by entry.
-  void update(const Column& x0, const Column& x1, ResidentCandidates& out);
+  void update(const PositionsView& x0, const PositionsView& x1, ResidentCandidates& out);
 
   /// Of the last count; for ResidentStepBound::find_without_list.
   CandidateSource source() const;
@@ -46,8 +46,8 @@ class ResidentBroadPhase {
   void expect(const CandidateCounts& counts) { counts_ = counts; }
 
  private:
-  void find_frame(const Column& x0, const Column& x1);
-  void fit(const Column& x0, const Column& x1);
+  void find_frame(const PositionsView& x0, const PositionsView& x1);
+  void fit(const PositionsView& x0, const PositionsView& x1);
   template <PairKind K>
   PairSearch search() const;
   Askers askers() const;

@@ -18,7 +18,7 @@ ResidentStepBound::ResidentStepBound(exec::Executor& executor, const ResidentSur
       places_(executor, "asked pairs"),
       asked_(executor, "asked pairs") {}
 
-void ResidentStepBound::start(const Column& x0, const Column& x1) {
+void ResidentStepBound::start(const PositionsView& x0, const PositionsView& x1) {
   largest_.fill(0xff);
   const Index n_blocks = (2 * x0.size() + LargestCoordinate::a_block - 1) / LargestCoordinate::a_block;
   executor_.blocks(n_blocks, LargestCoordinate{x0.data(), x1.data(), x0.size(), largest_.to_write()});
@@ -119,7 +119,8 @@ StepBound ResidentStepBound::result() {
   return out;
 }
 
-void ResidentStepBound::look(const ResidentCandidates& candidates, const Column& x0, const Column& x1) {
+void ResidentStepBound::look(const ResidentCandidates& candidates, const PositionsView& x0,
+                             const PositionsView& x1) {
   start(x0, x1);
   lists_ = candidate_lists(candidates);
   in_batches(lists_.of_obstacles(), [this](Index at) {
@@ -136,8 +137,8 @@ StepBound ResidentStepBound::finish() {
   return result();
 }
 
-StepBound ResidentStepBound::find_without_list(const CandidateSource& source, const Column& x0,
-                                               const Column& x1) {
+StepBound ResidentStepBound::find_without_list(const CandidateSource& source, const PositionsView& x0,
+                                               const PositionsView& x1) {
   start(x0, x1);
   if (source.obstacles) {
     ask_all_obstacles<1>();

@@ -31,19 +31,20 @@ class ResidentStepBound {
                     const BoundBatches& batches = {});
 
   /// Of all candidates of x0 -> x1 ([3 n_vertices] m). A motion that is not finite: alpha 0, without a pair.
-  StepBound find(const ResidentCandidates& candidates, const Column& x0, const Column& x1) {
+  StepBound find(const ResidentCandidates& candidates, const PositionsView& x0, const PositionsView& x1) {
     look(candidates, x0, x1);
     return finish();
   }
   /// The same in two calls: what is launched before the second one is read together.
-  void look(const ResidentCandidates& candidates, const Column& x0, const Column& x1);
+  void look(const ResidentCandidates& candidates, const PositionsView& x0, const PositionsView& x1);
   StepBound finish();
   /// The same without lists, for when they would need too much memory: pairs are asked where the search of the trees
   /// finds them. source: of a count of the same motion.
-  StepBound find_without_list(const CandidateSource& source, const Column& x0, const Column& x1);
+  StepBound find_without_list(const CandidateSource& source, const PositionsView& x0,
+                              const PositionsView& x1);
 
  private:
-  void start(const Column& x0, const Column& x1);
+  void start(const PositionsView& x0, const PositionsView& x1);
   void look_at_chunk(Index begin);
   void ask_rest(Index begin);
   template <PairKind K>

@@ -12,7 +12,7 @@ RowFinder::RowFinder(exec::Executor& executor, const ResidentSurface& surface, b
       numbers_(executor),
       differs_(executor) {}
 
-void RowFinder::look(const exec::Buffer<double>& x, const ResidentCandidates& candidates) {
+void RowFinder::look(const PositionsView& x, const ResidentCandidates& candidates) {
   phase_ = {surface_.view(), x.data(), mollifier_};
   lists_ = candidate_lists(candidates);
   const Index n = lists_.size();

@@ -18,12 +18,12 @@ class RowFinder {
   /// One row a candidate pair with d < d_hat at x [3n] m, sorted by PairId; kappa and the barrier are not set,
   /// kappa_before is 0. Sets min_gap: the smallest gap, infinity without rows; x that is not finite: no rows and
   /// -infinity. Errors: OutOfMemory.
-  void find(const exec::Buffer<double>& x, const ResidentCandidates& candidates, ResidentRows& rows) {
+  void find(const PositionsView& x, const ResidentCandidates& candidates, ResidentRows& rows) {
     look(x, candidates);
     finish(rows);
   }
   /// The same in two calls: what is launched before the second one is read together. x and the candidates stay until then.
-  void look(const exec::Buffer<double>& x, const ResidentCandidates& candidates);
+  void look(const PositionsView& x, const ResidentCandidates& candidates);
   void finish(ResidentRows& rows);
   /// Gives back what it keeps between two calls.
   void free() { places_.free(); }

@@ -7,33 +7,13 @@
 namespace bb::resident {
 
 FamilyTerm::FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
-                       std::unique_ptr<ElementFamily> family)
-    : ElementTerm(inputs, name, group, phase_of(group), family->width(), family->vertices()),
-      family_(std::move(family)),
+                       const ElementFamily& elements, std::unique_ptr<ElementFamily> family)
+    : FamilySteps(std::move(family), inputs, elements.width(), elements.vertices()),
+      name_(name),
+      group_(group),
       change_(inputs.executor, std::string(name) + " changes", family_->has_changes() ? 2 * size() : 0) {}
 
-void FamilyTerm::begin_step(const ResidentFrame& frame) {
-  dt_ = frame.dt;
-  family_->begin_step(frame.of_families());
-}
-
-void FamilyTerm::change_frame(const ResidentFrame& frame) {
-  dt_ = frame.dt;
-  family_->change_step(frame.of_families());
-}
-
-void FamilyTerm::end_step(const Column& x, PhaseClock& clock) {
-  if (!family_->flows()) return;
-  const ScopedPhase timer(clock, Phase::elastic);
-  family_->end_step(x.data(), dt_);
-}
-
-void FamilyTerm::keep(Archive& archive) {
-  ResidentTerm::keep(archive);
-  family_->keep(archive);
-}
-
-void FamilyTerm::add_change(const Column& x, const Column& trial, ResidentChange& out) {
+void FamilyTerm::add_change(const PositionsView& x, const PositionsView& trial, ResidentChange& out) {
   if (!family_->has_changes()) return ElementTerm::add_change(x, trial, out);
   double* const magnitude = change_.data() + size();
   family_->changes(x.data(), trial.data(), change_.data(), magnitude, 1);

@@ -2,24 +2,23 @@
 #pragma once
 
 #include "core/bodies/part.hpp"
-#include "core/energy/families/element_family.hpp"
 #include "core/resident/elements/element_term.hpp"
+#include "core/terms/family_steps.hpp"
 
 namespace bb::resident {
 
-class FamilyTerm final : public ElementTerm {
+class FamilyTerm final : public FamilySteps<ElementTerm> {
  public:
   /// name: that of registry.inc. group: load or elastic.
   FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
-             std::unique_ptr<ElementFamily> family);
-  void begin_step(const ResidentFrame& frame) override;
-  void change_frame(const ResidentFrame& frame) override;
-  void end_step(const Column& x, PhaseClock& clock) override;
-  void keep(Archive& archive) override;
-  void add_change(const Column& x, const Column& trial, ResidentChange& out) override;
+             std::unique_ptr<ElementFamily> family)
+      : FamilyTerm(inputs, name, group, *family, std::move(family)) {}
+  std::string_view name() const override { return name_; }
+  TermGroup group() const override { return group_; }
+  Phase phase() const override { return phase_of(group_); }
+  void add_change(const PositionsView& x, const PositionsView& trial, ResidentChange& out) override;
 
  protected:
-  void values(const double* x, double* energy) override { family_->values(x, energy); }
   void gradients(Piece piece, const double* x, double* energy, double* grad) override {
     family_->gradients(piece, x, energy, grad);
   }
@@ -28,9 +27,12 @@ class FamilyTerm final : public ElementTerm {
   }
 
  private:
-  std::unique_ptr<ElementFamily> family_;
+  FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
+             const ElementFamily& elements, std::unique_ptr<ElementFamily> family);
+
+  std::string_view name_;
+  TermGroup group_;
   Buffer<double> change_;  // [2, n] J, and magnitudes; empty: energies are compared
-  double dt_ = 0;          // s, of the step
 };
 
 /// One term a family of the part.

@@ -20,30 +20,29 @@ class LoadTerm final : public ResidentTerm {
   std::string_view name() const override { return "inertia"; }
   TermGroup group() const override { return TermGroup::load; }
   Phase phase() const override { return Phase::assembly; }
-  void change_frame(const ResidentFrame& frame) override {
-    const FamilyStep step = frame.of_families();
-    loads_.inertia.weight.dt = step.dt, loads_.inertia.weight.c = step.c;
-    loads_.inertia.x_tilde = step.x_tilde;
-    loads_.weight.set_step(step, gravity_at(scene_, step.t_end));
+  void change_step(const StepColumns& step) override {
+    const FamilyStep of = step.of_families();
+    loads_.inertia.weight.dt = of.dt, loads_.inertia.weight.c = of.c;
+    loads_.inertia.x_tilde = of.x_tilde;
+    loads_.weight.set_step(of, gravity_at(scene_, of.t_end));
   }
   void keep(Archive& archive) override {
-    ResidentTerm::keep(archive);
     if (loads_.has_weight) archive.section("external_force");
   }
 
-  void linearise(const Column& x, const ResidentContext&, Column& g) override {
+  void linearise(const PositionsView& x, const ResidentContext&, PositionsSpan g) override {
     executor_.each(n_vertices_, LoadGradient{loads_, x.data(), g.data()});
   }
-  void add_matrix(const Column&, const HessianRequest&) override {
+  void add_matrix(const PositionsView&, const HessianRequest&) override {
     const MatrixPart part = matrix_.part();
     executor_.each(n_vertices_,
                    InertiaDiagonal{loads_.inertia, part.row_begin, part.column, matrix_.value()});
   }
-  void evaluate(const Column&) override {}
-  void add_change(const Column& x, const Column& trial, ResidentChange& out) override {
+  void evaluate(const PositionsView&) override {}
+  void add_change(const PositionsView& x, const PositionsView& trial, ResidentChange& out) override {
     out.lead(n_vertices_, LoadChanges{loads_, x.data(), trial.data()});
   }
-  void add_energy(const Column& x, ResidentEnergy& out) override {
+  void add_energy(const PositionsView& x, ResidentEnergy& out) override {
     out.lead(n_vertices_, LoadEnergies{loads_, x.data()});
   }
 

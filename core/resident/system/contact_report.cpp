@@ -6,12 +6,12 @@
 
 namespace bb::resident {
 
-void ResidentContact::report(const Column& x, IterateNumbers& out, PhaseClock&) {
+void ResidentContact::report(const PositionsView& x, IterateNumbers& out, PhaseClock&) {
   out.kappa_change_rel = says_change_ ? stiffness_.change() : 0;
   if (rows(x).size() > 0) report_rows(totals(x), rows_.min_gap, out);
 }
 
-void ResidentContact::report_end(const Column& x, StepNumbers& out) {
+void ResidentContact::report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) {
   if (rows(x).size() == 0) return;
   report_rows(totals(x), rows_.min_gap, vectors_.max(x), Precision::full, out);
   const HostRows of = rows_.on_host();
@@ -25,7 +25,6 @@ void ResidentContact::add_known(KnownStep& out) const { out.stiffness = stiffnes
 
 // As ContactTerm::keep, which reads it.
 void ResidentContact::keep(Archive& archive) {
-  ResidentTerm::keep(archive);
   bool started = policy_start_.started();
   archive(started);
   policy_start_.set_started(started);

@@ -40,13 +40,13 @@ void ResidentContact::expect(const ExpectedContacts& expected) {
   assembly_.expect(expected);
 }
 
-void ResidentContact::begin_step(const ResidentFrame& frame) {
+void ResidentContact::begin_step(const StepColumns& step, PhaseClock&) {
   stiffness_.begin_step();
-  change_frame(frame);
+  change_step(step);
   first_iterate_ = true;
   if (frugal()) assembly_.free_matrix();
   listed_ = false;
-  find_rows(*frame.x_n);
+  find_rows(step.x_n);
   take_trial();
   evaluated_ = true;  // as far as rows without kappa can be
 }
@@ -61,7 +61,7 @@ void ResidentContact::take_trial() {
   looked_ = false;
 }
 
-void ResidentContact::prepare(const ResidentMotion& motion, PhaseClock& clock) {
+void ResidentContact::prepare(const Motion& motion, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::broad_phase);
   if (frugal()) assembly_.free_matrix();
   const std::size_t lists =
@@ -90,7 +90,7 @@ void ResidentContact::fill_lists() {
 }
 
 // Rows of a state of the motion, in the trial's table: look_for_rows(), then finder_.finish().
-void ResidentContact::look_for_rows(const Column& x) {
+void ResidentContact::look_for_rows(const PositionsView& x) {
   lend_columns();
   if (!listed_) {
     in_trees_ = false;
@@ -101,7 +101,7 @@ void ResidentContact::look_for_rows(const Column& x) {
   trial_evaluated_ = compared_ = false;
 }
 
-void ResidentContact::find_rows(const Column& x) {
+void ResidentContact::find_rows(const PositionsView& x) {
   look_for_rows(x);
   finder_.finish(trial_);
 }
@@ -112,20 +112,20 @@ void ResidentContact::lend_columns() {
 }
 
 // No trial was accepted: the shared columns are those of another state.
-void ResidentContact::take_back(const Column& x) {
+void ResidentContact::take_back(const PositionsView& x) {
   if (!lent_) return;
   find_rows(x);
   trial_.lend(rows_);
   lent_ = evaluated_ = false;
 }
 
-void ResidentContact::settle(const Column& x) {
+void ResidentContact::settle(const PositionsView& x) {
   take_back(x);
   if (!evaluated_) barrier_.evaluate(executor_, rows_);
   evaluated_ = true;
 }
 
-void ResidentContact::look_at_rows(const Column& x) {
+void ResidentContact::look_at_rows(const PositionsView& x) {
   if (looked_) return;
   settle(x);
   const RowEnergy energy = assembly_.row_energy(rows_, x);
@@ -134,8 +134,8 @@ void ResidentContact::look_at_rows(const Column& x) {
   looked_ = true;
 }
 
-void ResidentContact::change_frame(const ResidentFrame& frame) {
-  time_ = {frame.dt, frame.c};
+void ResidentContact::change_step(const StepColumns& step) {
+  time_ = {step.dt, step.c};
   options_.stiffness->set_time(time_);
 }
 
@@ -158,7 +158,7 @@ void ResidentContact::refresh_kappa() {
   stiffness_.refresh(of, std::cref(kappa));
 }
 
-void ResidentContact::linearise(const Column& x, const ResidentContext& context, Column& g) {
+void ResidentContact::linearise(const PositionsView& x, const ResidentContext& context, PositionsSpan g) {
   keep_elastic(context);
   take_back(x);
   looked_ = false;
@@ -180,7 +180,7 @@ void ResidentContact::linearise(const Column& x, const ResidentContext& context,
   look_at_rows(x);
 }
 
-void ResidentContact::add_matrix(const Column& x, const HessianRequest& request) {
+void ResidentContact::add_matrix(const PositionsView& x, const HessianRequest& request) {
   settle(x);
   const bool blended = request.t > 0;
   matrix_ =
@@ -192,7 +192,7 @@ void ResidentContact::give_back_motion() {
   executor_.trim();
 }
 
-void ResidentContact::start_policy(const Column& x, const Column& others) {
+void ResidentContact::start_policy(const PositionsView& x, const PositionsView& others) {
   StiffnessPolicy& policy = *options_.stiffness;
   if (!policy_start_.due(policy, static_cast<std::size_t>(rows_.size()))) return;
   rows_.uniform_kappa = 1;
@@ -207,14 +207,14 @@ void ResidentContact::start_policy(const Column& x, const Column& others) {
   policy_start_.start(policy, scene_, options_.contact, sums, time_);
 }
 
-void ResidentContact::look_along(const ResidentMotion& motion, PhaseClock& clock) {
+void ResidentContact::look_along(const Motion& motion, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::step_bound);
   if (listed_) return step_bound_.look(candidates_, motion.x0, motion.x1);
   if (!in_trees_) broad_phase_.count(motion.x0, motion.x1);  // a state was looked at since
   in_trees_ = true;
 }
 
-double ResidentContact::bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) {
+double ResidentContact::bound(const Motion& motion, IterateNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::step_bound);
   bound_ = listed_ ? step_bound_.finish()
                    : step_bound_.find_without_list(broad_phase_.source(), motion.x0, motion.x1);
@@ -223,7 +223,8 @@ double ResidentContact::bound(const ResidentMotion& motion, IterateNumbers& out,
 }
 
 // The barrier of the rows is lost meanwhile.
-bool ResidentContact::make_room(const Column& x, const Column& dx, double bound, Column& force) {
+bool ResidentContact::add_detour(const PositionsView& x, const PositionsView& dx, double bound,
+                                 PositionsSpan force) {
   settle(x);
   curved_.clear(), straight_.clear();
   executor_.each(rows_.size(), DetourRows{rows_.view(), resident_surface_.view(), x.data(), dx.data(),
@@ -240,32 +241,32 @@ bool ResidentContact::make_room(const Column& x, const Column& dx, double bound,
 
 std::string ResidentContact::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
-void ResidentContact::look_at(const Column& x, const Column& trial, PhaseClock& clock) {
+void ResidentContact::look_at(const PositionsView& x, const PositionsView& trial, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
   if (!lent_) look_at_rows(x);  // while its rows have all columns
   look_for_rows(trial);
 }
 
-bool ResidentContact::admits(const Column&, const Column&, PhaseClock& clock) {
+bool ResidentContact::admits(const PositionsView&, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
   finder_.finish(trial_);
   return trial_.feasible();
 }
 
-void ResidentContact::freeze() {
+void ResidentContact::freeze(PhaseClock&) {
   trial_.uniform_kappa = policy_kappa();
   const StiffnessRows trial[] = {trial_.stiffness_rows()}, iterate[] = {rows_.stiffness_rows()};
   const KernelKappa kappa = kappa_of(trial_);
   stiffness_.freeze(trial, iterate, std::cref(kappa));
 }
 
-void ResidentContact::evaluate(const Column&) {
+void ResidentContact::evaluate(const PositionsView&) {
   barrier_.evaluate(executor_, trial_);
   trial_evaluated_ = true;
 }
 
 // Where the trial is accepted its stencils are compared with those of the iterate, so that is launched here.
-void ResidentContact::add_change(const Column& x, const Column& trial, ResidentChange&) {
+void ResidentContact::add_change(const PositionsView& x, const PositionsView& trial, ResidentChange&) {
   look_at_rows(x);
   sums_.look_at_energy(trial_, trial, assembly_);
   if (has_pattern_) finder_.compare(rows_, trial_);
@@ -277,13 +278,13 @@ void ResidentContact::add_rows(RowEnergies& out) {
   out.after = out.after + sums_.energy();
 }
 
-void ResidentContact::accept() {
+void ResidentContact::accept(PhaseClock&) {
   take_trial();
   const StiffnessRows of[] = {rows_.stiffness_rows()};
   stiffness_.keep(of);
 }
 
-void ResidentContact::end_step(const Column&, PhaseClock& clock) {
+void ResidentContact::end_step(const PositionsView&, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::stiffness);
   StiffnessPolicy& policy = *options_.stiffness;
   if (!policy.adapts() || executor_.counts_only()) return;

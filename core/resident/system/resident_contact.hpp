@@ -29,56 +29,57 @@ class ResidentContact final : public ResidentTerm {
   Phase phase() const override { return Phase::contact_terms; }
 
   // --- a step
-  void begin_step(const ResidentFrame& frame) override;
-  void change_frame(const ResidentFrame& frame) override;
+  void begin_step(const StepColumns& step, PhaseClock&) override;
+  void change_step(const StepColumns& step) override;
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
-  void end_step(const Column& x, PhaseClock& clock) override;
+  void end_step(const PositionsView& x, PhaseClock& clock) override;
   void keep(Archive& archive) override;
   void drop_caches() override { matrix_ = {}; }
 
   // --- an iterate
   /// kappa and barrier of the rows at x too. Keeps H for trial states, since the matrix holds all terms by then.
-  void linearise(const Column& x, const ResidentContext& context, Column& g) override;
-  void add_matrix(const Column& x, const HessianRequest& request) override;
+  void linearise(const PositionsView& x, const ResidentContext& context, PositionsSpan g) override;
+  void add_matrix(const PositionsView& x, const HessianRequest& request) override;
   ChangingMatrix changing_matrix() const override { return {matrix_, assembly_.n_blocks()}; }
   bool pattern_changed() const override { return pattern_changed_; }
-  void add_given_motion(const Column& x, const Column& motion, Column& force) override {
+  void add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) override {
     settle(x);
     assembly_.add_given_motion(rows_, x, motion, force);
   }
 
   // --- a motion, and states on it
-  void prepare(const ResidentMotion& motion, PhaseClock& clock) override;
-  void look_along(const ResidentMotion& motion, PhaseClock& clock) override;
-  double bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) override;
+  void prepare(const Motion& motion, PhaseClock& clock) override;
+  void look_along(const Motion& motion, PhaseClock& clock) override;
+  double bound(const Motion& motion, IterateNumbers& out, PhaseClock& clock) override;
   std::string describe_bound() const override;
   /// Where it is frugal the lists of the motion are gone after that.
-  bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
+  bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
+                  PositionsSpan force) override;
   bool sees_non_finite() const override { return true; }
-  void look_at(const Column& x, const Column& trial, PhaseClock& clock) override;
-  bool admits(const Column& x, const Column& trial, PhaseClock& clock) override;
+  void look_at(const PositionsView& x, const PositionsView& trial, PhaseClock& clock) override;
+  bool admits(const PositionsView&, PhaseClock& clock) override;
   /// kappa of the trial.
-  void freeze() override;
+  void freeze(PhaseClock&) override;
   /// Its barrier.
-  void evaluate(const Column& trial) override;
-  void add_change(const Column& x, const Column& trial, ResidentChange& out) override;
+  void evaluate(const PositionsView& trial) override;
+  void add_change(const PositionsView& x, const PositionsView& trial, ResidentChange& out) override;
   void add_rows(RowEnergies& out) override;
-  void accept() override;
+  void accept(PhaseClock&) override;
 
   // --- what later terms read of it, at the iterate x
-  ResidentRows& rows(const Column& x) {
+  ResidentRows& rows(const PositionsView& x) {
     settle(x);
     return rows_;
   }
   /// Rows with their barrier, and mollifiers; valid until the next call of anything else.
-  RowEnergy forces(const Column& x) { return assembly_.row_energy(rows(x), x); }
+  RowEnergy forces(const PositionsView& x) { return assembly_.row_energy(rows(x), x); }
   const ResidentSurface& surface() const { return resident_surface_; }
 
   // --- what is said of it
-  void add_energy(const Column& x, ResidentEnergy&) override { look_at_rows(x); }
+  void add_energy(const PositionsView& x, ResidentEnergy&) override { look_at_rows(x); }
   Compensated row_energy() override { return totals_.get().energy; }
-  void report(const Column& x, IterateNumbers& out, PhaseClock& clock) override;
-  void report_end(const Column& x, StepNumbers& out) override;
+  void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
+  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override;
   void add_known(KnownStep& out) const override;
 
   // --- memory
@@ -97,20 +98,20 @@ class ResidentContact final : public ResidentTerm {
   bool frugal() const { return rows_.size() >= frugal_from_; }
   std::size_t list_budget() const;
   void fill_lists();
-  void look_for_rows(const Column& x);
-  void find_rows(const Column& x);
+  void look_for_rows(const PositionsView& x);
+  void find_rows(const PositionsView& x);
   void lend_columns();
-  void settle(const Column& x);
-  void take_back(const Column& x);
+  void settle(const PositionsView& x);
+  void take_back(const PositionsView& x);
   void take_trial();
   void keep_elastic(const ResidentContext& context);
   /// Launches the sums over the rows of the iterate, as linearise() or accept() left them.
-  void look_at_rows(const Column& x);
-  RowTotals totals(const Column& x) {
+  void look_at_rows(const PositionsView& x);
+  RowTotals totals(const PositionsView& x) {
     look_at_rows(x);
     return totals_.get();
   }
-  void start_policy(const Column& x, const Column& others);
+  void start_policy(const PositionsView& x, const PositionsView& others);
   double policy_kappa() const {
     return options_.stiffness->uniform() ? options_.stiffness->state().kappa : 0;
   }

@@ -21,7 +21,7 @@ void charge(PhaseClock& clock, Phase phase, exec::Executor& executor, const Work
 
 }  // namespace
 
-void ResidentPotential::linearise(const Column& x, Column& g) {
+void ResidentPotential::linearise_terms(const Column& x, Column& g) {
   if (plan_.policy_submatrix.needed) {
     charge(clock(), Phase::elastic, *executor_, [&] { fill_elastic(x); });
   }
@@ -30,8 +30,6 @@ void ResidentPotential::linearise(const Column& x, Column& g) {
   for (const auto& term : terms_) {
     charge(clock(), term->phase(), *executor_, [&] { term->linearise(x, context, g); });
   }
-  energies_known_ = true;
-  announced_ = false;
   if (pattern_changed()) ++pattern_id_;
 }
 
@@ -99,10 +97,6 @@ void ResidentPotential::multiply(const Column& v, Column& out) {
   const Partition partition = Partition::of(v.size() / 3);
   executor_->blocks(partition.n_blocks(), MultiplyDot{partition, matrix(), vectors_.fixed().data(), v.data(),
                                                       out.data(), product_partial_.data(), nullptr});
-}
-
-void ResidentPotential::add_given_motion(const Column& x, const Column& motion, Column& force) {
-  for (const auto& term : terms_) term->add_given_motion(x, motion, force);
 }
 
 void ResidentPotential::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {

@@ -51,6 +51,7 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
   require_double(method);
   mass_.upload(scene.mass);
   terms_ = make_resident_terms(plan, {*executor_, scene, method, plan.contacts, vectors_, mass_, elements_});
+  set_terms(terms_);
   elements_.finish();
   pcg_ = std::make_unique<ResidentPcg>(*executor_, scene.n_vertices(),
                                        make_preconditioner(*executor_, linear_parameters(method)));
@@ -58,88 +59,13 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
 
 ResidentPotential::~ResidentPotential() = default;
 
-void ResidentPotential::begin_step(const StepColumns& step) {
-  forcing_.begin_step();
-  energies_known_ = trial_evaluated_ = announced_ = false;
-  for (const auto& term : terms_) term->begin_step(frame(step));
-}
-
-void ResidentPotential::change_step(const StepColumns& step) {
-  energies_known_ = announced_ = false;
-  for (const auto& term : terms_) term->change_frame(frame(step));
-}
-
-bool ResidentPotential::renew_lag(const Column& x) {
-  const bool renewed =
-      std::any_of(terms_.begin(), terms_.end(), [&x](const auto& term) { return term->renew_lag(x); });
-  energies_known_ = energies_known_ && !renewed;
-  announced_ = announced_ && !renewed;
-  return renewed;
-}
-
-void ResidentPotential::end_step(const Column& x) {
-  for (const auto& term : terms_) term->end_step(x, clock());
-}
-
-void ResidentPotential::keep(Archive& archive) {
-  for (const auto& term : terms_) term->keep(archive);
-}
-
 // The clusters of a preconditioner go with the pattern that they were made for.
 void ResidentPotential::drop_caches() {
   for (const auto& term : terms_) term->drop_caches();
   ++pattern_id_;
 }
 
-void ResidentPotential::prepare(const Column& x0, const Column& x1, const Column& dx, bool) {
-  for (const auto& term : terms_) term->prepare({x0, x1, dx}, clock());
-}
-
-double ResidentPotential::bound(const Column& x0, const Column& x1, const Column& dx,
-                                IterationReport& report) {
-  double smallest = 1;
-  holder_ = nullptr;
-  for (const auto& term : terms_) term->look_along({x0, x1, dx}, clock());
-  for (const auto& term : terms_) {
-    const double said = term->bound({x0, x1, dx}, report, clock());
-    const double alpha = said >= 0 ? said : 0;  // what is no number proves nothing
-    if (!(alpha < 1) || alpha > smallest) continue;
-    smallest = alpha;
-    holder_ = term.get();
-  }
-  return smallest;
-}
-
-// The values of the matrix may have been given back.
-bool ResidentPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {
-  force.fill_zero();
-  bool held = false;
-  for (const auto& term : terms_) held = term->make_room(x, dx, bound, force) || held;
-  if (held) fill(x, level_);
-  return held;
-}
-
-bool ResidentPotential::is_finite(const Column& trial) {
-  const bool seen =
-      std::any_of(terms_.begin(), terms_.end(), [](const auto& term) { return term->sees_non_finite(); });
-  return seen || vectors_.first_not_finite(trial) < 0;
-}
-
-bool ResidentPotential::admits(const Column& x, Column& trial) {
-  trial_evaluated_ = false;
-  if (!is_finite(trial)) return false;
-  for (const auto& term : terms_) term->look_at(x, trial, clock());
-  for (const auto& term : terms_) {
-    if (!term->admits(x, trial, clock())) return false;
-  }
-  for (const auto& term : terms_) term->freeze();
-  return true;
-}
-
-EnergyChange ResidentPotential::change(const Column& x, const Column& trial) {
-  know_energies(x);
-  for (const auto& term : terms_) term->evaluate(trial);
-  trial_evaluated_ = true;
+EnergyChange ResidentPotential::sum_change(const Column& x, const Column& trial) {
   sum_.clear();
   ResidentChange change(sum_);
   for (const auto& term : terms_) term->add_change(x, trial, change);
@@ -152,26 +78,7 @@ EnergyChange ResidentPotential::change(const Column& x, const Column& trial) {
                       parts.magnitude + before.magnitude + after.magnitude};
 }
 
-void ResidentPotential::accept() {
-  for (const auto& term : terms_) {
-    term->accept();
-    if (trial_evaluated_) term->take_energies();
-  }
-  announced_ = false;
-  energies_known_ = trial_evaluated_;
-  trial_evaluated_ = false;
-}
-
-// As on the host: a step that compares no energies ends with a state that has none.
-void ResidentPotential::know_energies(const Column& x) {
-  if (energies_known_) return;
-  const WholePhase timer(clock(), Phase::output);
-  for (const auto& term : terms_) term->evaluate_iterate(x);
-  energies_known_ = true;
-}
-
 void ResidentPotential::sum_energies(TermSet set, const Column& x, ResidentSum& sum) {
-  know_energies(x);
   sum.clear();
   ResidentEnergy energy(sum);
   for (const auto& term : terms_) {
@@ -180,14 +87,7 @@ void ResidentPotential::sum_energies(TermSet set, const Column& x, ResidentSum& 
   energy.launch();
 }
 
-void ResidentPotential::announce(const Column& x) {
-  sum_energies(TermSet::all(), x, energy_);
-  announced_ = true;
-  for (const auto& term : terms_) term->announce(x);
-}
-
-double ResidentPotential::energy(TermSet set, const Column& x) {
-  const bool announced = announced_ && set == TermSet::all();
+double ResidentPotential::sum_energy(TermSet set, const Column& x, bool announced) {
   if (!announced) sum_energies(set, x, sum_);
   Compensated rows = Compensated::zero();
   const double parts = (announced ? energy_ : sum_).get().value();
@@ -195,14 +95,6 @@ double ResidentPotential::energy(TermSet set, const Column& x) {
     if (set.has(term->group())) rows = rows + term->row_energy();
   }
   return parts + rows.value();
-}
-
-void ResidentPotential::report(const Column& x, IterateNumbers& out) {
-  for (const auto& term : terms_) term->report(x, out, clock());
-}
-
-void ResidentPotential::report_end(const Column& x, StepNumbers& out) {
-  for (const auto& term : terms_) term->report_end(x, out);
 }
 
 std::string ResidentPotential::describe_non_finite() {

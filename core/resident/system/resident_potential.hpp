@@ -30,38 +30,19 @@ class ResidentPotential final : public IncrementalPotential {
   ~ResidentPotential() override;
   exec::Executor& executor() override { return *executor_; }
 
-  void begin_step(const StepColumns& step) override;
-  void change_step(const StepColumns& step) override;
-  bool renew_lag(const Column& x) override;
-  void end_step(const Column& x) override;
-  void keep(Archive& archive) override;
   void drop_caches() override;
 
-  void linearise(const Column& x, Column& g) override;
   bool pattern_changed() const override;
   void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
   void fill_exact(const Column& x, const Column& force) override;
   /// Errors: std::logic_error always: only article_literal asks, which runs on the host.
   double add_tikhonov(double relative, double absolute) override;
   void multiply(const Column& v, Column& out) override;
-  void add_given_motion(const Column& x, const Column& motion, Column& force) override;
   void solve(const Column& b, RightSide of, Column& step, SolveReport& report) override;
   Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
                        Column& step, Column& direction) override;
   std::size_t nnz() const override;
 
-  void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) override;
-  double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
-  std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
-  bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
-  bool admits(const Column& x, Column& trial) override;
-  EnergyChange change(const Column& x, const Column& trial) override;
-  void accept() override;
-
-  void announce(const Column& x) override;
-  double energy(TermSet set, const Column& x) override;
-  void report(const Column& x, IterateNumbers& out) override;
-  void report_end(const Column& x, StepNumbers& out) override;
   Cusps cusps(const Column& x) override;
   std::string describe_non_finite() override;
   KnownStep known_step() const override;
@@ -82,14 +63,19 @@ class ResidentPotential final : public IncrementalPotential {
     double t = 0, threshold = infinity;
     const double* force = nullptr;
   };
-  ResidentFrame frame(const StepColumns& step) const {
-    return {&step.x_n, &step.x_tilde, step.dt, step.c, step.load_factor, step.t_end, step.at_start};
+  void solver_begins_step() override { forcing_.begin_step(); }
+  void linearise_terms(const Column& x, Column& g) override;
+  bool is_finite(Column& trial, bool seen_by_terms) override {
+    return seen_by_terms || vectors_.first_not_finite(trial) < 0;
   }
+  void room_was_made(const Column& x) override { fill(x, level_); }
+  EnergyChange sum_change(const Column& x, const Column& trial) override;
+  bool launches() const override { return true; }
+  void announce_energy(const Column& x) override { sum_energies(TermSet::all(), x, energy_); }
+  double sum_energy(TermSet set, const Column& x, bool announced) override;
   ResidentMatrix matrix() const;
   void fill(const Column& x, const Filled& level);
   void fill_elastic(const Column& x);
-  bool is_finite(const Column& trial);
-  void know_energies(const Column& x);
   void sum_energies(TermSet set, const Column& x, ResidentSum& sum);
 
   std::unique_ptr<exec::Executor> executor_;
@@ -106,13 +92,10 @@ class ResidentPotential final : public IncrementalPotential {
   int max_pcg_iterations_;
 
   Buffer<double> product_partial_;
-  ResidentSum sum_, energy_;
-  bool announced_ = false;  // energy_ is E at the iterate
+  ResidentSum sum_, energy_;  // the second: what was announced
   ResidentLeast least_;
-  Filled level_;                                           // of the last fill_matrix()
-  std::uint64_t pattern_id_ = 1;                           // of the matrix
-  const ResidentTerm* holder_ = nullptr;                   // of the last bound
-  bool energies_known_ = false, trial_evaluated_ = false;  // at the iterate, at the trial
+  Filled level_;                  // of the last fill_matrix()
+  std::uint64_t pattern_id_ = 1;  // of the matrix
 };
 
 /// Goes through every stage of a step with so many contacts on an executor that only counts buffers, so that

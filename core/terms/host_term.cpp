@@ -1,6 +1,6 @@
 // What most terms do alike: energies of fixed elements are compared one by one, those of elements that come
 // and go only as sums.
-#include "core/terms/term.hpp"
+#include "core/terms/host_term.hpp"
 
 #include <cmath>
 #include <utility>
@@ -9,13 +9,13 @@
 
 namespace bb {
 
-std::size_t Term::size() const {
+std::size_t HostTerm::size() const {
   std::size_t n = 0;
   for (const TermFamily& family : families_) n += family.stencils.size();
   return n;
 }
 
-void Term::compare_elements(const TermFamily& family, EnergyParts& out) {
+void HostTerm::compare_elements(const TermFamily& family, EnergyParts& out) {
   const std::vector<double>&from = family.local.energy, &to = family.trial_energy;
   const std::size_t start = out.size();
   out.resize(start + from.size());
@@ -24,7 +24,7 @@ void Term::compare_elements(const TermFamily& family, EnergyParts& out) {
   });
 }
 
-void Term::change(const PositionsView&, const PositionsView&, EnergyParts& out) const {
+void HostTerm::change(const PositionsView&, const PositionsView&, EnergyParts& out) const {
   for (const TermFamily& family : families_) {
     if (fixed_stencils()) {
       compare_elements(family, out);
@@ -42,11 +42,11 @@ void Term::change(const PositionsView&, const PositionsView&, EnergyParts& out) 
   }
 }
 
-void Term::take_energies() {
+void HostTerm::take_energies() {
   for (TermFamily& family : families_) std::swap(family.local.energy, family.trial_energy);
 }
 
-void Term::evaluate_iterate(const PositionsView& x) {
+void HostTerm::evaluate_iterate(const PositionsView& x) {
   evaluate(x);
   take_energies();
 }
