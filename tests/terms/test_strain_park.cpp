@@ -93,7 +93,7 @@ TEST(StrainPark, IsLeftOfTheWidthByTheBound) {
       for (const auto& term : of.terms) {
         if (term->name() != "strain_limit") continue;
         IterateNumbers report;
-        alpha = std::min(alpha, bound(*term, {x0, Positions(x0 + dx), dx, true}, report, of.clock));
+        alpha = std::min(alpha, test::bound(*term, {x0, Positions(x0 + dx), dx, true}, report, of.clock));
         ++judged;
       }
       const std::vector<double> left = gaps_of(scene, x0 + alpha * dx);
