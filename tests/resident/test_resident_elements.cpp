@@ -226,7 +226,7 @@ TEST(ResidentElements, AreToldTheStepThatItIs) {
   exec::Buffer<double> x_n(executor, "start"), x_tilde(executor, "prediction");
   x_n.upload(std::vector<double>(6, 1));
   x_tilde.upload(std::vector<double>(6, 2));
-  const FamilyStep step = resident::ResidentFrame{&x_n, &x_tilde, 0.1, 0.25, 0.5, 3, true}.of_families();
+  const FamilyStep step = StepColumns{x_n, x_tilde, 0.1, 0.25, 0.5, 3, true}.of_families();
   EXPECT_EQ(step.x_n, x_n.data());
   EXPECT_EQ(step.x_tilde, x_tilde.data());
   EXPECT_EQ(step.dt, 0.1);

@@ -46,7 +46,6 @@ struct Limited {
     builder.add_body(body);
     return builder.finish();
   }
-  StepFrame frame;  // of the step
   void begin(const Positions& x_n) {
     frame.x_n = frame.x_tilde = x_n;
     frame.dt = dt, frame.c = c;

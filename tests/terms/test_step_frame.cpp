@@ -13,7 +13,7 @@ TEST(StepFrame, FamiliesSeeTheStepThatItIs) {
   frame.x_n = Positions::Constant(3, 2, 1);
   frame.x_tilde = Positions::Constant(3, 2, 2);
   frame.dt = 0.1, frame.c = 0.25, frame.load_factor = 0.5, frame.t_end = 3, frame.at_start = true;
-  const FamilyStep step = frame.of_families();
+  const FamilyStep step = StepColumns(frame).of_families();
   EXPECT_EQ(step.dt, 0.1);
   EXPECT_EQ(step.c, 0.25);
   EXPECT_EQ(step.load_factor, 0.5);
@@ -23,7 +23,7 @@ TEST(StepFrame, FamiliesSeeTheStepThatItIs) {
   EXPECT_EQ(step.x_n[5], 1);
   EXPECT_EQ(step.x_tilde[5], 2);
   frame.at_start = false;
-  EXPECT_EQ(frame.of_families().middle(), 2.95);
+  EXPECT_EQ(StepColumns(frame).of_families().middle(), 2.95);
 }
 
 /// Inertia is 0 at the prediction alone, the work of the weight at the start alone.

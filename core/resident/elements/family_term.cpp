@@ -7,7 +7,7 @@
 namespace bb::resident {
 
 FamilyTerm::FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
-                       const ElementFamily& elements, std::unique_ptr<ElementFamily> family)
+                       const ElementFamily& elements, std::unique_ptr<ElementFamily>&& family)
     : FamilySteps(std::move(family), inputs, elements.width(), elements.vertices()),
       name_(name),
       group_(group),

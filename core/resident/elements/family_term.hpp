@@ -28,7 +28,7 @@ class FamilyTerm final : public FamilySteps<ElementTerm> {
 
  private:
   FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
-             const ElementFamily& elements, std::unique_ptr<ElementFamily> family);
+             const ElementFamily& elements, std::unique_ptr<ElementFamily>&& family);
 
   std::string_view name_;
   TermGroup group_;

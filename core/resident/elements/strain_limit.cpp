@@ -32,7 +32,8 @@ class LimitTerm final : public LimitSteps<ElementTerm> {
   }
 
  private:
-  LimitTerm(const ResidentInputs& inputs, const LimitFamily& family, std::unique_ptr<StrainLimitState> state)
+  LimitTerm(const ResidentInputs& inputs, const LimitFamily& family,
+            std::unique_ptr<StrainLimitState>&& state)
       : LimitSteps(std::move(state), inputs, family.width(), family.vertices()) {}
 };
 
