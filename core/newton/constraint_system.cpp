@@ -1,7 +1,7 @@
 #include "core/newton/constraint_system.hpp"
 
 #include "core/math/error.hpp"
-#include "core/newton/host_potential.hpp"
+#include "core/newton/host_engine.hpp"
 #include "core/newton/newton_state.hpp"
 #include "core/terms/contact.hpp"
 #include "core/terms/linear_contact.hpp"

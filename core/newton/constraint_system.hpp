@@ -10,7 +10,7 @@
 namespace bb {
 
 class ContactTerm;
-class HostPotential;
+class HostEngine;
 class LinearContact;
 struct Method;
 struct NewtonState;
@@ -18,7 +18,7 @@ struct NewtonState;
 class ConstraintSystem {
  public:
   /// All must outlive it.
-  ConstraintSystem(HostPotential& potential, const NewtonState& state, const Method& method)
+  ConstraintSystem(HostEngine& potential, const NewtonState& state, const Method& method)
       : potential_(potential), state_(state), method_(method) {}
 
   /// Errors: ConfigError for a term that neither is a load of vertices nor offers constraints, for a stiffness policy that
@@ -43,7 +43,7 @@ class ConstraintSystem {
   double stiffest() const;
 
  private:
-  HostPotential& potential_;
+  HostEngine& potential_;
   const NewtonState& state_;
   const Method& method_;
   std::vector<const ConstraintBatch*> found_;

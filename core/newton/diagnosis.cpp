@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/newton/host_potential.hpp"
+#include "core/newton/host_engine.hpp"
 #include "core/newton/newton_state.hpp"
 
 namespace bb {
@@ -37,12 +37,12 @@ const BlockSystem::Values& Diagnosis::clamped_values(TermSet set) {
 
 void Diagnosis::visit_clamped(TermSet set, const VisitHessians& visit) {
   potential_.clamp(set);
-  for (const HostPotential::Slot& slot : potential_.slots_) {
+  for (const HostEngine::Slot& slot : potential_.slots_) {
     if (!set.has(slot.term->group())) continue;
     const std::span<const TermFamily> families = slot.term->families();
     for (std::size_t i = 0; i < families.size(); ++i) {
       if (families[i].local.hess.empty()) continue;
-      visit(*slot.term, i, HostPotential::clamped_hessians(slot, families[i]));
+      visit(*slot.term, i, HostEngine::clamped_hessians(slot, families[i]));
     }
   }
 }

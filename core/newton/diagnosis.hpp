@@ -11,13 +11,13 @@
 
 namespace bb {
 
-class HostPotential;
+class HostEngine;
 struct NewtonState;
 
 class Diagnosis {
  public:
   /// Of an assembled iterate; both must outlive it.
-  Diagnosis(HostPotential& potential, NewtonState& state) : potential_(potential), state_(state) {}
+  Diagnosis(HostEngine& potential, NewtonState& state) : potential_(potential), state_(state) {}
 
   const Scene& scene() const;
   /// The iterate [3 x n] m, and the gradient of E there, N.
@@ -56,7 +56,7 @@ class Diagnosis {
   void report_overload(StepNumbers& out);
 
  private:
-  HostPotential& potential_;
+  HostEngine& potential_;
   NewtonState& state_;
   VecXd rhs_;
 };

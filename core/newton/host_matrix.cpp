@@ -1,11 +1,11 @@
 // Gradient and matrix of the terms on the host, summed in the order that docs/design.md fixes, and the linear solve.
 #include <algorithm>
 
-#include "core/newton/host_potential.hpp"
+#include "core/newton/host_engine.hpp"
 
 namespace bb {
 
-void HostPotential::linearise_terms(const Column& x, Column& g) {
+void HostEngine::linearise_terms(const Column& x, Column& g) {
   x_ = &x;
   for (Slot& slot : slots_) {
     if (slot.term->group() == TermGroup::elastic) linearise(slot, x, g);
@@ -25,13 +25,13 @@ void HostPotential::linearise_terms(const Column& x, Column& g) {
   }
 }
 
-void HostPotential::linearise(Slot& slot, const Column& x, const Column& g) {
+void HostEngine::linearise(Slot& slot, const Column& x, const Column& g) {
   const ScopedPhase timer(clock(), slot.term->phase());
   slot.term->linearise(points(x), context(points(g), slot.hessian));
   slot.clamped = false;
 }
 
-bool HostPotential::set_changing_families() {
+bool HostEngine::set_changing_families() {
   std::vector<Stencils> families;
   for (const auto& term : terms_) {
     if (term->fixed_stencils()) continue;
@@ -40,7 +40,7 @@ bool HostPotential::set_changing_families() {
   return blocks_->set_contacts(std::move(families));
 }
 
-void HostPotential::add_families(const Slot& slot, PositionsSpan gradient) const {
+void HostEngine::add_families(const Slot& slot, PositionsSpan gradient) const {
   std::size_t family = slot.first;
   for (const TermFamily& part : slot.term->families()) {
     if (slot.term->fixed_stencils()) {
@@ -52,7 +52,7 @@ void HostPotential::add_families(const Slot& slot, PositionsSpan gradient) const
 }
 
 // Elements that come and go are summed by themselves first.
-void HostPotential::add_gradient(const Slot& slot, Column& g) {
+void HostEngine::add_gradient(const Slot& slot, Column& g) {
   const ScopedPhase timer(clock(), Phase::assembly);
   if (slot.term->fixed_stencils()) return add_families(slot, points(g));
   part_.setZero(3, points(g).cols());
@@ -60,14 +60,14 @@ void HostPotential::add_gradient(const Slot& slot, Column& g) {
   points(g) += part_;
 }
 
-void HostPotential::clamp(Slot& slot) {
+void HostEngine::clamp(Slot& slot) {
   if (slot.clamped || slot.hessian == StepHessian::clamped) return;
   const ScopedPhase timer(clock(), slot.term->phase());
   slot.term->clamp(points(*x_));
   slot.clamped = true;
 }
 
-void HostPotential::clamp(TermSet set) {
+void HostEngine::clamp(TermSet set) {
   for (Slot& slot : slots_) {
     if (set.has(slot.term->group())) clamp(slot);
   }
@@ -75,7 +75,7 @@ void HostPotential::clamp(TermSet set) {
 
 // The sum of hessian_of(slot, family), lower blocks [elements], over the terms of a set. Left in blocks_.
 template <class HessianOf>
-void HostPotential::sum_matrices(TermSet set, const HessianOf& hessian_of) {
+void HostEngine::sum_matrices(TermSet set, const HessianOf& hessian_of) {
   const ScopedPhase timer(clock(), Phase::assembly);
   blocks_->clear();
   for (const std::size_t i : matrix_order_) {
@@ -92,16 +92,16 @@ void HostPotential::sum_matrices(TermSet set, const HessianOf& hessian_of) {
 }
 
 // After clamp().
-std::span<const double> HostPotential::clamped_hessians(const Slot& slot, const TermFamily& family) {
+std::span<const double> HostEngine::clamped_hessians(const Slot& slot, const TermFamily& family) {
   return slot.hessian == StepHessian::clamped ? family.local.hess : family.clamped.hess;
 }
 
-void HostPotential::sum_clamped(TermSet set) {
+void HostEngine::sum_clamped(TermSet set) {
   clamp(set);
   sum_matrices(set, clamped_hessians);
 }
 
-void HostPotential::fill_matrix(const Column&, const HessianLevel& level, const Column& force) {
+void HostEngine::fill_matrix(const Column&, const HessianLevel& level, const Column& force) {
   for (Slot& slot : slots_) {
     if (needs_clamped(slot.hessian, level)) clamp(slot);
   }
@@ -113,18 +113,18 @@ void HostPotential::fill_matrix(const Column&, const HessianLevel& level, const 
   filled_ = &full_;
 }
 
-void HostPotential::sum_exact() {
+void HostEngine::sum_exact() {
   sum_matrices(TermSet::all(), [](const Slot&, const TermFamily& family) -> std::span<const double> {
     return family.local.hess;
   });
 }
 
-void HostPotential::fill_exact(const Column&, const Column&) {
+void HostEngine::fill_exact(const Column&, const Column&) {
   sum_exact();
   filled_ = &blocks_->values();
 }
 
-double HostPotential::add_tikhonov(double relative, double absolute) {
+double HostEngine::add_tikhonov(double relative, double absolute) {
   const ReducedSystem& reduced = blocks_->reduce(full_);
   const double mean = reduced.lower.diagonal().sum() / static_cast<double>(reduced.lower.rows());
   const double shift = std::max(relative * mean, absolute);
@@ -134,19 +134,19 @@ double HostPotential::add_tikhonov(double relative, double absolute) {
   return shift;
 }
 
-void HostPotential::multiply(const Column& v, Column& out) {
+void HostEngine::multiply(const Column& v, Column& out) {
   out.fill_zero();
   blocks_->multiply_add(*filled_, points(v), points(out));
 }
 
-const ReducedSystem& HostPotential::reduced() {
+const ReducedSystem& HostEngine::reduced() {
   const ReducedSystem& reduced = blocks_->reduce(full_);
   nnz_ = static_cast<std::size_t>(reduced.lower.nonZeros());
   return reduced;
 }
 
 // The solver measures its own parts; what is neither analysis nor factorisation is solution.
-void HostPotential::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {
+void HostEngine::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {
   blocks_->restrict_vector(points(b), rhs_);
   const ReducedSystem& reduced = this->reduced();
   const ScopedPhase timer(clock(), Phase::linear_solve);
@@ -159,8 +159,8 @@ void HostPotential::solve(const Column& b, RightSide of, Column& step, SolveRepo
 }
 
 // The preconditioner is that of a matrix that was solved, or of the clamped one where that was exact.
-Definiteness HostPotential::examine(const Column&, const HessianLevel& near, const Column&, Column&, Column&,
-                                    Column& direction) {
+Definiteness HostEngine::examine(const Column&, const HessianLevel& near, const Column&, Column&, Column&,
+                                 Column& direction) {
   sum_exact();
   examined_ = blocks_->reduce(blocks_->values());
   const Definiteness found = solver_->examine(examined_, [this, &near]() -> const ReducedSystem& {

@@ -50,7 +50,7 @@ struct Method : TermOptions {
   StepSolverOptions step_solver;
   StepNeeds step_needs;  // of the step solver (fit_terms, choose_step_solver)
   LinearOptions linear;
-  /// Where E is summed and solved; empty: on the host (HostPotential).
+  /// Where E is summed and solved; empty: on the host (HostEngine).
   MakePotential make_potential;
 };
 

@@ -4,17 +4,16 @@
 #include <stdexcept>
 
 #include "core/archive/archive.hpp"
-#include "core/newton/host_potential.hpp"
+#include "core/newton/host_engine.hpp"
 #include "core/terms/known_step.hpp"
 
 namespace bb {
 namespace {
 
-std::unique_ptr<IncrementalPotential> make_host_potential(const Scene& scene, Method& method,
-                                                          const Plan& plan,
-                                                          const std::vector<std::uint8_t>& fixed,
-                                                          PhaseClock& clock) {
-  return std::make_unique<HostPotential>(scene, method, plan, fixed, clock);
+std::unique_ptr<IncrementalPotential> make_host_engine(const Scene& scene, Method& method, const Plan& plan,
+                                                       const std::vector<std::uint8_t>& fixed,
+                                                       PhaseClock& clock) {
+  return std::make_unique<HostEngine>(scene, method, plan, fixed, clock);
 }
 
 std::span<const double> numbers_of(const Positions& x) {
@@ -36,8 +35,7 @@ NewtonSystem::NewtonSystem(const Scene& scene, Method& method, const Plan& plan,
       exact_hessians_(exact_hessians(state_.plan, method)) {}
 
 NewtonSystem::NewtonSystem(const Scene& scene, Method& method, const Plan& plan)
-    : NewtonSystem(scene, method, plan, method.make_potential ? method.make_potential : make_host_potential) {
-}
+    : NewtonSystem(scene, method, plan, method.make_potential ? method.make_potential : make_host_engine) {}
 
 NewtonSystem::NewtonSystem(const Scene& scene, Method& method)
     : NewtonSystem(scene, method, make_plan(scene, method, plan_options(method))) {}
@@ -166,42 +164,42 @@ void NewtonSystem::mirror(const Positions& target, const HessianLevel& level, co
 
 void NewtonSystem::adopt(const StepFrame& frame, NewtonSystem& other) {
   begin_step(frame.x_n, {frame.c, frame.x_tilde, frame.t_end}, frame.dt, frame.load_factor);
-  dynamic_cast<HostPotential&>(potential()).adopt(dynamic_cast<const HostPotential&>(other.potential()));
+  dynamic_cast<HostEngine&>(potential()).adopt(dynamic_cast<const HostEngine&>(other.potential()));
   const Positions x = other.view_.x();
   mirror(x, other.state_.level, x);
 }
 
 bool NewtonSystem::is_on_host() const {
-  return dynamic_cast<const HostPotential*>(state_.potential.get()) != nullptr;
+  return dynamic_cast<const HostEngine*>(state_.potential.get()) != nullptr;
 }
 
 NewtonSystem& NewtonSystem::on_host() {
   if (is_on_host()) return *this;
-  if (!host_) host_.reset(new NewtonSystem(state_.scene, method_, state_.plan, make_host_potential));
+  if (!host_) host_.reset(new NewtonSystem(state_.scene, method_, state_.plan, make_host_engine));
   Archive memory;
   keep(memory);
   Archive again(memory.bytes());
   host_->keep(again);
   host_->begin_step(copy_of(state_.x_n), {c_, copy_of(state_.x_tilde), t_end_}, dt_, load_factor_);
-  dynamic_cast<HostPotential&>(host_->potential()).adopt(state_.potential->known_step());
+  dynamic_cast<HostEngine&>(host_->potential()).adopt(state_.potential->known_step());
   host_->mirror(target_, state_.level, view_.x());
   host_->set_direction(copy_of(state_.dx));
   return *host_;
 }
 
-HostPotential& NewtonSystem::host_potential() {
-  auto* potential = dynamic_cast<HostPotential*>(state_.potential.get());
+HostEngine& NewtonSystem::host_engine() {
+  auto* potential = dynamic_cast<HostEngine*>(state_.potential.get());
   if (!potential) throw std::logic_error("terms and matrices are read on the host: on_host()");
   return *potential;
 }
 
 Diagnosis& NewtonSystem::diagnosis() {
-  if (!diagnosis_) diagnosis_ = std::make_unique<Diagnosis>(host_potential(), state_);
+  if (!diagnosis_) diagnosis_ = std::make_unique<Diagnosis>(host_engine(), state_);
   return *diagnosis_;
 }
 
 ConstraintSystem& NewtonSystem::constraints() {
-  if (!constraints_) constraints_ = std::make_unique<ConstraintSystem>(host_potential(), state_, method_);
+  if (!constraints_) constraints_ = std::make_unique<ConstraintSystem>(host_engine(), state_, method_);
   return *constraints_;
 }
 

@@ -86,7 +86,7 @@ class NewtonSystem : public StepSystem {
   void take_solution();
   void look_at_direction();
   void move(double alpha, Column& to);
-  HostPotential& host_potential();
+  HostEngine& host_engine();
 
   Method& method_;
   NewtonState state_;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/newton/element_name.hpp"
-#include "core/newton/host_potential.hpp"
+#include "core/newton/host_engine.hpp"
 #include "core/newton/newton_system.hpp"
 
 namespace bb {

@@ -7,7 +7,7 @@
 
 #include "core/exec/metered_executor.hpp"
 #include "core/linear/executor/solver_launches.hpp"
-#include "core/resident/system/resident_potential.hpp"
+#include "core/resident/system/executor_engine.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
@@ -59,7 +59,7 @@ int run(const std::string& path, int steps) {
                                      const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
     auto executor = std::make_unique<exec::MeteredExecutor>();
     printer.executor = executor.get();
-    return std::make_unique<resident::ResidentPotential>(std::move(executor), of, with, plan, fixed, clock);
+    return std::make_unique<resident::ExecutorEngine>(std::move(executor), of, with, plan, fixed, clock);
   };
   Simulation simulation(scene, method, config.time.dt, steps);
   for (int i = 0; i < steps; ++i) simulation.step(printer);

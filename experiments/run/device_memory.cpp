@@ -11,7 +11,7 @@
 #include "core/newton/newton_system.hpp"
 #include "core/resident/contact/policy_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/system/resident_potential.hpp"
+#include "core/resident/system/executor_engine.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -82,11 +82,11 @@ DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, co
   }
   method.make_potential = [](const Scene& of, Method& with, const Plan& parts,
                              const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
-    return std::make_unique<resident::ResidentPotential>(std::make_unique<exec::CountingExecutor>(true), of,
-                                                         with, parts, fixed, clock);
+    return std::make_unique<resident::ExecutorEngine>(std::make_unique<exec::CountingExecutor>(true), of,
+                                                      with, parts, fixed, clock);
   };
   NewtonSystem system(scene, method, plan);
-  auto& potential = dynamic_cast<resident::ResidentPotential&>(system.potential());
+  auto& potential = dynamic_cast<resident::ExecutorEngine&>(system.potential());
   resident::count_memory(system, potential, scene, expected_contacts(demand, out.contacts, plan.contacts));
   const exec::MemoryLedger& memory = potential.memory();
   out.total = memory.peak();

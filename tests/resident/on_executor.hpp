@@ -21,7 +21,7 @@ struct OnExecutor {
   resident::VectorTools vectors;
   exec::Buffer<double> mass;
   resident::ElementMatrix elements;
-  resident::ResidentTermList terms;
+  resident::ExecutorTerms terms;
   exec::Buffer<double> x_n, x_tilde, x, trial, dx, g;
   resident::ResidentSum sum;
   PhaseClock clock;

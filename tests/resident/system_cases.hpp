@@ -7,7 +7,7 @@
 
 #include "core/exec/host_executor.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/resident/system/resident_potential.hpp"
+#include "core/resident/system/executor_engine.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::test {
@@ -22,10 +22,10 @@ inline void use_resident_solver(Method& method, double tolerance = 1e-11) {
 /// E on an executor of its own; prepare: before anything is asked of it.
 inline MakePotential on_executor(
     const std::function<std::unique_ptr<exec::Executor>()>& make,
-    const std::function<void(resident::ResidentPotential&)>& prepare = [](resident::ResidentPotential&) {}) {
+    const std::function<void(resident::ExecutorEngine&)>& prepare = [](resident::ExecutorEngine&) {}) {
   return [=](const Scene& scene, Method& method, const Plan& plan, const std::vector<std::uint8_t>& fixed,
              PhaseClock& clock) {
-    auto out = std::make_unique<resident::ResidentPotential>(make(), scene, method, plan, fixed, clock);
+    auto out = std::make_unique<resident::ExecutorEngine>(make(), scene, method, plan, fixed, clock);
     prepare(*out);
     return out;
   };
@@ -39,7 +39,7 @@ class ResidentSystem final : public NewtonSystem {
       : NewtonSystem(scene, put_on(executor, method), plan) {
     method.make_potential = nullptr;
   }
-  resident::ResidentPotential& resident() { return dynamic_cast<resident::ResidentPotential&>(potential()); }
+  resident::ExecutorEngine& resident() { return dynamic_cast<resident::ExecutorEngine&>(potential()); }
   const exec::MemoryLedger& memory() { return resident().memory(); }
 
  private:

@@ -122,7 +122,7 @@ WatchedRun watched_run(std::size_t budget, exec::Index frugal_from) {
     executor = own.get();
     return own;
   };
-  method.make_potential = test::on_executor(make, [=](resident::ResidentPotential& potential) {
+  method.make_potential = test::on_executor(make, [=](resident::ExecutorEngine& potential) {
     potential.set_list_budget(budget);
     potential.set_frugal_from(frugal_from);
   });

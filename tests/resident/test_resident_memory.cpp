@@ -107,7 +107,7 @@ Method resident_method(Index frugal_from) {
   test::use_resident_solver(method);
   method.make_potential = test::on_executor(
       [] { return std::make_unique<exec::HostExecutor>(); },
-      [frugal_from](resident::ResidentPotential& potential) { potential.set_frugal_from(frugal_from); });
+      [frugal_from](resident::ExecutorEngine& potential) { potential.set_frugal_from(frugal_from); });
   return method;
 }
 

@@ -33,7 +33,7 @@ Method resident_method(exec::Index frugal_from, std::size_t list_budget) {
   Method method = test::soft_method(1e-3);
   test::use_resident_solver(method);
   method.make_potential = test::on_executor([] { return std::make_unique<exec::HostExecutor>(); },
-                                            [=](resident::ResidentPotential& potential) {
+                                            [=](resident::ExecutorEngine& potential) {
                                               potential.set_frugal_from(frugal_from);
                                               potential.set_list_budget(list_budget);
                                             });

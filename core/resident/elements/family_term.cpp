@@ -20,7 +20,7 @@ void FamilyTerm::add_change(const PositionsView& x, const PositionsView& trial, 
   out.add_parts(size(), change_.data(), magnitude);
 }
 
-void make_resident_part(const Part& part, const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_part(const Part& part, const ResidentInputs& inputs, ExecutorTerms& terms) {
   std::vector<std::unique_ptr<ElementFamily>> families;
   part.add_families(inputs.scene, {inputs.executor}, families);
   for (auto& family : families) {
@@ -28,19 +28,19 @@ void make_resident_part(const Part& part, const ResidentInputs& inputs, Resident
   }
 }
 
-void make_resident_stitch(const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_stitch(const ResidentInputs& inputs, ExecutorTerms& terms) {
   terms.add(std::make_unique<FamilyTerm>(inputs, "stitch", TermGroup::elastic,
                                          stitch_family({inputs.executor}, inputs.scene.stitches)));
 }
-void make_resident_pull(const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_pull(const ResidentInputs& inputs, ExecutorTerms& terms) {
   terms.add(std::make_unique<FamilyTerm>(inputs, "pull", TermGroup::load,
                                          pull_family({inputs.executor}, inputs.scene)));
 }
-void make_resident_air_drag(const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_air_drag(const ResidentInputs& inputs, ExecutorTerms& terms) {
   terms.add(std::make_unique<FamilyTerm>(inputs, "air_drag", TermGroup::load,
                                          air_drag_family({inputs.executor}, inputs.scene)));
 }
-void make_resident_inflation(const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_inflation(const ResidentInputs& inputs, ExecutorTerms& terms) {
   terms.add(std::make_unique<FamilyTerm>(inputs, "inflation", TermGroup::load,
                                          inflation_family({inputs.executor}, inputs.scene)));
 }

@@ -36,9 +36,9 @@ class FamilyTerm final : public FamilySteps<ElementTerm> {
 };
 
 /// One term a family of the part.
-void make_resident_part(const Part& part, const ResidentInputs& inputs, ResidentTermList& terms);
+void make_resident_part(const Part& part, const ResidentInputs& inputs, ExecutorTerms& terms);
 template <const Part& (*part)()>
-void make_resident_part(const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_part(const ResidentInputs& inputs, ExecutorTerms& terms) {
   make_resident_part(part(), inputs, terms);
 }
 

@@ -6,7 +6,7 @@
 namespace bb::resident {
 namespace {
 
-class LoadTerm final : public ResidentTerm {
+class LoadTerm final : public ExecutorTerm {
  public:
   explicit LoadTerm(const ResidentInputs& inputs)
       : executor_(inputs.executor),
@@ -56,12 +56,12 @@ class LoadTerm final : public ResidentTerm {
 
 }  // namespace
 
-void make_resident_inertia(const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_inertia(const ResidentInputs& inputs, ExecutorTerms& terms) {
   terms.add(std::make_unique<LoadTerm>(inputs));
 }
 
 // Without a vertex there is no term to carry it.
-void make_resident_external_force(const ResidentInputs&, ResidentTermList& terms) {
+void make_resident_external_force(const ResidentInputs&, ExecutorTerms& terms) {
   if (LoadTerm* loads = terms.find<LoadTerm>()) loads->add_weight();
 }
 

@@ -50,7 +50,7 @@ void require_limit_kernels(const TermOptions& options) {
   }
 }
 
-void make_resident_strain_limit(const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_strain_limit(const ResidentInputs& inputs, ExecutorTerms& terms) {
   require_limit_kernels(inputs.options);
   const auto add = [&](bool of_solids) {
     terms.add(std::make_unique<LimitTerm>(

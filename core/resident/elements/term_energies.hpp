@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "core/resident/elements/resident_term.hpp"
+#include "core/resident/elements/executor_term.hpp"
 
 namespace bb::resident {
 
-class TermEnergies : public ResidentTerm {
+class TermEnergies : public ExecutorTerm {
  public:
   /// Elements.
   Index size() const { return energy_.size(); }

@@ -3,7 +3,7 @@
 
 #include "core/exec/sums/vectors.hpp"
 #include "core/resident/elements/element_matrix.hpp"
-#include "core/resident/elements/resident_term.hpp"
+#include "core/resident/elements/executor_term.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/list_of_terms.hpp"
@@ -22,9 +22,9 @@ struct ResidentInputs {
   ElementMatrix& matrix;       // of all terms with stencils that stay
 };
 
-using ResidentTermList = ListOfTerms<ResidentTerm>;
+using ExecutorTerms = ListOfTerms<ExecutorTerm>;
 
 /// Makes the terms of one line of registry.inc. Errors: ConfigError for what has no device form; OutOfMemory.
-using MakeResident = void(const ResidentInputs&, ResidentTermList&);
+using MakeResident = void(const ResidentInputs&, ExecutorTerms&);
 
 }  // namespace bb::resident

@@ -53,7 +53,7 @@ void LaggedTerm::add_known(KnownStep& out) const {
 namespace {
 
 /// The contacts that terms of later lines read. Errors: std::logic_error without any.
-ResidentContact& contact_of(ResidentTermList& terms) {
+ResidentContact& contact_of(ExecutorTerms& terms) {
   ResidentContact* contact = terms.find<ResidentContact>();
   if (!contact) throw std::logic_error("a term on contacts without contact");
   return *contact;
@@ -61,8 +61,7 @@ ResidentContact& contact_of(ResidentTermList& terms) {
 
 }  // namespace
 
-void add_lagged(std::string_view name, MakeLagged make, const ResidentInputs& inputs,
-                ResidentTermList& terms) {
+void add_lagged(std::string_view name, MakeLagged make, const ResidentInputs& inputs, ExecutorTerms& terms) {
   ResidentContact& contact = contact_of(terms);
   auto family = make({inputs.executor}, inputs.scene, inputs.options, contact.surface().view().body);
   terms.add(std::make_unique<LaggedTerm>(inputs, name, std::move(family), contact));

@@ -41,7 +41,6 @@ class LaggedTerm final : public LaggedSteps<TermEnergies> {
 };
 
 /// Makes the term of a line of registry.inc. Errors: std::logic_error without contact before it.
-void add_lagged(std::string_view name, MakeLagged make, const ResidentInputs& inputs,
-                ResidentTermList& terms);
+void add_lagged(std::string_view name, MakeLagged make, const ResidentInputs& inputs, ExecutorTerms& terms);
 
 }  // namespace bb::resident

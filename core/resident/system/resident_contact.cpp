@@ -294,7 +294,7 @@ void ResidentContact::end_step(const PositionsView&, PhaseClock& clock) {
   policy.end_step(gaps_.end_step());
 }
 
-void make_resident_contact(const ResidentInputs& inputs, ResidentTermList& terms) {
+void make_resident_contact(const ResidentInputs& inputs, ExecutorTerms& terms) {
   terms.add(std::make_unique<ResidentContact>(inputs));
 }
 

@@ -20,7 +20,7 @@
 
 namespace bb::resident {
 
-class ResidentContact final : public ResidentTerm {
+class ResidentContact final : public ExecutorTerm {
  public:
   /// Errors: ConfigError for a shape or a policy without a device form; OutOfMemory.
   explicit ResidentContact(const ResidentInputs& inputs);

@@ -5,7 +5,7 @@
 
 #include "core/linear/executor/pcg_kernels.hpp"
 #include "core/resident/elements/hessian_request.hpp"
-#include "core/resident/system/resident_potential.hpp"
+#include "core/resident/system/executor_engine.hpp"
 
 namespace bb::resident {
 namespace {
@@ -21,7 +21,7 @@ void charge(PhaseClock& clock, Phase phase, exec::Executor& executor, const Work
 
 }  // namespace
 
-void ResidentPotential::linearise_terms(const Column& x, Column& g) {
+void ExecutorEngine::linearise_terms(const Column& x, Column& g) {
   if (plan_.policy_submatrix.needed) {
     charge(clock(), Phase::elastic, *executor_, [&] { fill_elastic(x); });
   }
@@ -33,12 +33,12 @@ void ResidentPotential::linearise_terms(const Column& x, Column& g) {
   if (pattern_changed()) ++pattern_id_;
 }
 
-bool ResidentPotential::pattern_changed() const {
+bool ExecutorEngine::pattern_changed() const {
   return std::any_of(terms_.begin(), terms_.end(), [](const auto& term) { return term->pattern_changed(); });
 }
 
 // H, which stiffness policies read: every elastic element clamped.
-void ResidentPotential::fill_elastic(const Column& x) {
+void ExecutorEngine::fill_elastic(const Column& x) {
   elements_.clear();
   for (const auto& term : terms_) {
     if (term->group() == TermGroup::elastic) term->add_matrix(x, {});
@@ -46,17 +46,17 @@ void ResidentPotential::fill_elastic(const Column& x) {
   elements_.mirror();
 }
 
-void ResidentPotential::fill_matrix(const Column& x, const HessianLevel& level, const Column& force) {
+void ExecutorEngine::fill_matrix(const Column& x, const HessianLevel& level, const Column& force) {
   level_ = {level.t(), level.threshold(), force.data()};
   fill(x, level_);
 }
 
-void ResidentPotential::fill_exact(const Column& x, const Column& force) {
+void ExecutorEngine::fill_exact(const Column& x, const Column& force) {
   fill(x, {0, infinity, force.data()});
 }
 
 // H first, as on the host.
-void ResidentPotential::fill(const Column& x, const Filled& level) {
+void ExecutorEngine::fill(const Column& x, const Filled& level) {
   charge(clock(), Phase::assembly, *executor_, [&] {
     elements_.clear();
     for (const bool elastic : {true, false}) {
@@ -70,7 +70,7 @@ void ResidentPotential::fill(const Column& x, const Filled& level) {
   });
 }
 
-ResidentMatrix ResidentPotential::matrix() const {
+ResidentMatrix ExecutorEngine::matrix() const {
   ResidentMatrix out{};
   out.part[0] = elements_.part();
   int n = 1;
@@ -83,23 +83,23 @@ ResidentMatrix ResidentPotential::matrix() const {
   return out;
 }
 
-std::size_t ResidentPotential::nnz() const {
+std::size_t ExecutorEngine::nnz() const {
   Index n = elements_.n_blocks();
   for (const auto& term : terms_) n += term->changing_matrix().n_blocks;
   return 9 * static_cast<std::size_t>(n) / 2;
 }
 
-double ResidentPotential::add_tikhonov(double, double) {
+double ExecutorEngine::add_tikhonov(double, double) {
   throw std::logic_error("the matrix on an executor has no Tikhonov term: only article_literal asks for one");
 }
 
-void ResidentPotential::multiply(const Column& v, Column& out) {
+void ExecutorEngine::multiply(const Column& v, Column& out) {
   const Partition partition = Partition::of(v.size() / 3);
   executor_->blocks(partition.n_blocks(), MultiplyDot{partition, matrix(), vectors_.fixed().data(), v.data(),
                                                       out.data(), product_partial_.data(), nullptr});
 }
 
-void ResidentPotential::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {
+void ExecutorEngine::solve(const Column& b, RightSide of, Column& step, SolveReport& report) {
   executor_->synchronize();  // what made the right-hand side is the caller's phase
   const ScopedPhase timer(clock(), Phase::linear_solve);
   const double b_norm = pcg_->norm(vectors_.fixed().data(), b.data());
@@ -118,8 +118,8 @@ void ResidentPotential::solve(const Column& b, RightSide of, Column& step, Solve
 
 // Conjugate gradients on a seeded right-hand side (core/linear/definiteness.hpp), preconditioned by what served the
 // matrix that was solved.
-Definiteness ResidentPotential::examine(const Column& x, const HessianLevel&, const Column& force, Column& b,
-                                        Column& step, Column& direction) {
+Definiteness ExecutorEngine::examine(const Column& x, const HessianLevel&, const Column& force, Column& b,
+                                     Column& step, Column& direction) {
   fill_exact(x, force);
   const VecXd seeded = definiteness_right_hand_side(b.size());
   b.upload({seeded.data(), static_cast<std::size_t>(seeded.size())});

@@ -17,10 +17,8 @@ namespace {
 #define BB_PART_kernels(name) &make_resident_part<parts::name::part>
 #define BB_PART_host_only(name) nullptr
 #define PART(name, doc, convex, where, ...) BB_PART_##where(name),
-#define BB_LAGGED_kernels(name)                               \
-  [](const ResidentInputs& inputs, ResidentTermList& terms) { \
-    add_lagged(#name, name##_family, inputs, terms);          \
-  }
+#define BB_LAGGED_kernels(name) \
+  [](const ResidentInputs& inputs, ExecutorTerms& terms) { add_lagged(#name, name##_family, inputs, terms); }
 #define BB_LAGGED_host_only(name) nullptr
 #define LAGGED(name, doc, convex, where) BB_LAGGED_##where(name),
 constexpr MakeResident* makers[] = {
@@ -38,8 +36,8 @@ constexpr MakeResident* makers[] = {
 
 }  // namespace
 
-ResidentTermList make_resident_terms(const Plan& plan, const ResidentInputs& inputs) {
-  ResidentTermList terms;
+ExecutorTerms make_resident_terms(const Plan& plan, const ResidentInputs& inputs) {
+  ExecutorTerms terms;
   for (std::size_t i = 0; i < plan.terms.size(); ++i) {
     if (!plan.terms[i].needed) continue;
     if (!makers[i]) {  // it would be left out of E

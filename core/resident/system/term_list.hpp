@@ -8,6 +8,6 @@ namespace bb::resident {
 
 /// The terms that the plan needs, in the order of registry.inc. Errors: ConfigError at /device for a term whose line says
 /// host_only, and those of each term; OutOfMemory.
-ResidentTermList make_resident_terms(const Plan& plan, const ResidentInputs& inputs);
+ExecutorTerms make_resident_terms(const Plan& plan, const ResidentInputs& inputs);
 
 }  // namespace bb::resident

@@ -1,5 +1,5 @@
 // Steps, energies and motions. The matrix is in host_matrix.cpp.
-#include "core/newton/host_potential.hpp"
+#include "core/newton/host_engine.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -12,8 +12,8 @@
 
 namespace bb {
 
-HostPotential::HostPotential(const Scene& scene, Method& method, const Plan& plan,
-                             const std::vector<std::uint8_t>& fixed, PhaseClock& clock)
+HostEngine::HostEngine(const Scene& scene, Method& method, const Plan& plan,
+                       const std::vector<std::uint8_t>& fixed, PhaseClock& clock)
     : IncrementalPotential(clock),
       scene_(scene),
       plan_(plan),
@@ -25,12 +25,12 @@ HostPotential::HostPotential(const Scene& scene, Method& method, const Plan& pla
   set_fixed_families(method);
 }
 
-void HostPotential::make_solver() {
+void HostEngine::make_solver() {
   if (plan_.linear_solver.needed) solver_ = make_linear_solver(plan_.linear);
 }
 
 // Families that come and go are numbered apart from those that stay.
-void HostPotential::set_fixed_families(const Method& method) {
+void HostEngine::set_fixed_families(const Method& method) {
   std::vector<Stencils> families;
   std::size_t n_changing = 0;
   for (const auto& term : terms_) {
@@ -50,35 +50,35 @@ void HostPotential::set_fixed_families(const Method& method) {
                         [this](std::size_t i) { return slots_[i].term->group() == TermGroup::elastic; });
 }
 
-void HostPotential::solver_begins_step() {
+void HostEngine::solver_begins_step() {
   if (solver_) solver_->begin_step();
 }
 
-void HostPotential::keep_solver(Archive& archive) {
+void HostEngine::keep_solver(Archive& archive) {
   archive.section("linear solver");
   blocks_->keep(archive);
   if (solver_) solver_->keep(archive);
 }
 
-void HostPotential::drop_caches() {
+void HostEngine::drop_caches() {
   make_solver();
   blocks_->set_contacts({});
 }
 
-void HostPotential::adopt(const KnownStep& known) {
+void HostEngine::adopt(const KnownStep& known) {
   for (const auto& term : terms_) term->adopt(known);
 }
 
-void HostPotential::adopt(const HostPotential& other) {
+void HostEngine::adopt(const HostEngine& other) {
   for (std::size_t i = 0; i < slots_.size(); ++i) slots_[i].term->adopt_from(*other.slots_[i].term);
 }
 
-bool HostPotential::bounds_each_vertex() const {
+bool HostEngine::bounds_each_vertex() const {
   return std::any_of(terms_.begin(), terms_.end(),
                      [](const auto& term) { return !term->vertex_parts().empty(); });
 }
 
-double HostPotential::truncate(Column& dx) {
+double HostEngine::truncate(Column& dx) {
   std::vector<double> part(static_cast<std::size_t>(dx.size()) / 3, 1);
   for (const auto& term : terms_) {
     const std::span<const double> own = term->vertex_parts();
@@ -91,22 +91,22 @@ double HostPotential::truncate(Column& dx) {
   return of_pins;
 }
 
-bool HostPotential::bounds_each_vertex_of(const Term& term) const {
+bool HostEngine::bounds_each_vertex_of(const Term& term) const {
   return !static_cast<const HostTerm&>(term).vertex_parts().empty();
 }
 
-bool HostPotential::is_finite(Column& trial, bool) {
+bool HostEngine::is_finite(Column& trial, bool) {
   round_state(precision_, points(trial));
   return points(trial).allFinite();
 }
 
-EnergyChange HostPotential::sum_change(const Column& x, const Column& trial) {
+EnergyChange HostEngine::sum_change(const Column& x, const Column& trial) {
   return sums_.change(terms_, x, trial);
 }
 
-double HostPotential::sum_energy(TermSet set, const Column&, bool) { return total_energy(terms_, set); }
+double HostEngine::sum_energy(TermSet set, const Column&, bool) { return total_energy(terms_, set); }
 
-void HostPotential::report_overload(const Column& x, const Column& g, const Column& dx, StepNumbers& out) {
+void HostEngine::report_overload(const Column& x, const Column& g, const Column& dx, StepNumbers& out) {
   Positions own;
   for (const Slot& slot : slots_) {
     own.setZero(3, points(x).cols());
@@ -116,14 +116,14 @@ void HostPotential::report_overload(const Column& x, const Column& g, const Colu
   }
 }
 
-Cusps HostPotential::cusps(const Column& x) {
+Cusps HostEngine::cusps(const Column& x) {
   Cusps out;
   for (const auto& term : terms_) term->add_cusps(points(x), out);
   return out;
 }
 
-std::string HostPotential::describe_non_finite() { return broken_element_name(scene_, terms_); }
+std::string HostEngine::describe_non_finite() { return broken_element_name(scene_, terms_); }
 
-KnownStep HostPotential::known_step() const { return {}; }
+KnownStep HostEngine::known_step() const { return {}; }
 
 }  // namespace bb

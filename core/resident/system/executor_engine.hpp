@@ -21,13 +21,13 @@ class NewtonSystem;
 
 namespace bb::resident {
 
-class ResidentPotential final : public IncrementalPotential {
+class ExecutorEngine final : public IncrementalPotential {
  public:
   /// scene, method and plan must outlive it. fixed: [3 n] prescribed or locked degrees of freedom. Errors: ConfigError for
   /// what has no device form; OutOfMemory.
-  ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
-                    const Plan& plan, const std::vector<std::uint8_t>& fixed, PhaseClock& clock);
-  ~ResidentPotential() override;
+  ExecutorEngine(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
+                 const Plan& plan, const std::vector<std::uint8_t>& fixed, PhaseClock& clock);
+  ~ExecutorEngine() override;
   exec::Executor& executor() override { return *executor_; }
 
   void drop_caches() override;
@@ -49,9 +49,9 @@ class ResidentPotential final : public IncrementalPotential {
 
   /// On an executor that only counts buffers: what the rows are to be taken for.
   void expect(const ExpectedContacts& expected);
-  /// As ResidentTerm::set_frugal_from.
+  /// As ExecutorTerm::set_frugal_from.
   void set_frugal_from(Index rows);
-  /// As ResidentTerm::set_list_budget.
+  /// As ExecutorTerm::set_list_budget.
   void set_list_budget(std::size_t bytes);
   /// Who holds how much memory.
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
@@ -85,7 +85,7 @@ class ResidentPotential final : public IncrementalPotential {
   VectorTools vectors_;
   Buffer<double> mass_;
   ElementMatrix elements_;  // of all terms with stencils that stay
-  ResidentTermList terms_;
+  ExecutorTerms terms_;
   std::unique_ptr<ResidentPcg> pcg_;
   std::unique_ptr<CuspSearch> cusps_;  // made when it is asked for
   Forcing forcing_;
@@ -100,7 +100,7 @@ class ResidentPotential final : public IncrementalPotential {
 
 /// Goes through every stage of a step with so many contacts on an executor that only counts buffers, so that
 /// memory().peak() is what a step needs. system: of that potential.
-void count_memory(NewtonSystem& system, ResidentPotential& potential, const Scene& scene,
+void count_memory(NewtonSystem& system, ExecutorEngine& potential, const Scene& scene,
                   const ExpectedContacts& expected);
 
 }  // namespace bb::resident

@@ -22,18 +22,18 @@ namespace bb {
 inline PositionsView points(const Column& column) { return column; }
 inline PositionsSpan points(Column& column) { return column; }
 
-class HostPotential final : public IncrementalPotential {
+class HostEngine final : public IncrementalPotential {
  public:
   /// All arguments must outlive it. fixed: [3 n] prescribed or locked degrees of freedom.
-  HostPotential(const Scene& scene, Method& method, const Plan& plan, const std::vector<std::uint8_t>& fixed,
-                PhaseClock& clock);
+  HostEngine(const Scene& scene, Method& method, const Plan& plan, const std::vector<std::uint8_t>& fixed,
+             PhaseClock& clock);
   exec::Executor& executor() override { return executor_; }
 
   void keep_solver(Archive& archive) override;
   void drop_caches() override;
   /// The step that has begun is that of another potential: what is frozen there is known here.
   void adopt(const KnownStep& known);
-  void adopt(const HostPotential& other);
+  void adopt(const HostEngine& other);
 
   bool pattern_changed() const override { return pattern_changed_; }
   void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;

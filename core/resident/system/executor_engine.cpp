@@ -1,5 +1,5 @@
 // Set-up, the step and its motions, and what is said of a state. The matrix is in resident_matrix_fill.cpp.
-#include "core/resident/system/resident_potential.hpp"
+#include "core/resident/system/executor_engine.hpp"
 
 #include <algorithm>
 
@@ -31,9 +31,8 @@ void require_double(const Method& method) {
 
 }  // namespace
 
-ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene,
-                                     Method& method, const Plan& plan, const std::vector<std::uint8_t>& fixed,
-                                     PhaseClock& clock)
+ExecutorEngine::ExecutorEngine(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
+                               const Plan& plan, const std::vector<std::uint8_t>& fixed, PhaseClock& clock)
     : IncrementalPotential(clock),
       executor_(std::move(executor)),
       scene_(scene),
@@ -57,15 +56,15 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
                                        make_preconditioner(*executor_, linear_parameters(method)));
 }
 
-ResidentPotential::~ResidentPotential() = default;
+ExecutorEngine::~ExecutorEngine() = default;
 
 // The clusters of a preconditioner go with the pattern that they were made for.
-void ResidentPotential::drop_caches() {
+void ExecutorEngine::drop_caches() {
   for (const auto& term : terms_) term->drop_caches();
   ++pattern_id_;
 }
 
-EnergyChange ResidentPotential::sum_change(const Column& x, const Column& trial) {
+EnergyChange ExecutorEngine::sum_change(const Column& x, const Column& trial) {
   sum_.clear();
   ResidentChange change(sum_);
   for (const auto& term : terms_) term->add_change(x, trial, change);
@@ -78,7 +77,7 @@ EnergyChange ResidentPotential::sum_change(const Column& x, const Column& trial)
                       parts.magnitude + before.magnitude + after.magnitude};
 }
 
-void ResidentPotential::sum_energies(TermSet set, const Column& x, ResidentSum& sum) {
+void ExecutorEngine::sum_energies(TermSet set, const Column& x, ResidentSum& sum) {
   sum.clear();
   ResidentEnergy energy(sum);
   for (const auto& term : terms_) {
@@ -87,7 +86,7 @@ void ResidentPotential::sum_energies(TermSet set, const Column& x, ResidentSum& 
   energy.launch();
 }
 
-double ResidentPotential::sum_energy(TermSet set, const Column& x, bool announced) {
+double ExecutorEngine::sum_energy(TermSet set, const Column& x, bool announced) {
   if (!announced) sum_energies(set, x, sum_);
   Compensated rows = Compensated::zero();
   const double parts = (announced ? energy_ : sum_).get().value();
@@ -97,7 +96,7 @@ double ResidentPotential::sum_energy(TermSet set, const Column& x, bool announce
   return parts + rows.value();
 }
 
-std::string ResidentPotential::describe_non_finite() {
+std::string ExecutorEngine::describe_non_finite() {
   for (const auto& term : terms_) {
     const Index element = term->first_not_finite(least_);
     if (element >= 0) return "element " + std::to_string(element) + " of term " + std::string(term->name());
@@ -105,26 +104,26 @@ std::string ResidentPotential::describe_non_finite() {
   return {};
 }
 
-KnownStep ResidentPotential::known_step() const {
+KnownStep ExecutorEngine::known_step() const {
   KnownStep out;
   for (const auto& term : terms_) term->add_known(out);
   return out;
 }
 
-void ResidentPotential::expect(const ExpectedContacts& expected) {
+void ExecutorEngine::expect(const ExpectedContacts& expected) {
   for (const auto& term : terms_) term->expect(expected);
 }
 
-void ResidentPotential::set_frugal_from(Index rows) {
+void ExecutorEngine::set_frugal_from(Index rows) {
   for (const auto& term : terms_) term->set_frugal_from(rows);
 }
 
-void ResidentPotential::set_list_budget(std::size_t bytes) {
+void ExecutorEngine::set_list_budget(std::size_t bytes) {
   for (const auto& term : terms_) term->set_list_budget(bytes);
 }
 
 // No kernel looks for what next to no step has: the elements of the host do, at the positions of the end of a step.
-Cusps ResidentPotential::cusps(const Column& x) {
+Cusps ExecutorEngine::cusps(const Column& x) {
   if (executor_->counts_only()) return {};
   if (!cusps_) cusps_ = std::make_unique<CuspSearch>(scene_, method_.precision);
   Positions at(3, x.size() / 3);
@@ -132,7 +131,7 @@ Cusps ResidentPotential::cusps(const Column& x) {
   return cusps_->find(at);
 }
 
-void count_memory(NewtonSystem& system, ResidentPotential& potential, const Scene& scene,
+void count_memory(NewtonSystem& system, ExecutorEngine& potential, const Scene& scene,
                   const ExpectedContacts& expected) {
   potential.expect(expected);
   system.begin_step(scene.x0, {1, scene.x0}, 1, 1);

@@ -75,7 +75,7 @@ struct ChangingMatrix {
   Index n_blocks = 0;
 };
 
-class ResidentTerm : public Term {
+class ExecutorTerm : public Term {
  public:
   /// Forgets the pattern of a matrix that comes and goes: between steps.
   virtual void drop_caches() {}
