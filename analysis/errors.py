@@ -14,7 +14,7 @@ from collections.abc import Callable
 BAD_INPUT = 2
 BUILD_FAILED = 70
 TRY_AGAIN = 75  # as the program has it: an interrupt among others
-# What another call will meet too; the list of the program (lasts() in core/record/atomic_write.cpp).
+# What another call will meet too; the list of the program (lasts() in core/base/record/atomic_write.cpp).
 LASTING = {
     getattr(errno, name)
     for name in "EACCES EPERM EROFS ENOENT ENOTDIR EISDIR EEXIST ELOOP ENAMETOOLONG EINVAL".split()

@@ -1,6 +1,6 @@
-"""The one place that opens a file which a user names, as core/input/read_file.hpp is in the program. Only a
-regular file is opened, since a FIFO or a device can be waited for, or read, for ever, and none that is larger
-than its kind.
+"""The one place that opens a file which a user names, as core/base/input/read_file.hpp is in the program.
+Only a regular file is opened, since a FIFO or a device can be waited for, or read, for ever, and none that
+is larger than its kind.
 """
 
 from __future__ import annotations

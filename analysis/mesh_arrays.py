@@ -14,7 +14,7 @@ import numpy as np
 from .errors import UserError
 from .program import built_program, piped
 
-SUFFIXES = (".obj", ".ply", ".stl", ".vtu", ".vtp", ".vtk", ".msh")  # core/mesh/read_mesh.cpp
+SUFFIXES = (".obj", ".ply", ".stl", ".vtu", ".vtp", ".vtk", ".msh")  # core/model/mesh/read_mesh.cpp
 
 
 @dataclass(frozen=True)

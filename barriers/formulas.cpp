@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "barriers/shapes/registry.hpp"
-#include "core/input/json.hpp"
-#include "core/input/names.hpp"
-#include "core/input/process.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/input/names.hpp"
+#include "core/base/input/process.hpp"
 #include "core/math/error.hpp"
-#include "core/plugin/plugin.hpp"
+#include "core/model/plugin/plugin.hpp"
 
 namespace bb {
 namespace {

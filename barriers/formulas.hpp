@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/barrier/shape.hpp"
-#include "core/parameters/parameter.hpp"
-#include "core/plugin/plugin.hpp"
+#include "core/base/parameters/parameter.hpp"
+#include "core/model/plugin/plugin.hpp"
 
 namespace bb {
 

@@ -8,8 +8,8 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
-#include "core/integrators/registry.hpp"
-#include "core/parameters/registry.hpp"
+#include "core/base/parameters/registry.hpp"
+#include "core/model/integrators/registry.hpp"
 
 namespace bb {
 namespace {

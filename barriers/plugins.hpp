@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/plugin/plugin.hpp"
+#include "core/model/plugin/plugin.hpp"
 
 namespace bb {
 

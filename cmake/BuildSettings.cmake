@@ -40,7 +40,7 @@ if(NOT BB_MARCH STREQUAL "BASELINE")
   set(BB_MARCH_FLAG "-march=${BB_MARCH}")
 endif()
 
-# What decides the generated code beside the build type; records name it (core/record). The fused multiply-add
+# What decides the generated code beside the build type; records name it (core/base/record). The fused multiply-add
 # setting is fixed: results must not depend on what the compiler contracts, and the exact predicates of the audit
 # are wrong if it does. Nobody reads errno after mathematics, nor the floating-point flags; keeping them up to date
 # forbids vector square roots; neither changes a value.

@@ -15,7 +15,7 @@ endfunction()
 bb_precompile(bb_pch)
 
 # COLD rooms: text in, text out, once a run, a third of the program's code. Release compiles them for size, which takes g++ two thirds of
-# the time and gives the same bits (core/record/CMakeLists.txt names it among the flags).
+# the time and gives the same bits (core/base/record/CMakeLists.txt names it among the flags).
 bb_precompile(bb_cold_pch <fmt/format.h> <fmt/ranges.h> <nlohmann/json.hpp> <filesystem> <fstream> <limits> <map> <numeric> <set>
   <sstream> <variant>)
 target_link_libraries(bb_cold_pch PUBLIC fmt::fmt nlohmann_json::nlohmann_json)

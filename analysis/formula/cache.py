@@ -36,7 +36,7 @@ HEADERS = (
     "core/math/scale.hpp",
     "core/math/select.hpp",
     "core/math/types.hpp",
-    "core/plugin/barrierbench_plugin.h",
+    "core/model/plugin/barrierbench_plugin.h",
 )
 EIGEN = "/usr/include/eigen3"
 SECONDS_TO_COMPILE = 120

@@ -42,7 +42,7 @@ TEMPLATE = """\
 #include "core/math/atan2.hpp"
 #include "core/math/exp.hpp"
 #include "core/math/log.hpp"
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {{
 

@@ -1,5 +1,5 @@
 """C++ of a formula: a struct that is made like a built-in shape, from u, e, l (core/barrier/normalized_gap.hpp), with
-common subexpressions computed once; in a plugin (core/plugin/barrierbench_plugin.h), and in a kernel for a card.
+common subexpressions computed once; in a plugin (core/model/plugin/barrierbench_plugin.h), and in a kernel for a card.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ PLUGIN = """\
 #include "barriers/shapes/lane_batch.hpp"
 #include "core/math/atan2.hpp"
 #include "core/math/exp.hpp"
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {{
 
@@ -91,7 +91,7 @@ DEVICE = """\
 #include <cmath>
 #include <limits>
 
-#include "core/cuda/device_block.cuh"
+#include "core/exec/cuda/device_block.cuh"
 #include "core/math/atan2.hpp"
 #include "core/math/exp.hpp"
 #include "core/resident/contact/given_shape.hpp"

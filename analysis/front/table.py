@@ -67,7 +67,7 @@ TABLE = (
     Verb("build", "develop", ENVIRONMENT, "front.build", "[PRESET]", "configures and builds (release by default; dev, sanitize, cuda-compile)", "./bench build sanitize", own_help=False),
     Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [--browser] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate; --browser installs chromium first, so that the player is tested in it", "./bench test -L eval", own_help=False),
     Verb("format", "develop", ENVIRONMENT, "front.format", "", "clang-format every C++ file and ruff every Python file of analysis/ and python/, in place", "./bench format", own_help=False),
-    Verb("tidy", "develop", ENVIRONMENT, "front.tidy", "[FILES]", "clang-tidy the sources (all, or the files named)", "./bench tidy core/record/hash.cpp", own_help=False),
+    Verb("tidy", "develop", ENVIRONMENT, "front.tidy", "[FILES]", "clang-tidy the sources (all, or the files named)", "./bench tidy core/base/record/hash.cpp", own_help=False),
     Verb("rooms", "develop", ENVIRONMENT, "front.rooms", "", "the rooms of the code, what each one includes, lowest first; fails on a circle or an undeclared one", "./bench rooms", own_help=False),
     Verb("python", "develop", ENVIRONMENT, "front.python_module", "[--no-tests] [PYTEST ARGUMENTS]", "builds the Python module barrierbench beside the program and runs its tests (docs/python.md); pip install . builds it by itself", "./bench python --no-tests", own_help=False),
     Verb("mutate", "develop", ENVIRONMENT, "front.mutate", "", "puts mistakes into the code one at a time and counts those that the tests catch", "./bench mutate --only 'newton/armijo*'"),

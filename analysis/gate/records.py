@@ -10,7 +10,7 @@ from pathlib import Path
 from ..input_file import below
 from ..record_file import TRACE, RecordError, leaves, own_trace, read_record, trace_lines
 
-NOT_FINITE = ("nan", "infinite", "minus_infinite")  # the words of Number in core/record/number.hpp
+NOT_FINITE = ("nan", "infinite", "minus_infinite")  # the words of Number in core/base/record/number.hpp
 MAY_BE_INFINITE = (
     "error_estimate_m_status",
     "contraction_status",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-# Words of core/record/outcome.hpp; a test holds the keys to the schema.
+# Words of core/base/record/outcome.hpp; a test holds the keys to the schema.
 OUTCOMES = {
     "invalid_scene": "the scene cannot be run: its pilot could not be matched; there is no first step",
     "initial_intersection": "surfaces cross each other before the first step; there is no first step",

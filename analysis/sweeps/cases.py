@@ -17,7 +17,7 @@ from ..input_file import below
 from ..json_file import read_of_schema
 
 SCHEMA = "barrierbench.cases/1"
-DEAD_AFTER_S = 60  # dead_after_s of core/record/folder_lock.hpp
+DEAD_AFTER_S = 60  # dead_after_s of core/base/record/folder_lock.hpp
 HOLDER = re.compile(r"process (\d+) on (.*) since (\S+)", re.S)
 
 OVER, RUNNING, DEAD, STOPPED, WAITING = "over", "running", "dead", "stopped", "waiting"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/barrier/shape.hpp"
-#include "core/parameters/registry.hpp"
+#include "core/base/parameters/registry.hpp"
 
 namespace bb {
 

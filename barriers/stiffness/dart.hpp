@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/archive/archive.hpp"
 #include "core/barrier/stiffness_policy.hpp"
+#include "core/base/archive/archive.hpp"
 
 namespace bb {
 

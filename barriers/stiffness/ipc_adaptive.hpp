@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/archive/archive.hpp"
 #include "core/barrier/stiffness_policy.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/barrier/stiffness_policy.hpp"
-#include "core/parameters/parameter.hpp"
-#include "core/parameters/registry.hpp"
+#include "core/base/parameters/parameter.hpp"
+#include "core/base/parameters/registry.hpp"
 
 namespace bb {
 

@@ -108,7 +108,7 @@ class StiffnessPolicy {
     bool saturated = false;
   };
   virtual State state() const { return {}; }
-  /// What it remembers from step to step (core/archive): a policy with memory lists it all.
+  /// What it remembers from step to step (core/base/archive): a policy with memory lists it all.
   virtual void keep(Archive&) {}
 };
 

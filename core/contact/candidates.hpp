@@ -8,7 +8,7 @@
 #include "core/contact/obstacle.hpp"
 #include "core/contact/surface.hpp"
 #include "core/math/precision.hpp"
-#include "core/scene/contact_plan.hpp"
+#include "core/model/scene/contact_plan.hpp"
 
 namespace bb {
 

@@ -13,8 +13,8 @@
 #include "core/contact/step_bound.hpp"
 #include "core/contact/step_bound_rule.hpp"
 #include "core/math/precision.hpp"
-#include "core/scene/contact_plan.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/contact_plan.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

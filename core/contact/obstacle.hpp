@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/math/types.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

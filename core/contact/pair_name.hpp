@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/contact/contact_table.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

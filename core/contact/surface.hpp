@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/pair.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
+#include "core/base/parameters/registry.hpp"
 #include "core/energy/friction_laws/profile.hpp"
-#include "core/parameters/registry.hpp"
 
 namespace bb {
 

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
+#include "core/base/parameters/registry.hpp"
 #include "core/energy/poisson_range.hpp"
 #include "core/energy/tetrahedron.hpp"
-#include "core/parameters/registry.hpp"
 
 namespace bb {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/linear/block_pattern.hpp"
 #include "core/linear/gather_map.hpp"
 #include "core/linear/parallel.hpp"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/parameters/parameter.hpp"
+#include "core/base/parameters/parameter.hpp"
 
 namespace bb {
 

@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/parameters/parameter.hpp"
+#include "core/base/parameters/registry.hpp"
 #include "core/linear/block_system.hpp"
 #include "core/linear/definiteness.hpp"
 #include "core/linear/forcing.hpp"
-#include "core/parameters/parameter.hpp"
-#include "core/parameters/registry.hpp"
 
 namespace bb {
 

@@ -1,7 +1,7 @@
 // Recognises an unchanged pattern, so that symbolic work can be kept.
 #pragma once
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/linear/block_system.hpp"
 
 namespace bb {

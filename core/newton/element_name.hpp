@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/terms/host_term.hpp"
 
 namespace bb {

@@ -1,6 +1,6 @@
 #include "core/newton/end_residual.hpp"
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 
 namespace bb {
 

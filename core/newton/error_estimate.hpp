@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/record/number.hpp"
+#include "core/base/record/number.hpp"
 
 namespace bb {
 

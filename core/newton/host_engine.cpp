@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/newton/element_name.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "core/terms/cusps.hpp"
 #include "core/terms/known_step.hpp"
 

@@ -9,10 +9,10 @@
 #include "core/exec/host_executor.hpp"
 #include "core/linear/block_system.hpp"
 #include "core/linear/linear_solver.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/newton/energy_sum.hpp"
 #include "core/newton/incremental_potential.hpp"
 #include "core/newton/method.hpp"
-#include "core/scene/scene.hpp"
 #include "core/terms/host_term.hpp"
 #include "core/terms/plan.hpp"
 

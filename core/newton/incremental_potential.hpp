@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "core/base/record/phase_times.hpp"
 #include "core/exec/buffer.hpp"
 #include "core/linear/definiteness.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/newton/energy_change.hpp"
 #include "core/newton/hessian_level.hpp"
 #include "core/newton/report.hpp"
-#include "core/record/phase_times.hpp"
 #include "core/terms/term.hpp"
 
 namespace bb {

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/integrators/integrator.hpp"
+#include "core/base/parameters/parameter.hpp"
 #include "core/linear/linear_solver.hpp"
+#include "core/model/integrators/integrator.hpp"
 #include "core/newton/saddle_rule.hpp"
-#include "core/parameters/parameter.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "core/terms/step_needs.hpp"
 #include "core/terms/term_options.hpp"

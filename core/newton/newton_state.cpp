@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/scene/pinned_vertices.hpp"
+#include "core/model/scene/pinned_vertices.hpp"
 
 namespace bb {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/exec/sums/vectors.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/newton/hessian_level.hpp"
 #include "core/newton/incremental_potential.hpp"
 #include "core/newton/method.hpp"
-#include "core/scene/scene.hpp"
 #include "core/terms/plan.hpp"
 
 namespace bb {

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/newton/host_engine.hpp"
 #include "core/terms/known_step.hpp"
 

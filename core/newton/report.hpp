@@ -1,9 +1,9 @@
 // What an iteration, a step and an observer say to each other: plain numbers, no JSON. What the record keeps
-// of them is in TraceRow and StepRecord (core/record).
+// of them is in TraceRow and StepRecord (core/base/record).
 #pragma once
 
+#include "core/base/record/step_record.hpp"
 #include "core/linear/linear_solver.hpp"
-#include "core/record/step_record.hpp"
 #include "core/terms/report.hpp"
 
 namespace bb {

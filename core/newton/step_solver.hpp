@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "core/base/parameters/registry.hpp"
+#include "core/base/record/solver_counts.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/method.hpp"
 #include "core/newton/report.hpp"
 #include "core/newton/step_system.hpp"
-#include "core/parameters/registry.hpp"
-#include "core/record/solver_counts.hpp"
 #include "core/terms/step_needs.hpp"
 
 namespace bb {

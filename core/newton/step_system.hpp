@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "core/integrators/integrator.hpp"
+#include "core/base/record/phase_times.hpp"
+#include "core/model/integrators/integrator.hpp"
 #include "core/newton/energy_change.hpp"
 #include "core/newton/report.hpp"
 #include "core/newton/step_view.hpp"
-#include "core/record/phase_times.hpp"
 
 namespace bb {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/math/precision.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/newton/report.hpp"
-#include "core/scene/scene.hpp"
 #include "core/terms/term_set.hpp"
 
 namespace bb {

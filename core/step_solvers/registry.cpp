@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "core/parameters/check.hpp"
+#include "core/base/parameters/check.hpp"
 
 namespace bb {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/newton/iteration.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "core/step_solvers/velocity_damping.hpp"

@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "core/model/scene/held_scene.hpp"
 #include "core/newton/end_residual.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/newton/step_parts.hpp"
 #include "core/newton/step_solver.hpp"
-#include "core/scene/held_scene.hpp"
 
 namespace bb {
 

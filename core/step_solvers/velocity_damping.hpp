@@ -1,7 +1,7 @@
 // Damping of velocities when a step is over (Scene::damping).
 #pragma once
 
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

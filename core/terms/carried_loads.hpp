@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/contact/contact_loads.hpp"
 
 namespace bb {

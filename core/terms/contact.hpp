@@ -10,7 +10,7 @@
 #include "core/barrier/folded_barrier.hpp"
 #include "core/barrier/gap_potential.hpp"
 #include "core/contact/contact_system.hpp"
-#include "core/scene/contact_plan.hpp"
+#include "core/model/scene/contact_plan.hpp"
 #include "core/terms/carried_loads.hpp"
 #include "core/terms/contact_constraints.hpp"
 #include "core/terms/contact_stiffness.hpp"

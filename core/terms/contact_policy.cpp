@@ -2,7 +2,7 @@
 // (docs/design.md, Stiffness policies).
 #include <algorithm>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/terms/contact.hpp"
 
 namespace bb {

@@ -1,7 +1,7 @@
 #include "core/terms/cusps.hpp"
 
-#include "core/bodies/part.hpp"
 #include "core/energy/families/families.hpp"
+#include "core/model/bodies/part.hpp"
 
 namespace bb {
 

@@ -8,7 +8,7 @@
 
 #include "core/energy/families/element_family.hpp"
 #include "core/exec/host_executor.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

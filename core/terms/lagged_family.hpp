@@ -10,7 +10,7 @@
 
 #include "core/energy/families/element_family.hpp"
 #include "core/exec/buffer.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/terms/known_step.hpp"
 #include "core/terms/lagged_rows.hpp"
 #include "core/terms/report.hpp"

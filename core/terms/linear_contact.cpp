@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/contact/row_columns.hpp"
 #include "core/math/error.hpp"
 

@@ -12,7 +12,7 @@ std::string_view name_of(const Part& part) {
   for (const PartEntry& entry : part_entries()) {
     if (&entry.part == &part) return entry.name;
   }
-  throw std::logic_error("a part that is not in core/scene/parts/registry.inc");
+  throw std::logic_error("a part that is not in core/model/scene/parts/registry.inc");
 }
 
 PlanItem needs_part(const Part& part, const TermNeeds& needs) {

@@ -1,13 +1,13 @@
-// The elastic terms: the elements of a part (core/bodies/part.hpp), one term a family.
+// The elastic terms: the elements of a part (core/model/bodies/part.hpp), one term a family.
 #pragma once
 
-#include "core/bodies/part.hpp"
+#include "core/model/bodies/part.hpp"
 #include "core/terms/host_term.hpp"
 #include "core/terms/term_inputs.hpp"
 
 namespace bb {
 
-/// That of its line in core/scene/parts/registry.inc.
+/// That of its line in core/model/scene/parts/registry.inc.
 std::string_view name_of(const Part& part);
 PlanItem needs_part(const Part& part, const TermNeeds& needs);
 void make_part(const Part& part, const TermInputs& inputs, TermList& terms);

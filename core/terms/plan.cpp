@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/linear/linear_solver.hpp"
-#include "core/scene/contact_plan.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/contact_plan.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/terms/registry.hpp"
 #include "core/terms/step_needs.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "core/barrier/shape.hpp"
 #include "core/barrier/stiffness_policy.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/record/step_record.hpp"
 #include "core/contact/contact_system.hpp"
-#include "core/record/step_record.hpp"
 
 namespace bb {
 

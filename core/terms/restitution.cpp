@@ -3,7 +3,7 @@
 // the speed at which the pair met.
 #include <algorithm>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/exec/sums/resident_sum.hpp"
 #include "core/terms/lagged_family_of.hpp"
 #include "core/terms/registry.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 
 namespace bb {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/parameters/parameter.hpp"
 #include "core/math/projection.hpp"
-#include "core/parameters/parameter.hpp"
 
 namespace bb {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/terms/host_term.hpp"
 #include "core/terms/limit_steps.hpp"
 

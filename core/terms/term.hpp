@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/record/phase_times.hpp"
 #include "core/energy/families/family_step.hpp"
 #include "core/math/types.hpp"
-#include "core/record/phase_times.hpp"
 #include "core/terms/report.hpp"
 #include "core/terms/term_set.hpp"
 
@@ -66,7 +66,7 @@ class Term {
   virtual bool renew_lag(const PositionsView& /*x*/) { return false; }
   /// The step is over and ended at x.
   virtual void end_step(const PositionsView& /*x*/, PhaseClock&) {}
-  /// What it remembers from step to step (core/archive). A term that begin_step makes anew has nothing.
+  /// What it remembers from step to step (core/base/archive). A term that begin_step makes anew has nothing.
   virtual void keep(Archive&) {}
 
   // --- an iterate

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/exec/executor.hpp"
-#include "core/scene/contact_plan.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/contact_plan.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {

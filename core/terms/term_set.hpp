@@ -2,7 +2,7 @@
 // without some groups.
 #pragma once
 
-#include "core/record/phase_times.hpp"
+#include "core/base/record/phase_times.hpp"
 
 namespace bb {
 

@@ -1,7 +1,7 @@
 /* Example: a stiffness policy, in plain C. The mass that the contact feels along its normal, 1/m_eff = sum
  * w_i^2/m_i, as an inertia stiffness: kappa = m_eff/(c h^2). Without inertia (c = 0) there is none, and kappa
  * is 0. */
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 static void fill(void* self, const bb_plugin_rows* rows, double* kappa) {
   (void)self;

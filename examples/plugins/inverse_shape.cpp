@@ -1,7 +1,7 @@
 // Example: a barrier shape. With u = d/d_hat, e = 1 - u:
 //   b = (d_hat - d)^3/d = d_hat^2 e^3/u,   b' = -d_hat (3 e^2/u + e^3/u^2),
 //   b'' = 6 e/u + 6 e^2/u^2 + 2 e^3/u^3;   C2 at d_hat, infinite at 0
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {
 

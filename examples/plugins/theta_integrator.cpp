@@ -2,7 +2,7 @@
 // trapezoidal rule (1/2):
 //   x = x_n + h ((1 - theta) v_n + theta v),   v = v_n + h ((1 - theta) a_n + theta a)
 // Putting v into x gives c = theta^2 and x_tilde = x_n + h v_n + h^2 theta (1 - theta) a_n.
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/input/read_file.hpp"
-#include "core/input/text_scanner.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/input/text_scanner.hpp"
 #include "core/math/error.hpp"
 
 namespace bb::ccd {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/record/writer.hpp"
+#include "core/base/record/writer.hpp"
 #include "experiments/ccd/head_on.hpp"
 #include "experiments/ccd/random_queries.hpp"
 #include "experiments/ccd/read_queries.hpp"

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "core/input/names.hpp"
-#include "core/input/read_file.hpp"
+#include "core/base/input/names.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/run_folder.hpp"
 #include "core/math/error.hpp"
-#include "core/mesh/read_mesh.hpp"
-#include "core/record/run_folder.hpp"
+#include "core/model/mesh/read_mesh.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"

@@ -1,12 +1,12 @@
 // The verb device: is there a card that this build can use, and how fast its memory is.
-#include "core/cuda/device.hpp"
+#include "core/exec/cuda/device.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/cuda/copy_rates.hpp"
+#include "core/exec/cuda/copy_rates.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"
 

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/bodies/part.hpp"
-#include "core/cuda/device.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/exec/cuda/device.hpp"
 #include "core/exec/memory_ledger.hpp"
-#include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
+#include "core/model/bodies/part.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"

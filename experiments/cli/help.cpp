@@ -4,10 +4,10 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "core/base/parameters/check.hpp"
+#include "core/base/parameters/registry.hpp"
+#include "core/base/record/schema.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/check.hpp"
-#include "core/parameters/registry.hpp"
-#include "core/record/schema.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"

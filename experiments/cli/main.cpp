@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "barriers/plugins.hpp"
+#include "core/base/parameters/registry.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/schema_version.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/registry.hpp"
-#include "core/record/provenance.hpp"
-#include "core/record/schema_version.hpp"
-#include "core/record/writer.hpp"
 #include "experiments/cli/memory.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/record/provenance.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/writer.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/matrix/replay_text.hpp"

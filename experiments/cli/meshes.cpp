@@ -12,10 +12,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "core/input/json.hpp"
-#include "core/input/read_file.hpp"
-#include "core/mesh/frame_mesh.hpp"
-#include "core/mesh/read_mesh.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/model/mesh/frame_mesh.hpp"
+#include "core/model/mesh/read_mesh.hpp"
 #include "experiments/cli/options.hpp"
 
 namespace bb::cli {

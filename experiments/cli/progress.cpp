@@ -6,7 +6,7 @@
 #include <chrono>
 #include <csignal>
 
-#include "core/input/names.hpp"
+#include "core/base/input/names.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/summary_table.hpp"
 #include "experiments/cli/terminal.hpp"

@@ -6,8 +6,8 @@
 
 #include "barriers/formulas.hpp"
 #include "barriers/plugins.hpp"
+#include "core/base/record/provenance.hpp"
 #include "core/math/error.hpp"
-#include "core/record/provenance.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/verbs.hpp"

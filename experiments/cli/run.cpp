@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "core/record/folder_lock.hpp"
-#include "core/record/run_folder.hpp"
+#include "core/base/record/folder_lock.hpp"
+#include "core/base/record/run_folder.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <csignal>
 
-#include "core/input/names.hpp"
+#include "core/base/input/names.hpp"
 
 namespace bb::cli {
 

@@ -8,7 +8,7 @@
 
 namespace bb::cli {
 
-/// Writes the text; control characters in it are shown, not sent (printable() in core/input/names.hpp).
+/// Writes the text; control characters in it are shown, not sent (printable() in core/base/input/names.hpp).
 void say(std::string_view text);
 /// The same to the standard output, where answers go. Errors: as those of fmt::print.
 void show_text(std::string_view text);

@@ -1,7 +1,7 @@
 // The verb steps: a table of single steps on stdout, and their residuals in a file for the figure.
 #include <fmt/format.h>
 
-#include "core/record/writer.hpp"
+#include "core/base/record/writer.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/input/names.hpp"
+#include "core/base/input/names.hpp"
 #include "experiments/cli/terminal.hpp"
 
 namespace bb::cli {

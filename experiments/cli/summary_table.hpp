@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 
 namespace bb::cli {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/input/json.hpp"
-#include "core/input/names.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/input/names.hpp"
 
 namespace bb {
 namespace {

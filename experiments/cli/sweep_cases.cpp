@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/input/json.hpp"
-#include "core/input/names.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/input/names.hpp"
+#include "core/base/parameters/check.hpp"
+#include "core/base/record/provenance.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/check.hpp"
-#include "core/record/provenance.hpp"
 #include "experiments/cli/sweep_axes.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/config/document.hpp"

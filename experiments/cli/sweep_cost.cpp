@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
-#include "core/record/provenance.hpp"
-#include "core/record/writer.hpp"
 #include "experiments/cli/sweep_folder.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/plan.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "experiments/config/run_config.hpp"
 
 namespace bb::cli {

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "core/input/read_file.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/folder_lock.hpp"
+#include "core/base/record/run_folder.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
-#include "core/record/folder_lock.hpp"
-#include "core/record/run_folder.hpp"
-#include "core/record/writer.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/summary_table.hpp"

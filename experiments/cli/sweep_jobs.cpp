@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <csignal>
 
-#include "core/record/writer.hpp"
+#include "core/base/record/writer.hpp"
 #include "experiments/cli/progress.hpp"
 
 namespace bb::cli {

@@ -10,8 +10,8 @@
 #include <set>
 #include <thread>
 
-#include "core/record/folder_lock.hpp"
-#include "core/record/provenance.hpp"
+#include "core/base/record/folder_lock.hpp"
+#include "core/base/record/provenance.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/summary_table.hpp"

@@ -9,11 +9,11 @@
 #include <span>
 #include <unordered_map>
 
-#include "core/input/names.hpp"
-#include "core/input/read_file.hpp"
+#include "core/base/input/names.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
-#include "core/record/provenance.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "experiments/cli/sweep_cases.hpp"
 #include "experiments/config/config_family.hpp"
 #include "experiments/config/parse.hpp"

@@ -7,14 +7,14 @@
 #include <random>
 #include <utility>
 
-#include "core/bodies/scene_builder.hpp"
-#include "core/bodies/scene_checks.hpp"
-#include "core/input/names.hpp"
-#include "core/input/read_file.hpp"
-#include "core/mesh/bounds.hpp"
-#include "core/mesh/read_mesh.hpp"
-#include "core/parameters/registry.hpp"
-#include "core/record/provenance.hpp"
+#include "core/base/input/names.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/parameters/registry.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/model/bodies/scene_builder.hpp"
+#include "core/model/bodies/scene_checks.hpp"
+#include "core/model/mesh/bounds.hpp"
+#include "core/model/mesh/read_mesh.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/scenes/procedural_scene.hpp"

@@ -9,7 +9,7 @@
 #include "barriers/shapes/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
 #include "core/barrier/gap_potential.hpp"
-#include "core/integrators/registry.hpp"
+#include "core/model/integrators/registry.hpp"
 #include "experiments/config/complain.hpp"
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/policy_request.hpp"

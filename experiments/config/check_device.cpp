@@ -1,7 +1,7 @@
 // Settings that a device does not have.
 #include <fmt/format.h>
 
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "experiments/config/complain.hpp"
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/reader.hpp"

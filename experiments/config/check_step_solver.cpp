@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "barriers/shapes/registry.hpp"
-#include "core/integrators/registry.hpp"
+#include "core/model/integrators/registry.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/complain.hpp"

@@ -5,10 +5,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/input/read_file.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/places.hpp"
+#include "core/base/record/provenance.hpp"
 #include "core/math/error.hpp"
-#include "core/record/places.hpp"
-#include "core/record/provenance.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/formula_shapes.hpp"
 #include "experiments/config/parse.hpp"

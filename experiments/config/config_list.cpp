@@ -1,8 +1,8 @@
 #include "experiments/config/config_list.hpp"
 
-#include "core/input/json.hpp"
-#include "core/input/names.hpp"
-#include "core/parameters/check.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/input/names.hpp"
+#include "core/base/parameters/check.hpp"
 
 namespace bb {
 namespace {

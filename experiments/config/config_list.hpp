@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "core/parameters/parameter.hpp"
+#include "core/base/parameters/parameter.hpp"
 
 namespace bb {
 

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/input/json.hpp"
-#include "core/input/names.hpp"
-#include "core/record/schema_version.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/input/names.hpp"
+#include "core/base/record/schema_version.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/scenes/procedural_scene.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/parameters/parameter.hpp"
+#include "core/base/parameters/parameter.hpp"
 #include "experiments/config/run_config.hpp"
 
 namespace bb {

@@ -2,9 +2,9 @@
 
 #include <initializer_list>
 
-#include "core/mesh/generators.hpp"
-#include "core/mesh/solid_generators.hpp"
-#include "core/mesh/strand_generators.hpp"
+#include "core/model/mesh/generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
+#include "core/model/mesh/strand_generators.hpp"
 
 namespace bb {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/triangle_mesh.hpp"
-#include "core/parameters/parameter.hpp"
-#include "core/parameters/registry.hpp"
+#include "core/base/parameters/parameter.hpp"
+#include "core/base/parameters/registry.hpp"
+#include "core/model/mesh/triangle_mesh.hpp"
 
 namespace bb {
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <set>
 
-#include "core/input/json.hpp"
-#include "core/parameters/registry.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/parameters/registry.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/config/sections.hpp"
 

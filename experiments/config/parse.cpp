@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/input/read_file.hpp"
-#include "core/record/provenance.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/document.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 #include "experiments/config/run_config.hpp"
 
 namespace bb {
@@ -31,7 +31,7 @@ std::string resolved_json(const RunConfig& config);
 /// The document that it is the text of.
 nlohmann::json resolved_document(const RunConfig& config);
 
-/// Identity of a run: config_id of core/record applied to it.
+/// Identity of a run: config_id of core/base/record applied to it.
 std::string config_id(const RunConfig& config);
 
 /// The scene of a config: procedural, or from its bodies. Jitter applied. Deterministic.

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/input/json.hpp"
-#include "core/parameters/registry.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/parameters/registry.hpp"
 #include "experiments/config/formula_shapes.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/config/sections.hpp"

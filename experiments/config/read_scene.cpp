@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "core/bodies/part.hpp"
-#include "core/input/read_file.hpp"
-#include "core/record/provenance.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/model/bodies/part.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/sections.hpp"

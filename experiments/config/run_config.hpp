@@ -10,13 +10,13 @@
 
 #include "barriers/stiffness/registry.hpp"
 #include "core/barrier/shape.hpp"
-#include "core/bodies/body_spec.hpp"
+#include "core/base/parameters/parameter.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/linear/condition.hpp"
 #include "core/math/precision.hpp"
+#include "core/model/bodies/body_spec.hpp"
 #include "core/newton/saddle_rule.hpp"
-#include "core/parameters/parameter.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {

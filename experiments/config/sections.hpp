@@ -2,8 +2,8 @@
 // help and the schema print.
 #pragma once
 
-#include "core/bodies/material_settings.hpp"
-#include "core/parameters/settings.hpp"
+#include "core/base/parameters/settings.hpp"
+#include "core/model/bodies/material_settings.hpp"
 #include "experiments/config/enum_words.hpp"
 
 namespace bb {

@@ -8,7 +8,7 @@
 
 #include "barriers/formulas.hpp"
 #include "barriers/matching.hpp"
-#include "core/input/names.hpp"
+#include "core/base/input/names.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/sections.hpp"

@@ -1,5 +1,5 @@
 // energy: value, gradient, exact and projected Hessian of one element of a part.
-#include "core/bodies/part.hpp"
+#include "core/model/bodies/part.hpp"
 #include "experiments/eval/kinds.hpp"
 
 namespace bb::eval {

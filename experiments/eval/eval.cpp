@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
-#include "core/input/json.hpp"
-#include "core/input/read_file.hpp"
-#include "core/parameters/registry.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/parameters/registry.hpp"
 #include "experiments/eval/kinds.hpp"
 #include "experiments/eval/top_level.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/parameters/registry.hpp"
+#include "core/base/parameters/registry.hpp"
 
 namespace bb::eval {
 namespace {

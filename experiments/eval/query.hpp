@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/parameters/fields.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/fields.hpp"
 
 namespace bb::eval {
 

@@ -8,8 +8,8 @@
 
 #include "core/audit/audit.hpp"
 #include "core/audit/enclosed.hpp"
+#include "core/base/record/phase_times.hpp"
 #include "core/math/error.hpp"
-#include "core/record/phase_times.hpp"
 #include "experiments/judge/frame_stream.hpp"
 
 namespace bb::judge {

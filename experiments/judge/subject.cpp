@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "core/audit/surface_edges.hpp"
-#include "core/input/json.hpp"
+#include "core/base/input/json.hpp"
 #include "core/math/direction.hpp"
 #include "core/math/error.hpp"
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/input/text_scanner.hpp"
+#include "core/base/input/text_scanner.hpp"
 
 namespace bb {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parameters/parameter.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/base/parameters/parameter.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/record/number.hpp"
 #include "core/linear/condition.hpp"
 #include "core/linear/linear_solver.hpp"
-#include "core/record/number.hpp"
 #include "experiments/matrix/system_file.hpp"
 
 namespace bb {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/input/json.hpp"
+#include "core/base/input/json.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {

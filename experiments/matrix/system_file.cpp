@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/input/read_file.hpp"
-#include "core/record/provenance.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/provenance.hpp"
 #include "experiments/matrix/matrix_market.hpp"
 #include "experiments/matrix/side_car.hpp"
 

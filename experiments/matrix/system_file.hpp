@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/record/trace_row.hpp"
 #include "core/linear/block_system.hpp"
-#include "core/record/trace_row.hpp"
 
 namespace bb {
 

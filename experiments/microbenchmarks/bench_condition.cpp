@@ -2,11 +2,11 @@
 // factorisations of the same matrix.
 #include <algorithm>
 
+#include "core/base/record/phase_times.hpp"
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/condition.hpp"
 #include "core/linear/preconditioner.hpp"
-#include "core/record/phase_times.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "experiments/microbenchmarks/cloth_matrix.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 

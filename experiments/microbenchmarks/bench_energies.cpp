@@ -9,7 +9,7 @@
 #include "core/energy/membrane_model.hpp"
 #include "core/energy/solid_model.hpp"
 #include "core/exec/host_executor.hpp"
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "core/linear/block_system.hpp"
 #include "core/linear/cholmod_factor.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "experiments/microbenchmarks/cloth_matrix.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "core/bodies/scene_builder.hpp"
-#include "core/mesh/generators.hpp"
+#include "core/model/bodies/scene_builder.hpp"
+#include "core/model/mesh/generators.hpp"
 
 namespace bb::bench {
 

@@ -1,7 +1,7 @@
 // A stack of cloth grids, near enough to touch: the scene of the contact, energy and broad-phase subjects.
 #pragma once
 
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb::bench {
 

@@ -2,8 +2,8 @@
 // the same questions.
 #include <oneapi/tbb/info.h>
 
+#include "core/base/record/build_info.hpp"
 #include "core/linear/blas_info.hpp"
-#include "core/record/build_info.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 
 int main(int argc, char** argv) {

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/bodies/part.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/run_folder.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
-#include "core/mesh/write_mesh.hpp"
-#include "core/record/provenance.hpp"
-#include "core/record/run_folder.hpp"
-#include "core/record/writer.hpp"
-#include "core/scene/contact_plan.hpp"
+#include "core/model/bodies/part.hpp"
+#include "core/model/mesh/write_mesh.hpp"
+#include "core/model/scene/contact_plan.hpp"
 #include "experiments/matrix/matrix_market.hpp"
 #include "experiments/run/keep_record.hpp"
 #include "experiments/run/scene_json.hpp"

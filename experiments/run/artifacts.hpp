@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/record/run_record.hpp"
-#include "core/scene/scene.hpp"
+#include "core/base/record/run_record.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/matrix/system_file.hpp"
 
@@ -24,11 +24,11 @@ ContactFields contact_fields(const ContactState& state, int n_vertices);
 /// Files of one run below `folder`/frames and `folder`/matrices.
 ///
 /// A frame is a binary PLY file of all bodies: triangles, and rods as edges. Every vertex has `body` (index
-/// into the bodies of frames/scene.json), every triangle `body`; parts (core/bodies/part.hpp) add theirs: membranes `stretch`, the
+/// into the bodies of frames/scene.json), every triangle `body`; parts (core/model/bodies/part.hpp) add theirs: membranes `stretch`, the
 /// largest singular value of its deformation gradient, minus 1. At the end of a step vertices also have `gap_rel` and `load_N`, as in
 /// ContactFields. Errors of every function: RecordError when a file cannot be written whole.
 ///
-/// Files lie in frames.part and matrices.part until put_in_place() (core/record/run_folder.hpp), so that those of an
+/// Files lie in frames.part and matrices.part until put_in_place() (core/base/record/run_folder.hpp), so that those of an
 /// earlier run stay with its run.json until the new run is over; a run that never finishes leaves neither.
 class ArtifactWriter {
  public:

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/audit/surface.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/audit/audit_ledger.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 #include "experiments/run/outcome.hpp"
 
 namespace bb {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/archive/archive.hpp"
-#include "core/record/phase_times.hpp"
+#include "core/base/archive/archive.hpp"
+#include "core/base/record/phase_times.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/audit/audit.hpp"
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "experiments/config/run_config.hpp"
 #include "experiments/run/outcome.hpp"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/contact/contact_table.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

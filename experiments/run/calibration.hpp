@@ -2,7 +2,7 @@
 // contact and limit.
 #pragma once
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "experiments/run/pilot.hpp"
 
 namespace bb {

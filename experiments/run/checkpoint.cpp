@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "core/input/read_file.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/phase_times.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
-#include "core/record/phase_times.hpp"
-#include "core/record/writer.hpp"
 
 namespace bb {
 namespace {

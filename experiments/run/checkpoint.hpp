@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "core/archive/archive.hpp"
-#include "core/record/provenance.hpp"
+#include "core/base/archive/archive.hpp"
+#include "core/base/record/provenance.hpp"
 
 namespace bb {
 

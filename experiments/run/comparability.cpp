@@ -8,9 +8,9 @@
 #include <set>
 #include <vector>
 
+#include "core/base/record/folder_lock.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
-#include "core/record/folder_lock.hpp"
-#include "core/record/writer.hpp"
 
 namespace bb {
 namespace {

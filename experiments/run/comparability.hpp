@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 
 namespace bb {
 

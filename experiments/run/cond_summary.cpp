@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 
 namespace bb {
 namespace {

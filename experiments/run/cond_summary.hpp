@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 
 namespace bb {
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/linear/end_vectors.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "experiments/run/matrix_dump.hpp"
 #include "experiments/run/spectrum_ends.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "core/base/record/run_record.hpp"
 #include "core/linear/condition.hpp"
 #include "core/newton/report.hpp"
-#include "core/record/run_record.hpp"
 #include "experiments/config/run_config.hpp"
 #include "experiments/run/artifacts.hpp"
 #include "experiments/run/cond_summary.hpp"

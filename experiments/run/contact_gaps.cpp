@@ -4,7 +4,7 @@
 #include <limits>
 #include <set>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 
 namespace bb {
 namespace {

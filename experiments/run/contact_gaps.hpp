@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "core/terms/report.hpp"
 #include "experiments/run/body_pair.hpp"
 

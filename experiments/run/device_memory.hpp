@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/config/run_config.hpp"
 

@@ -7,15 +7,15 @@
 #include <functional>
 
 #include "barriers/shapes/registry.hpp"
-#include "core/bodies/part.hpp"
-#include "core/cuda/device.hpp"
+#include "core/exec/cuda/device.hpp"
 #include "core/exec/host_executor.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
+#include "core/model/bodies/part.hpp"
 #include "core/resident/contact/given_shape.hpp"
 #include "core/resident/contact/policy_kernels.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
 #include "core/resident/elements/limit_forms.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {

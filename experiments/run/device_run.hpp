@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/base/record/outcome.hpp"
 #include "core/exec/executor.hpp"
-#include "core/record/outcome.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 #include "experiments/config/run_config.hpp"
 
 namespace bb {

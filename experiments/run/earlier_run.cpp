@@ -5,10 +5,10 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "core/input/names.hpp"
-#include "core/input/read_file.hpp"
+#include "core/base/input/names.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/places.hpp"
 #include "core/math/error.hpp"
-#include "core/record/places.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/checkpoint.hpp"
 #include "experiments/run/input_files.hpp"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 
 namespace bb {
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/info.h>
 
-#include "core/bodies/part.hpp"
 #include "core/linear/preconditioner.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/model/bodies/part.hpp"
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/run/calibration.hpp"
@@ -45,7 +45,7 @@ void fill_scene(const Scene& scene, RunRecord& record) {
   size.vertices = static_cast<std::size_t>(of_bodies);
   size.free_dofs = free_dofs(scene);
 #define PART(name, term, convex, where, field, ...) size.field = parts::name::part().size(scene);
-#include "core/scene/parts/registry.inc"
+#include "core/model/scene/parts/registry.inc"
 #undef PART
   size.obstacles = scene.obstacles.size();
   const auto start = scene.x0.leftCols(of_bodies);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/run/method.hpp"
 #include "experiments/run/outcome.hpp"

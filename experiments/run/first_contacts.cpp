@@ -1,6 +1,6 @@
 #include "experiments/run/first_contacts.hpp"
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 
 namespace bb {
 

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/run/body_pair.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/model/scene/scene.hpp"
 #include "core/newton/step_solver.hpp"
-#include "core/scene/scene.hpp"
 
 namespace bb {
 

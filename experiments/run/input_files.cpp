@@ -1,9 +1,9 @@
 #include "experiments/run/input_files.hpp"
 
-#include "core/input/read_file.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
-#include "core/record/provenance.hpp"
-#include "core/record/writer.hpp"
 
 namespace bb {
 namespace {

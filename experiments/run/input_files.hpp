@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "experiments/config/run_config.hpp"
 
 namespace bb {

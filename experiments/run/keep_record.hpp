@@ -1,9 +1,9 @@
-// Parts of a record in an archive (core/archive), by their lists of fields: every bit of them, and the reason where
+// Parts of a record in an archive (core/base/archive), by their lists of fields: every bit of them, and the reason where
 // a number is absent.
 #pragma once
 
-#include "core/archive/archive.hpp"
-#include "core/record/run_record.hpp"
+#include "core/base/archive/archive.hpp"
+#include "core/base/record/run_record.hpp"
 
 namespace bb {
 

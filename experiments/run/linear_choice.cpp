@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "experiments/config/parse.hpp"
 
 namespace bb {

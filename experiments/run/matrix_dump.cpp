@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/record/build_info.hpp"
+#include "core/base/record/build_info.hpp"
 
 namespace bb {
 namespace {

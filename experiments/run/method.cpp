@@ -1,8 +1,8 @@
 #include "experiments/run/method.hpp"
 
 #include "barriers/shapes/registry.hpp"
-#include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
+#include "core/model/integrators/registry.hpp"
 #include "core/resident/system/executor_engine.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/config/policy_request.hpp"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "core/base/record/outcome.hpp"
 #include "core/newton/report.hpp"
-#include "core/record/outcome.hpp"
 
 namespace bb {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <new>
 
+#include "core/base/record/provenance.hpp"
 #include "core/exec/executor.hpp"
-#include "core/record/provenance.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/keep_record.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/record/writer.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/run/artifacts.hpp"
 #include "experiments/run/checkpoint.hpp"

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 
 namespace bb {
 

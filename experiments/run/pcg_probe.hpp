@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/base/record/trace_row.hpp"
 #include "core/linear/linear_solver.hpp"
-#include "core/record/trace_row.hpp"
 
 namespace bb {
 

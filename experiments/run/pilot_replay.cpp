@@ -1,6 +1,6 @@
 #include "experiments/run/pilot_replay.hpp"
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 
 namespace bb {
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/barrier/stiffness_policy.hpp"
+#include "core/model/scene/held_scene.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/scene/held_scene.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/run/pilot.hpp"
 

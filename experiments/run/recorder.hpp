@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/record/run_record.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/newton/report.hpp"
-#include "core/record/run_record.hpp"
-#include "core/record/writer.hpp"
 #include "experiments/config/run_config.hpp"
 #include "experiments/run/artifacts.hpp"
 #include "experiments/run/audit_watch.hpp"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/record/phase_times.hpp"
+#include "core/base/record/phase_times.hpp"
 
 namespace bb {
 

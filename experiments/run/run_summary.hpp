@@ -1,7 +1,7 @@
 // What a summary says of the steps of a run.
 #pragma once
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 
 namespace bb {
 

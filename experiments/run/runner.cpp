@@ -7,13 +7,13 @@
 #include <new>
 
 #include "barriers/formulas.hpp"
+#include "core/base/record/folder_lock.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/run_folder.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/linear/blas_info.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
-#include "core/record/folder_lock.hpp"
-#include "core/record/provenance.hpp"
-#include "core/record/run_folder.hpp"
-#include "core/record/writer.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/comparability.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "experiments/config/run_config.hpp"
 #include "experiments/run/earlier_run.hpp"
 #include "experiments/run/run_limits.hpp"

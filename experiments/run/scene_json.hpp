@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "core/base/record/trace_row.hpp"
 #include "core/linear/end_vectors.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/record/trace_row.hpp"
 
 namespace bb {
 

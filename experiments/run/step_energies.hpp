@@ -1,8 +1,8 @@
 // Energies of the state that a step ended with.
 #pragma once
 
+#include "core/base/record/step_record.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/record/step_record.hpp"
 
 namespace bb {
 

@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
+#include "core/base/record/provenance.hpp"
 #include "core/math/error.hpp"
-#include "core/record/provenance.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/config/parse.hpp"

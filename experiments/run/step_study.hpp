@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/step_status.hpp"
+#include "core/base/record/step_status.hpp"
 #include "experiments/run/runner.hpp"
 
 namespace bb {

@@ -6,12 +6,12 @@
 #include <new>
 #include <stdexcept>
 
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/run_folder.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/linear/blas_info.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
-#include "core/record/provenance.hpp"
-#include "core/record/run_folder.hpp"
-#include "core/record/writer.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/comparability.hpp"
 #include "experiments/run/device_run.hpp"

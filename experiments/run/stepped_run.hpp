@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "core/archive/archive.hpp"
-#include "core/record/folder_lock.hpp"
+#include "core/base/archive/archive.hpp"
+#include "core/base/record/folder_lock.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/run/method.hpp"

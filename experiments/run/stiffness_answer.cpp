@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/terms/contact.hpp"
 
 namespace bb {

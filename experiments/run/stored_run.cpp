@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/record/provenance.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/writer.hpp"
 
 namespace bb {
 namespace {

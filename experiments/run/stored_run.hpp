@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/record/run_record.hpp"
 #include "core/math/error.hpp"
-#include "core/record/run_record.hpp"
 
 namespace bb {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "core/audit/audit_ledger.hpp"
-#include "core/record/run_record.hpp"
-#include "core/scene/scene.hpp"
+#include "core/base/record/run_record.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/input/memory.hpp"
-#include "core/mesh/generators.hpp"
+#include "core/base/input/memory.hpp"
+#include "core/model/mesh/generators.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {

@@ -1,7 +1,7 @@
 // The drape of "The Polynomial That Fixed 30 Years of Cloth Simulation" as one planar scene: a sheet of width
 // W in the x-y plane above a disk (an analytic sphere, since all vertices stay in its middle plane). Source:
 // the article's mesh function and figure; both of its variants, and two that let layers and drapes form.
-#include "core/mesh/generators.hpp"
+#include "core/model/mesh/generators.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {

@@ -1,5 +1,5 @@
 // A horizontal cloth let go while two corners of one side are held.
-#include "core/mesh/generators.hpp"
+#include "core/model/mesh/generators.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {

@@ -1,6 +1,6 @@
 #include "experiments/scenes/procedural_scene.hpp"
 
-#include "core/bodies/material_settings.hpp"
+#include "core/model/bodies/material_settings.hpp"
 
 namespace bb {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/bodies/scene_builder.hpp"
-#include "core/parameters/parameter.hpp"
-#include "core/parameters/registry.hpp"
+#include "core/base/parameters/parameter.hpp"
+#include "core/base/parameters/registry.hpp"
+#include "core/model/bodies/scene_builder.hpp"
 
 namespace bb {
 

@@ -2,8 +2,8 @@
 // of unlike stiffness.
 #include <cmath>
 
-#include "core/mesh/generators.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/generators.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/number.hpp"
+#include "core/base/record/number.hpp"
 
 namespace bb {
 

@@ -4,7 +4,7 @@
 
 #include "core/linear/condition.hpp"
 #include "core/linear/linear_solver.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "experiments/validity/block.hpp"
 
 namespace bb {

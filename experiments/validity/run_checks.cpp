@@ -5,7 +5,7 @@
 
 #include "barriers/matching.hpp"
 #include "barriers/shapes/registry.hpp"
-#include "core/record/provenance.hpp"
+#include "core/base/record/provenance.hpp"
 #include "experiments/validity/block.hpp"
 #include "experiments/validity/small_scene.hpp"
 

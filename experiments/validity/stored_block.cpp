@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/input/read_file.hpp"
-#include "core/record/provenance.hpp"
-#include "core/record/writer.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/writer.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 #include "experiments/validity/block.hpp"
 
 namespace bb {

@@ -17,7 +17,7 @@ from .given import json_text
 from .meshes import has_arrays, with_files
 
 SCHEMA = "barrierbench.config/1"  # of a config; a dict may leave it out
-LARGEST = 16 << 20  # bytes of a config, as in core/input/read_file.hpp
+LARGEST = 16 << 20  # bytes of a config, as in core/base/input/read_file.hpp
 Config = Mapping[str, Any] | str | os.PathLike
 
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <tuple>
 
+#include "core/base/parameters/registry.hpp"
 #include "core/linear/condition.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/registry.hpp"
 #include "python/src/bindings.hpp"
 
 namespace bb::python {

@@ -8,11 +8,11 @@
 #include <string>
 #include <tuple>
 
+#include "core/base/parameters/registry.hpp"
 #include "core/geometry/accd.hpp"
 #include "core/geometry/closest_points.hpp"
 #include "core/geometry/distance_derivatives.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/registry.hpp"
 #include "python/src/bindings.hpp"
 
 namespace bb::python {

@@ -6,9 +6,9 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
-#include "core/bodies/part.hpp"
-#include "core/parameters/parameter.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/base/parameters/parameter.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
+#include "core/model/bodies/part.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"

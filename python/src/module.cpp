@@ -2,10 +2,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "core/base/record/build_info.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/linear/blas_kernel.hpp"
 #include "core/math/error.hpp"
-#include "core/record/build_info.hpp"
-#include "core/record/writer.hpp"
 #include "experiments/config/parse.hpp"
 #include "python/src/bindings.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/record/run_record.hpp"
-#include "core/record/trace_row.hpp"
+#include "core/base/record/run_record.hpp"
+#include "core/base/record/trace_row.hpp"
 
 namespace bb::python {
 

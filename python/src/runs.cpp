@@ -11,8 +11,8 @@
 #include <tuple>
 #include <vector>
 
-#include "core/record/program_file.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/program_file.hpp"
+#include "core/base/record/writer.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/runner.hpp"
 #include "experiments/run/stepped_run.hpp"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 #include "experiments/config/parse.hpp"
 #include "python/src/bindings.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "barriers/stiffness/registry.hpp"
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/math/error.hpp"
 
 namespace bb::dart_policy_test {

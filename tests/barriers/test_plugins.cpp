@@ -9,8 +9,8 @@
 #include "barriers/plugins.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
+#include "core/base/parameters/registry.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/registry.hpp"
 #include "tests/barriers/barrier_cases.hpp"
 
 namespace bb::test::plugins_test {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "barriers/shapes/registry.hpp"
+#include "core/base/parameters/registry.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/registry.hpp"
 
 namespace bb::shape_registry_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "barriers/stiffness/registry.hpp"
+#include "core/base/parameters/registry.hpp"
 #include "core/math/error.hpp"
-#include "core/parameters/registry.hpp"
 #include "tests/barriers/ipc_adaptive.hpp"
 
 namespace bb::stiffness_policies_test {

@@ -1,9 +1,9 @@
 // Small bodies for the tests of bodies, scenes and plans.
 #pragma once
 
-#include "core/bodies/scene_builder.hpp"
 #include "core/math/error.hpp"
-#include "core/mesh/generators.hpp"
+#include "core/model/bodies/scene_builder.hpp"
+#include "core/model/mesh/generators.hpp"
 
 namespace bb::test {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/bodies/lumping.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/bodies/lumping.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/bodies/bodies.hpp"
 
 namespace bb::lumping_test {

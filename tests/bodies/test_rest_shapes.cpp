@@ -4,10 +4,10 @@
 #include <cmath>
 #include <functional>
 
-#include "core/bodies/part.hpp"
 #include "core/energy/families/element_family.hpp"
 #include "core/energy/stiffening.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/bodies/part.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/bodies/bodies.hpp"
 #include "tests/energy/host_family.hpp"
 

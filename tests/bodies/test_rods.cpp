@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "core/bodies/part.hpp"
 #include "core/exec/host_executor.hpp"
+#include "core/model/bodies/part.hpp"
 #include "tests/bodies/bodies.hpp"
 
 namespace bb::rods_test {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/bodies/bodies.hpp"
 
 namespace bb::scene_builder_test {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "tests/bodies/bodies.hpp"
 
 namespace bb::scene_checks_test {

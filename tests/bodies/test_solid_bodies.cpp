@@ -3,9 +3,9 @@
 
 #include <numeric>
 
-#include "core/bodies/part.hpp"
-#include "core/mesh/solid_generators.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/bodies/part.hpp"
+#include "core/model/mesh/solid_generators.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/bodies/bodies.hpp"
 
 namespace bb::test::solid_bodies {

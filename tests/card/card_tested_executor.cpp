@@ -3,7 +3,7 @@
 // host's numbers, so that one run names them all.
 #include <gtest/gtest.h>
 
-#include "core/cuda/device_executor.hpp"
+#include "core/exec/cuda/device_executor.hpp"
 #include "tests/card/launched.hpp"
 #include "tests/card/mapped_memory.hpp"
 #include "tests/resident/lockstep.hpp"

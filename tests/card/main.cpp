@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "core/cuda/device.hpp"
+#include "core/exec/cuda/device.hpp"
 #include "tests/card/launched.hpp"
 
 int main(int argc, char** argv) {

@@ -1,7 +1,7 @@
 // Whole runs on a card: memory of the card, streams, graphs, CUB's sort and scan. They end with the bits of the host executor.
 #include <gtest/gtest.h>
 
-#include "core/cuda/device_executor.hpp"
+#include "core/exec/cuda/device_executor.hpp"
 #include "tests/card/launched.hpp"
 #include "tests/resident/same_runs.hpp"
 

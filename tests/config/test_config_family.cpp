@@ -3,10 +3,10 @@
 #include <fstream>
 #include <random>
 
-#include "core/input/json.hpp"
-#include "core/input/read_file.hpp"
-#include "core/record/provenance.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/input/read_file.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "experiments/config/config_family.hpp"
 #include "tests/config/config_text.hpp"
 #include "tests/folders.hpp"

@@ -47,7 +47,7 @@ def numbers(schema, place=""):
 
 
 def test_every_number_has_a_largest_size():
-    """Squares and products of what a config holds stay within double (core/parameters/units.cpp)."""
+    """Squares and products of what a config holds stay within double (core/base/parameters/units.cpp)."""
     found = dict(numbers(json.loads((ROOT / "configs/schema/config.schema.json").read_text())))
     assert len(found) > 100
     for place, rule in found.items():

@@ -6,11 +6,11 @@
 #include <sstream>
 
 #include "barriers/stiffness/registry.hpp"
-#include "core/input/json.hpp"
-#include "core/integrators/registry.hpp"
+#include "core/base/input/json.hpp"
+#include "core/base/parameters/check.hpp"
 #include "core/linear/preconditioner.hpp"
-#include "core/parameters/check.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
+#include "core/model/integrators/registry.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/config/mesh_generators.hpp"

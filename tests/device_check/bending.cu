@@ -1,5 +1,5 @@
 // PTX of the checks in bending_checks.hpp.
-#include "core/cuda/device_block.cuh"
+#include "core/exec/cuda/device_block.cuh"
 #include "tests/device_check/bending_checks.hpp"
 #include "tests/ptx/instantiate.cuh"
 

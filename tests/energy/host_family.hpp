@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/energy/families/families.hpp"
 #include "core/exec/host_executor.hpp"
 

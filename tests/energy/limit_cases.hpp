@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <string>
 
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "tests/energy/host_limit.hpp"
 #include "tests/energy/strip.hpp"
 #include "tests/oracle/dense.hpp"

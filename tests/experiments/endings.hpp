@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/record/outcome.hpp"
 #include "core/linear/linear_solver.hpp"
-#include "core/record/outcome.hpp"
 
 namespace bb::test {
 

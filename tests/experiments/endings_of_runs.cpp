@@ -7,7 +7,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "core/integrators/registry.hpp"
+#include "core/model/integrators/registry.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/audit_verdict.hpp"
 #include "experiments/run/device_run.hpp"

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "core/record/folder_lock.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/folder_lock.hpp"
+#include "core/base/record/writer.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace bb::comparability_test {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/contact/contact_key.hpp"
 
 namespace bb::contact_gaps_test {

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "core/record/step_status.hpp"
-#include "core/record/trace_row.hpp"
+#include "core/base/record/step_status.hpp"
+#include "core/base/record/trace_row.hpp"
 #include "tests/experiments/endings.hpp"
 
 namespace bb::test::every_outcome_test {

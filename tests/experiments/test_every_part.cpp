@@ -6,8 +6,8 @@
 #include <set>
 
 #include "core/audit/state_audit.hpp"
-#include "core/bodies/part.hpp"
 #include "core/exec/host_executor.hpp"
+#include "core/model/bodies/part.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/audit_mesh.hpp"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/plan.hpp"
 

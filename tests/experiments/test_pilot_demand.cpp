@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "core/base/record/phase_times.hpp"
 #include "core/math/error.hpp"
-#include "core/record/phase_times.hpp"
 #include "tests/experiments/calibrated.hpp"
 
 namespace bb::pilot_demand_test {

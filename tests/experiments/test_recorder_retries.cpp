@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/recorder.hpp"

@@ -50,9 +50,10 @@ def test_what_is_not_declared_is_refused(tmp_path, rooms, files, words):
 
 
 def test_links_that_no_include_shows_are_printed(tmp_path):
-    rooms = "low|core/low|-|high,low\nhigh|core/high|low|low\nover|core/over|-|-\n"
-    more = {"core/over/c.hpp": "", "generated/core/over/c.cpp": '#include "core/high/b.hpp"\n#include "core/over/c.hpp"\n'}
+    rooms = "low|core/low|-|high,low\nhigh|core/high|low|low\nover|core/over|-|-\nover_in|core/over/in|-|-\n"
+    more = {"core/over/c.hpp": "", "generated/core/over/c.cpp": '#include "core/high/b.hpp"\n#include "core/over/c.hpp"\n',
+            "core/over/in/d.hpp": "", "generated/core/over/in/d.cpp": '#include "core/low/a.hpp"\n'}
     done = check(tmp_path, rooms, LOW | HIGH | more)
     assert done.returncode == 0, done.stderr
     lines = {line.split()[0]: line.split("<-")[1].split() for line in done.stdout.splitlines() if "<-" in line}
-    assert lines == {"low": ["linked:", "high"], "high": ["low"], "over": ["generated:", "high"]}
+    assert lines == {"low": ["linked:", "high"], "high": ["low"], "over": ["generated:", "high"], "over_in": ["generated:", "low"]}

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/record/writer.hpp"
+#include "core/base/record/writer.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/method.hpp"
 #include "experiments/run/runner.hpp"

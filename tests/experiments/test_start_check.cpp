@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-#include "core/record/phase_times.hpp"
+#include "core/base/record/phase_times.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/runner.hpp"
 #include "tests/temporary_folder.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/record/provenance.hpp"
+#include "core/base/record/provenance.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "experiments/run/plan.hpp"
 #include "tests/experiments/calibrated.hpp"

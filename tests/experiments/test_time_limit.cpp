@@ -5,8 +5,8 @@
 #include <chrono>
 #include <thread>
 
-#include "core/record/phase_times.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/phase_times.hpp"
+#include "core/base/record/writer.hpp"
 #include "experiments/run/runner.hpp"
 #include "tests/experiments/calibrated.hpp"
 #include "tests/temporary_folder.hpp"

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/integrators/registry.hpp"
+#include "core/model/integrators/registry.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/newton/step_solver.hpp"
-#include "core/scene/scene.hpp"
 
 namespace bb::features {
 

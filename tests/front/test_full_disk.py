@@ -163,7 +163,7 @@ def test_what_a_program_calls_again_is_so_for_the_verb(code, passed):
 
 
 def test_the_codes_are_those_of_the_program():
-    text = (ROOT / "core/record/atomic_write.cpp").read_text()
+    text = (ROOT / "core/base/record/atomic_write.cpp").read_text()
     lasting = re.findall(r"case (E[A-Z]+):", text[text.index("bool lasts(") :].split("default")[0])
     assert len(lasting) >= 10 and {getattr(errno, name) for name in lasting} == errors.LASTING
     for number, code in ((errno.ENOSPC, 75), (errno.EFBIG, 75), (errno.EDQUOT, 75), (errno.EMFILE, 75), (errno.EIO, 75), (errno.ENOENT, 2), (errno.EACCES, 2)):

@@ -1,5 +1,5 @@
 // The headers of a plugin's file, before anything of it is loaded.
-#include "core/plugin/library_file.hpp"
+#include "core/model/plugin/library_file.hpp"
 #include "tests/fuzz/target.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,8 +3,8 @@
 
 #include <numeric>
 
-#include "core/mesh/frame_mesh.hpp"
-#include "core/mesh/read_mesh.hpp"
+#include "core/model/mesh/frame_mesh.hpp"
+#include "core/model/mesh/read_mesh.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace bb::fuzz {

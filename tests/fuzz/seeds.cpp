@@ -11,8 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/record/schema.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/schema.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/eval/eval.hpp"

@@ -1,6 +1,6 @@
 // The side-car of a matrix of seven rows: what is accepted is written and read again as the same.
 #include "experiments/matrix/side_car.hpp"
-#include "core/record/provenance.hpp"
+#include "core/base/record/provenance.hpp"
 #include "tests/fuzz/target.hpp"
 #include "tests/matrix/stored.hpp"
 

@@ -1,6 +1,6 @@
 // A line of trace.jsonl: what is read is written and read again as the same.
-#include "core/record/parse_record.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/parse_record.hpp"
+#include "core/base/record/writer.hpp"
 #include "tests/fuzz/target.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

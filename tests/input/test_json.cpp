@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/input/json.hpp"
+#include "core/base/input/json.hpp"
 
 namespace bb {
 namespace {

@@ -1,8 +1,8 @@
 // Names that become folders, and the memory that a scene may ask for.
 #include <gtest/gtest.h>
 
-#include "core/input/memory.hpp"
-#include "core/input/names.hpp"
+#include "core/base/input/memory.hpp"
+#include "core/base/input/names.hpp"
 
 namespace bb {
 namespace {

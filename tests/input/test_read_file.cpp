@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/input/read_file.hpp"
+#include "core/base/input/read_file.hpp"
 #include "core/math/error.hpp"
 #include "tests/temporary_folder.hpp"
 

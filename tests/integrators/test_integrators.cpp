@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
+#include "core/model/integrators/registry.hpp"
 
 namespace bb::integrators_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/linear/preconditioner.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 
 namespace bb {
 

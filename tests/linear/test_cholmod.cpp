@@ -7,7 +7,7 @@
 #include "core/linear/blas_info.hpp"
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/linear_solver.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 

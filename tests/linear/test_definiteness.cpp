@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/linear/linear_solver.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
 namespace bb::definiteness_test {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/linear/linear_solver.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 

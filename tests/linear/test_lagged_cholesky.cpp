@@ -4,7 +4,7 @@
 #include <tbb/global_control.h>
 
 #include "core/linear/linear_solver.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 

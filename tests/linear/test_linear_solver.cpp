@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 

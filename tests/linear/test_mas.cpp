@@ -8,8 +8,8 @@
 #include "core/linear/mas_level.hpp"
 #include "core/linear/node_blocks.hpp"
 #include "core/linear/preconditioner.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/at.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
 namespace bb::mas_test {

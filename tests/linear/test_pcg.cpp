@@ -6,7 +6,7 @@
 #include "core/linear/cg_ritz.hpp"
 #include "core/linear/linear_solver.hpp"
 #include "core/linear/preconditioner.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "core/linear/linear_solver.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/linear/vertex_clusters.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
 namespace bb::schwarz_test {

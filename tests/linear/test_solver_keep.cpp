@@ -1,7 +1,7 @@
 // What a solver keeps in an archive: one that reads it goes on, bit for bit, wherever the first one was.
 #include <gtest/gtest.h>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "tests/linear/every_solver.hpp"
 #include "tests/linear/systems.hpp"
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "core/linear/preconditioner.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "experiments/matrix/replay_text.hpp"
 #include "tests/matrix/stored.hpp"
 

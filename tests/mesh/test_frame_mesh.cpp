@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/math/error.hpp"
-#include "core/mesh/frame_mesh.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/frame_mesh.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/mesh/mesh_bytes.hpp"
 
 namespace bb {

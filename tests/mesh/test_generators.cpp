@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "core/math/error.hpp"
-#include "core/mesh/generators.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/generators.hpp"
+#include "core/model/mesh/topology.hpp"
 
 namespace bb {
 namespace {

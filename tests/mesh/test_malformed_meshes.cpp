@@ -4,7 +4,7 @@
 #include <ostream>
 
 #include "core/math/error.hpp"
-#include "core/mesh/read_mesh.hpp"
+#include "core/model/mesh/read_mesh.hpp"
 #include "tests/folders.hpp"
 #include "tests/mesh/mesh_bytes.hpp"
 

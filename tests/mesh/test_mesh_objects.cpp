@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/math/error.hpp"
-#include "core/mesh/frame_mesh.hpp"
-#include "core/mesh/read_mesh.hpp"
+#include "core/model/mesh/frame_mesh.hpp"
+#include "core/model/mesh/read_mesh.hpp"
 
 namespace bb {
 namespace {

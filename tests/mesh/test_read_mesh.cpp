@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <set>
 
-#include "core/mesh/read_mesh.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/read_mesh.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/mesh/mesh_bytes.hpp"
 #include "tests/optional_data.hpp"
 

@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "core/math/error.hpp"
-#include "core/mesh/read_mesh.hpp"
-#include "core/mesh/solid_generators.hpp"
-#include "core/mesh/topology.hpp"
-#include "core/mesh/write_mesh.hpp"
+#include "core/model/mesh/read_mesh.hpp"
+#include "core/model/mesh/solid_generators.hpp"
+#include "core/model/mesh/topology.hpp"
+#include "core/model/mesh/write_mesh.hpp"
 
 namespace bb::test::solid_meshes {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/math/error.hpp"
-#include "core/mesh/strand_generators.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/strand_generators.hpp"
+#include "core/model/mesh/topology.hpp"
 
 namespace bb::mesh::strand_generators_test {
 namespace {

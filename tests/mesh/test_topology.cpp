@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/mesh/generators.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/generators.hpp"
+#include "core/model/mesh/topology.hpp"
 
 namespace bb {
 namespace {

@@ -1,9 +1,9 @@
 // The writer: what is written reads back bit for bit.
 #include <gtest/gtest.h>
 
-#include "core/mesh/generators.hpp"
-#include "core/mesh/read_mesh.hpp"
-#include "core/mesh/write_mesh.hpp"
+#include "core/model/mesh/generators.hpp"
+#include "core/model/mesh/read_mesh.hpp"
+#include "core/model/mesh/write_mesh.hpp"
 
 namespace bb {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::test {

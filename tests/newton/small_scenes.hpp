@@ -5,9 +5,9 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
-#include "core/bodies/scene_builder.hpp"
-#include "core/integrators/registry.hpp"
-#include "core/mesh/generators.hpp"
+#include "core/model/bodies/scene_builder.hpp"
+#include "core/model/integrators/registry.hpp"
+#include "core/model/mesh/generators.hpp"
 #include "core/newton/method.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "core/terms/contact.hpp"

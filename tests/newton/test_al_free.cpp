@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/contact/motion_pairs.hpp"
 #include "core/contact/step_bound.hpp"
 #include "core/math/error.hpp"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/newton/buckling_step.hpp"
 
 namespace bb::attempts_test {

@@ -2,7 +2,7 @@
 // renewed, what they carry at the end of this one, and how often it is renewed does not depend on how often multipliers are.
 #include <gtest/gtest.h>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "tests/newton/small_scenes.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/energy/hinge.hpp"
 #include "tests/newton/small_scenes.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::driven_test {

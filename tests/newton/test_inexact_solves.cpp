@@ -4,7 +4,7 @@
 #include <tbb/global_control.h>
 
 #include "core/linear/preconditioner.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/newton/buckling_step.hpp"
 
 namespace bb::inexact_solves_test {

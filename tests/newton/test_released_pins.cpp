@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::released_pins_test {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/newton/step_parts.hpp"
 #include "tests/newton/small_scenes.hpp"
 

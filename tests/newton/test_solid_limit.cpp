@@ -5,8 +5,8 @@
 
 #include "core/energy/families/limit_family.hpp"
 #include "core/exec/host_executor.hpp"
-#include "core/mesh/solid_generators.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/solid_generators.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::newton::solid_limit_test {

@@ -1,10 +1,10 @@
 // Solids in motion and at rest: patch test under uniaxial load, momentum, a cantilever against Euler and Bernoulli.
 #include <gtest/gtest.h>
 
-#include "core/bodies/part.hpp"
 #include "core/exec/host_executor.hpp"
-#include "core/mesh/solid_generators.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/bodies/part.hpp"
+#include "core/model/mesh/solid_generators.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::test::solids {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/record/step_record.hpp"
+#include "core/base/record/step_record.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::step_attempts_test {

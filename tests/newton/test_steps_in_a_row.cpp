@@ -7,9 +7,9 @@
 #include <random>
 #include <set>
 
-#include "core/archive/archive.hpp"
-#include "core/record/run_record.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/archive/archive.hpp"
+#include "core/base/record/run_record.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "tests/newton/feature_scenes.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/parameters/check.hpp"
-#include "core/parameters/units.hpp"
+#include "core/base/parameters/check.hpp"
+#include "core/base/parameters/units.hpp"
 
 namespace bb {
 namespace {

@@ -1,9 +1,9 @@
 // Look-up by name, the text for a wrong name, and names that are taken.
-#include "core/parameters/registry.hpp"
+#include "core/base/parameters/registry.hpp"
 
 #include <gtest/gtest.h>
 
-#include "core/parameters/parameter.hpp"
+#include "core/base/parameters/parameter.hpp"
 
 namespace bb {
 namespace {

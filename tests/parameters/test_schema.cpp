@@ -1,7 +1,7 @@
 // JSON Schema of a list: every keyword from the row that it stands for.
 #include <gtest/gtest.h>
 
-#include "core/parameters/check.hpp"
+#include "core/base/parameters/check.hpp"
 
 namespace bb {
 namespace {

@@ -1,5 +1,5 @@
 // Kernels that break a rule, as PTX.
-#include "core/cuda/device_block.cuh"
+#include "core/exec/cuda/device_block.cuh"
 #include "tests/ptx/faulty_kernels.hpp"
 #include "tests/ptx/instantiate.cuh"
 

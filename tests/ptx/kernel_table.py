@@ -65,7 +65,7 @@ def fp64_counts(ptx: str) -> dict[str, int]:
 
 
 def object_file(build: Path, room: str) -> Path:
-    found = list(build.glob(f"core/cuda/CMakeFiles/bb_device_{room}.dir/**/{room}.cu.o"))
+    found = list(build.glob(f"core/exec/cuda/CMakeFiles/bb_device_{room}.dir/**/{room}.cu.o"))
     if len(found) != 1:
         raise TableError(f"{build}: {len(found)} object files of the kernels of {room}, wanted 1: build the target bb_device_{room}")
     return found[0]

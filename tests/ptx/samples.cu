@@ -1,5 +1,5 @@
 // The kernels of the tests as PTX.
-#include "core/cuda/device_block.cuh"
+#include "core/exec/cuda/device_block.cuh"
 #include "tests/exec/sample_kernels.hpp"
 #include "tests/ptx/instantiate.cuh"
 

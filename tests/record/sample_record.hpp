@@ -1,7 +1,7 @@
 // A record of a run that stalled in its first step, and a line of its trace: what the file tests write.
 #pragma once
 
-#include "core/record/run_record.hpp"
+#include "core/base/record/run_record.hpp"
 
 namespace bb::test {
 

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "core/record/kept_hash.hpp"
-#include "core/record/provenance.hpp"
+#include "core/base/record/kept_hash.hpp"
+#include "core/base/record/provenance.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace bb::kept_hash_test {

@@ -1,5 +1,5 @@
 // Hashes, ids, statistics, timers, machine.
-#include "core/record/provenance.hpp"
+#include "core/base/record/provenance.hpp"
 
 #include <gtest/gtest.h>
 

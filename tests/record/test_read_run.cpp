@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
-#include "core/record/writer.hpp"
 #include "tests/record/sample_record.hpp"
 #include "tests/temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 // Locks of folders, and what goes when an earlier run gives way: names and contents that a run wrote.
-#include "core/record/run_folder.hpp"
+#include "core/base/record/run_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -9,9 +9,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/record/folder_lock.hpp"
-#include "core/record/provenance.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/folder_lock.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/writer.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace bb::run_folder_test {

@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "core/record/run_record.hpp"
-#include "core/record/schema.hpp"
+#include "core/base/record/run_record.hpp"
+#include "core/base/record/schema.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "tests/folders.hpp"
 

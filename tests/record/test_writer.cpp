@@ -10,8 +10,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/record/provenance.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/writer.hpp"
 #include "tests/folders.hpp"
 #include "tests/record/sample_record.hpp"
 #include "tests/temporary_folder.hpp"

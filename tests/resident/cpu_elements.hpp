@@ -5,10 +5,10 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
-#include "core/bodies/scene_builder.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/exec/host_executor.hpp"
-#include "core/mesh/generators.hpp"
+#include "core/model/bodies/scene_builder.hpp"
+#include "core/model/mesh/generators.hpp"
 #include "core/newton/energy_sum.hpp"
 #include "core/newton/hessian_level.hpp"
 #include "core/terms/plan.hpp"

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "core/exec/host_executor.hpp"
+#include "core/model/scene/pinned_vertices.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/family_term.hpp"
 #include "core/resident/elements/hessian_request.hpp"
-#include "core/scene/pinned_vertices.hpp"
 #include "tests/resident/cpu_elements.hpp"
 #include "tests/resident/tested_executor.hpp"
 
@@ -65,7 +65,7 @@ struct OnExecutor {
 #define BB_MAKE_kernels(name) make(#name, resident::make_resident_part<parts::name::part>);
 #define BB_MAKE_host_only(name)
 #define PART(name, doc, convex, where, ...) BB_MAKE_##where(name)
-#include "core/scene/parts/registry.inc"
+#include "core/model/scene/parts/registry.inc"
 #undef PART
 #undef BB_MAKE_kernels
 #undef BB_MAKE_host_only

@@ -1,7 +1,7 @@
 // What is kept between steps: a run goes on from an archive of either path, on either path.
 #include <gtest/gtest.h>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "tests/resident/system_cases.hpp"
 
 namespace bb::resident_archive_test {

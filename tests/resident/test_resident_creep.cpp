@@ -1,5 +1,5 @@
 // Rest shapes that follow from step to step, and bending that grows, on an executor against the terms of the CPU path.
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "tests/resident/on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"
 

@@ -2,7 +2,7 @@
 // executor and in those of the CPU path, whatever the time of the step is. Families against closed forms: tests/energy/test_load_families.cpp.
 #include <cmath>
 
-#include "core/mesh/generators.hpp"
+#include "core/model/mesh/generators.hpp"
 #include "tests/resident/on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"
 

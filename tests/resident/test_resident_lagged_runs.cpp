@@ -2,9 +2,9 @@
 // ends.
 #include <gtest/gtest.h>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/energy/friction_law.hpp"
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "tests/resident/both_systems.hpp"
 #include "tests/resident/system_cases.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/energy/solid_model.hpp"
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "tests/resident/on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"
 

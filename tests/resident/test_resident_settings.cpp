@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "tests/barriers/limit_policies.hpp"
 #include "tests/resident/system_cases.hpp"

@@ -1,7 +1,7 @@
 // The strain limit of tetrahedra on an executor against the term of the CPU path, alone and beside limited triangles.
 #include <cmath>
 
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "tests/resident/limit_rules.hpp"
 #include "tests/resident/on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "core/mesh/read_mesh.hpp"
+#include "core/model/mesh/read_mesh.hpp"
 #include "tests/contact/far_bodies.hpp"
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/contact/rods.hpp"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/scene/pinned_vertices.hpp"
+#include "core/model/scene/pinned_vertices.hpp"
 #include "tests/resident/on_executor.hpp"
 #include "tests/resident/tested_executor.hpp"
 

@@ -1,7 +1,7 @@
 // Which contacts a scene can have at all.
 #include <gtest/gtest.h>
 
-#include "core/scene/contact_plan.hpp"
+#include "core/model/scene/contact_plan.hpp"
 #include "tests/bodies/bodies.hpp"
 
 namespace bb::contact_plan_test {

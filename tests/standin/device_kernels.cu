@@ -1,7 +1,7 @@
 // Device versions of the test's kernels.
 #include "tests/standin/device_kernels.hpp"
 
-#include "core/cuda/table_entries.cuh"
+#include "core/exec/cuda/table_entries.cuh"
 
 namespace bb::device_kernels {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/cuda/device_block.cuh"
+#include "core/exec/cuda/device_block.cuh"
 #include "core/math/atan2.hpp"
 #include "core/math/exp.hpp"
 #include "core/resident/contact/given_shape.hpp"

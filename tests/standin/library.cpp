@@ -1,5 +1,5 @@
-// core/cuda/library.hpp without CUB, which needs a card: the standard library on the stand-in's device memory.
-#include "core/cuda/library.hpp"
+// core/exec/cuda/library.hpp without CUB, which needs a card: the standard library on the stand-in's device memory.
+#include "core/exec/cuda/library.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,6 +1,6 @@
 // The PTX that the stand-in runs: the kernels of the test and the probe's.
-#include "core/cuda/device_block.cuh"
-#include "core/cuda/self_test.hpp"
+#include "core/exec/cuda/device_block.cuh"
+#include "core/exec/cuda/self_test.hpp"
 #include "tests/ptx/instantiate.cuh"
 #include "tests/standin/device_kernels.hpp"
 

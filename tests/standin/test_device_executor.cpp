@@ -1,13 +1,13 @@
 // The device executor gives the bits of the host executor: kernels, graphs, sort, scan. Linked once with the stand-in
 // for the CUDA run time, once with CUDA's own, where it needs a card.
-#include "core/cuda/device_executor.hpp"
+#include "core/exec/cuda/device_executor.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "core/cuda/device.hpp"
-#include "core/cuda/kernel_table.hpp"
+#include "core/exec/cuda/device.hpp"
+#include "core/exec/cuda/kernel_table.hpp"
 #include "core/exec/host_executor.hpp"
 #include "tests/standin/device_kernels.hpp"
 

@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "core/cuda/copy_rates.hpp"
-#include "core/cuda/device.hpp"
-#include "core/cuda/device_executor.hpp"
-#include "core/cuda/kernel_table.hpp"
+#include "core/exec/cuda/copy_rates.hpp"
+#include "core/exec/cuda/device.hpp"
+#include "core/exec/cuda/device_executor.hpp"
+#include "core/exec/cuda/kernel_table.hpp"
 #include "core/math/error.hpp"
 #include "tests/standin/cudart.hpp"
 #include "tests/standin/device_kernels.hpp"

@@ -1,7 +1,7 @@
 // The probe on the machine that the tests run on, with a card or without.
 #include <gtest/gtest.h>
 
-#include "core/cuda/device.hpp"
+#include "core/exec/cuda/device.hpp"
 #include "core/math/error.hpp"
 
 namespace {

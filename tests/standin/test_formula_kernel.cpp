@@ -7,8 +7,8 @@
 
 #include "barriers/formulas.hpp"
 #include "barriers/shapes/registry.hpp"
-#include "core/cuda/device.hpp"
-#include "core/cuda/device_executor.hpp"
+#include "core/exec/cuda/device.hpp"
+#include "core/exec/cuda/device_executor.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/contact/given_shape.hpp"

@@ -1,7 +1,7 @@
 // The resident conjugate gradients through the compiled device executor: the bits of the host executor, graphs and all.
 #include <gtest/gtest.h>
 
-#include "core/cuda/device_executor.hpp"
+#include "core/exec/cuda/device_executor.hpp"
 #include "core/linear/executor/block_jacobi.hpp"
 #include "tests/linear/executor/linear_cases.hpp"
 #include "tests/standin/cudart.hpp"

@@ -2,7 +2,7 @@
 // those of the host executor, bit for bit.
 #include <gtest/gtest.h>
 
-#include "core/cuda/device_executor.hpp"
+#include "core/exec/cuda/device_executor.hpp"
 #include "tests/ptx/ptx_executor.hpp"
 #include "tests/resident/same_runs.hpp"
 #include "tests/standin/cudart.hpp"

@@ -5,10 +5,10 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
-#include "core/bodies/scene_builder.hpp"
 #include "core/exec/host_executor.hpp"
-#include "core/mesh/generators.hpp"
-#include "core/mesh/solid_generators.hpp"
+#include "core/model/bodies/scene_builder.hpp"
+#include "core/model/mesh/generators.hpp"
+#include "core/model/mesh/solid_generators.hpp"
 #include "core/terms/plan.hpp"
 #include "tests/barriers/limit_policies.hpp"
 #include "tests/terms/asked.hpp"

@@ -2,8 +2,8 @@
 // derivatives of terms against each other: test_every_term.cpp and test_projections.cpp.
 #include <gtest/gtest.h>
 
-#include "core/mesh/generators.hpp"
-#include "core/mesh/topology.hpp"
+#include "core/model/mesh/generators.hpp"
+#include "core/model/mesh/topology.hpp"
 #include "tests/terms/at_iterate.hpp"
 
 namespace bb::driven_terms_test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/contact/contact_loads.hpp"
 #include "tests/terms/at_iterate.hpp"
 

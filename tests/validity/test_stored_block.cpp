@@ -4,8 +4,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/record/provenance.hpp"
-#include "core/record/writer.hpp"
+#include "core/base/record/provenance.hpp"
+#include "core/base/record/writer.hpp"
 #include "experiments/validity/stored_block.hpp"
 #include "tests/temporary_folder.hpp"
 

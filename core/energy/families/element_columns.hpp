@@ -10,8 +10,8 @@
 #include "core/energy/families/rest_kernels.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/exec/buffer.hpp"
-#include "core/scene/motion.hpp"
-#include "core/scene/parts/shrink_key.hpp"
+#include "core/model/scene/motion.hpp"
+#include "core/model/scene/parts/shrink_key.hpp"
 
 namespace bb {
 

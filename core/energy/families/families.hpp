@@ -4,7 +4,7 @@
 
 #include "core/energy/families/element_family.hpp"
 #include "core/math/types.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

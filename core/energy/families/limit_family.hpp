@@ -11,7 +11,7 @@
 #include "core/energy/families/element_family.hpp"
 #include "core/energy/families/limit_values.hpp"
 #include "core/exec/sums/resident_sum.hpp"
-#include "core/scene/scene.hpp"
+#include "core/model/scene/scene.hpp"
 
 namespace bb {
 

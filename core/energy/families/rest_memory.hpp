@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/exec/buffer.hpp"
 
 namespace bb {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
+#include "core/base/parameters/parameter.hpp"
 #include "core/exec/buffer.hpp"
 #include "core/linear/executor/pcg_scalars.hpp"
-#include "core/parameters/parameter.hpp"
 
 namespace bb::resident {
 

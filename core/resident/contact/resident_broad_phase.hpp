@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/exec/board.hpp"
+#include "core/model/scene/contact_plan.hpp"
 #include "core/resident/contact/box_tree.hpp"
 #include "core/resident/contact/candidate_kernels.hpp"
-#include "core/scene/contact_plan.hpp"
 
 namespace bb::resident {
 

@@ -1,7 +1,7 @@
 // A term of elements that stay: one family (core/energy/families) in the executor's memory.
 #pragma once
 
-#include "core/bodies/part.hpp"
+#include "core/model/bodies/part.hpp"
 #include "core/resident/elements/element_term.hpp"
 #include "core/terms/family_steps.hpp"
 

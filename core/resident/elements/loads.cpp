@@ -1,5 +1,5 @@
 // Inertia and weight on an executor: one term for both, whose elements are the vertices.
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/load_kernels.hpp"
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "core/exec/sums/vectors.hpp"
+#include "core/model/scene/contact_plan.hpp"
+#include "core/model/scene/scene.hpp"
 #include "core/resident/elements/element_matrix.hpp"
 #include "core/resident/elements/executor_term.hpp"
-#include "core/scene/contact_plan.hpp"
-#include "core/scene/scene.hpp"
 #include "core/terms/list_of_terms.hpp"
 #include "core/terms/term_options.hpp"
 

@@ -1,5 +1,5 @@
 // What contact in an executor's memory says of a state, numbers of rows in one pass, and what it remembers from step to step.
-#include "core/archive/archive.hpp"
+#include "core/base/archive/archive.hpp"
 #include "core/resident/system/resident_contact.hpp"
 #include "core/terms/known_step.hpp"
 #include "core/terms/row_report.hpp"

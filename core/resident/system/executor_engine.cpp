@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
+#include "core/model/scene/pinned_vertices.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/resident/system/term_list.hpp"
-#include "core/scene/pinned_vertices.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "core/terms/known_step.hpp"
 
 namespace bb::resident {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "core/base/record/phase_times.hpp"
 #include "core/contact/step_bound.hpp"
-#include "core/record/phase_times.hpp"
 #include "core/resident/contact/contact_assembly.hpp"
 #include "core/resident/contact/contact_sums.hpp"
 #include "core/resident/contact/policy_kernels.hpp"

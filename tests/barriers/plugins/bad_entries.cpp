@@ -1,5 +1,5 @@
 // Test plugin with a shape without its float call, a policy without a name, and an integrator in capitals.
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {
 

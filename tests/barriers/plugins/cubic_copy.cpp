@@ -1,7 +1,7 @@
 // Test plugin: the batch call of the built-in cubic, generated from the same template in another library.
 #include "barriers/shapes/builtin_shape.hpp"
 #include "barriers/shapes/cubic.hpp"
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {
 constexpr bb_plugin_shape shapes[] = {{.name = "cubic_copy",

@@ -1,6 +1,6 @@
 // Test plugin whose names are taken: shape `log`, policy `fixed`, integrator `bdf2`, and one shape twice. Its
 // shape `fresh_shape` is free, and must not be registered either.
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Test plugin with an integrator that only fails once a run has begun: its inertia weight c is negative.
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Test plugin built against an interface of the future; nothing behind abi_version may be read.
-#include "core/plugin/barrierbench_plugin.h"
+#include "core/model/plugin/barrierbench_plugin.h"
 
 namespace {
 constexpr bb_plugin plugin = {BB_PLUGIN_ABI_VERSION + 1, "other_abi", 1, nullptr, 1, nullptr, 1, nullptr};

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/linear/executor/block_jacobi.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/linear/executor/linear_cases.hpp"
 #include "tests/resident/tested_executor.hpp"
 

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "core/linear/executor/multilevel_schwarz.hpp"
-#include "core/solvers/linear_solvers.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "tests/linear/executor/linear_cases.hpp"
 #include "tests/oracle/dense.hpp"
 #include "tests/resident/tested_executor.hpp"

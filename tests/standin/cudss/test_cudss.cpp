@@ -1,9 +1,9 @@
 // The linear solver cudss through the compiled device executor and a stand-in for the library: solutions, how often the
 // pattern is analysed, what fails and what is said then.
-#include "core/cudss/library.hpp"
 #include "core/exec/executor.hpp"
+#include "core/linear/cudss/library.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
-#include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/standin/cudss/fixture.hpp"
 #include "tests/standin/messages.hpp"

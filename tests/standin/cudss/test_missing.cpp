@@ -3,9 +3,9 @@
 
 #include <cstdlib>
 
-#include "core/cuda/device.hpp"
+#include "core/exec/cuda/device.hpp"
+#include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
-#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

@@ -1,0 +1,76 @@
+// What a body is before it becomes columns of a Scene: mesh, material, motion, pins.
+// Turned into a Scene by scene_builder.hpp.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/mesh/triangle_mesh.hpp"
+#include "core/model/scene/scene.hpp"
+
+namespace bb {
+
+/// Hard limit 1 + onset + width on the stretches of triangles, and of tetrahedra where `solids` asks for it (docs/design.md).
+struct StrainLimitSpec {
+  double onset = 0.01, width = 0.01;  // 1
+  bool solids = false;
+};
+
+/// What a body says of all parts that it can be made of (core/model/scene/parts). Stiffness 0 switches elements off.
+struct Material : parts::AllKeys {
+  std::optional<StrainLimitSpec> limit;  // absent: no limit
+};
+
+/// Which vertices of a body are prescribed, or pulled; a vertex is selected when any of the given ways selects it.
+struct PinSpec {
+  std::vector<int> indices;                 // of the body's own vertices
+  std::vector<std::string> objects;         // of the mesh file; build_scene adds their vertices to indices
+  std::optional<std::array<Vec3d, 2>> box;  // closed box (min, max) in start positions, m
+  bool top_row = false;                     // vertices with the largest start y (planar) or z, exactly
+  bool all = false;
+  RigidMotion motion;                 // static by default
+  std::optional<double> pull;         // N/m, of springs from free vertices to there; absent: they are there
+  std::vector<PullKey> pull_factors;  // of it; empty: 1
+  HoldSpan span;                      // in which it holds or pulls
+};
+
+/// Springs between vertices of two bodies, or of one: each of a_vertices to that of b_vertices in its place.
+struct StitchSpec {
+  std::string a, b;                         // names of the bodies
+  std::vector<int> a_vertices, b_vertices;  // of their own meshes
+  double stiffness = 0;                     // N/m, of each spring, > 0
+  double rest_length = 0;                   // m, >= 0
+};
+
+/// What is asked of a pair: a CollisionKind, or the one that follows from whether the two surfaces close.
+enum class CollisionChoice { automatic, ccd, static_test, proximity, off };
+
+/// What contact does with two bodies, a body and an obstacle, or a body with itself.
+struct CollisionSpec {
+  std::string a, b;  // names
+  CollisionChoice choice = CollisionChoice::automatic;
+};
+
+enum class BodyKind { deformable, rigid };  // rigid: every vertex prescribed, no mass, no elements
+
+struct BodySpec {
+  std::string name;
+  BodyKind kind = BodyKind::deformable;
+  TriangleMesh mesh;                       // rest shape, m
+  std::optional<Positions> start;          // start positions where they differ from the rest shape, m
+  Material material;                       // deformable only
+  Vec3d velocity = Vec3d::Zero();          // m/s, free vertices
+  RigidMotion motion;                      // rigid only
+  std::vector<PinSpec> pins;               // deformable only
+  double d_hat = 0;                        // m, > 0
+  double offset = 0;                       // m, >= 0
+  std::optional<double> friction;          // coefficient, >= 0; absent: that of the run
+  std::optional<double> restitution;       // in [0, 1]; absent: 1
+  double pressure = 0;                     // Pa, from within; other than 0 only with a closed surface
+  std::vector<PressureKey> pressure_keys;  // instead, over time
+  std::string collision_group;             // bodies of different groups do not collide; empty: of none
+};
+
+}  // namespace bb

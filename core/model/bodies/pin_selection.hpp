@@ -1,0 +1,13 @@
+// Which vertices a PinSpec means. Private to core/model/bodies.
+#pragma once
+
+#include <vector>
+
+#include "core/model/bodies/body_spec.hpp"
+
+namespace bb {
+
+/// Sorted, unique; indices are passed on unchecked. start: [3 x n] m.
+std::vector<int> select_vertices(const PinSpec& spec, const Positions& start, bool planar);
+
+}  // namespace bb

@@ -1,0 +1,101 @@
+// What joins bodies of a scene, and what presses on one from within.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/bodies/scene_builder.hpp"
+#include "core/model/mesh/topology.hpp"
+
+namespace bb {
+
+/// Scene vertices of some of a body's own; empty after a violation.
+std::vector<int> SceneBuilder::stitched(const std::string& body, const std::vector<int>& own,
+                                        const std::string& where) {
+  const auto found = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
+                                  [&body](const Body& b) { return b.name == body; });
+  if (found == scene_.bodies.end()) {
+    std::string names;
+    for (const Body& b : scene_.bodies) names += (names.empty() ? "" : ", ") + b.name;
+    violations_.push_back({where, '"' + body + '"', "the name of a body: " + names});
+    return {};
+  }
+  std::vector<int> out;
+  for (const int v : own) {
+    if (v < 0 || v >= found->n_vertices) {
+      violations_.push_back({where + "_vertices", fmt::format("vertex {}", v),
+                             fmt::format("0 to {} of body \"{}\"", found->n_vertices - 1, body)});
+      return {};
+    }
+    out.push_back(found->first_vertex + v);
+  }
+  return out;
+}
+
+void SceneBuilder::add_stitch(const StitchSpec& stitch, const std::string& below) {
+  const std::string where = where_ + below;
+  if (!violations_.empty()) return;  // bodies were left out: what follows would mislead
+  if (!(stitch.stiffness > 0) || !std::isfinite(stitch.stiffness)) {
+    violations_.push_back({where + "/stiffness", fmt::format("{:g}", stitch.stiffness), "a number > 0"});
+  }
+  if (!(stitch.rest_length >= 0) || !std::isfinite(stitch.rest_length)) {
+    violations_.push_back({where + "/rest_length", fmt::format("{:g}", stitch.rest_length), "a number >= 0"});
+  }
+  const std::vector<int> a = stitched(stitch.a, stitch.a_vertices, where + "/a");
+  const std::vector<int> b = stitched(stitch.b, stitch.b_vertices, where + "/b");
+  if (!violations_.empty()) return;
+  if (a.empty() || a.size() != b.size()) {
+    violations_.push_back({where + "/b_vertices", fmt::format("{} vertices", b.size()),
+                           fmt::format("as many as a_vertices, {}, and at least one", a.size())});
+    return;
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const bool held =
+        held_[static_cast<std::size_t>(a[i])] >= 0 && held_[static_cast<std::size_t>(b[i])] >= 0;
+    if (a[i] == b[i] || held) {
+      violations_.push_back(
+          {fmt::format("{}/b_vertices/{}", where, i), fmt::format("{}", stitch.b_vertices[i]),
+           held ? "a stitch with a vertex that is not prescribed" : "another vertex than that of a"});
+      continue;
+    }
+    scene_.stitches.pairs.push_back({a[i], b[i]});
+    scene_.stitches.stiffness.push_back(stitch.stiffness);
+    scene_.stitches.rest_length.push_back(stitch.rest_length);
+  }
+}
+
+/// A volume is enclosed where there is no open side.
+void SceneBuilder::append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface,
+                                   int first) {
+  const std::string what = "body \"" + spec.name + "\"/pressure";
+  const bool finite = std::all_of(spec.pressure_keys.begin(), spec.pressure_keys.end(),
+                                  [](const PressureKey& key) { return std::isfinite(key.value); });
+  if (!std::isfinite(spec.pressure) || !finite)
+    return complain(what, "a non-finite pressure", "a finite number");
+  if (const auto side = open_side(surface)) {
+    return complain(
+        what,
+        fmt::format("a surface that does not close at the edge of vertices {} and {}", (*side)[0],
+                    (*side)[1]),
+        "a surface each of whose edges belongs to two triangles that run through it in opposite directions");
+  }
+  if (surface.empty()) return complain(what, "no surface", "a body with triangles");
+  const Positions& x = spec.mesh.vertices;
+  double volume = 0;
+  for (const auto& [a, b, c] : surface) {
+    const Vec3d o = x.col(surface.front()[0]);
+    volume += (x.col(a) - o).dot((x.col(b) - o).cross(x.col(c) - o)) / 6;
+  }
+  if (volume == 0) return complain(what, "a surface that encloses no volume", "a volume other than 0");
+  Inflation& inflation = scene_.inflation;
+  const int keys = spec.pressure_keys.empty() ? -1 : static_cast<int>(inflation.key_lists.size());
+  if (keys >= 0) inflation.key_lists.push_back(spec.pressure_keys);
+  const double pressure = keys >= 0 ? 1 : spec.pressure;
+  for (const auto& [a, b, c] : surface) {
+    inflation.triangles.push_back({first + a, first + b, first + c});
+    inflation.pressure.push_back(volume > 0 ? pressure : -pressure);
+    inflation.keys.push_back(keys);
+  }
+}
+
+}  // namespace bb
