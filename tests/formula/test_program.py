@@ -183,7 +183,9 @@ def test_a_cut_library_is_made_again(tmp_path, monkeypatch):
     monkeypatch.setenv("BARRIERBENCH_CACHE", str(tmp_path))
     made = compiled("(d - d_hat)^2")
     whole = made.library.read_bytes()
-    made.library.write_bytes(whole[: len(whole) // 2])
+    cut = tmp_path / "cut"
+    cut.write_bytes(whole[: len(whole) // 2])
+    cut.replace(made.library)  # a file of its own: the process has the whole one mapped
     assert kept.find(made.library.stem) is None
     assert compiled("(d - d_hat)^2").library.read_bytes() == whole
     assert not list((tmp_path / "formulas").glob("making-*"))
