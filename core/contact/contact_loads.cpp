@@ -19,12 +19,6 @@ void add_row(const Table& rows, std::size_t r, ContactLoads& out) {
 
 }  // namespace
 
-void ContactLoads::clear() {
-  stencil.clear();
-  pair.clear();
-  for (auto* column : {&weight, &normal, &load}) column->clear();
-}
-
 void add_loads(const ContactTable& rows, ContactLoads& out) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     add_row(rows, r, out);

@@ -17,7 +17,6 @@ struct ContactLoads {
   std::vector<double> load;    // [n] N, kappa |b'|; of mollified rows e times that
 
   std::size_t size() const { return load.size(); }
-  void clear();
 };
 
 /// Append the rows of a table in their order, with the loads of the kappa and b' that it has. x: the state of the rows, in which

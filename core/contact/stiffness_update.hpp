@@ -54,7 +54,6 @@ class StiffnessUpdate {
   /// The pairs of an accepted trial keep their kappa for the rest of the step.
   void keep(Tables rows);
 
-  Index n_known() const { return n_known_; }
   /// The pairs whose kappa is frozen for the step, copied to the host.
   KnownStiffness known() const;
   /// What another one knows, in the place of what this one knew.

@@ -1,4 +1,4 @@
-// Friction laws by name: what the friction term, eval and tests loop over.
+// Friction laws by name: what the config, eval and tests loop over; rows of friction have them as types (friction_list.hpp).
 #pragma once
 
 #include <string_view>

@@ -24,7 +24,7 @@ using Positions = Eigen::Matrix3Xd;
 /// A buffer of 3 n_vertices numbers (core/exec/buffer.hpp).
 template <class Column>
 concept IsColumn = requires(Column& column) {
-  column.data();
+  static_cast<const double*>(column.data());
   column.size();
   column.bytes();
 };

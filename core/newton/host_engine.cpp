@@ -21,6 +21,7 @@ HostEngine::HostEngine(const Scene& scene, Method& method, const Plan& plan,
       terms_(make_terms(plan, {executor_, scene, method, plan.contacts, fixed})),
       blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed)) {
   set_terms(terms_);
+  for (const auto& term : terms_) term->set_matrix(*blocks_, elastic_);
   make_solver();
   set_fixed_families(method);
 }

@@ -76,7 +76,7 @@ class HostEngine final : public IncrementalPotential {
   TermContext context(const PositionsView& gradient, StepHessian hessian = StepHessian::clamped) const {
     return {*blocks_, elastic_, gradient, first_projection(hessian), clock()};
   }
-  void linearise(Slot& slot, const Column& x, const Column& g);
+  void linearise_term(Slot& slot, const Column& x, const Column& g);
   void add_families(const Slot& slot, PositionsSpan gradient) const;
   void add_gradient(const Slot& slot, Column& g);
   void clamp(Slot& slot);

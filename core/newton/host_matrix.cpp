@@ -8,7 +8,7 @@ namespace bb {
 void HostEngine::linearise_terms(const Column& x, Column& g) {
   x_ = &x;
   for (Slot& slot : slots_) {
-    if (slot.term->group() == TermGroup::elastic) linearise(slot, x, g);
+    if (slot.term->group() == TermGroup::elastic) linearise_term(slot, x, g);
   }
   {
     const ScopedPhase timer(clock(), Phase::assembly);
@@ -20,12 +20,12 @@ void HostEngine::linearise_terms(const Column& x, Column& g) {
     blocks_->take_values(elastic_);
   }
   for (Slot& slot : slots_) {
-    if (slot.term->group() != TermGroup::elastic) linearise(slot, x, g);
+    if (slot.term->group() != TermGroup::elastic) linearise_term(slot, x, g);
     add_gradient(slot, g);
   }
 }
 
-void HostEngine::linearise(Slot& slot, const Column& x, const Column& g) {
+void HostEngine::linearise_term(Slot& slot, const Column& x, const Column& g) {
   const ScopedPhase timer(clock(), slot.term->phase());
   slot.term->linearise(points(x), context(points(g), slot.hessian));
   slot.clamped = false;

@@ -92,8 +92,6 @@ void ContactTerm::change_step(const StepColumns& step) {
 }
 
 void ContactTerm::linearise(const PositionsView& x, const TermContext& context) {
-  blocks_ = &context.blocks;
-  elastic_ = &context.elastic;
   {
     const ScopedPhase timer(context.clock, Phase::stiffness);
     start_policy(x, context);
@@ -219,7 +217,6 @@ bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
 }
 
 void ContactTerm::freeze(PhaseClock& clock) {
-  if (!blocks_) return;  // no iterate was linearised, so no row has a kappa
   const ScopedPhase timer(clock, Phase::stiffness);
   stiffness_.freeze(trial_.tables(), state_.tables(), *blocks_, *elastic_);
 }

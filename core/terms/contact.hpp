@@ -74,6 +74,9 @@ class ContactTerm final : public HostTerm {
   std::string describe_bound() const override;
   bool admits(const PositionsView& x, PhaseClock& clock) override;
   void freeze(PhaseClock& clock) override;
+  void set_matrix(const BlockSystem& blocks, const BlockSystem::Values& elastic) override {
+    blocks_ = &blocks, elastic_ = &elastic;
+  }
   void evaluate(const PositionsView& x) override;
   void evaluate_iterate(const PositionsView& x) override;
   void accept(PhaseClock& clock) override;
@@ -116,7 +119,7 @@ class ContactTerm final : public HostTerm {
   const TermList& terms_;
   ContactSystem contacts_;
   ContactStiffness stiffness_;
-  const BlockSystem* blocks_ = nullptr;  // of the iterate that was linearised last, and H there
+  const BlockSystem* blocks_ = nullptr;  // of set_matrix()
   const BlockSystem::Values* elastic_ = nullptr;
   std::optional<FoldedBarrier> folded_;  // where the policy has a potential: of kappa that falls as 1/d^2,
   std::optional<GapPotential> gap_potential_;  // of any kappa(d)

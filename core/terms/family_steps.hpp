@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "core/energy/families/element_family.hpp"
@@ -9,10 +10,13 @@
 
 namespace bb {
 
-/// Base: a term of a matrix engine with energies() and trial_energies(), which point to as many numbers (J) as there are elements.
+/// Base: a term of a matrix engine with trial_energies(), which points to as many numbers (J) as there are elements.
 template <class Base>
 class FamilySteps : public Base {
  public:
+  std::string_view name() const override { return name_; }
+  TermGroup group() const override { return group_; }
+  Phase phase() const override { return phase_of(group_); }
   void begin_step(const StepColumns& step, PhaseClock&) override {
     dt_ = step.dt;
     family_->begin_step(step.of_families());
@@ -30,16 +34,19 @@ class FamilySteps : public Base {
   void evaluate(const PositionsView& trial) override {
     family_->values(trial.data(), this->trial_energies());
   }
-  void evaluate_iterate(const PositionsView& x) override { family_->values(x.data(), this->energies()); }
 
  protected:
+  /// name: that of registry.inc. group: load or elastic.
   template <class... OfBase>
-  explicit FamilySteps(std::unique_ptr<ElementFamily> family, OfBase&&... of_base)
-      : Base(std::forward<OfBase>(of_base)...), family_(std::move(family)) {}
+  FamilySteps(std::string_view name, TermGroup group, std::unique_ptr<ElementFamily> family,
+              OfBase&&... of_base)
+      : Base(std::forward<OfBase>(of_base)...), family_(std::move(family)), name_(name), group_(group) {}
 
   std::unique_ptr<ElementFamily> family_;
 
  private:
+  std::string_view name_;
+  TermGroup group_;
   double dt_ = 0;  // s, of the step
 };
 

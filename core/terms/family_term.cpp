@@ -5,7 +5,7 @@
 namespace bb {
 
 FamilyTerm::FamilyTerm(std::string_view name, TermGroup group, std::unique_ptr<ElementFamily> family)
-    : FamilySteps(std::move(family)), name_(name), group_(group) {
+    : FamilySteps(name, group, std::move(family)) {
   const auto n = static_cast<std::size_t>(family_->size());
   TermFamily& out = families_.emplace_back();
   out.stencils = {family_->width(), family_->vertices()};
@@ -22,6 +22,6 @@ void FamilyTerm::change(const PositionsView& x0, const PositionsView& x1, Energy
                    sizeof(EnergyPart) / sizeof(double));
 }
 
-void FamilyTerm::add_cusps(const PositionsView& x, Cusps& out) const { out.add(name_, *family_, x); }
+void FamilyTerm::add_cusps(const PositionsView& x, Cusps& out) const { out.add(name(), *family_, x); }
 
 }  // namespace bb

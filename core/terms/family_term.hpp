@@ -10,9 +10,6 @@ class FamilyTerm final : public FamilySteps<HostTerm> {
  public:
   /// name: that of registry.inc. group: load or elastic.
   FamilyTerm(std::string_view name, TermGroup group, std::unique_ptr<ElementFamily> family);
-  std::string_view name() const override { return name_; }
-  TermGroup group() const override { return group_; }
-  Phase phase() const override { return phase_of(group_); }
   bool on_vertices() const override { return family_->on_vertices(); }
   void linearise(const PositionsView& x, const TermContext& context) override {
     family_->derivatives(x.data(), context.projection, families_[0].local);
@@ -26,10 +23,6 @@ class FamilyTerm final : public FamilySteps<HostTerm> {
   void add_constraints(const ConstraintRequest&, std::vector<const ConstraintBatch*>& out) override {
     if (family_->constraints()) out.push_back(family_->constraints());
   }
-
- private:
-  std::string_view name_;
-  TermGroup group_;
 };
 
 }  // namespace bb

@@ -1,10 +1,11 @@
 // Friction: mu load f0(slide) of every contact that a step begins with (docs/design.md, Friction). Normal, weights and load are
 // those of the start of the step, so that E stays one function of x within a step; contacts that come later rub from the next step on.
 #include <algorithm>
+#include <stdexcept>
 
+#include "core/energy/friction_law.hpp"
 #include "core/energy/friction_list.hpp"
 #include "core/exec/sums/resident_sum.hpp"
-#include "core/math/error.hpp"
 #include "core/terms/friction_rows.hpp"
 #include "core/terms/lagged_family_of.hpp"
 #include "core/terms/registry.hpp"
@@ -108,12 +109,13 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
 std::unique_ptr<LaggedFamily> friction_family(const FamilyPlace& place, const Scene& scene,
                                               const TermOptions& options, const int* body) {
   const FrictionOptions& friction = options.friction;
+  friction_laws_in<double>().require(friction.law, "/friction/law");
 #define ENTRY(id, doc)     \
   if (friction.law == #id) \
     return std::make_unique<FrictionFamily<friction_laws::id>>(place, scene, friction, body);
 #include "core/energy/friction_laws/registry.inc"
 #undef ENTRY
-  throw ConfigError("/friction/law", friction.law, "a law of core/energy/friction_laws/registry.inc");
+  throw std::logic_error("a registered law of friction without rows");
 }
 
 PlanItem needs_friction(const TermNeeds& needs) {

@@ -46,9 +46,4 @@ void HostTerm::take_energies() {
   for (TermFamily& family : families_) std::swap(family.local.energy, family.trial_energy);
 }
 
-void HostTerm::evaluate_iterate(const PositionsView& x) {
-  evaluate(x);
-  take_energies();
-}
-
 }  // namespace bb

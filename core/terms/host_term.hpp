@@ -72,6 +72,9 @@ class HostTerm : public Term {
   virtual void adopt_from(const HostTerm&) {}
 
   // --- an iterate
+  /// Where pattern and H are, as in TermContext, for what is asked beside linearise(): a trial may come before any iterate was
+  /// linearised. Once; both outlive the term.
+  virtual void set_matrix(const BlockSystem&, const BlockSystem::Values& /*elastic*/) {}
   /// Energies, gradients and Hessians of all families at the iterate x. Elastic terms come first and read of
   /// the context only the projection; convex terms (registry.inc) need none.
   virtual void linearise(const PositionsView& x, const TermContext& context) = 0;
@@ -91,7 +94,6 @@ class HostTerm : public Term {
   /// The parts of E(trial x1) - E(iterate x0), in the order of the elements. Appends.
   virtual void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const;
   void take_energies() override;
-  void evaluate_iterate(const PositionsView& x) override;
 
   // --- constraints, for a step solver that asks for them in the place of all above, but for loads of vertices
   /// Whether constraints stand for this term.

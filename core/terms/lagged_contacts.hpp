@@ -11,7 +11,8 @@
 
 namespace bb {
 
-/// One element a contact whose coefficient is not 0, on the vertices of the contact, in the order of their pairs.
+/// One element a contact whose coefficient is not 0, on the vertices of the contact, in the order of their pairs; of the adopted step of
+/// an executor one a contact.
 class LaggedContacts final : public LaggedSteps<HostTerm> {
  public:
   /// name: that of registry.inc. before: the terms whose contacts are meant; they outlive the term.

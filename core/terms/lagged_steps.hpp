@@ -10,7 +10,7 @@
 
 namespace bb {
 
-/// Base: a term of a matrix engine with energies() and trial_energies(), which point to as many numbers (J) as there are rows.
+/// Base: a term of a matrix engine with trial_energies(), which points to as many numbers (J) as there are rows.
 template <class Base>
 class LaggedSteps : public Base {
  public:
@@ -35,7 +35,6 @@ class LaggedSteps : public Base {
   void evaluate(const PositionsView& trial) override {
     family_->values(trial.data(), this->trial_energies());
   }
-  void evaluate_iterate(const PositionsView& x) override { family_->values(x.data(), this->energies()); }
   void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override {
     if (family_->loads_known())
       family_->report_end(x.data(), out);  // else rows were taken anew where it ended

@@ -1,4 +1,4 @@
-// The terms of a run, on the host (Term) or on an executor (core/resident).
+// The terms of a run, as the matrix engine of the host (HostTerm) or of an executor (ExecutorTerm) reads them.
 #pragma once
 
 #include <cstddef>

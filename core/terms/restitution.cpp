@@ -17,12 +17,13 @@ class RestitutionFamily final : public LaggedFamilyOf<RestitutionRows> {
  public:
   RestitutionFamily(const FamilyPlace& place, const Scene& scene, const int* body)
       : LaggedFamilyOf(place, body, CombineRule::max, dampings(scene.bodies), dampings(scene.obstacles)),
+        v0_(scene.v0),
         speed_(place.executor, "speeds of the step before"),
         known_pair_(place.executor, "pairs that met"),
         known_speed_(place.executor, "speeds of meeting"),
         met_(place.executor, "speeds of meeting of rows"),
         work_(place.executor) {
-    speed_.upload({scene.v0.data(), static_cast<std::size_t>(scene.v0.size())});
+    upload(v0_);
   }
 
   void begin_step(const FamilyStep& step) override {
@@ -72,6 +73,11 @@ class RestitutionFamily final : public LaggedFamilyOf<RestitutionRows> {
     known_speed_.upload(known.kept);
   }
 
+  void upload(const Positions& speed) {
+    speed_.upload({speed.data(), static_cast<std::size_t>(speed.size())});
+  }
+
+  const Positions& v0_;         // m/s, of the scene
   exec::Buffer<double> speed_;  // [3 n_vertices] m/s, of the step before; at first that of the scene
   bool moved_ = false;          // a step was before
   exec::Buffer<PairId> known_pair_;
@@ -91,7 +97,7 @@ void RestitutionFamily::keep(Archive& archive) {
   archive(speed, pairs, speeds);
   if (!archive.reads()) return;
   moved_ = speed.cols() > 0;
-  if (moved_) speed_.upload({speed.data(), static_cast<std::size_t>(speed.size())});
+  upload(moved_ ? speed : v0_);
   known_pair_.upload(pairs);
   known_speed_.upload(speeds);
 }

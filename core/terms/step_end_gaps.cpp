@@ -22,6 +22,9 @@ std::span<const StiffnessPolicy::PairEnd> StepEndGaps::end_step() {
   return ends_;
 }
 
-void StepEndGaps::keep(Archive& archive) { archive(before_); }
+void StepEndGaps::keep(Archive& archive) {
+  archive(before_);
+  now_.clear();
+}
 
 }  // namespace bb

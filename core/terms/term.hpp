@@ -2,7 +2,6 @@
 // of this room and one line of registry.inc. It owns what it computes, in the memory of its executor; positions (m) are there too.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
 
@@ -32,9 +31,10 @@ struct StepFrame {
   Positions x_n, x_tilde;
   double dt = 0, c = 1, load_factor = 1, t_end = 0;
   bool at_start = false;
-  operator StepColumns() const {  // NOLINT(google-explicit-constructor)
+  operator StepColumns() const& {  // NOLINT(google-explicit-constructor)
     return {x_n, x_tilde, dt, c, load_factor, t_end, at_start};
   }
+  operator StepColumns() const&& = delete;  // the positions would be gone
 };
 
 /// Straight motion of a whole step: x0 -> x1, x1 - x0 = dx up to rounding; x1 is exact
@@ -108,7 +108,10 @@ class Term {
   /// The energies of the trial are those of the iterate.
   virtual void take_energies() = 0;
   /// Energies of the iterate x, which was accepted without them.
-  virtual void evaluate_iterate(const PositionsView& x) = 0;
+  virtual void evaluate_iterate(const PositionsView& x) {
+    evaluate(x);
+    take_energies();
+  }
 
   // --- what is said of it, at the iterate x
   /// What report() reads is launched.

@@ -83,12 +83,6 @@ void check_device(const RunConfig& config, const Complain& complain) {
              fmt::format("{} {}: the matrix stays where it is assembled",
                          linear_solver_at(MatrixPlace::executor).name, on));
   }
-  const auto of_contact = config.hessian.parameters.find("contact");
-  if (of_contact != config.hessian.parameters.end() &&
-      of_contact->second == ParameterValue(std::string("progressive"))) {
-    complain("/hessian/contact", "\"progressive\"",
-             "another choice " + on + ": its kernels of contact ask no forces");
-  }
 }
 
 }  // namespace bb

@@ -124,6 +124,9 @@ TEST(Xpbd, a_chain_that_falls_faster_than_it_can_see_stays_above_the_floor) {
     EXPECT_GT(lowest, -1e-15);
     EXPECT_LT(highest, 1e-12);  // compliance 0: it lies on the plane itself
     EXPECT_EQ(ran.last.solver.values.at("xpbd_constraints"), 2 * n_vertices - 1);
+    // No iterate was linearised, and yet the end of a step has the barrier of its rows.
+    EXPECT_EQ(ran.last.kappa_max_N_per_m.value, 100);
+    EXPECT_GT(ran.last.contact_load_max_N.value, 0);
   }
 }
 

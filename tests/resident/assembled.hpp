@@ -90,6 +90,35 @@ inline Reference reference_of(const Scene& scene, const Positions& x, const Posi
   return out;
 }
 
+/// Of every row the clamped Hessian where a free vertex of it has a force of at least the threshold, else the exact one. clamped:
+/// how many rows have the first.
+inline Matrix partly_clamped(const Scene& scene, const Positions& x, HessianMode mode,
+                             const std::vector<double>& force, double threshold, std::size_t& clamped) {
+  ContactSystem contacts(scene, {});
+  Rows rows = rows_at(contacts, x);
+  evaluate_cubic(rows.table);
+  evaluate_cubic(rows.mollified);
+  Matrix out = Matrix::Zero(x.size(), x.size());
+  const auto add = [&](const std::vector<int>& vertex, const auto& terms) {
+    std::vector<double> grad, hess, psd;
+    terms(Projection::none, grad, hess);
+    terms(Projection::psd, grad, psd);
+    const std::size_t stride = n_lower_numbers(4);
+    for (std::size_t r = 0; r < hess.size() / stride; ++r) {
+      const bool large = std::any_of(&vertex[4 * r], &vertex[4 * r] + 4,
+                                     [&](int v) { return v >= 0 && force[at(v)] >= threshold; });
+      if (large) std::copy_n(&psd[stride * r], stride, &hess[stride * r]);
+      clamped += large;
+    }
+    scatter(vertex, grad, hess, nullptr, out);
+  };
+  add(rows.table.vertex,
+      [&](Projection p, auto& grad, auto& hess) { contact_terms(rows.table, x, mode, p, grad, hess); });
+  add(rows.mollified.free_vertex,
+      [&](Projection p, auto& grad, auto& hess) { mollified_terms(rows.mollified, x, p, grad, hess); });
+  return out;
+}
+
 inline Positions motion_of_given(const Scene& scene) {
   Positions motion = Positions::Zero(3, scene.n_vertices());
   for (const Pin& pin : scene.pins) motion.col(pin.vertex) = 1e-3 * Vec3d(1, -2, 0.5 * pin.vertex);

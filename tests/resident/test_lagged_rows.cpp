@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "core/base/archive/archive.hpp"
 #include "core/contact/contact_loads.hpp"
 #include "core/energy/friction_law.hpp"
 #include "core/energy/friction_list.hpp"
@@ -328,6 +329,37 @@ TEST(LaggedRows, RememberHowFastPairsMet) {
   }
   ASSERT_GT(largest, 0.1);
   ASSERT_GT(apart, 0.1);
+}
+
+// An archive from before the first step takes the speeds of a later one back.
+TEST(LaggedRows, MeetWithTheSpeedsOfTheSceneWhereAnArchiveHasNone) {
+  const Scene scene = with_restitution(full_scene(3));
+  const Positions x = shaken(scene), end = random_motion(x, 5e-3, 7);
+  TestedExecutor executor;
+  OnRows on = restitution_on(executor, scene, x, dt);
+  const std::vector<double> first = on.family->known("restitution").kept;
+  Archive none;
+  restitution_on(executor, scene, x, dt).family->keep(none);
+  upload(on.y, end);
+  on.family->end_step(on.y.data());
+  Archive again(none.bytes());
+  on.family->keep(again);
+  KnownLag nobody = on.family->known("restitution");
+  for (PairId& pair : nobody.pair) pair = 0;  // so that all pairs are new
+  on.family->adopt(nobody);
+  on.take();
+  EXPECT_EQ(on.family->known("restitution").kept, first);
+  ASSERT_GT(*std::max_element(first.begin(), first.end()), 0.1);
+}
+
+// The sides of two edges of which one counts with an end alone are two bodies, whatever obstacles there are.
+TEST(LaggedRows, TakeAnEndOfAnEdgeForNoObstacle) {
+  const double of_body[] = {0.2, 0.5}, of_obstacle[] = {7};
+  const int body[] = {0, 0, 1, 1}, vertex[] = {0, 1, 2, 3};
+  const SideCoefficients sides{of_body, of_obstacle, body, CombineRule::max};
+  EXPECT_EQ(sides.of(vertex, 1, pair_id(0, 0, 0)), 0.5);
+  EXPECT_EQ(sides.of(vertex, 1, pair_id(end_pairs, 0, 0)), 0.5);
+  EXPECT_EQ(sides.of(vertex, 1, pair_id(obstacle_pairs, 0, 0)), 7);
 }
 
 /// Every obstacle stands at a given vertex of its own.

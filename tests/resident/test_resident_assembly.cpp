@@ -68,6 +68,31 @@ TEST(ResidentAssembly, AddsUpWhatTheCpuPathDoes) {
   EXPECT_GE(n_forces, 24);
 }
 
+TEST(ResidentAssembly, ClampsTheRowsAtVerticesWithALargeForce) {
+  std::size_t n_clamped = 0;
+  for (const Subject& s : subjects()) {
+    std::vector<double> force(static_cast<std::size_t>(s.scene.n_vertices()));
+    for (std::size_t v = 0; v < force.size(); ++v) force[v] = v % 7 == 3 ? 2 : 1;
+    for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
+      std::size_t clamped = 0;
+      const Matrix expected = partly_clamped(s.scene, s.x, mode, force, 2, clamped);
+      n_clamped += clamped;
+      TestedExecutor executor;
+      exec::Buffer<double> there(executor, "forces");
+      there.upload(force);
+      const HessianChoice choice{mode, Projection::none, false, 1, 2, there.data()};
+      const Assembled got = assemble(executor, s.scene, s.x, motion_of_given(s.scene), choice);
+      ASSERT_GT(static_cast<std::size_t>(got.n_rows), clamped);
+      EXPECT_LT(relative(got.matrix, expected), 1e-11);
+      if (mode == HessianMode::gauss_newton) continue;
+      const Reference plain = reference_of(s.scene, s.x, motion_of_given(s.scene), mode, Projection::psd);
+      EXPECT_GT(relative(expected, plain.exact), 1e-6);
+      EXPECT_GT(relative(expected, plain.projected), 1e-6);
+    }
+  }
+  EXPECT_GT(n_clamped, 50U);
+}
+
 TEST(ResidentAssembly, DoesNotDependOnTheOrderOfItems) {
   const Subject s = subjects().front();
   for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {

@@ -109,6 +109,7 @@ struct TermsOf {
         first_step(frame),
         terms(make_terms(plan, {executor, scene, options, plan.contacts, fixed})) {
     no_gradient.setZero(3, x_n.cols());
+    for (const auto& term : terms) term->set_matrix(blocks, no_elastic);
     for (const auto& term : terms) term->begin_step(first_step, clock);
   }
   template <class Change>

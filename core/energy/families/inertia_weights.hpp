@@ -30,7 +30,7 @@ class InertiaWeights {
  private:
   std::span<const double> mass_;
   exec::Buffer<double> weight_;
-  double dt_ = 0, c_ = 0;  // s; as in StepFrame
+  double dt_ = 0, c_ = 0;  // s; as in StepColumns
 };
 
 }  // namespace bb

@@ -19,7 +19,7 @@ struct EveryVertex : ElementVertices<1> {
 /// Weights of inertia that are divided out where they are read: on a card, where a column of them would cost more.
 struct MassOverStep {
   const double* mass;  // [n] kg, 0 for prescribed vertices
-  double dt, c;        // s; as in StepFrame
+  double dt, c;        // s; as in StepColumns
   BB_HD double operator()(exec::Index v) const { return inertia_weight(mass[v], c, dt); }
 };
 /// The same as a column (inertia_weights.hpp).

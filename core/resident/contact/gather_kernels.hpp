@@ -101,8 +101,7 @@ struct GatherStreamed {
     const auto [curvature, flat] = row_curvature(rows, surface, r, x);
     const double stiffness = rows.stiffness[r], force = rows.force[r] * curvature;
     const Vec3d n = rows.normal_of(r);
-    const Mat3d one = fixed_points_block<double>(n, flat, stiffness, force,
-                                                 choice.blended ? Projection::psd : choice.projection);
+    const Mat3d one = fixed_points_block<double>(n, flat, stiffness, force, choice.projection_of(rows, r));
     if (!choice.blended) {
       for (int c = 0; c < 9; ++c) sum[c] += ww * one(c % 3, c / 3);
       return;

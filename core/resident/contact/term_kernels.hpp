@@ -14,12 +14,23 @@
 
 namespace bb::resident {
 
-/// Which Hessian goes into the matrix: exact + t (clamped - exact), or the projection of one kind.
+/// Which Hessian of a row goes into the matrix: exact + t (clamped - exact), or the projection of one kind; the clamped one where a
+/// free vertex of the row has a force of at least `threshold`.
 struct HessianChoice {
   HessianMode mode = HessianMode::gauss_newton;
   Projection projection = Projection::psd;
-  bool blended = false;  // then projection is not read
+  bool blended = false;  // then projection is not read, and no force
   double t = 1;
+  double threshold = -1;          // N; below 0: no vertex is asked
+  const double* force = nullptr;  // [n_vertices] N, read where there is a threshold
+
+  BB_HD Projection projection_of(const RowView& rows, Index r) const {
+    bool clamps = blended;
+    for (int k = 0; k < 4 && threshold >= 0 && !clamps; ++k) {
+      clamps = rows.is_free(r, k) && force[rows.vertex[k * rows.n + r]] >= threshold;
+    }
+    return clamps ? Projection::psd : projection;
+  }
 };
 
 /// Numbers of a row's lower blocks, lower_block(4, a, b), at number[c * stride + row].
@@ -182,7 +193,7 @@ struct MollifiedHessians {
     const Mat<double, 12, 12> exact =
         moved_to_front(to.rows.free[r], MollifiedRowAt{to.rows, to.surface, to.x}.derivatives(r).hessian);
     Mat<double, 12, 12> h = exact;
-    project_leading<double>(n, to.choice.blended ? Projection::psd : to.choice.projection, h);
+    project_leading<double>(n, to.choice.projection_of(to.rows, r), h);
     int at = 0;
     for (int b = 0; b < 4; ++b) {
       for (int a = b; a < 4; ++a) {
@@ -204,7 +215,7 @@ struct MollifiedHessians {
 template <int F>
 BB_HD void store_sliding(const RowHessians& to, Index i, const RowShape<double, F>& shape) {
   double blocks[row_numbers];
-  row_hessian<double, F>(shape, to.choice.blended ? Projection::psd : to.choice.projection, blocks);
+  row_hessian<double, F>(shape, to.choice.projection_of(to.rows, to.chunk.row(i)), blocks);
   if (!to.choice.blended) {
     for (int c = 0; c < row_numbers; ++c) to.number[c * to.stride + i] = blocks[c];
     return;

@@ -1,5 +1,5 @@
 // A term of E as the matrix engine of an executor reads it: it adds its gradient and its Hessian where they are summed. It is made by
-// make_resident_<name>, the name that of its line in core/terms/registry.inc.
+// make_resident_<name>, the name that of its line in core/terms/registry.inc; by add_lagged() where that is LAGGED.
 #pragma once
 
 #include <memory>
@@ -95,7 +95,6 @@ class ExecutorTerm : public Term {
   /// Adds what add_change() launched besides.
   virtual void add_rows(RowEnergies&) {}
   void take_energies() override {}
-  void evaluate_iterate(const PositionsView& /*x*/) override {}
   virtual void add_energy(const PositionsView& x, ResidentEnergy& out) = 0;
   /// What add_energy() launched besides, J.
   virtual Compensated row_energy() { return Compensated::zero(); }

@@ -8,9 +8,7 @@ namespace bb::resident {
 
 FamilyTerm::FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
                        const ElementFamily& elements, std::unique_ptr<ElementFamily>&& family)
-    : FamilySteps(std::move(family), inputs, elements.width(), elements.vertices()),
-      name_(name),
-      group_(group),
+    : FamilySteps(name, group, std::move(family), inputs, elements.width(), elements.vertices()),
       change_(inputs.executor, std::string(name) + " changes", family_->has_changes() ? 2 * size() : 0) {}
 
 void FamilyTerm::add_change(const PositionsView& x, const PositionsView& trial, ResidentChange& out) {

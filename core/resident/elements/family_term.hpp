@@ -13,9 +13,6 @@ class FamilyTerm final : public FamilySteps<ElementTerm> {
   FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
              std::unique_ptr<ElementFamily> family)
       : FamilyTerm(inputs, name, group, *family, std::move(family)) {}
-  std::string_view name() const override { return name_; }
-  TermGroup group() const override { return group_; }
-  Phase phase() const override { return phase_of(group_); }
   void add_change(const PositionsView& x, const PositionsView& trial, ResidentChange& out) override;
 
  protected:
@@ -30,8 +27,6 @@ class FamilyTerm final : public FamilySteps<ElementTerm> {
   FamilyTerm(const ResidentInputs& inputs, std::string_view name, TermGroup group,
              const ElementFamily& elements, std::unique_ptr<ElementFamily>&& family);
 
-  std::string_view name_;
-  TermGroup group_;
   Buffer<double> change_;  // [2, n] J, and magnitudes; empty: energies are compared
 };
 

@@ -1,4 +1,4 @@
-// Set-up, the step and its motions, and what is said of a state. The matrix is in resident_matrix_fill.cpp.
+// Set-up, the step and its motions, and what is said of a state. The matrix is in executor_matrix.cpp.
 #include "core/resident/system/executor_engine.hpp"
 
 #include <algorithm>

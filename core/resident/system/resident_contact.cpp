@@ -183,8 +183,9 @@ void ResidentContact::linearise(const PositionsView& x, const ResidentContext& c
 void ResidentContact::add_matrix(const PositionsView& x, const HessianRequest& request) {
   settle(x);
   const bool blended = request.t > 0;
-  matrix_ =
-      assembly_.matrix(rows_, x, {options_.hessian_mode, request.first, blended, blended ? request.t : 1});
+  matrix_ = assembly_.matrix(rows_, x,
+                             {options_.hessian_mode, request.first, blended, blended ? request.t : 1,
+                              request.threshold, request.force});
 }
 
 void ResidentContact::give_back_motion() {

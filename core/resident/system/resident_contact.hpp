@@ -62,6 +62,8 @@ class ResidentContact final : public ExecutorTerm {
   void freeze(PhaseClock&) override;
   /// Its barrier.
   void evaluate(const PositionsView& trial) override;
+  /// Nothing: rows of an iterate have their barrier when somebody reads them.
+  void evaluate_iterate(const PositionsView& /*x*/) override {}
   void add_change(const PositionsView& x, const PositionsView& trial, ResidentChange& out) override;
   void add_rows(RowEnergies& out) override;
   void accept(PhaseClock&) override;
