@@ -213,9 +213,10 @@ struct MollifiedHessians {
 
 /// Puts the Hessian of a row whose closest points slide along F edges.
 template <int F>
-BB_HD void store_sliding(const RowHessians& to, Index i, const RowShape<double, F>& shape) {
+BB_HD void store_sliding(const RowHessians& to, Index i, Projection projection,
+                         const RowShape<double, F>& shape) {
   double blocks[row_numbers];
-  row_hessian<double, F>(shape, to.choice.projection_of(to.rows, to.chunk.row(i)), blocks);
+  row_hessian<double, F>(shape, projection, blocks);
   if (!to.choice.blended) {
     for (int c = 0; c < row_numbers; ++c) to.number[c * to.stride + i] = blocks[c];
     return;
@@ -273,7 +274,9 @@ struct SlidingHessians {
     const Index r = to.chunk.row(i);
     if (!has_own_hessian(to.rows, to.choice.mode, r)) return;
     if (to.rows.mollified(r)) return;
-    with_row_shape(to.rows, to.surface, r, to.x, [&](const auto& shape) { store_sliding(to, i, shape); });
+    const Projection projection = to.choice.projection_of(to.rows, r);
+    with_row_shape(to.rows, to.surface, r, to.x,
+                   [&](const auto& shape) { store_sliding(to, i, projection, shape); });
   }
 };
 
