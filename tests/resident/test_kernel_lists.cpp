@@ -37,11 +37,12 @@ Names listed() {
   return out;
 }
 
-/// Kernels of families (core/energy/families) that a host alone launches: local terms element by element, those in float, and those of every
-/// vertex, which an executor takes in launches of their own (core/resident/elements/load_kernels.hpp).
+/// Kernels of families (core/energy/families, core/terms) that a host alone launches: local terms element by element, those in float, and those
+/// of every vertex, which an executor takes in launches of their own (core/resident/elements/load_kernels.hpp).
 bool of_host(const std::string& entry) {
   if (entry.starts_with("each bb::resident")) return false;
-  return entry.starts_with("each bb::ElementLocalTerms<") || entry.ends_with(",float>") ||
+  return entry.starts_with("each bb::ElementLocalTerms<") ||
+         entry.starts_with("each bb::MotionLocalTerms<") || entry.ends_with(",float>") ||
          entry.find("<bb::InertiaOf<") != std::string::npos ||
          entry.find("<bb::WeightLoads") != std::string::npos;
 }
