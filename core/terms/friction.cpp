@@ -59,8 +59,9 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
  private:
   template <class Sides>
   static std::vector<double> coefficients(const Sides& sides, double otherwise) {
-    std::vector<double> out;
-    for (const auto& side : sides) out.push_back(side.friction.value_or(otherwise));
+    std::vector<double> out(sides.size());
+    std::transform(sides.begin(), sides.end(), out.begin(),
+                   [otherwise](const auto& side) { return side.friction.value_or(otherwise); });
     return out;
   }
   void take_step(const FamilyStep& step) {

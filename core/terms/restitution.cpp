@@ -47,8 +47,9 @@ class RestitutionFamily final : public LaggedFamilyOf<RestitutionRows> {
   /// In units of 1 over the speed at which a pair met.
   template <class Sides>
   static std::vector<double> dampings(const Sides& sides) {
-    std::vector<double> out;
-    for (const auto& side : sides) out.push_back(restitution_damping(side.restitution.value_or(1)));
+    std::vector<double> out(sides.size());
+    std::transform(sides.begin(), sides.end(), out.begin(),
+                   [](const auto& side) { return restitution_damping(side.restitution.value_or(1)); });
     return out;
   }
   void strengthen() override {

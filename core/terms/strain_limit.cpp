@@ -42,7 +42,8 @@ ElasticMatrix gather_elastic(const LimitFamily& family, const BlockSystem& block
                              const BlockSystem::Values& elastic, std::vector<double>& out) {
   const std::span<const int> vertices = family.vertices();
   const int width = family.width(), size = 3 * width;
-  const auto n = static_cast<std::size_t>(family.size()), numbers = static_cast<std::size_t>(size * size);
+  const auto n = static_cast<std::size_t>(family.size()),
+             numbers = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   out.resize(numbers * n);
   parallel_items(n, 64, [&](std::size_t e) {
     Mat<double, 12, 12> block;

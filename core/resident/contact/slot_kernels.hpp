@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/exec/sums/compaction_kernels.hpp"
+#include "core/exec/sums/search.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 
 namespace bb::resident {
