@@ -74,11 +74,6 @@ void HostEngine::adopt(const HostEngine& other) {
   for (std::size_t i = 0; i < slots_.size(); ++i) slots_[i].term->adopt_from(*other.slots_[i].term);
 }
 
-bool HostEngine::bounds_each_vertex() const {
-  return std::any_of(terms_.begin(), terms_.end(),
-                     [](const auto& term) { return !term->vertex_parts().empty(); });
-}
-
 double HostEngine::truncate(Column& dx) {
   std::vector<double> part(static_cast<std::size_t>(dx.size()) / 3, 1);
   for (const auto& term : terms_) {

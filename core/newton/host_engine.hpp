@@ -45,7 +45,6 @@ class HostEngine final : public IncrementalPotential {
                        Column& step, Column& direction) override;
   std::size_t nnz() const override { return nnz_; }
 
-  bool bounds_each_vertex() const override;
   double truncate(Column& dx) override;
   Cusps cusps(const Column& x) override;
   std::string describe_non_finite() override;

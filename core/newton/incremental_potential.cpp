@@ -51,6 +51,11 @@ void IncrementalPotential::prepare(const Column& x0, const Column& x1, const Col
   for (Term* term : terms_) term->prepare({x0, x1, dx, to_bound}, clock_);
 }
 
+bool IncrementalPotential::bounds_each_vertex() const {
+  return std::any_of(terms_.begin(), terms_.end(),
+                     [this](const Term* term) { return bounds_each_vertex_of(*term); });
+}
+
 // truncated: what terms said of each vertex the motion keeps to already.
 double IncrementalPotential::smallest_bound(const Motion& motion, IterationReport& report, bool truncated) {
   const auto asks = [&](const Term* term) { return !truncated || !bounds_each_vertex_of(*term); };
@@ -62,7 +67,7 @@ double IncrementalPotential::smallest_bound(const Motion& motion, IterationRepor
   for (Term* term : terms_) {
     if (!asks(term)) continue;
     const double said = term->bound(motion, report, clock_);
-    const double alpha = said >= 0 ? said : 0;  // what is no number proves nothing
+    const double alpha = said >= 0 ? said : 0;  // a bound that is not a number proves nothing
     if (!(alpha < 1) || alpha > smallest) continue;
     smallest = alpha;
     holder_ = term;

@@ -80,7 +80,7 @@ class IncrementalPotential {
   }
   /// Whether some term bounds each vertex by itself; then dx of each becomes the part of it that the last bound() lets it go,
   /// and prescribed vertices go the smallest of theirs, which is returned.
-  virtual bool bounds_each_vertex() const { return false; }
+  bool bounds_each_vertex() const;
   virtual double truncate(Column& /*dx*/) { return 1; }
   /// bound() of the terms that said nothing about each vertex, of a motion that was truncated.
   double bound_truncated(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {

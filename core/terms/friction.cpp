@@ -31,12 +31,6 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
         spin_(place.executor, "lagged spins"),
         numbers_(place.executor) {}
 
-  void begin_step(const FamilyStep& step) override {
-    this->x_n_ = step.x_n;
-    solved_ = 0;
-    take_step(step);
-    t_lag_ = step.t_end - step.dt;
-  }
   void change_step(const FamilyStep& step) override {
     take_step(step);
     find_spins();
@@ -68,6 +62,11 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
     kind_.eps = options_.eps_v * step.dt;
     t_end_ = step.t_end;
     dt_ = step.dt;
+  }
+  void step_begins(const FamilyStep& step) override {
+    solved_ = 0;
+    take_step(step);
+    t_lag_ = step.t_end - step.dt;
   }
   void rows_changed() override { find_spins(); }
   std::vector<double> kept() const override { return {t_lag_}; }

@@ -53,7 +53,10 @@ class LaggedFamily {
 
   // --- a step
   /// A step begins. take() of its start comes next.
-  virtual void begin_step(const FamilyStep& step) { change_step(step); }
+  void begin_step(const FamilyStep& step) {
+    x_n_ = step.x_n;
+    step_begins(step);
+  }
   /// The same step with another length.
   virtual void change_step(const FamilyStep&) {}
   /// The step has converged: whether rows are taken anew from where it did.
@@ -73,7 +76,7 @@ class LaggedFamily {
   virtual void gradients(const double* x, double* energy, double* force) = 0;
   /// hess [6, n] N/m: lower triangles, column by column.
   virtual void hessians(const double* x, double* hess) = 0;
-  /// force [3, n] (N): how gradients change, to first order, along a motion of given vertices (m, 0 at free ones).
+  /// force [3, n] (N): how gradients change, to first order, along a motion of prescribed vertices (m, 0 at free ones).
   virtual void changes(const double* x, const double* motion, double* force) = 0;
   /// In the host's memory alone: terms of elements of four vertices. out has room for them.
   virtual void derivatives(const double* x, LocalTerms& out) = 0;
@@ -84,6 +87,7 @@ class LaggedFamily {
   /// body [n_vertices]: of the executor, outlives it. of_body, of_obstacle: coefficients of the sides of the scene, 1.
   LaggedFamily(const FamilyPlace& place, const int* body, CombineRule rule, std::span<const double> of_body,
                std::span<const double> of_obstacle);
+  virtual void step_begins(const FamilyStep& step) { change_step(step); }
   /// rows() are others, or taken elsewhere.
   virtual void rows_changed() {}
   /// Strengths are coefficients times loads; they become those of the term.
@@ -103,7 +107,7 @@ class LaggedFamily {
 
   FamilyPlace place_;
   LaggedColumns rows_;
-  const double* x_n_ = nullptr;  // [3 n_vertices] m, start of the step
+  const double* x_n_ = nullptr;  // [3 n_vertices] m, start of the step; restitution reads it
 
  private:
   const int* body_;

@@ -12,7 +12,7 @@ namespace bb {
 /// Rows in the memory of an executor.
 struct LaggedRows {
   exec::Index n;
-  const int* vertex;       // [4, n] given ones too, -1 padded
+  const int* vertex;       // [4, n] prescribed ones too, -1 padded
   const double* weight;    // [4, n]
   const double* normal;    // [3, n] unit
   const double* strength;  // [n] N times the unit of 1 over the coefficient
@@ -123,7 +123,7 @@ struct MotionHessians {
   }
 };
 
-/// How the forces change, to first order, along a motion of given vertices.
+/// How the forces change, to first order, along a motion of prescribed vertices.
 template <class Rows>
 struct MotionChanges {
   Rows rows;

@@ -26,10 +26,6 @@ class RestitutionFamily final : public LaggedFamilyOf<RestitutionRows> {
     upload(v0_);
   }
 
-  void begin_step(const FamilyStep& step) override {
-    x_n_ = step.x_n;
-    change_step(step);
-  }
   void change_step(const FamilyStep& step) override { kind_.dt = step.dt; }
   void end_step(const double* x) override {
     place_.executor.each(speed_.size(), SpeedOfStep{x, x_n_, kind_.dt, speed_.data()});
