@@ -140,7 +140,7 @@ def same_runs(folder: Path) -> list[dict]:
 
 
 def functor(kernel: str) -> str:
-    """bb::resident::SpmvDot of `void bb::exec::run_each<bb::resident::SpmvDot>(long, T1)`; of a library's
+    """bb::exec::SpmvDot of `void bb::exec::run_each<bb::exec::SpmvDot>(long, T1)`; of a library's
     kernel its name without what it is a template of.
     """
     found = re.search(r"run_(?:each|blocks)<(.*)>\(", kernel)

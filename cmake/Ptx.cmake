@@ -19,7 +19,7 @@ function(bb_ptx_module name)
   set_target_properties(${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
 endfunction()
 
-# bb_ptx_of_device_code(NAME ROOM): the same of the kernels of a resident room: the PTX in the object file that the
+# bb_ptx_of_device_code(NAME ROOM): the same of the kernels of a room: the PTX in the object file that the
 # program is linked from, which all its machine code is made of.
 function(bb_ptx_of_device_code name room)
   set(ptx "${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx")

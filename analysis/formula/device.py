@@ -40,7 +40,7 @@ def find_nvcc() -> str | None:
 
 def device_code(text: str, layout: int) -> dict:
     """entry, ptx (a file) and ptx_sha256 of the kernel of a formula that was compiled before. layout: that of
-    the program's rows (core/resident/contact/given_shape.hpp). Cost: 0.1 s from the cache, else some seconds.
+    the program's rows (core/contact/executor/given_shape.hpp). Cost: 0.1 s from the cache, else some seconds.
     Errors: FormulaError.
     """
     formula = read(text)

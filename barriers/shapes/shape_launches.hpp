@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/barrier/launches.hpp"
+#include "core/contact/executor/shape_kernels.hpp"
 #include "core/energy/families/limit_kernels.hpp"
 #include "core/exec/executor.hpp"
-#include "core/resident/contact/shape_kernels.hpp"
 
 namespace bb {
 
@@ -27,12 +27,12 @@ LimitLaunches<N> limit_launches() {
 template <class S>
 ShapeLaunches shape_launches() {
   ShapeLaunches out;
-  out.rows = [](exec::Executor& executor, const resident::RowView& rows, Argument argument) {
-    executor.each(rows.n, resident::EvaluateShape<S>{rows, argument});
+  out.rows = [](exec::Executor& executor, const exec::RowView& rows, Argument argument) {
+    executor.each(rows.n, exec::EvaluateShape<S>{rows, argument});
   };
   if constexpr (shapes::HasPotential<S>) {
-    out.folded_rows = [](exec::Executor& executor, const resident::RowView& rows) {
-      executor.each(rows.n, resident::EvaluateFoldedShape<S>{rows});
+    out.folded_rows = [](exec::Executor& executor, const exec::RowView& rows) {
+      executor.each(rows.n, exec::EvaluateFoldedShape<S>{rows});
     };
   }
   out.planar_triangles = limit_launches<2, 2, S>();

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/barrier/launches.hpp"
+#include "core/contact/executor/row_kappa.hpp"
 #include "core/energy/families/limit_kernels.hpp"
 #include "core/exec/executor.hpp"
-#include "core/resident/contact/row_kappa.hpp"
 
 namespace bb {
 
@@ -14,9 +14,8 @@ PolicyLaunches policy_launches() {
   using P = typename Policy::Values;
   PolicyLaunches out;
   if constexpr (ServesContacts<P>) {
-    out.rows = [](exec::Executor& executor, const StiffnessPolicy& policy,
-                  const resident::RowKappaInputs& of) {
-      executor.each(of.rows.n, resident::RowKappa<P>{of, static_cast<const Policy&>(policy).scaled()});
+    out.rows = [](exec::Executor& executor, const StiffnessPolicy& policy, const exec::RowKappaInputs& of) {
+      executor.each(of.rows.n, exec::RowKappa<P>{of, static_cast<const Policy&>(policy).scaled()});
     };
   }
   if constexpr (ServesLimits<P>) {

@@ -11,10 +11,10 @@ namespace bb {
 namespace exec {
 class Executor;
 }
-namespace resident {
+namespace exec {
 struct RowView;
 struct RowKappaInputs;
-}  // namespace resident
+}  // namespace exec
 struct MeasureAt;
 template <int N>
 struct LimitColumns;
@@ -33,9 +33,9 @@ struct LimitLaunches {
 
 struct ShapeLaunches {
   /// Energy, force and stiffness of contact rows whose kappa is a number.
-  void (*rows)(exec::Executor&, const resident::RowView&, Argument) = nullptr;
+  void (*rows)(exec::Executor&, const exec::RowView&, Argument) = nullptr;
   /// The same where kappa depends on the gap; null without a potential.
-  void (*folded_rows)(exec::Executor&, const resident::RowView&) = nullptr;
+  void (*folded_rows)(exec::Executor&, const exec::RowView&) = nullptr;
   LimitLaunches<2> planar_triangles = {}, triangles = {};  // of a strain limit in the x-y plane and in space
   LimitLaunches<3> tetrahedra = {};
 };
@@ -46,7 +46,7 @@ inline constexpr const char* host_policy_words =
 
 struct PolicyLaunches {
   /// kappa of contact rows; null where the policy does not compute it row by row.
-  void (*rows)(exec::Executor&, const StiffnessPolicy&, const resident::RowKappaInputs&) = nullptr;
+  void (*rows)(exec::Executor&, const StiffnessPolicy&, const exec::RowKappaInputs&) = nullptr;
   /// kappa of limited triangles and tetrahedra; null where the policy serves no strain limit.
   void (*triangles)(exec::Executor&, const StiffnessPolicy&, const ElementKappaInputs<2>&) = nullptr;
   void (*tetrahedra)(exec::Executor&, const StiffnessPolicy&, const ElementKappaInputs<3>&) = nullptr;

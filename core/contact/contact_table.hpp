@@ -69,7 +69,7 @@ struct ContactTable {
   std::vector<double> curvature;  // [n] 1/m
   std::vector<double> flat;       // [3 n] axis of a cylinder, else 0
 
-  /// kappa b' (N) and kappa b'' (N/m): what columns in an executor's memory are called (resident_rows.hpp).
+  /// kappa b' (N) and kappa b'' (N/m): what columns in an executor's memory are called (executor_rows.hpp).
   double force(std::size_t r) const { return kappa[r] * db[r]; }
   double stiffness(std::size_t r) const { return kappa[r] * d2b[r]; }
   std::size_t size() const { return d.size(); }

@@ -1,5 +1,5 @@
 // How the gap of a contact row goes along a straight motion, to second order, and what keeps a step from losing it. One
-// code for the rows of the host and of the resident pipeline; host-device, no allocation.
+// code for the rows of the host and in kernels; host-device, no allocation.
 #pragma once
 
 #include <limits>

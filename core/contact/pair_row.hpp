@@ -1,5 +1,5 @@
 // The row of one pair as plain values: which feature realises its closest points, weights, normal and gap. What the table
-// and the kernels of the resident pipeline share; host-device, no allocation.
+// and kernels share; host-device, no allocation.
 #pragma once
 
 #include "core/contact/contact_table.hpp"

@@ -19,16 +19,16 @@ struct ReportedRow {
 struct RowTotals {
   exec::Key gap_rel_min, kappa_min, kappa_max, load_max, curvature_max;
   exec::Key of_kind[mollified_kind + 1];  // rows
-  resident::Compensated load;             // N
-  resident::Compensated energy;           // J, mollifiers included; of rows in an executor's memory
+  exec::Compensated load;                 // N
+  exec::Compensated energy;               // J, mollifiers included; of rows in an executor's memory
 
   BB_HD static RowTotals zero() {
-    constexpr auto none = resident::Compensated{0, 0, 0};
+    constexpr auto none = exec::Compensated{0, 0, 0};
     return {0, 0, 0, 0, 0, {0, 0, 0, 0, 0, 0, 0, 0}, none, none};
   }
   /// Loads and curvatures are those of rows that are not mollified: a mollified one has e(x) kappa |b'| and no load of its own.
   BB_HD void add(const ReportedRow& row) {
-    using namespace resident;
+    using namespace exec;
     const bool mollified = row.kind == mollified_kind;
     const double load_of_row = mollified ? 0 : -row.force;
     raise_key(gap_rel_min, ~smallest_key(row.d / row.d_hat));
@@ -40,7 +40,7 @@ struct RowTotals {
     load.add(load_of_row);
   }
   friend BB_HD RowTotals operator+(const RowTotals& a, const RowTotals& b) {
-    using resident::raise_key;
+    using exec::raise_key;
     RowTotals out = a;
     raise_key(out.gap_rel_min, b.gap_rel_min);
     raise_key(out.kappa_min, b.kappa_min);

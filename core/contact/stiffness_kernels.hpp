@@ -21,7 +21,7 @@ struct KnownPairs {
     return at < n && pair[at] == wanted ? at : -1;
   }
   BB_HD Index first_not_below(PairId wanted) const {
-    return resident::first_not_below(pair, Index{0}, n, wanted);
+    return exec::first_not_below(pair, Index{0}, n, wanted);
   }
   BB_HD KappaParts parts(Index at) const { return {fixed[by * at], per_gap_sq ? per_gap_sq[by * at] : 0.0}; }
 };
@@ -85,11 +85,11 @@ struct KnownPlaces {
 struct MergeKnown {
   KnownPairs known;
   StiffnessRows rows;
-  resident::Places fresh;  // of rows that are not known
+  exec::Places fresh;  // of rows that are not known
   Index n_fresh;
   KnownPlaces to;
   BB_HD void operator()(Index i) const {
-    const Index row = resident::first_not_below(rows.pair, Index{0}, rows.n, known.pair[i]);
+    const Index row = exec::first_not_below(rows.pair, Index{0}, rows.n, known.pair[i]);
     to.put(i + (row < rows.n ? fresh.of(row) : n_fresh), known.pair[i], known.parts(i));
   }
 };
@@ -99,7 +99,7 @@ struct MergeFresh {
   KnownPairs known;
   StiffnessRows rows;
   const std::uint8_t* mark;
-  resident::Places fresh;
+  exec::Places fresh;
   KnownPlaces to;
   BB_HD void operator()(Index r) const {
     if (mark[r] == 0) return;

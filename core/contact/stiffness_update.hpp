@@ -75,7 +75,7 @@ class StiffnessUpdate {
 
   exec::Executor& executor_;
   const StiffnessPolicy& policy_;
-  resident::Compaction missing_;
+  exec::Compaction missing_;
   KnownColumns known_, merged_;  // merged_: room for what known_ becomes
   Index n_known_ = 0;
   exec::Reading<exec::Key> change_;

@@ -22,7 +22,7 @@ struct KernelInfo {
   Index grain = 1;                   // items or blocks that a host thread takes at least, one after the other
   Index lanes = 1;                   // items that a host takes at a time; grain is a multiple of it
   const DeviceCode* code = nullptr;  // of a kernel that no list of the program has; null: the program's own
-  /// As C++ writes it: "bb::resident::SpmvDot".
+  /// As C++ writes it: "bb::exec::SpmvDot".
   std::string name() const;
 };
 

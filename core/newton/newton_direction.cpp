@@ -62,7 +62,7 @@ bool NewtonSystem::set_right_hand_side() {
   }
   state_.executor.each(
       state_.b.size(),
-      resident::RightHandSide{state_.g.data(), moving ? state_.work.data() : nullptr, state_.b.data()});
+      exec::RightHandSide{state_.g.data(), moving ? state_.work.data() : nullptr, state_.b.data()});
   return moving;
 }
 
@@ -105,7 +105,7 @@ DirectionSize NewtonSystem::direction_size() {
   if (!seen) look_at_direction();
   const double slope = seen ? state_.vectors.solution_products().second.value()
                             : state_.vectors.free_dot(state_.g, state_.dx).value();
-  const resident::DirectionSizes found = state_.vectors.direction_sizes();
+  const exec::DirectionSizes found = state_.vectors.direction_sizes();
   state_.direction_seen = seen;
   size.inf_m = found.largest;
   size.rounding_m = found.within;
@@ -117,7 +117,7 @@ DirectionSize NewtonSystem::direction_size() {
 
 void NewtonSystem::scale_direction(double factor) {
   state_.direction_seen = false;
-  state_.executor.each(state_.dx.size(), resident::ScaleColumn{factor, state_.dx.data()});
+  state_.executor.each(state_.dx.size(), exec::ScaleColumn{factor, state_.dx.data()});
 }
 
 double NewtonSystem::direction_curvature() {

@@ -27,7 +27,7 @@ struct NewtonState {
   const int n_free;
   std::unique_ptr<IncrementalPotential> potential;
   exec::Executor& executor;
-  resident::VectorTools vectors;
+  exec::VectorTools vectors;
   HessianLevel level;
 
   Column x, trial;      // the iterate; the trial, or the iterate before the last accept(), m

@@ -5,7 +5,7 @@
 
 #include "core/energy/friction_law.hpp"
 #include "core/energy/friction_list.hpp"
-#include "core/exec/sums/resident_sum.hpp"
+#include "core/exec/sums/executor_sum.hpp"
 #include "core/terms/friction_rows.hpp"
 #include "core/terms/lagged_family_of.hpp"
 #include "core/terms/registry.hpp"
@@ -98,7 +98,7 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
   bool turns_;  // some obstacle does
   exec::Buffer<ObstacleTurn> turn_;
   exec::Buffer<double> spin_;  // [3, n] m
-  resident::ResidentSums<FrictionNumbers> numbers_;
+  exec::ExecutorSums<FrictionNumbers> numbers_;
   double t_end_ = 0, dt_ = 0;  // s
   double t_lag_ = 0;           // s, of lagged()
   int solved_ = 0;             // times that this step converged

@@ -76,9 +76,9 @@ struct FindSpins {
 
 /// What a step says of friction.
 struct FrictionNumbers {
-  resident::Compensated work;  // J
+  exec::Compensated work;  // J
   exec::Key sticking, sliding;
-  BB_HD static FrictionNumbers zero() { return {resident::Compensated::zero(), 0, 0}; }
+  BB_HD static FrictionNumbers zero() { return {exec::Compensated::zero(), 0, 0}; }
   friend BB_HD FrictionNumbers operator+(const FrictionNumbers& a, const FrictionNumbers& b) {
     return {a.work + b.work, a.sticking + b.sticking, a.sliding + b.sliding};
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/base/archive/archive.hpp"
-#include "core/exec/sums/resident_sum.hpp"
+#include "core/exec/sums/executor_sum.hpp"
 #include "core/terms/lagged_family_of.hpp"
 #include "core/terms/registry.hpp"
 #include "core/terms/restitution_rows.hpp"
@@ -79,7 +79,7 @@ class RestitutionFamily final : public LaggedFamilyOf<RestitutionRows> {
   bool moved_ = false;          // a step was before
   exec::Buffer<PairId> known_pair_;
   exec::Buffer<double> known_speed_, met_;  // m/s
-  resident::ResidentSum work_;
+  exec::ExecutorSum work_;
 };
 
 // Before the first step there are no speeds to keep.

@@ -29,7 +29,7 @@ struct RestitutionRows : LaggedRows {
 struct RestitutionWork {
   RestitutionRows rows;
   const double* x;
-  BB_HD void operator()(exec::Index r, resident::Compensated& sum) const {
+  BB_HD void operator()(exec::Index r, exec::Compensated& sum) const {
     sum.add(damping_work<double>(rows.motion(x, r), rows.normal_of(r), rows.damping(r)));
   }
 };
@@ -50,7 +50,7 @@ struct RememberMeeting {
   const double* speed;  // [3 n_vertices] m/s, of the step before
   double* met;
   BB_HD void operator()(exec::Index r) const {
-    const exec::Index at = resident::first_not_below(known.pair, exec::Index{0}, known.n, pair[r]);
+    const exec::Index at = exec::first_not_below(known.pair, exec::Index{0}, known.n, pair[r]);
     if (at < known.n && known.pair[at] == pair[r]) {
       met[r] = known.speed[at];
     } else {

@@ -27,9 +27,9 @@ template <class Numbers>
 bool fill(const RowTotals& rows, Numbers& out) {
   out.contacts = counts_of(rows);
   if (out.contacts.total() == 0) return false;
-  out.kappa_min_N_per_m = resident::smallest_of(rows.kappa_min);
-  out.kappa_max_N_per_m = resident::largest_of(rows.kappa_max);
-  out.contact_load_max_N = resident::largest_of(rows.load_max);
+  out.kappa_min_N_per_m = exec::smallest_of(rows.kappa_min);
+  out.kappa_max_N_per_m = exec::largest_of(rows.kappa_max);
+  out.contact_load_max_N = exec::largest_of(rows.load_max);
   return true;
 }
 
@@ -38,8 +38,8 @@ bool fill(const RowTotals& rows, Numbers& out) {
 void report_rows(const RowTotals& rows, double gap_min, IterateNumbers& out) {
   if (!fill(rows, out)) return;
   out.gap_min_iterates_m = gap_min;
-  out.gap_min_iterates_rel = resident::smallest_of(rows.gap_rel_min);
-  out.contact_curvature_max_N_per_m = resident::largest_of(rows.curvature_max);
+  out.gap_min_iterates_rel = exec::smallest_of(rows.gap_rel_min);
+  out.contact_curvature_max_N_per_m = exec::largest_of(rows.curvature_max);
 }
 
 void report_rows(const RowTotals& rows, double gap_min, double largest, Precision precision,
@@ -47,7 +47,7 @@ void report_rows(const RowTotals& rows, double gap_min, double largest, Precisio
   if (!fill(rows, out)) return;
   out.contact_load_sum_N = rows.load.value();
   out.gap_min_m = gap_min;
-  out.gap_min_rel = resident::smallest_of(rows.gap_rel_min);
+  out.gap_min_rel = exec::smallest_of(rows.gap_rel_min);
   const double ulp = with_value_scalar(precision, [&]<class T>() -> double {
     const T at = static_cast<T>(largest);
     return std::nextafter(at, 2 * at) - at;

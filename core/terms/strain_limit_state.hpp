@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/energy/families/limit_family.hpp"
-#include "core/exec/sums/resident_sum.hpp"
+#include "core/exec/sums/executor_sum.hpp"
 #include "core/terms/report.hpp"
 #include "core/terms/term_options.hpp"
 
@@ -79,7 +79,7 @@ class StrainLimitState {
   const bool of_solids_, adds_;
   const double* vertex_mass_;
   std::unique_ptr<LimitFamily> family_;
-  resident::ResidentLeast beyond_;  // the first element at or beyond its limit
+  exec::ExecutorLeast beyond_;  // the first element at or beyond its limit
   StiffnessTime time_;
   const double* x_n_ = nullptr;
   State measured_ = State::none;

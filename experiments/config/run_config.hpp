@@ -21,7 +21,7 @@
 
 namespace bb {
 
-/// Where a run computes. cpu: the pipeline of core/newton. host: the resident pipeline (core/resident) on threads of this
+/// Where a run computes. cpu: the pipeline of core/newton. host: the resident pipeline on threads of this
 /// machine, the same kernels as on a device. cuda: on a device.
 enum class Device { cpu, host, cuda };
 

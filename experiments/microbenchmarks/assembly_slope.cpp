@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "barriers/shapes/registry.hpp"
+#include "core/contact/executor/contact_assembly.hpp"
+#include "core/contact/executor/executor_barrier.hpp"
+#include "core/contact/executor/executor_broad_phase.hpp"
+#include "core/contact/executor/row_finder.hpp"
 #include "core/exec/host_executor.hpp"
-#include "core/resident/contact/contact_assembly.hpp"
-#include "core/resident/contact/resident_barrier.hpp"
-#include "core/resident/contact/resident_broad_phase.hpp"
-#include "core/resident/contact/row_finder.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
 
 namespace {
@@ -49,19 +49,19 @@ Times measure(int layers) {
   const ContactPlan plan = plan_contact(scene);
   exec::HostExecutor executor;
   const Surface surface(scene);
-  const resident::ResidentSurface on(executor, scene, surface);
+  const exec::ExecutorSurface on(executor, scene, surface);
   exec::Buffer<double> x(executor, "positions"), gradient(executor, "gradient");
   x.upload({scene.x0.data(), static_cast<std::size_t>(scene.x0.size())});
   gradient.resize(x.size());
-  resident::ResidentCandidates candidates(executor);
-  resident::ResidentBroadPhase(executor, on, surface, plan).update(x, x, candidates);
-  resident::ResidentRows rows(executor, resident::KappaColumns::uniform);
-  resident::RowFinder(executor, on, plan.mollifier.needed).find(x, candidates, rows);
+  exec::ExecutorCandidates candidates(executor);
+  exec::ExecutorBroadPhase(executor, on, surface, plan).update(x, x, candidates);
+  exec::ExecutorRows rows(executor, exec::KappaColumns::uniform);
+  exec::RowFinder(executor, on, plan.mollifier.needed).find(x, candidates, rows);
   rows.uniform_kappa = 1;
-  resident::ResidentBarrier({require_shape("log"), Argument::gap}, false).evaluate(executor, rows);
+  exec::ExecutorBarrier({require_shape("log"), Argument::gap}, false).evaluate(executor, rows);
 
-  resident::ContactAssembly assembly(executor, on, scene.n_vertices());
-  const resident::HessianChoice choice{HessianMode::projected_full, Projection::psd, false, 1};
+  exec::ContactAssembly assembly(executor, on, scene.n_vertices());
+  const exec::HessianChoice choice{HessianMode::projected_full, Projection::psd, false, 1};
   Times out{static_cast<double>(rows.size()), 0, 0, 0, 0};
   out.pattern = seconds([&] { assembly.set_pattern(rows); });
   out.gradient = seconds([&] { assembly.add_gradient(rows, x, gradient); });

@@ -7,7 +7,7 @@
 
 #include "core/exec/metered_executor.hpp"
 #include "core/linear/executor/solver_launches.hpp"
-#include "core/resident/system/executor_engine.hpp"
+#include "core/newton/executor/executor_engine.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
@@ -23,7 +23,7 @@ class Printer final : public StepObserver {
   bool watches_motions() const override { return false; }
   void on_iteration(const IterationReport& report) override {
     const exec::ExecutionCounts& c = executor->counts();
-    const exec::Index of_solver = resident::solver_launches(c), launches = c.launches - of_solver,
+    const exec::Index of_solver = exec::solver_launches(c), launches = c.launches - of_solver,
                       candidates = c.items("FillRows");
     std::printf("{\"step\": %d, \"iteration\": %d, \"launches\": %lld, \"solver_launches\": %lld, ",
                 report.step, report.iteration, static_cast<long long>(launches),
@@ -59,7 +59,7 @@ int run(const std::string& path, int steps) {
                                      const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
     auto executor = std::make_unique<exec::MeteredExecutor>();
     printer.executor = executor.get();
-    return std::make_unique<resident::ExecutorEngine>(std::move(executor), of, with, plan, fixed, clock);
+    return std::make_unique<exec::ExecutorEngine>(std::move(executor), of, with, plan, fixed, clock);
   };
   Simulation simulation(scene, method, config.time.dt, steps);
   for (int i = 0; i < steps; ++i) simulation.step(printer);

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/contact/executor/executor_rows.hpp"
+#include "core/contact/executor/policy_kernels.hpp"
 #include "core/contact/surface.hpp"
 #include "core/exec/counting_executor.hpp"
+#include "core/newton/executor/executor_engine.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/resident/contact/policy_kernels.hpp"
-#include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/system/executor_engine.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -27,19 +27,19 @@ double mean_edge(const Surface& surface, const Scene& scene) {
 double bytes_a_row(const Method& method) {
   exec::CountingExecutor executor;
   constexpr exec::Index n = 1 << 20;
-  resident::ResidentRows rows(executor, resident::columns_of(*method.stiffness));
+  exec::ExecutorRows rows(executor, exec::columns_of(*method.stiffness));
   rows.resize(n);
   return static_cast<double>(executor.memory().bytes()) / n;
 }
 
-resident::ExpectedContacts expected_contacts(const ContactDemand& demand, double contacts,
-                                             const ContactPlan& plan) {
-  resident::ExpectedContacts out;
+exec::ExpectedContacts expected_contacts(const ContactDemand& demand, double contacts,
+                                         const ContactPlan& plan) {
+  exec::ExpectedContacts out;
   out.rows = std::llround(contacts);
   if (plan.mollifier.needed) out.mollified = out.rows / 100;
   out.upper_blocks_a_row = demand.upper_blocks_a_contact;
   const exec::Index n = std::llround(contacts * demand.candidates_a_contact);
-  resident::CandidateCounts& of = out.candidates;
+  exec::CandidateCounts& of = out.candidates;
   if (plan.edge_edge && plan.point_triangle) {
     of.point_triangle = n / 3;
     of.edge_edge = n - n / 3;
@@ -82,12 +82,12 @@ DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, co
   }
   method.make_potential = [](const Scene& of, Method& with, const Plan& parts,
                              const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
-    return std::make_unique<resident::ExecutorEngine>(std::make_unique<exec::CountingExecutor>(true), of,
-                                                      with, parts, fixed, clock);
+    return std::make_unique<exec::ExecutorEngine>(std::make_unique<exec::CountingExecutor>(true), of, with,
+                                                  parts, fixed, clock);
   };
   NewtonSystem system(scene, method, plan);
-  auto& potential = dynamic_cast<resident::ExecutorEngine&>(system.potential());
-  resident::count_memory(system, potential, scene, expected_contacts(demand, out.contacts, plan.contacts));
+  auto& potential = dynamic_cast<exec::ExecutorEngine&>(system.potential());
+  exec::count_memory(system, potential, scene, expected_contacts(demand, out.contacts, plan.contacts));
   const exec::MemoryLedger& memory = potential.memory();
   out.total = memory.peak();
   out.buffers.assign(memory.at_peak().begin(), memory.at_peak().end());

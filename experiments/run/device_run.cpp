@@ -7,15 +7,15 @@
 #include <functional>
 
 #include "barriers/shapes/registry.hpp"
+#include "core/contact/executor/executor_barrier.hpp"
+#include "core/contact/executor/given_shape.hpp"
+#include "core/contact/executor/policy_kernels.hpp"
 #include "core/exec/cuda/device.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/linear/solvers/linear_solvers.hpp"
 #include "core/math/error.hpp"
 #include "core/model/bodies/part.hpp"
-#include "core/resident/contact/given_shape.hpp"
-#include "core/resident/contact/policy_kernels.hpp"
-#include "core/resident/contact/resident_barrier.hpp"
-#include "core/resident/elements/limit_forms.hpp"
+#include "core/terms/executor/limit_forms.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -86,7 +86,7 @@ Method any_method(const RunConfig& config) {
   return make_method(config, any);
 }
 
-resident::ResidentBarrier resident_barrier_of(const RunConfig& config, const Method& method) {
+exec::ExecutorBarrier executor_barrier_of(const RunConfig& config, const Method& method) {
   return {method.contact, method.stiffness->has_potential(), config.device == Device::host};
 }
 
@@ -119,17 +119,17 @@ std::optional<std::string> card_of(const RunConfig& config) {
 const DeviceCode* device_code_in(const RunConfig& config) {
   if (config.device != Device::cuda) return nullptr;
   const Shape shape = require_shape(config.formulation.shape);
-  return shape.device_code ? &shape.device_code(shape, resident::given_shape_layout) : nullptr;
+  return shape.device_code ? &shape.device_code(shape, exec::given_shape_layout) : nullptr;
 }
 
 void check_device_forms(const RunConfig& config, const Scene& scene) {
   if (config.device == Device::cpu) return;
   at_config(config, "/scene", [&] { require_kernels(part_entries(), scene, "/scene"); });
   const Method method = any_method(config);
-  resident::require_kernel(*method.stiffness, config.source + "#/formulation/stiffness_policy/name");
-  at_config(config, "/formulation", [&] { resident_barrier_of(config, method); });
+  exec::require_kernel(*method.stiffness, config.source + "#/formulation/stiffness_policy/name");
+  at_config(config, "/formulation", [&] { executor_barrier_of(config, method); });
   if (method.strain_limit && !(scene.limit.triangles.empty() && scene.solid_limit.tetrahedra.empty())) {
-    at_config(config, "/strain_limit", [&] { resident::require_limit_kernels(method); });
+    at_config(config, "/strain_limit", [&] { exec::require_limit_kernels(method); });
   }
 }
 
@@ -139,7 +139,7 @@ void require_device(const RunConfig& config, const Scene& scene) {
   const std::unique_ptr<exec::Executor> executor = make_executor(config.device);
   at_config(config, "/formulation", [&] {
     try {
-      resident_barrier_of(config, any_method(config)).prepare(*executor);
+      executor_barrier_of(config, any_method(config)).prepare(*executor);
     } catch (const exec::ExecutionError& error) {
       throw ConfigError("shape", fmt::format("\"{}\" on a card: {}", config.formulation.shape, error.what()),
                         "a program built with CUDA 12.8 or newer, and a driver no older than the nvcc that "

@@ -3,7 +3,7 @@
 #include "barriers/shapes/registry.hpp"
 #include "core/math/error.hpp"
 #include "core/model/integrators/registry.hpp"
-#include "core/resident/system/executor_engine.hpp"
+#include "core/newton/executor/executor_engine.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/run/device_run.hpp"
@@ -96,7 +96,7 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
     method.make_potential = [device = config.device](const Scene& scene, Method& of, const Plan& plan,
                                                      const std::vector<std::uint8_t>& fixed,
                                                      PhaseClock& clock) {
-      return std::make_unique<resident::ExecutorEngine>(make_executor(device), scene, of, plan, fixed, clock);
+      return std::make_unique<exec::ExecutorEngine>(make_executor(device), scene, of, plan, fixed, clock);
     };
   }
   return method;

@@ -18,12 +18,12 @@ PRICES = {"currency": "USD", "cards": [
     {"name": "Y200", "match": ["Y200"], "price_per_hour": None, "as_of": None, "source": None}]}
 NCU = '''==PROF== Connected to process 1
 "ID","Process ID","Kernel Name","Metric Name","Metric Unit","Metric Value"
-"0","1","void bb::exec::run_blocks<bb::resident::SpmvDot>(T1)","dram__bytes.sum","byte","3,000,000"
-"0","1","void bb::exec::run_blocks<bb::resident::SpmvDot>(T1)","gpu__time_duration.sum","ns","2,000"
-"1","1","void bb::exec::run_blocks<bb::resident::SpmvDot>(T1)","dram__bytes.sum","byte","3,000,000"
-"1","1","void bb::exec::run_blocks<bb::resident::SpmvDot>(T1)","gpu__time_duration.sum","ns","2,000"
-"2","1","void bb::exec::run_each<bb::resident::UpdateP>(long, T1)","dram__bytes.sum","byte","1000"
-"2","1","void bb::exec::run_each<bb::resident::UpdateP>(long, T1)","gpu__time_duration.sum","ns","9000"
+"0","1","void bb::exec::run_blocks<bb::exec::SpmvDot>(T1)","dram__bytes.sum","byte","3,000,000"
+"0","1","void bb::exec::run_blocks<bb::exec::SpmvDot>(T1)","gpu__time_duration.sum","ns","2,000"
+"1","1","void bb::exec::run_blocks<bb::exec::SpmvDot>(T1)","dram__bytes.sum","byte","3,000,000"
+"1","1","void bb::exec::run_blocks<bb::exec::SpmvDot>(T1)","gpu__time_duration.sum","ns","2,000"
+"2","1","void bb::exec::run_each<bb::exec::UpdateP>(long, T1)","dram__bytes.sum","byte","1000"
+"2","1","void bb::exec::run_each<bb::exec::UpdateP>(long, T1)","gpu__time_duration.sum","ns","9000"
 '''
 
 
@@ -59,8 +59,8 @@ def test_a_record_has_what_the_script_saw(raw):
     scene = record["scenes"]["drape_1m"]
     assert (scene["newton_ms"], scene["pcg_ms"], scene["step_s"]) == (400.0, 5.0, 2.0)
     assert record["scenes"]["dense_8m"] is None
-    assert [k["name"] for k in record["kernels"]] == ["bb::resident::UpdateP", "bb::resident::SpmvDot"]
-    assert record["kernels"][1] == {"name": "bb::resident::SpmvDot", "launches": 2, "idle": 0, "seconds": pytest.approx(4e-6), "bytes": 6e6, "Bps": pytest.approx(1.5e12)}
+    assert [k["name"] for k in record["kernels"]] == ["bb::exec::UpdateP", "bb::exec::SpmvDot"]
+    assert record["kernels"][1] == {"name": "bb::exec::SpmvDot", "launches": 2, "idle": 0, "seconds": pytest.approx(4e-6), "bytes": 6e6, "Bps": pytest.approx(1.5e12)}
 
 
 def test_kernels_of_a_library_are_named_without_what_they_are_templates_of():
@@ -69,7 +69,7 @@ def test_kernels_of_a_library_are_named_without_what_they_are_templates_of():
 
 
 def row_of(name, number, n_bytes, ns):
-    kernel = f'"{number}","1","void bb::exec::run_blocks<bb::resident::{name}>(T1)"'
+    kernel = f'"{number}","1","void bb::exec::run_blocks<bb::exec::{name}>(T1)"'
     return f'{kernel},"dram__bytes.sum","byte","{n_bytes}"\n{kernel},"gpu__time_duration.sum","ns","{ns}"\n'
 
 
@@ -78,13 +78,13 @@ def test_launches_after_the_end_of_a_solve_are_not_in_the_means(raw, tmp_path, c
     launches = [("MultiplyDot", 80e6, 50000)] * 2 + [("MultiplyDot", 1000, 2000)] * 2 + [("Sort", 9e6, 3000), ("Sort", 1000, 1000)]
     (raw / "logs/kernels.out").write_text(NCU.splitlines()[1] + "\n" + "".join(row_of(name, k, n, ns) for k, (name, n, ns) in enumerate(launches)))
     found = {kernel["name"].split("::")[-1]: kernel for kernel in gpu_evidence.collect(raw, "", 1)["kernels"]}
-    assert found["MultiplyDot"] == {"name": "bb::resident::MultiplyDot", "launches": 2, "idle": 2, "seconds": pytest.approx(1e-4), "bytes": 160e6, "Bps": pytest.approx(1.6e12)}
+    assert found["MultiplyDot"] == {"name": "bb::exec::MultiplyDot", "launches": 2, "idle": 2, "seconds": pytest.approx(1e-4), "bytes": 160e6, "Bps": pytest.approx(1.6e12)}
     assert (found["Sort"]["launches"], found["Sort"]["idle"]) == (2, 0)
-    assert "| `bb::resident::MultiplyDot` | 2 | 2 | 50 | 1,600 | 53 % |" in page(raw, tmp_path, capsys)
+    assert "| `bb::exec::MultiplyDot` | 2 | 2 | 50 | 1,600 | 53 % |" in page(raw, tmp_path, capsys)
 
 
 def test_a_record_that_cannot_tell_them_apart_has_no_means_of_such_kernels():
-    kernels = [{"name": f"bb::resident::{name}", "launches": 4, "seconds": 1e-4, "bytes": 160e6, "Bps": 1.6e12} for name in ("MultiplyDot", "GatherBlocks")]
+    kernels = [{"name": f"bb::exec::{name}", "launches": 4, "seconds": 1e-4, "bytes": 160e6, "Bps": 1.6e12} for name in ("MultiplyDot", "GatherBlocks")]
     rows = gpu_tables.kernel_rows({"kernels": kernels}, 3.2e12)
     assert rows[0][2:] == ["not known"] * 4 and rows[1][3:] == ["25", "1,600", "50 %"]
 
@@ -159,7 +159,7 @@ def test_the_page_has_a_row_a_card(raw, tmp_path, capsys):
     assert "| drape_1m | card | ok | 1,048,576 | 7,000,000 | 2 | 10 | 500 | 2 | 400 | 5 | 50 % |" in text
     assert "- device_tests: X100: 3 kernels in 9 launches, 9 compared with the host, 0 kernels differ" in text
     assert "- dense_8m: **failed**: no memory for matrix values: 9 GiB" in text
-    assert "| `bb::resident::SpmvDot` | 2 | 0 | 2 | 1,500 | 50 % |" in text
+    assert "| `bb::exec::SpmvDot` | 2 | 0 | 2 | 1,500 | 50 % |" in text
     assert gpu_report.NEVER not in text
     # 2 s a step of 0.01 s: 200 s for a second of the scene, at 3 USD an hour.
     assert "| X100 80 GB | 3 USD (2026-01-02, a list) | 1,800 | 0.167 USD |" in text

@@ -34,7 +34,7 @@ def test_inputs_are_those_of_the_record(name):
         "summary": {"contacts": {"n": 2, "sum": 60}, "newton_iterations": 8, "steps": 2, "linear_per_solve": {"n": 4, "sum": 100}},
         "scene": {"vertices": 10},
     }
-    costs = '{"rows": 20, "candidates": 90}\n 2 160  bb::resident::GatherStreamed\n{"rows": 40, "candidates": 120}\n   2 480  bb::resident::GatherStreamed\n'
+    costs = '{"rows": 20, "candidates": 90}\n 2 160  bb::exec::GatherStreamed\n{"rows": 40, "candidates": 120}\n   2 480  bb::exec::GatherStreamed\n'
     got = gpu_model.Measured(**gpu_model.measure("a run", [record], costs))
     assert got == gpu_model.Measured("a run", 3, 3, 3, 4, {"multilevel_schwarz": 25})
 

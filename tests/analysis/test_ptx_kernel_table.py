@@ -68,7 +68,7 @@ ptxas info    : Function properties for k
 """
     assert table.ptxas_spills(log) == {"k": 12}
     assert table.fp64_counts(".entry k(\n.param .u64 a\n)\n{\nadd.rn.f64 %fd1, %fd2, %fd3;\nmov.f64 %fd2, %fd1;\nsetp.lt.f64 %p1, %fd1, %fd2;\n}\n") == {"k": 2}
-    assert table.kernel_name("void bb::exec::run_each<bb::resident::A<3> >(long, x)") == "bb::resident::A<3>"
+    assert table.kernel_name("void bb::exec::run_each<bb::exec::A<3> >(long, x)") == "bb::exec::A<3>"
 
 
 def one(**numbers) -> dict:

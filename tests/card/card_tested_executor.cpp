@@ -1,4 +1,4 @@
-// Of the tests of the resident rooms on a card: every launch runs on the host and on the card, from the same memory, and
+// Of the tests of the rooms with kernels on a card: every launch runs on the host and on the card, from the same memory, and
 // both have to leave the same bits. A kernel that does not is a failure of the test, once, and the test goes on with the
 // host's numbers, so that one run names them all.
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include "core/exec/cuda/device_executor.hpp"
 #include "tests/card/launched.hpp"
 #include "tests/card/mapped_memory.hpp"
-#include "tests/resident/lockstep.hpp"
-#include "tests/resident/tested_executor.hpp"
+#include "tests/executor/lockstep.hpp"
+#include "tests/executor/tested_executor.hpp"
 
 namespace bb::test {
 

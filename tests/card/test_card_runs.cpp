@@ -3,7 +3,7 @@
 
 #include "core/exec/cuda/device_executor.hpp"
 #include "tests/card/launched.hpp"
-#include "tests/resident/same_runs.hpp"
+#include "tests/executor/same_runs.hpp"
 
 namespace bb {
 namespace {

@@ -25,13 +25,13 @@ struct ElasticCase {
   }
   ElasticCase(const LimitCase& of, std::size_t n_elements) {
     const auto n = static_cast<int>(of.rest.cols());
-    value.assign(static_cast<std::size_t>(resident::value_count(n * n)), 0);
+    value.assign(static_cast<std::size_t>(exec::value_count(n * n)), 0);
     for (int v = 0; v < n; ++v) {
       row_begin.push_back(n * v);
       for (int u = 0; u < n; ++u) {
         column.push_back(u);
         for (int k = 0; k < 9; ++k) {
-          value[static_cast<std::size_t>(resident::value_index(n * v + u, k))] =
+          value[static_cast<std::size_t>(exec::value_index(n * v + u, k))] =
               entry(3 * v + k % 3, 3 * u + k / 3);
         }
       }

@@ -51,8 +51,8 @@ def test_the_kernel_is_kept_until_what_it_was_made_from_changes(empty_cache):
     assert device.device_code(" - (d-d_hat)**2 * ln(d/d_hat)", LAYOUT) == first and ptx.stat().st_mtime_ns == made
     about = ptx.with_suffix(".ptx.json")
     known = json.loads(about.read_text())
-    assert {"core/resident/contact/given_shape.hpp", "core/resident/contact/resident_rows.hpp"} <= set(known["headers"])
-    about.write_text(json.dumps(known | {"headers": known["headers"] | {"core/resident/contact/given_shape.hpp": "0"}}))
+    assert {"core/contact/executor/given_shape.hpp", "core/contact/executor/executor_rows.hpp"} <= set(known["headers"])
+    about.write_text(json.dumps(known | {"headers": known["headers"] | {"core/contact/executor/given_shape.hpp": "0"}}))
     device.device_code(LOG, LAYOUT)
     assert ptx.stat().st_mtime_ns > made
     made = ptx.stat().st_mtime_ns

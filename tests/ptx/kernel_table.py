@@ -46,14 +46,14 @@ def demangled(names: list[str]) -> list[str]:
 
 
 def kernel_name(text: str) -> str:
-    """`void bb::exec::run_each<bb::resident::X>(long, ...)` -> `bb::resident::X`."""
+    """`void bb::exec::run_each<bb::exec::X>(long, ...)` -> `bb::exec::X`."""
     m = re.match(r"void bb::exec::run_(?:each|blocks)<(.*)>\(", text)
     return m[1].strip() if m else text
 
 
 def short_name(name: str) -> str:
     """Without our namespaces."""
-    return re.sub(r"\bbb::(resident::)?", "", name)
+    return re.sub(r"\bbb::(exec::)?", "", name)
 
 
 def fp64_counts(ptx: str) -> dict[str, int]:

@@ -1,9 +1,9 @@
 // Runs every launch twice, compiled by g++ and as nvcc's PTX, from the same memory, and compares all memory afterwards
-// (tests/resident/lockstep.hpp).
+// (tests/executor/lockstep.hpp).
 #pragma once
 
+#include "tests/executor/lockstep.hpp"
 #include "tests/ptx/ptx_executor.hpp"
-#include "tests/resident/lockstep.hpp"
 
 namespace ptx {
 

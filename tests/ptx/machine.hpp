@@ -71,7 +71,7 @@ int chosen_fault(const char* module);
 
 /// By mangled name; null when there is none.
 const Kernel* find_kernel(std::string_view mangled);
-/// "run_each", "bb::resident::SpmvDot": the instance of bb::exec's template; null when there is none.
+/// "run_each", "bb::exec::SpmvDot": the instance of bb::exec's template; null when there is none.
 const Kernel* find_instance(std::string_view wrapper, std::string_view type);
 
 enum class Order { forward, reverse, shuffled };

@@ -7,10 +7,10 @@
 #include "core/exec/cuda/device_block.cuh"
 #include "core/math/atan2.hpp"
 #include "core/math/exp.hpp"
-#include "core/resident/contact/given_shape.hpp"
-#include "core/resident/contact/shape_kernels.hpp"
+#include "core/contact/executor/given_shape.hpp"
+#include "core/contact/executor/shape_kernels.hpp"
 
-static_assert(bb::resident::given_shape_layout == 0x8020284860687078, "the program was built from other sources: ./bench build");
+static_assert(bb::exec::given_shape_layout == 0x8020284860687078, "the program was built from other sources: ./bench build");
 
 struct Formula {
   static constexpr bool infinite_at_zero = 1;
@@ -36,7 +36,7 @@ struct Formula {
 };
 
 extern "C" __global__ void __launch_bounds__(bb::exec::block_threads)
-    barrierbench_shape(bb::exec::Index n, const __grid_constant__ bb::resident::EvaluateGivenShape f) {
+    barrierbench_shape(bb::exec::Index n, const __grid_constant__ bb::exec::EvaluateGivenShape f) {
   const auto i = static_cast<bb::exec::Index>(blockIdx.x) * bb::exec::block_threads + threadIdx.x;
-  if (i < n) bb::resident::EvaluateShape<Formula>{f.rows, f.argument}(i);
+  if (i < n) bb::exec::EvaluateShape<Formula>{f.rows, f.argument}(i);
 }

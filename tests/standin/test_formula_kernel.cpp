@@ -7,12 +7,12 @@
 
 #include "barriers/formulas.hpp"
 #include "barriers/shapes/registry.hpp"
+#include "core/contact/executor/executor_barrier.hpp"
+#include "core/contact/executor/given_shape.hpp"
 #include "core/exec/cuda/device.hpp"
 #include "core/exec/cuda/device_executor.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
-#include "core/resident/contact/given_shape.hpp"
-#include "core/resident/contact/resident_barrier.hpp"
 #include "tests/standin/formula_shapes/sample.hpp"
 #ifdef BB_STANDIN
 #include "tests/standin/cudart.hpp"
@@ -23,11 +23,11 @@ extern const char formula_ptx[];
 namespace bb::formula_kernel_test {
 namespace {
 
+using exec::ExecutorBarrier;
+using exec::ExecutorRows;
 using exec::Index;
-using resident::KappaColumns;
-using resident::ResidentBarrier;
-using resident::ResidentRows;
-using resident::RowView;
+using exec::KappaColumns;
+using exec::RowView;
 
 constexpr Index n_gaps = 400;
 constexpr const char* entry = "barrierbench_shape";
@@ -78,14 +78,14 @@ struct Terms {
 Terms on_the_device(cuda::DeviceExecutor& device, const BarrierFunction& barrier, const Gaps& gaps,
                     bool kept) {
   constexpr std::size_t bytes = n_gaps * sizeof(double);
-  ResidentRows rows(device, kept ? KappaColumns::kept : KappaColumns::uniform);
+  ExecutorRows rows(device, kept ? KappaColumns::kept : KappaColumns::uniform);
   rows.resize(n_gaps);
   rows.uniform_kappa = 150;
   const RowView v = rows.view();
   device.upload(v.d, gaps.d.data(), bytes);
   device.upload(v.d_hat, gaps.d_hat.data(), bytes);
   if (kept) device.upload(v.kappa, gaps.kappa.data(), bytes);
-  const ResidentBarrier resident(barrier, false);
+  const ExecutorBarrier resident(barrier, false);
   for (int i = 0; i < 2; ++i) resident.evaluate(device, rows);  // loaded once
   Terms out{std::vector<double>(n_gaps), std::vector<double>(n_gaps), std::vector<double>(n_gaps)};
   device.download(out.energy.data(), v.energy, bytes);
@@ -121,10 +121,10 @@ INSTANTIATE_TEST_SUITE_P(Arguments, FormulaKernel, testing::Values(Argument::gap
 
 /// What the executor says of a launch with this code; empty where it throws nothing.
 std::string refusal(cuda::DeviceExecutor& device, const DeviceCode& code) {
-  exec::KernelInfo info = exec::each_info<resident::EvaluateGivenShape>();
+  exec::KernelInfo info = exec::each_info<exec::EvaluateGivenShape>();
   info.code = &code;
   try {
-    device.each(1, resident::EvaluateGivenShape{}, info);
+    device.each(1, exec::EvaluateGivenShape{}, info);
   } catch (const exec::ExecutionError& error) {
     return error.what();
   }
@@ -147,7 +147,7 @@ TEST_P(KernelOfAText, IsMadeWhenItIsAskedFor) {
     GTEST_SKIP() << error.what();
   }
   ASSERT_TRUE(barrier.shape.device_code);
-  const DeviceCode& code = barrier.shape.device_code(barrier.shape, resident::given_shape_layout);
+  const DeviceCode& code = barrier.shape.device_code(barrier.shape, exec::given_shape_layout);
   EXPECT_EQ(kernel_in(code.ptx), kernel_in(formula_ptx));
   EXPECT_EQ(code.sha256.size(), 64u);
   const Gaps gaps;
@@ -173,19 +173,18 @@ TEST_P(RefusedCode, IsNamedWithWhatIsWrong) {
   EXPECT_NE(refusal(*device, {larger, entry, "", ""}).find(" on the device"), std::string::npos);
   EXPECT_NE(refusal(*device, {formula_ptx, "another", "", ""}).find("PTX without a kernel another"),
             std::string::npos);
-  const std::string broken =
-      "no PTX, but " + size + std::to_string(sizeof(resident::EvaluateGivenShape)) + "]";
+  const std::string broken = "no PTX, but " + size + std::to_string(sizeof(exec::EvaluateGivenShape)) + "]";
   EXPECT_NE(refusal(*device, {broken, entry, "", ""}).find("cudaLibraryLoadData"), std::string::npos);
 }
 INSTANTIATE_TEST_SUITE_P(Gap, RefusedCode, testing::Values(Argument::gap));
 
-TEST(ResidentBarrier, RefusesAShapeThatHasNoKernelAndBringsNone) {
+TEST(ExecutorBarrier, RefusesAShapeThatHasNoKernelAndBringsNone) {
   BarrierFunction barrier{require_shape("cubic")};
   barrier.shape.name = "from_a_plugin", barrier.shape.launches = nullptr;
-  EXPECT_THROW(ResidentBarrier(barrier, false), ConfigError);
+  EXPECT_THROW(ExecutorBarrier(barrier, false), ConfigError);
   barrier.shape.device_code = of_the_sample;
-  EXPECT_NO_THROW(ResidentBarrier(barrier, false));
-  EXPECT_THROW(ResidentBarrier(barrier, true), ConfigError);  // no kernel with a potential
+  EXPECT_NO_THROW(ExecutorBarrier(barrier, false));
+  EXPECT_THROW(ExecutorBarrier(barrier, true), ConfigError);  // no kernel with a potential
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "tests/linear/executor/linear_cases.hpp"
 #include "tests/standin/cudart.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 namespace {
 
 struct Solved {
@@ -14,12 +14,12 @@ struct Solved {
   std::vector<double> x;
 };
 
-Solved solve(exec::Executor& executor, bool plainly, const ReducedSystem& system, const VecXd& b) {
+Solved solve(Executor& executor, bool plainly, const ReducedSystem& system, const VecXd& b) {
   const int n_vertices = static_cast<int>(system.lower.rows()) / 3;
   const OwnedSystem owned(executor, system, some_fixed(n_vertices), true);
-  exec::Buffer<double> rhs(executor, "b"), x(executor, "x", 3 * owned.n());
+  Buffer<double> rhs(executor, "b"), x(executor, "x", 3 * owned.n());
   rhs.upload(plain(b));
-  ResidentPcg pcg(executor, owned.n(), std::make_unique<BlockJacobi>(executor));
+  ExecutorPcg pcg(executor, owned.n(), std::make_unique<BlockJacobi>(executor));
   pcg.launch_plainly(plainly);
   Solved out;
   out.report = pcg.solve(owned.matrix(), owned.fixed.data(), rhs.data(), x.data(), 1e-11, 1000);
@@ -31,7 +31,7 @@ TEST(StandinPcg, HasTheBitsOfTheHost) {
   standin::reset();
   const ReducedSystem system = grid_system(12, 0.3, 1);
   const VecXd b = random_vector(system.lower.rows(), 2);
-  exec::HostExecutor host;
+  HostExecutor host;
   const Solved here = solve(host, false, system, b);
   ASSERT_EQ(here.report.status, LinearStatus::ok) << here.report.detail;
   ASSERT_GT(here.report.iterations, 16);  // more than a graph
@@ -60,7 +60,7 @@ TEST(StandinPcg, OutOfMemoryNamesABuffer) {
       cuda::DeviceExecutor device;
       solve(device, false, system, b);
       FAIL();
-    } catch (const exec::OutOfMemory& error) {
+    } catch (const OutOfMemory& error) {
       EXPECT_NE(std::string(error.what()).find("free on the card"), std::string::npos) << error.what();
       EXPECT_EQ(std::string(error.what()).find("no memory for :"), std::string::npos) << error.what();
     }
@@ -80,8 +80,8 @@ TEST(StandinPcg, EveryLaunchMayFail) {
       cuda::DeviceExecutor device;
       solve(device, true, system, b);
       ADD_FAILURE() << broken;
-    } catch (const exec::ExecutionError& error) {
-      EXPECT_NE(std::string(error.what()).find("bb::resident::"), std::string::npos) << error.what();
+    } catch (const ExecutionError& error) {
+      EXPECT_NE(std::string(error.what()).find("bb::exec::"), std::string::npos) << error.what();
     }
     EXPECT_EQ(standin::counts().in_use, 0u);
   }
@@ -89,4 +89,4 @@ TEST(StandinPcg, EveryLaunchMayFail) {
 }
 
 }  // namespace
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/exec/cuda/device_executor.hpp"
+#include "tests/executor/same_runs.hpp"
 #include "tests/ptx/ptx_executor.hpp"
-#include "tests/resident/same_runs.hpp"
 #include "tests/standin/cudart.hpp"
 
 namespace bb {

@@ -53,7 +53,7 @@ class ElementFamily {
                        exec::Index /*stride*/) {}
 
   // --- pieces as columns, which threads of a card read side by side. Errors: std::logic_error of every vertex, whose loads an executor
-  // adds in a launch of their own (core/resident/elements/loads.cpp).
+  // adds in a launch of their own (core/terms/executor/loads.cpp).
   /// energy [n]; grad [3 w, piece.n], N.
   virtual void gradients(Piece piece, const double* x, double* energy, double* grad) = 0;
   /// hess [lower numbers, piece.n], N/m.

@@ -145,7 +145,7 @@ class LimitFamilyOf final : public FamilyOf<Limit<R, N>, LimitFamily> {
       executor_.each(elements_.n, StretchBound<R, N, T>{elements_, x, dx, alpha, park, before, smallest});
     });
   }
-  void add_numbers(resident::ResidentSums<LimitNumbers>& numbers) override {
+  void add_numbers(exec::ExecutorSums<LimitNumbers>& numbers) override {
     numbers.add(elements_.n, LimitParts<N>{elements_});
   }
 
@@ -203,12 +203,12 @@ void LimitFamily::look_along(const double* x, const double* dx, double park, dou
 }
 
 double LimitFamily::bound() {
-  using resident::ResidentLeast;
+  using exec::ExecutorLeast;
   if (executor_.counts_only()) return motion_.alpha_max;
   const Bounds found = bounds_.get();
-  if (found.first == ResidentLeast::none) return motion_.alpha_max;
+  if (found.first == ExecutorLeast::none) return motion_.alpha_max;
   double alpha = exec::from_ordered_bits(found.first);
-  for (Key key = found.second; key != ResidentLeast::none && alpha != 0; key = least_.get()) {
+  for (Key key = found.second; key != ExecutorLeast::none && alpha != 0; key = least_.get()) {
     alpha = exec::from_ordered_bits(key);
     least_.clear();
     launch_bound(motion_.x, motion_.dx, alpha, motion_.park, nullptr, least_.data());
@@ -230,8 +230,7 @@ void LimitFamily::announce() {
 
 LimitReport LimitFamily::report() const {
   const LimitNumbers found = numbers_.get();
-  return {resident::largest_of(found.stretch) - 1, resident::largest_of(found.load),
-          resident::smallest_of(found.gap)};
+  return {exec::largest_of(found.stretch) - 1, exec::largest_of(found.load), exec::smallest_of(found.gap)};
 }
 
 std::unique_ptr<LimitFamily> limited_triangles(const FamilyPlace& place, const StrainLimitPart& part,

@@ -10,7 +10,7 @@
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/energy/families/element_family.hpp"
 #include "core/energy/families/limit_values.hpp"
-#include "core/exec/sums/resident_sum.hpp"
+#include "core/exec/sums/executor_sum.hpp"
 #include "core/model/scene/scene.hpp"
 
 namespace bb {
@@ -78,11 +78,11 @@ class LimitFamily : public ElementFamily {
   /// Brings the least of the elements' bounds below alpha, or below *before where that is given, to *smallest.
   virtual void launch_bound(const double* x, const double* dx, double alpha, double park,
                             const exec::Key* before, exec::Key* smallest) = 0;
-  virtual void add_numbers(resident::ResidentSums<LimitNumbers>& numbers) = 0;
+  virtual void add_numbers(exec::ExecutorSums<LimitNumbers>& numbers) = 0;
 
   exec::Executor& executor_;
   exec::Buffer<double> kappa_;
-  resident::ResidentLeast least_;
+  exec::ExecutorLeast least_;
   long long sweeps_ = 0;
 
  private:
@@ -95,7 +95,7 @@ class LimitFamily : public ElementFamily {
     double park, alpha_max;
   };
   exec::Reading<Bounds> bounds_;
-  resident::ResidentSums<LimitNumbers> numbers_;
+  exec::ExecutorSums<LimitNumbers> numbers_;
   Motion motion_{};  // of the last look_along()
 };
 

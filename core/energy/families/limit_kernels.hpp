@@ -251,7 +251,7 @@ struct ElementKappa {
     }
     int vertices[N + 1];
     for (int k = 0; k <= N; ++k) vertices[k] = of.limit.vertex(k, e);
-    const resident::SubMatrix h(of.from.elastic.part, vertices, N + 1);
+    const exec::SubMatrix h(of.from.elastic.part, vertices, N + 1);
     for (int j = 0; j < size; ++j) {
       for (int i = 0; i < size; ++i) out(i, j) = h(i, j);
     }
@@ -288,7 +288,7 @@ struct LimitKappaChange {
   const double* before;
   BB_HD exec::Key operator()(exec::Index e) const {
     const bool active = limit.smallest_gap(e) < limit.band_width[e];
-    return resident::largest_key(active ? relative_change(before[e], limit.kappa[e]) : 0.0);
+    return exec::largest_key(active ? relative_change(before[e], limit.kappa[e]) : 0.0);
   }
 };
 template <int N>
@@ -301,10 +301,9 @@ struct LimitParts {
     return active ? abs(limit.kappa[e] * limit.db[i]) / limit.rest.measure[e] : 0.0;
   }
   BB_HD void operator()(exec::Index e, LimitNumbers& sum) const {
-    resident::raise_key(sum.stretch, ~resident::largest_key(limit.sigma[e]));
-    for (int k = 0; k < N; ++k)
-      resident::raise_key(sum.load, ~resident::largest_key(load(k * limit.n + e, e)));
-    resident::raise_key(sum.gap, ~resident::smallest_key(limit.smallest_gap(e) / limit.band_width[e]));
+    exec::raise_key(sum.stretch, ~exec::largest_key(limit.sigma[e]));
+    for (int k = 0; k < N; ++k) exec::raise_key(sum.load, ~exec::largest_key(load(k * limit.n + e, e)));
+    exec::raise_key(sum.gap, ~exec::smallest_key(limit.smallest_gap(e) / limit.band_width[e]));
   }
 };
 

@@ -3,14 +3,14 @@
 
 #include "core/barrier/stiffness_sums.hpp"
 #include "core/exec/sums/sum_kernels.hpp"
-#include "core/linear/executor/resident_matrix.hpp"
+#include "core/linear/executor/executor_matrix.hpp"
 
 namespace bb {
 
 /// H as a policy reads it: the matrix of an executor, or its sub-matrix of each element, [(3 w)^2 n] column-major, where that is
 /// given. N/m.
 struct ElasticMatrix {
-  resident::MatrixPart part{};
+  exec::MatrixPart part{};
   const double* gathered = nullptr;
 };
 
@@ -29,8 +29,8 @@ struct LimitNumbers {
   BB_HD static LimitNumbers zero() { return {0, 0, 0}; }
   friend BB_HD LimitNumbers operator+(const LimitNumbers& a, const LimitNumbers& b) {
     LimitNumbers out = a;
-    resident::raise_key(out.stretch, b.stretch), resident::raise_key(out.load, b.load);
-    resident::raise_key(out.gap, b.gap);
+    exec::raise_key(out.stretch, b.stretch), exec::raise_key(out.load, b.load);
+    exec::raise_key(out.gap, b.gap);
     return out;
   }
 };

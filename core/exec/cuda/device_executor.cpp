@@ -19,7 +19,7 @@ const std::string local_memory = "local memory of kernels";
 KernelTable& kernel_table() {
   static KernelTable table = [] {
     KernelTable all;
-    add_resident_kernels(all);
+    add_kernels_of_rooms(all);
     return all;
   }();
   return table;

@@ -6,10 +6,10 @@
 #include "core/exec/board.hpp"
 #include "core/exec/sums/compaction_kernels.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// From counts [n] to places [n + 1], whose last is the sum. For counts of any size; 8 B an item.
-inline void scan_counts(exec::Executor& executor, Index* count, Index n) {
+inline void scan_counts(Executor& executor, Index* count, Index n) {
   executor.fill_bytes(count + n, 0, sizeof(Index));
   executor.exclusive_scan(count, n + 1);
 }
@@ -17,7 +17,7 @@ inline void scan_counts(exec::Executor& executor, Index* count, Index n) {
 /// 2 B an item, 3 where counts are stored; keeps its buffers.
 class Compaction {
  public:
-  Compaction(exec::Executor& executor, const std::string& name)
+  Compaction(Executor& executor, const std::string& name)
       : executor_(&executor),
         count_(executor, name + " counts"),
         rank_(executor, name + " ranks"),
@@ -57,7 +57,7 @@ class Compaction {
     executor_->exclusive_scan(block_.data(), n_blocks + 1);
     executor_->copy(sum_.to_write(), block_.data() + n_blocks, sizeof(Index));
   }
-  static Index blocks_of(Index n) { return (n + exec::block_threads - 1) / exec::block_threads; }
+  static Index blocks_of(Index n) { return (n + block_threads - 1) / block_threads; }
   /// The sum of the counts; of two sorts as TwoPlaces has them. Waits.
   Index sum() const { return sum_.get(); }
   /// The same for kernels.
@@ -71,11 +71,11 @@ class Compaction {
   }
 
  private:
-  exec::Executor* executor_;
-  exec::Buffer<std::uint8_t> count_;
-  exec::Buffer<std::uint16_t> rank_;
-  exec::Buffer<Index> block_;
-  exec::Reading<Index> sum_;
+  Executor* executor_;
+  Buffer<std::uint8_t> count_;
+  Buffer<std::uint16_t> rank_;
+  Buffer<Index> block_;
+  Reading<Index> sum_;
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -3,28 +3,21 @@
 
 #include "core/exec/kernel.hpp"
 
-namespace bb::resident {
-
-using exec::Index;
-using exec::Key;
+namespace bb::exec {
 
 /// How many places come before those of item i, whatever order items run in.
 struct Places {
   const std::uint16_t* rank;
   const Index* block_begin;
-  BB_HD Index of(Index i) const { return block_begin[i / exec::block_threads] + rank[i]; }
+  BB_HD Index of(Index i) const { return block_begin[i / block_threads] + rank[i]; }
 };
 
 /// Two sorts of places at once, of at most one an item each: of both in one number, the first in its lower half.
 struct TwoPlaces {
   const std::uint16_t* rank;
   const Index* block_begin;
-  BB_HD Index first(Index i) const {
-    return first_of(block_begin[i / exec::block_threads]) + (rank[i] & 0xff);
-  }
-  BB_HD Index second(Index i) const {
-    return second_of(block_begin[i / exec::block_threads]) + (rank[i] >> 8);
-  }
+  BB_HD Index first(Index i) const { return first_of(block_begin[i / block_threads]) + (rank[i] & 0xff); }
+  BB_HD Index second(Index i) const { return second_of(block_begin[i / block_threads]) + (rank[i] >> 8); }
   /// Of a number that a scan of the blocks has made.
   BB_HD static Index first_of(Index both) { return both & 0xffffffff; }
   BB_HD static Index second_of(Index both) { return both >> 32; }
@@ -38,7 +31,7 @@ struct RankPlaces {
 };
 
 struct RankShared {
-  int sum[2][exec::block_threads];
+  int sum[2][block_threads];
 };
 
 /// Ranks the items of block b. counts(i): how many places item i has, at most 255; of two sorts 0 or 1 of the first plus
@@ -47,22 +40,22 @@ template <bool two, class Block, class Counts>
 BB_HD void rank_block(Block& block, RankShared& shared, const RankPlaces& to, Index b, const Counts& counts) {
   int *from = shared.sum[0], *into = shared.sum[1];
   block.threads([&](int t) {
-    const Index i = b * exec::block_threads + t;
+    const Index i = b * block_threads + t;
     from[t] = i < to.n ? counts(i) : 0;
   });
-  for (int distance = 1; distance < exec::block_threads; distance *= 2) {
+  for (int distance = 1; distance < block_threads; distance *= 2) {
     block.threads([=](int t) { into[t] = from[t] + (t >= distance ? from[t - distance] : 0); });
     int* const done = into;
     into = from;
     from = done;
   }
   block.threads([&](int t) {
-    const Index i = b * exec::block_threads + t;
+    const Index i = b * block_threads + t;
     const int before = t > 0 ? from[t - 1] : 0;
     if (i < to.n)
       to.rank[i] = static_cast<std::uint16_t>(two ? (before & 0xff) | (before >> 16) << 8 : before);
     const Index all = from[t];
-    if (t == exec::block_threads - 1) to.block_total[b] = two ? (all & 0xffff) | (all >> 16) << 32 : all;
+    if (t == block_threads - 1) to.block_total[b] = two ? (all & 0xffff) | (all >> 16) << 32 : all;
     if (t == 0 && b == 0) to.block_total[to.n_blocks] = 0;
   });
 }
@@ -86,4 +79,4 @@ struct StoredCounts {
   BB_HD int operator()(Index i) const { return count[i]; }
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -3,9 +3,7 @@
 
 #include "core/exec/kernel.hpp"
 
-namespace bb::resident {
-
-using exec::Index;
+namespace bb::exec {
 
 /// First number of [begin, end) for which column[number] >= value; columns ascending.
 template <class T>
@@ -21,4 +19,4 @@ BB_HD inline Index first_not_below(const T* column, Index begin, Index end, T va
   return begin;
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -8,10 +8,7 @@
 #include "core/exec/kernel.hpp"
 #include "core/exec/sums/fixed_mask.hpp"
 
-namespace bb::resident {
-
-using exec::Index;
-using exec::Key;
+namespace bb::exec {
 
 /// A sum with the rounding errors of its additions beside it. Plain numbers: it lies in shared memory.
 struct Compensated {
@@ -42,7 +39,7 @@ constexpr Index most_partials = 1024;
 
 /// Items that a block of threads takes of n, so that there are at most most_partials blocks.
 BB_HD inline Index items_a_block(Index n) {
-  constexpr Index threads = exec::block_threads, most = threads * most_partials;
+  constexpr Index threads = block_threads, most = threads * most_partials;
   return threads * (n <= most ? 1 : (n + most - 1) / most);
 }
 
@@ -69,7 +66,7 @@ struct SumPlaces {
 /// What threads of a block share where sums meet.
 template <class Sum>
 struct SumShared {
-  Sum at[exec::block_threads];
+  Sum at[block_threads];
   bool last;
 };
 
@@ -80,10 +77,10 @@ BB_HD void sum_block(Block& block, SumShared<Sum>& shared, const Parts& parts, I
   const Index items = items_a_block(n), end = (b + 1) * items < n ? (b + 1) * items : n;
   block.threads([&](int t) {
     Sum sum = Sum::zero();
-    for (Index i = b * items + t; i < end; i += exec::block_threads) parts(i, sum);
+    for (Index i = b * items + t; i < end; i += block_threads) parts(i, sum);
     shared.at[t] = sum;
   });
-  exec::fold(block, shared.at, exec::block_threads);
+  fold(block, shared.at, block_threads);
   block.once([&] { partial[b] = shared.at[0]; });
 }
 
@@ -92,17 +89,17 @@ template <class Block, class Sum>
 BB_HD void add_partials(Block& block, SumShared<Sum>& shared, const Sum* partial, Index n, Sum* total) {
   block.threads([&](int t) {
     Sum sum = Sum::zero();
-    for (Index i = t; i < n; i += exec::block_threads) sum = sum + partial[i];
+    for (Index i = t; i < n; i += block_threads) sum = sum + partial[i];
     shared.at[t] = sum;
   });
-  exec::fold(block, shared.at, exec::block_threads);
+  fold(block, shared.at, block_threads);
   block.once([&] { *total = *total + shared.at[0]; });
 }
 
 /// Whether this block is the last one of n; what all of them wrote may be read then.
 template <class Block, class Sum>
 BB_HD bool is_last_block(Block& block, SumShared<Sum>& shared, std::uint32_t* arrived, Index n) {
-  block.once([&] { shared.last = exec::last_to_arrive(arrived, n); });
+  block.once([&] { shared.last = last_to_arrive(arrived, n); });
   return shared.last;
 }
 
@@ -134,17 +131,17 @@ struct LeastOf {
 /// wins both.
 BB_HD inline Key largest_key(double x) {
   if (x != x) return 0;
-  return ~exec::ordered_bits(x > 0 ? x : 0.0);
+  return ~ordered_bits(x > 0 ? x : 0.0);
 }
 BB_HD inline Key smallest_key(double x) {
   if (x != x) return 0;
-  const Key bits = exec::ordered_bits(x), sign = Key{1} << 63;
+  const Key bits = ordered_bits(x), sign = Key{1} << 63;
   return (bits & sign) != 0 ? ~bits : bits | sign;
 }
-BB_HD inline double from_largest_key(Key key) { return exec::from_ordered_bits(~key); }
+BB_HD inline double from_largest_key(Key key) { return from_ordered_bits(~key); }
 BB_HD inline double from_smallest_key(Key key) {
   const Key sign = Key{1} << 63;
-  return exec::from_ordered_bits((key & sign) != 0 ? key & ~sign : ~key);
+  return from_ordered_bits((key & sign) != 0 ? key & ~sign : ~key);
 }
 
 /// Numbers of a sum whose + is the greatest of two keys: complements of keys, so that 0 is none.
@@ -160,7 +157,7 @@ BB_HD inline double smallest_of(Key most) {
 template <class Keys>
 struct LeastKey {
   struct Shared {
-    Key at[exec::block_threads];
+    Key at[block_threads];
   };
   Keys keys;
   Index n;
@@ -170,14 +167,14 @@ struct LeastKey {
     const Index items = items_a_block(n), end = (b + 1) * items < n ? (b + 1) * items : n;
     block.threads([&](int t) {
       Key mine = ~Key{0};
-      for (Index i = b * items + t; i < end; i += exec::block_threads) {
+      for (Index i = b * items + t; i < end; i += block_threads) {
         const Key key = keys(i);
         mine = key < mine ? key : mine;
       }
       shared.at[t] = mine;
     });
-    exec::fold(block, shared.at, exec::block_threads, LeastOf{});
-    block.once([&] { exec::atomic_min(least, shared.at[0]); });
+    fold(block, shared.at, block_threads, LeastOf{});
+    block.once([&] { atomic_min(least, shared.at[0]); });
   }
 };
 
@@ -292,4 +289,4 @@ struct FreeSize {
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -9,7 +9,7 @@
 #include "core/math/rounding_room.hpp"
 #include "core/math/types.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// out = x + alpha dx.
 struct MoveAlong {
@@ -52,7 +52,7 @@ struct FirstShortPin {
     for (int k = 0; k < 3; ++k) {
       apart = apart || x[3 * static_cast<Index>(vertex[i]) + k] != target[3 * i + k];
     }
-    if (apart) exec::atomic_min(first, static_cast<Key>(i));
+    if (apart) atomic_min(first, static_cast<Key>(i));
   }
 };
 
@@ -139,8 +139,8 @@ struct FirstNotFinite {
   Key* first;
   BB_HD void operator()(Index i) const {
     using std::abs;
-    if (!(abs(values[i]) <= std::numeric_limits<double>::max())) exec::atomic_min(first, static_cast<Key>(i));
+    if (!(abs(values[i]) <= std::numeric_limits<double>::max())) atomic_min(first, static_cast<Key>(i));
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace bb::resident {
+namespace bb::exec {
 
 std::vector<FixedMask> fixed_bits(std::span<const std::uint8_t> fixed) {
   std::vector<FixedMask> out(fixed.size() / 3);
@@ -12,7 +12,7 @@ std::vector<FixedMask> fixed_bits(std::span<const std::uint8_t> fixed) {
   return out;
 }
 
-VectorTools::VectorTools(exec::Executor& executor, std::span<const std::uint8_t> fixed, std::vector<int> pins)
+VectorTools::VectorTools(Executor& executor, std::span<const std::uint8_t> fixed, std::vector<int> pins)
     : executor_(executor),
       fixed_(executor, "fixed degrees of freedom"),
       pins_(std::move(pins)),
@@ -104,4 +104,4 @@ void VectorTools::force_norms(const Buffer<double>& g, Buffer<double>& force) {
   executor_.each(n_vertices(), ForceNorm{g.data(), fixed_.data(), force.data()});
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -4,13 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "core/exec/sums/resident_sum.hpp"
+#include "core/exec/sums/executor_sum.hpp"
 #include "core/exec/sums/vector_kernels.hpp"
 #include "core/math/types.hpp"
 
-namespace bb::resident {
-
-using exec::Buffer;
+namespace bb::exec {
 
 /// Three bits a vertex, set where the degree of freedom is prescribed or locked. fixed: [3 n] flags.
 std::vector<FixedMask> fixed_bits(std::span<const std::uint8_t> fixed);
@@ -24,7 +22,7 @@ struct DirectionSizes {
 class VectorTools {
  public:
   /// fixed: [3 n] flags. pins: vertices that are prescribed.
-  VectorTools(exec::Executor& executor, std::span<const std::uint8_t> fixed, std::vector<int> pins);
+  VectorTools(Executor& executor, std::span<const std::uint8_t> fixed, std::vector<int> pins);
 
   /// Where prescribed vertices have to be at the end of the step; target: [3 x n], read at pins only.
   void set_targets(const Positions& target);
@@ -70,15 +68,15 @@ class VectorTools {
   Index n_vertices() const { return fixed_.size(); }
 
  private:
-  exec::Executor& executor_;
+  Executor& executor_;
   Buffer<FixedMask> fixed_;
   std::vector<int> pins_;
   Buffer<int> pin_vertex_;
   Buffer<double> pin_target_;
-  ResidentSum sum_;
-  ResidentLeast least_, short_pin_, largest_;
-  ResidentSums<DirectionKeys> sizes_;
-  ResidentSums<TwoSums> products_;
+  ExecutorSum sum_;
+  ExecutorLeast least_, short_pin_, largest_;
+  ExecutorSums<DirectionKeys> sizes_;
+  ExecutorSums<TwoSums> products_;
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

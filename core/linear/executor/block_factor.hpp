@@ -7,7 +7,7 @@
 
 #include "core/linear/executor/pcg_scalars.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 enum class FactorStatus { ok, singular, indefinite, non_finite };
 
@@ -57,14 +57,14 @@ BB_HD inline FactorStatus inverse_factor(const Mat3d& d, double* w) {
 /// Keeps the lowest number with each fault.
 BB_HD inline void report_fault(FactorFaults* faults, FactorStatus status, Index number) {
   const Key key = static_cast<Key>(number);
-  if (status == FactorStatus::non_finite) exec::atomic_min(&faults->non_finite, key);
-  if (status == FactorStatus::indefinite) exec::atomic_min(&faults->indefinite, key);
-  if (status == FactorStatus::singular) exec::atomic_min(&faults->singular, key);
+  if (status == FactorStatus::non_finite) atomic_min(&faults->non_finite, key);
+  if (status == FactorStatus::indefinite) atomic_min(&faults->indefinite, key);
+  if (status == FactorStatus::singular) atomic_min(&faults->singular, key);
 }
 
 /// The sum of the diagonal blocks of a vertex in both parts, rows and columns of fixed degrees of freedom those of
 /// the identity.
-BB_HD inline Mat3d diagonal_block(const ResidentMatrix& matrix, FixedMask fixed, Index v) {
+BB_HD inline Mat3d diagonal_block(const ExecutorMatrix& matrix, FixedMask fixed, Index v) {
   Mat3d d = Mat3d::Zero();
   for (const MatrixPart& part : matrix.part) {
     if (!part.row_begin) continue;
@@ -81,4 +81,4 @@ BB_HD inline Mat3d diagonal_block(const ResidentMatrix& matrix, FixedMask fixed,
   return d;
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

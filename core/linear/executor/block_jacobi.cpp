@@ -2,9 +2,9 @@
 
 #include "core/linear/executor/block_jacobi_kernels.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
-void BlockJacobi::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t,
+void BlockJacobi::setup(const ExecutorMatrix& matrix, const PcgVectors& v, std::uint64_t,
                         FactorFaults* faults) {
   const Index n = v.partition.n_rows;
   if (inverse_.size() != 6 * n) {
@@ -25,4 +25,4 @@ void BlockJacobi::update(const PcgVectors& v, int k) {
                                      v.partial_rz, v.partial_rr, v.scalars, k});
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

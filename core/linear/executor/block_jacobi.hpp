@@ -1,15 +1,14 @@
 // Block Jacobi on an executor.
 #pragma once
 
-#include "core/linear/executor/resident_preconditioner.hpp"
+#include "core/linear/executor/executor_preconditioner.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
-class BlockJacobi final : public ResidentPreconditioner {
+class BlockJacobi final : public ExecutorPreconditioner {
  public:
-  explicit BlockJacobi(exec::Executor& executor)
-      : executor_(executor), inverse_(executor, "diagonal factors") {}
-  void setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
+  explicit BlockJacobi(Executor& executor) : executor_(executor), inverse_(executor, "diagonal factors") {}
+  void setup(const ExecutorMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
              FactorFaults* faults) override;
   void apply(const PcgVectors& v) override;
   void update(const PcgVectors& v, int k) override;
@@ -17,9 +16,9 @@ class BlockJacobi final : public ResidentPreconditioner {
   std::string fault_text(Index number) const override { return "vertex " + std::to_string(number); }
 
  private:
-  exec::Executor& executor_;
-  exec::Buffer<double> inverse_;  // [6 n]
+  Executor& executor_;
+  Buffer<double> inverse_;  // [6 n]
   int version_ = 0;
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -4,11 +4,11 @@
 #include "core/linear/executor/block_factor.hpp"
 #include "core/linear/executor/fold_partials.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// inverse [6 n] = the inverse Cholesky factors of the diagonal blocks, one number of all vertices after the other.
 struct FactorizeDiagonal {
-  ResidentMatrix matrix;
+  ExecutorMatrix matrix;
   const FixedMask* fixed;
   Index n;
   double* inverse;
@@ -23,8 +23,8 @@ struct FactorizeDiagonal {
 
 /// What the threads of a block hold of 256 vertices: numbers come in and go out in the order of memory.
 struct VertexChunk {
-  double rz[exec::block_threads], rr[exec::block_threads];
-  double r[3 * exec::block_threads], z[3 * exec::block_threads];
+  double rz[block_threads], rr[block_threads];
+  double r[3 * block_threads], z[3 * block_threads];
 };
 
 /// z = M^-1 r of thread t's vertex v in the chunk; adds to the sums of the thread.
@@ -48,14 +48,14 @@ BB_HD void precondition_rows(Block& block, VertexChunk& chunk, const Partition& 
   const Index last = partition.last(b);
   const int width = block.busy(partition.width(1));
   block.threads(width, [&](int t) { chunk.rz[t] = chunk.rr[t] = 0; });
-  for (Index base = partition.first(b); base < last; base += exec::block_threads) {
-    const int count = static_cast<int>(last - base < exec::block_threads ? last - base : exec::block_threads);
+  for (Index base = partition.first(b); base < last; base += block_threads) {
+    const int count = static_cast<int>(last - base < block_threads ? last - base : block_threads);
     block.threads([&](int t) {
-      for (int i = t; i < 3 * count; i += exec::block_threads) chunk.r[i] = new_r(3 * base + i);
+      for (int i = t; i < 3 * count; i += block_threads) chunk.r[i] = new_r(3 * base + i);
     });
     block.threads(count, [&](int t) { precondition_vertex(chunk, t, inverse, partition.n_rows, base + t); });
     block.threads([&](int t) {
-      for (int i = t; i < 3 * count; i += exec::block_threads) z[3 * base + i] = chunk.z[i];
+      for (int i = t; i < 3 * count; i += block_threads) z[3 * base + i] = chunk.z[i];
     });
   }
   fold(block, chunk.rz, width);
@@ -111,4 +111,4 @@ struct UpdateBlockJacobi {
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -5,7 +5,7 @@
 
 #include "core/linear/executor/block_factor.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// Nodes of a level (vertices, or clusters of the level below) in clusters of at most 16.
 struct ClusterLevel {
@@ -30,7 +30,7 @@ struct FactorizeClusters {
     double a[ClusterLevel::most_rows * stride];
   };
   ClusterLevel level;
-  ResidentMatrix matrix;
+  ExecutorMatrix matrix;
   Index number;  // of the level
   FactorFaults* faults;
 
@@ -74,7 +74,7 @@ struct FactorizeClusters {
       });
       block.threads([&](int t) {
         const int rest = m - k - 1;
-        for (int e = t; e < rest * rest; e += exec::block_threads) {
+        for (int e = t; e < rest * rest; e += block_threads) {
           const int i = k + 1 + e % rest, j = k + 1 + e / rest;
           if (i >= j)
             s.a[j * stride + i] = fma(-s.a[k * stride + i], s.a[k * stride + j], s.a[j * stride + i]);
@@ -97,7 +97,7 @@ struct FactorizeClusters {
   BB_HD void operator()(Block& block, Shared& s, Index cluster) const {
     const int m = level.n_rows(cluster);
     block.threads([&](int t) {
-      for (int i = t; i < ClusterLevel::most_rows * stride; i += exec::block_threads) s.a[i] = 0;
+      for (int i = t; i < ClusterLevel::most_rows * stride; i += block_threads) s.a[i] = 0;
     });
     block.threads(3 * m, [&](int t) { fill(s.a, cluster, t / 9, t % 9); });
     block.threads(m, [&](int t) {
@@ -115,7 +115,7 @@ struct FactorizeClusters {
     block.threads(m, [&](int t) { invert_column(s.a, t, m); });
     block.threads([&](int t) {
       double* out = level.factor + level.offset[cluster];
-      for (int e = t; e < m * m; e += exec::block_threads) {
+      for (int e = t; e < m * m; e += block_threads) {
         const int i = e % m, j = e / m, low = i < j ? i : j, high = i < j ? j : i;
         out[e] = i == j ? 1 / s.a[i * stride + i] : s.a[high * stride + low];
       }
@@ -126,10 +126,10 @@ struct FactorizeClusters {
 /// z = A_k^-1 r in every cluster, four clusters a block of threads; the sums of r over clusters are the right-hand side
 /// of the next level, where there is one. Nothing where `state` is there and not running.
 struct SolveClusters {
-  static constexpr int clusters_a_block = 4, threads = exec::block_threads / clusters_a_block;
+  static constexpr int clusters_a_block = 4, threads = block_threads / clusters_a_block;
   static_assert(ClusterLevel::most_rows <= threads);
   struct Shared {
-    double r[exec::block_threads], y[exec::block_threads];
+    double r[block_threads], y[block_threads];
   };
   ClusterLevel level;
   const double* r;
@@ -170,4 +170,4 @@ struct SolveClusters {
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/exec/sums/search.hpp"
-#include "core/linear/executor/resident_matrix.hpp"
+#include "core/linear/executor/executor_matrix.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// Number of the block (row, wanted), -1 where the pattern has none. Columns of a row ascending.
 BB_HD inline Index find_block(const Index* row_begin, const int* column, int row, int wanted) {
@@ -12,4 +12,4 @@ BB_HD inline Index find_block(const Index* row_begin, const int* column, int row
   return at < end && column[at] == wanted ? at : -1;
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -1,15 +1,15 @@
 // Sums over blocks of threads.
 #pragma once
 
-#include "core/linear/executor/resident_matrix.hpp"
+#include "core/linear/executor/executor_matrix.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// The sum of partial [n]: every thread adds each 256th, then a tree. The same in all blocks that compute it.
 /// scratch: [256] in shared memory, free afterwards.
 template <class Block>
 BB_HD double fold_partials(Block& block, double* scratch, const double* partial, Index n) {
-  const int width = exec::fold_width(n);
+  const int width = fold_width(n);
   block.threads(width, [=](int t) {
     double sum = 0;
     for (Index i = t; i < n; i += width) sum += partial[i];
@@ -21,4 +21,4 @@ BB_HD double fold_partials(Block& block, double* scratch, const double* partial,
   return total;
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

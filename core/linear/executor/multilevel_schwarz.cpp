@@ -4,13 +4,13 @@
 
 #include "core/math/at.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 namespace {
 
-constexpr int most_parts = ResidentMatrix::most_parts;
+constexpr int most_parts = ExecutorMatrix::most_parts;
 
 template <class T>
-std::vector<T> download_numbers(exec::Executor& executor, const T* from, Index n) {
+std::vector<T> download_numbers(Executor& executor, const T* from, Index n) {
   std::vector<T> out(at(n));
   if (n > 0) executor.download(out.data(), from, out.size() * sizeof(T));
   return out;
@@ -29,7 +29,7 @@ bool has_couplings(const BlockGraph& graph) {
 }  // namespace
 
 /// All parts as one graph, those of the first part first in a row.
-HostPattern MultilevelSchwarz::download(const ResidentMatrix& matrix, Index n) const {
+HostPattern MultilevelSchwarz::download(const ExecutorMatrix& matrix, Index n) const {
   std::vector<Index> begin[most_parts];
   std::vector<int> column[most_parts];
   for (int p = 0; p < most_parts; ++p) {
@@ -52,14 +52,14 @@ HostPattern MultilevelSchwarz::download(const ResidentMatrix& matrix, Index n) c
   return out;
 }
 
-void MultilevelSchwarz::download_norms(const ResidentMatrix& matrix, const FixedMask* fixed,
+void MultilevelSchwarz::download_norms(const ExecutorMatrix& matrix, const FixedMask* fixed,
                                        HostPattern& pattern) {
   std::vector<double> norm[most_parts];
   for (int p = 0; p < most_parts; ++p) {
     if (!matrix.part[p].row_begin) continue;
     const Index count = std::count_if(pattern.source.begin(), pattern.source.end(),
                                       [p](Index source) { return source % most_parts == p; });
-    exec::Buffer<double> on_executor(executor_, "block norms", count);
+    Buffer<double> on_executor(executor_, "block norms", count);
     executor_.each(pattern.graph.n(), BlockNorms{matrix.part[p], fixed, on_executor.data()});
     norm[p] = on_executor.download();
   }
@@ -78,14 +78,14 @@ void MultilevelSchwarz::keep(Archive& archive) {
 }
 
 // Levels of clusters that are known, or else new ones.
-void MultilevelSchwarz::build(const ResidentMatrix& matrix, const PcgVectors& v) {
+void MultilevelSchwarz::build(const ExecutorMatrix& matrix, const PcgVectors& v) {
   levels_.clear();
   const std::size_t n_known = clusters_.size();
   ++version_;
   HostPattern pattern = download(matrix, v.partition.n_rows);
   download_norms(matrix, v.fixed, pattern);
   std::vector<FixedMask> fixed = download_numbers(executor_, v.fixed, v.partition.n_rows), coarse_fixed;
-  ResidentMatrix here = matrix;
+  ExecutorMatrix here = matrix;
   const FixedMask* fixed_here = v.fixed;
   levels_.push_back(std::make_unique<SchwarzLevel>(executor_));
   for (;;) {
@@ -106,12 +106,12 @@ void MultilevelSchwarz::build(const ResidentMatrix& matrix, const PcgVectors& v)
   }
 }
 
-void MultilevelSchwarz::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
+void MultilevelSchwarz::setup(const ExecutorMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
                               FactorFaults* faults) {
   if (pattern_id == 0 || pattern_id != pattern_id_) clusters_.clear();
   if (clusters_.empty() || levels_.empty()) build(matrix, v);
   pattern_id_ = pattern_id;
-  ResidentMatrix here = matrix;
+  ExecutorMatrix here = matrix;
   const FixedMask* fixed = v.fixed;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     if (l > 0) {
@@ -148,4 +148,4 @@ std::string MultilevelSchwarz::fault_text(Index number) const {
   return "cluster " + std::to_string(node) + " on level " + std::to_string(level);
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

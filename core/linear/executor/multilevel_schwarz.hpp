@@ -6,20 +6,20 @@
 
 #include <memory>
 
-#include "core/linear/executor/resident_preconditioner.hpp"
+#include "core/linear/executor/executor_preconditioner.hpp"
 #include "core/linear/executor/schwarz_level.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// Clusters are made on the host when the pattern changes, from norms that come down: O(blocks log blocks), serial.
 /// Memory: 72 bytes a vertex and vertex of its cluster on level 0, about a seventh of that above.
-class MultilevelSchwarz final : public ResidentPreconditioner {
+class MultilevelSchwarz final : public ExecutorPreconditioner {
  public:
   static constexpr int most_cluster_vertices = 11;  // clusters grow by half of it (ClusterLevel::most_nodes)
   /// cluster_vertices: 1 to most_cluster_vertices.
-  MultilevelSchwarz(exec::Executor& executor, int cluster_vertices)
+  MultilevelSchwarz(Executor& executor, int cluster_vertices)
       : executor_(executor), cluster_vertices_(cluster_vertices) {}
-  void setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
+  void setup(const ExecutorMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
              FactorFaults* faults) override;
   void apply(const PcgVectors& v) override { launch(v, nullptr); }
   void update(const PcgVectors& v, int k) override;
@@ -29,16 +29,16 @@ class MultilevelSchwarz final : public ResidentPreconditioner {
   int n_levels() const { return static_cast<int>(levels_.size()); }
 
  private:
-  void build(const ResidentMatrix& matrix, const PcgVectors& v);
-  HostPattern download(const ResidentMatrix& matrix, Index n) const;
-  void download_norms(const ResidentMatrix& matrix, const FixedMask* fixed, HostPattern& pattern);
+  void build(const ExecutorMatrix& matrix, const PcgVectors& v);
+  HostPattern download(const ExecutorMatrix& matrix, Index n) const;
+  void download_norms(const ExecutorMatrix& matrix, const FixedMask* fixed, HostPattern& pattern);
   void launch(const PcgVectors& v, const CgState* state);
 
-  exec::Executor& executor_;
+  Executor& executor_;
   int cluster_vertices_, version_ = 0;
   std::uint64_t pattern_id_ = 0;
   std::vector<VertexClusters> clusters_;  // of every level
   std::vector<std::unique_ptr<SchwarzLevel>> levels_;
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

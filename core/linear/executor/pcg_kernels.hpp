@@ -4,16 +4,16 @@
 #include "core/linear/executor/fold_partials.hpp"
 #include "core/linear/executor/pcg_scalars.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// q = A p by rows, eight lanes a row; partial sums of p^T q. Nothing happens where `state` is there and not running.
 struct MultiplyDot {
-  static constexpr int lanes = 8, rows = exec::block_threads / lanes;
+  static constexpr int lanes = 8, rows = block_threads / lanes;
   struct Shared {
     double dot[rows];
   };
   Partition partition;
-  ResidentMatrix matrix;
+  ExecutorMatrix matrix;
   const FixedMask* fixed;
   const double* p;
   double *q, *partial;
@@ -66,10 +66,10 @@ struct MultiplyDot {
 /// Partial sums of |p_i| |A_ij| |p_j|: the scale of the rounding error of p^T A p.
 struct MagnitudeDot {
   struct Shared {
-    double sum[exec::block_threads];
+    double sum[block_threads];
   };
   Partition partition;
-  ResidentMatrix matrix;
+  ExecutorMatrix matrix;
   const double* p;
   double* partial;
 
@@ -93,7 +93,7 @@ struct MagnitudeDot {
     const int width = block.busy(partition.width(1));
     block.threads(width, [&](int t) {
       shared.sum[t] = 0;
-      for (Index row = first + t; row < last; row += exec::block_threads) shared.sum[t] += row_sum(row);
+      for (Index row = first + t; row < last; row += block_threads) shared.sum[t] += row_sum(row);
     });
     fold(block, shared.sum, width);
     block.once([&] { partial[b] = shared.sum[0]; });
@@ -103,7 +103,7 @@ struct MagnitudeDot {
 /// r = from - minus where degrees of freedom are free, minus 0 where it is null; partial sums of r^T r.
 struct SetResidual {
   struct Shared {
-    double rr[exec::block_threads];
+    double rr[block_threads];
   };
   Partition partition;
   const FixedMask* fixed;
@@ -115,7 +115,7 @@ struct SetResidual {
     const int width = block.busy(partition.width(3));
     block.threads(width, [&](int t) {
       double rr = 0;
-      for (Index i = first + t; i < last; i += exec::block_threads) {
+      for (Index i = first + t; i < last; i += block_threads) {
         const double value = is_fixed(fixed[i / 3], static_cast<int>(i % 3)) ? 0
                              : minus                                         ? from[i] - minus[i]
                                                                              : from[i];
@@ -132,7 +132,7 @@ struct SetResidual {
 /// One block: scalars->sum = the sum of partial [n].
 struct FinishSum {
   struct Shared {
-    double a[exec::block_threads];
+    double a[block_threads];
   };
   const double* partial;
   Index n;
@@ -147,7 +147,7 @@ struct FinishSum {
 /// One block: the state of a run that begins with r, z and their sums. The first run of a solve sets the target.
 struct BeginRun {
   struct Shared {
-    double a[exec::block_threads];
+    double a[block_threads];
   };
   const double *partial_rz, *partial_rr;
   Index n;
@@ -172,7 +172,7 @@ struct BeginRun {
 /// where the run is over; p stays as it is when the run ends here.
 struct StepDirection {
   struct Shared {
-    double a[exec::block_threads];
+    double a[block_threads];
   };
   Partition partition;
   const double *partial_rz, *partial_rr, *z;
@@ -197,7 +197,7 @@ struct StepDirection {
     if (after.running()) {
       const Index first = 3 * partition.first(b), last = 3 * partition.last(b);
       block.threads(block.busy(partition.width(3)), [&](int t) {
-        for (Index i = first + t; i < last; i += exec::block_threads) p[i] = fma(beta, p[i], z[i]);
+        for (Index i = first + t; i < last; i += block_threads) p[i] = fma(beta, p[i], z[i]);
       });
     }
     block.once([&] {
@@ -208,4 +208,4 @@ struct StepDirection {
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/linear/cg_decisions.hpp"
-#include "core/linear/executor/resident_matrix.hpp"
+#include "core/linear/executor/executor_matrix.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// Iterations of a graph. Even, so that state[0] is the present one between graphs.
 constexpr int graph_iterations = 16;
@@ -30,4 +30,4 @@ struct FactorFaults {
 };
 constexpr Key no_fault = ~Key{0};
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -3,8 +3,8 @@
 #include "core/math/at.hpp"
 #include "core/math/parallel.hpp"
 
-namespace bb::resident {
-UploadedSystem::UploadedSystem(exec::Executor& executor)
+namespace bb::exec {
+UploadedSystem::UploadedSystem(Executor& executor)
     : row_begin_(executor, "matrix rows"),
       column_(executor, "matrix columns"),
       value_(executor, "matrix values"),
@@ -36,7 +36,7 @@ void UploadedSystem::update(const ReducedSystem& system) {
   value_.upload(packed_);
 }
 
-void UploadedSystem::upload(const VecXd& b, exec::Buffer<double>& full) const {
+void UploadedSystem::upload(const VecXd& b, Buffer<double>& full) const {
   std::vector<double> out(at(3 * n_vertices()), 0.0);
   for (std::size_t v = 0; v + 1 < rows_.start().size(); ++v) {
     for (int i = rows_.start()[v]; i < rows_.start()[v + 1]; ++i) {
@@ -46,7 +46,7 @@ void UploadedSystem::upload(const VecXd& b, exec::Buffer<double>& full) const {
   full.upload(out);
 }
 
-void UploadedSystem::download(const exec::Buffer<double>& full, VecXd& x) const {
+void UploadedSystem::download(const Buffer<double>& full, VecXd& x) const {
   const std::vector<double> from = full.download();
   x.resize(rows_.n());
   for (std::size_t v = 0; v + 1 < rows_.start().size(); ++v) {
@@ -56,4 +56,4 @@ void UploadedSystem::download(const exec::Buffer<double>& full, VecXd& x) const 
   }
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

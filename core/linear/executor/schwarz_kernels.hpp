@@ -7,7 +7,7 @@
 #include "core/linear/executor/block_jacobi_kernels.hpp"
 #include "core/linear/executor/cluster_kernels.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// norm [blocks] of one part: Frobenius, of what is free of a block.
 struct BlockNorms {
@@ -28,7 +28,7 @@ struct BlockNorms {
 
 /// P^T A P on the translations of clusters: number i % 9 of coarse block i / 9 is the sum of those of its fine blocks.
 struct CoarseValues {
-  ResidentMatrix matrix;  // of the level below
+  ExecutorMatrix matrix;  // of the level below
   const FixedMask* fixed;
   const Index *begin, *source;  // [blocks + 1], fine blocks as most_parts number + part
   const int* row;               // of each fine block
@@ -38,10 +38,10 @@ struct CoarseValues {
     const int c = static_cast<int>(i % 9);
     double sum = 0;
     for (Index k = begin[block]; k < begin[block + 1]; ++k) {
-      const Index own = source[k] % ResidentMatrix::most_parts, j = source[k] / ResidentMatrix::most_parts;
+      const Index own = source[k] % ExecutorMatrix::most_parts, j = source[k] / ExecutorMatrix::most_parts;
       const int* column = matrix.part[0].column;
       const double* from = matrix.part[0].value;
-      for (int p = 1; p < ResidentMatrix::most_parts; ++p) {
+      for (int p = 1; p < ExecutorMatrix::most_parts; ++p) {
         if (own == p) column = matrix.part[p].column, from = matrix.part[p].value;
       }
       if (is_fixed(fixed[row[k]], c % 3) || is_fixed(fixed[column[j]], c / 3)) continue;
@@ -54,7 +54,7 @@ struct CoarseValues {
 /// x += alpha p, r -= alpha q; partial sums of r^T r.
 struct UpdateResidual {
   struct Shared {
-    double rr[exec::block_threads];
+    double rr[block_threads];
   };
   Partition partition;
   const double *p, *q, *partial_pq;
@@ -70,7 +70,7 @@ struct UpdateResidual {
     const int width = block.busy(partition.width(3));
     block.threads(width, [&](int t) {
       double rr = 0;
-      for (Index i = first + t; i < last; i += exec::block_threads) {
+      for (Index i = first + t; i < last; i += block_threads) {
         x[i] = fma(alpha, p[i], x[i]);
         const double value = fma(-alpha, q[i], r[i]);
         r[i] = value;
@@ -87,7 +87,7 @@ struct UpdateResidual {
 struct AddLevels {
   static constexpr int most_levels = 16;
   struct Shared {
-    double rz[exec::block_threads];
+    double rz[block_threads];
   };
   Partition partition;
   const FixedMask* fixed;
@@ -115,7 +115,7 @@ struct AddLevels {
     const int width = block.busy(partition.width(3));
     block.threads(width, [&](int t) {
       double rz = 0;
-      for (Index i = first + t; i < last; i += exec::block_threads) {
+      for (Index i = first + t; i < last; i += block_threads) {
         const Index v = i / 3;
         const int c = static_cast<int>(i - 3 * v);
         const double value = is_fixed(fixed[v], c) ? 0 : z[i] + above(v, c);
@@ -129,4 +129,4 @@ struct AddLevels {
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -4,8 +4,8 @@
 
 #include "core/math/at.hpp"
 
-namespace bb::resident {
-SchwarzLevel::SchwarzLevel(exec::Executor& executor)
+namespace bb::exec {
+SchwarzLevel::SchwarzLevel(Executor& executor)
     : executor_(executor),
       start_(executor, "clusters"),
       member_(executor, "cluster members"),
@@ -65,7 +65,7 @@ HostPattern SchwarzLevel::set_coarse(const HostPattern& below, const VertexClust
                      [](const Summand& a, const Summand& b) { return a.column < b.column; });
     for (std::size_t i = 0; i < summands.size(); ++i) {
       if (i == 0 || summands[i].column != summands[i - 1].column) {
-        out.source.push_back(ResidentMatrix::most_parts * static_cast<Index>(out.graph.column.size()));
+        out.source.push_back(ExecutorMatrix::most_parts * static_cast<Index>(out.graph.column.size()));
         out.graph.column.push_back(summands[i].column);
         source_begin.push_back(static_cast<Index>(sources.size()));
       }
@@ -83,7 +83,7 @@ HostPattern SchwarzLevel::set_coarse(const HostPattern& below, const VertexClust
   return out;
 }
 
-void SchwarzLevel::launch_values(const ResidentMatrix& below, const FixedMask* fixed_below) {
+void SchwarzLevel::launch_values(const ExecutorMatrix& below, const FixedMask* fixed_below) {
   executor_.each(9 * column_.size(), CoarseValues{below, fixed_below, source_begin_.data(), source_.data(),
                                                   source_row_.data(), value_.data()});
 }
@@ -93,7 +93,7 @@ ClusterLevel SchwarzLevel::view(const FixedMask* fixed) {
           place_.data(),  fixed,         offset_.data(), factor_.data()};
 }
 
-void SchwarzLevel::launch_factors(const ResidentMatrix& matrix, const FixedMask* fixed, Index number,
+void SchwarzLevel::launch_factors(const ExecutorMatrix& matrix, const FixedMask* fixed, Index number,
                                   FactorFaults* faults) {
   executor_.blocks(offset_.size(), FactorizeClusters{view(fixed), matrix, number, faults});
 }
@@ -104,4 +104,4 @@ void SchwarzLevel::launch_solves(const FixedMask* fixed, const double* r, double
   executor_.blocks((offset_.size() + each - 1) / each, SolveClusters{view(fixed), r, z, coarse_r, state});
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

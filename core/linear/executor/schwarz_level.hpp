@@ -5,7 +5,7 @@
 #include "core/linear/executor/schwarz_kernels.hpp"
 #include "core/linear/vertex_clusters.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// Where the blocks of a matrix are: beside the graph, most_parts number + part of every block.
 struct HostPattern {
@@ -16,21 +16,21 @@ struct HostPattern {
 /// The nodes of one level. The matrix of vertices is given, that of a level above is made here.
 class SchwarzLevel {
  public:
-  explicit SchwarzLevel(exec::Executor& executor);
+  explicit SchwarzLevel(Executor& executor);
 
   /// Clusters of the nodes of a level.
   void set_clusters(const VertexClusters& clusters, Index n_nodes);
   /// The level above: a node is a cluster of `below`. Returns its pattern; norms are missing.
   HostPattern set_coarse(const HostPattern& below, const VertexClusters& clusters,
                          const std::vector<FixedMask>& fixed_below, std::vector<FixedMask>& fixed);
-  void launch_values(const ResidentMatrix& below, const FixedMask* fixed_below);
-  void launch_factors(const ResidentMatrix& matrix, const FixedMask* fixed, Index number,
+  void launch_values(const ExecutorMatrix& below, const FixedMask* fixed_below);
+  void launch_factors(const ExecutorMatrix& matrix, const FixedMask* fixed, Index number,
                       FactorFaults* faults);
   /// z = the solves of all clusters; coarse_r may be null.
   void launch_solves(const FixedMask* fixed, const double* r, double* z, double* coarse_r,
                      const CgState* state);
 
-  ResidentMatrix matrix() const {
+  ExecutorMatrix matrix() const {
     return {{{row_begin_.data(), column_.data(), value_.data()}, {nullptr, nullptr, nullptr}}};
   }
   const FixedMask* fixed() const { return fixed_.data(); }
@@ -41,15 +41,15 @@ class SchwarzLevel {
  private:
   ClusterLevel view(const FixedMask* fixed);
 
-  exec::Executor& executor_;
-  exec::Buffer<int> start_, member_, of_, place_;
-  exec::Buffer<Index> offset_;
-  exec::Buffer<double> factor_;
+  Executor& executor_;
+  Buffer<int> start_, member_, of_, place_;
+  Buffer<Index> offset_;
+  Buffer<double> factor_;
   // of a coarse level
-  exec::Buffer<FixedMask> fixed_;
-  exec::Buffer<Index> row_begin_, source_begin_, source_;
-  exec::Buffer<int> column_, source_row_;
-  exec::Buffer<double> value_, r_, z_;
+  Buffer<FixedMask> fixed_;
+  Buffer<Index> row_begin_, source_begin_, source_;
+  Buffer<int> column_, source_row_;
+  Buffer<double> value_, r_, z_;
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

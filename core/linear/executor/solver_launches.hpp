@@ -3,11 +3,11 @@
 
 #include "core/exec/metered_executor.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// Launches outside graphs of conjugate gradients and their preconditioners: of the kernels of this room.
-inline exec::Index solver_launches(const exec::ExecutionCounts& counts) {
-  exec::Index out = -counts.replayed;  // by_kernel has those of graphs too
+inline Index solver_launches(const ExecutionCounts& counts) {
+  Index out = -counts.replayed;  // by_kernel has those of graphs too
   for (const auto& [name, of] : counts.by_kernel) {
     for (const char* part : {"::MultiplyDot", "::MagnitudeDot", "::SetResidual", "::FinishSum", "::BeginRun",
                              "::StepDirection", "BlockJacobi", "::FactorizeDiagonal", "::BlockNorms",
@@ -20,4 +20,4 @@ inline exec::Index solver_launches(const exec::ExecutionCounts& counts) {
   return out;
 }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -3,7 +3,7 @@
 
 #include "core/linear/executor/find_block.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// The sub-matrix of at most four vertices, entry by entry; 0 where the pattern has no block.
 struct SubMatrix {
@@ -23,4 +23,4 @@ struct SubMatrix {
   }
 };
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -8,7 +8,7 @@ namespace bb {
 /// Where a solver wants the matrix.
 enum class MatrixPlace {
   host,      // in this machine's memory, reduced to what is free, by columns
-  executor,  // where the resident pipeline assembles it, as block rows
+  executor,  // where an executor assembles it, as block rows
   card       // reduced and by columns in the memory of a card: it goes up for every solve
 };
 

@@ -4,8 +4,8 @@
 
 #include "core/exec/host_executor.hpp"
 #include "core/linear/block_starts.hpp"
+#include "core/linear/executor/executor_pcg.hpp"
 #include "core/linear/executor/reduced_upload.hpp"
-#include "core/linear/executor/resident_pcg.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/linear/parallel.hpp"
 #include "core/linear/solvers/linear_solvers.hpp"
@@ -34,9 +34,9 @@ class PcgResident final : public LinearSolver {
   int max_iterations_;
   ParameterMap parameters_;
   exec::HostExecutor executor_;  // first: what follows lives in its memory
-  resident::UploadedSystem system_;
+  exec::UploadedSystem system_;
   exec::Buffer<double> b_, x_;
-  std::unique_ptr<resident::ResidentPcg> pcg_;
+  std::unique_ptr<exec::ExecutorPcg> pcg_;
   std::string kept_;  // of a preconditioner that is not made yet
   ChunkedDot dot_;
 };
@@ -57,14 +57,13 @@ void PcgResident::prepare(const ReducedSystem& system, const VecXd& b) {
   system_.upload(b, b_);
   x_.resize(3 * system_.n_vertices());
   if (!pcg_ || x_.size() != before) {
-    auto preconditioner = resident::make_preconditioner(executor_, parameters_);
+    auto preconditioner = exec::make_preconditioner(executor_, parameters_);
     if (!kept_.empty()) {
       Archive kept(std::move(kept_));
       preconditioner->keep(kept);
       kept_.clear();
     }
-    pcg_ =
-        std::make_unique<resident::ResidentPcg>(executor_, system_.n_vertices(), std::move(preconditioner));
+    pcg_ = std::make_unique<exec::ExecutorPcg>(executor_, system_.n_vertices(), std::move(preconditioner));
   }
 }
 
@@ -98,7 +97,7 @@ LinearSolverEntry linear_solver_pcg_resident() {
   entry.iterative = true;
   entry.matrix = MatrixPlace::executor;
   entry.parameters = Forcing::parameters();
-  for (Parameter& one : resident::preconditioner_parameters()) entry.parameters.push_back(std::move(one));
+  for (Parameter& one : exec::preconditioner_parameters()) entry.parameters.push_back(std::move(one));
   entry.parameters.push_back({"max_iterations", count(1, 1000000000), 10000, "cap on iterations of a solve"});
   entry.make = [](const ParameterMap& complete) -> std::unique_ptr<LinearSolver> {
     return std::make_unique<PcgResident>(complete);

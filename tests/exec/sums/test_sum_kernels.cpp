@@ -6,14 +6,12 @@
 #include <random>
 
 #include "core/exec/host_executor.hpp"
-#include "core/exec/sums/resident_sum.hpp"
-#include "tests/resident/tested_executor.hpp"
+#include "core/exec/sums/executor_sum.hpp"
+#include "tests/executor/tested_executor.hpp"
 
-namespace bb::resident::sum_kernels_test {
+namespace bb::exec::sum_kernels_test {
 namespace {
 
-using exec::Buffer;
-using exec::Order;
 using test::TestedExecutor;
 
 struct Columns {
@@ -31,7 +29,7 @@ Compensated free_dot(exec::Executor& executor, const Columns& columns, int times
   Buffer<double> a(executor, "first factor"), b(executor, "second factor");
   Buffer<FixedMask> fixed(executor, "fixed degrees of freedom");
   a.upload(columns.a), b.upload(columns.b), fixed.upload(columns.fixed);
-  ResidentSum sum(executor);
+  ExecutorSum sum(executor);
   for (int k = 0; k < times; ++k) sum.add(a.size(), FreeDot{a.data(), b.data(), fixed.data()});
   return sum.get();
 }
@@ -67,4 +65,4 @@ TEST(SumKernels, MultiplyOverTheFreeDegreesOfFreedom) {
 }
 
 }  // namespace
-}  // namespace bb::resident::sum_kernels_test
+}  // namespace bb::exec::sum_kernels_test

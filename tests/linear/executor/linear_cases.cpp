@@ -4,14 +4,14 @@
 
 #include "core/linear/symmetric_product.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 namespace {
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
-OwnedPart::OwnedPart(exec::Executor& executor, const std::vector<Index>& begin,
-                     const std::vector<int>& columns, const std::vector<Mat3d>& block)
+OwnedPart::OwnedPart(Executor& executor, const std::vector<Index>& begin, const std::vector<int>& columns,
+                     const std::vector<Mat3d>& block)
     : row_begin(executor, "matrix rows"),
       column(executor, "matrix columns"),
       value(executor, "matrix values") {
@@ -22,13 +22,13 @@ OwnedPart::OwnedPart(exec::Executor& executor, const std::vector<Index>& begin,
   row_begin.upload(begin), column.upload(columns), value.upload(numbers);
 }
 
-OwnedSystem::OwnedSystem(exec::Executor& executor, const ReducedSystem& system, std::vector<FixedMask> given,
+OwnedSystem::OwnedSystem(Executor& executor, const ReducedSystem& system, std::vector<FixedMask> given,
                          bool split)
     : mask(std::move(given)), fixed(executor, "fixed degrees of freedom") {
   fixed.upload(mask);
   SymmetricProduct rows;
   rows.update(system);
-  constexpr int n_parts = ResidentMatrix::most_parts;
+  constexpr int n_parts = ExecutorMatrix::most_parts;
   constexpr double share[n_parts] = {0.125, 0.375, 0.25, 0.25};
   std::vector<Index> begin[n_parts];
   std::vector<int> column[n_parts];
@@ -53,8 +53,8 @@ OwnedSystem::OwnedSystem(exec::Executor& executor, const ReducedSystem& system, 
   }
 }
 
-ResidentMatrix OwnedSystem::matrix() const {
-  ResidentMatrix out{};
+ExecutorMatrix OwnedSystem::matrix() const {
+  ExecutorMatrix out{};
   for (std::size_t k = 0; k < parts_.size(); ++k) out.part[k] = parts_[k]->view();
   return out;
 }
@@ -90,4 +90,4 @@ std::vector<FixedMask> some_fixed(int n_vertices) {
 
 std::vector<double> plain(const VecXd& v) { return std::vector<double>(v.data(), v.data() + v.size()); }
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -6,32 +6,31 @@
 
 #include "core/exec/buffer.hpp"
 #include "core/exec/host_executor.hpp"
-#include "core/linear/executor/resident_pcg.hpp"
+#include "core/linear/executor/executor_pcg.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb::resident {
+namespace bb::exec {
 
 /// A part whose buffers live as long as it does.
 struct OwnedPart {
-  OwnedPart(exec::Executor& executor, const std::vector<Index>& row_begin, const std::vector<int>& column,
+  OwnedPart(Executor& executor, const std::vector<Index>& row_begin, const std::vector<int>& column,
             const std::vector<Mat3d>& block);
   MatrixPart view() const { return {row_begin.data(), column.data(), value.data()}; }
-  exec::Buffer<Index> row_begin;
-  exec::Buffer<int> column;
-  exec::Buffer<double> value;
+  Buffer<Index> row_begin;
+  Buffer<int> column;
+  Buffer<double> value;
 };
 
 /// The matrix of a dense-able system over full degrees of freedom, 3 a vertex, some fixed.
 class OwnedSystem {
  public:
   /// split: every block is in a random part or shared among all.
-  OwnedSystem(exec::Executor& executor, const ReducedSystem& system, std::vector<FixedMask> fixed,
-              bool split);
-  ResidentMatrix matrix() const;
+  OwnedSystem(Executor& executor, const ReducedSystem& system, std::vector<FixedMask> fixed, bool split);
+  ExecutorMatrix matrix() const;
   Index n() const { return fixed.size(); }
 
   std::vector<FixedMask> mask;
-  exec::Buffer<FixedMask> fixed;
+  Buffer<FixedMask> fixed;
 
  private:
   std::vector<std::unique_ptr<OwnedPart>> parts_;
@@ -49,4 +48,4 @@ std::vector<FixedMask> some_fixed(int n_vertices);
 
 std::vector<double> plain(const VecXd& v);
 
-}  // namespace bb::resident
+}  // namespace bb::exec

@@ -7,13 +7,11 @@
 
 #include "core/linear/executor/block_jacobi.hpp"
 #include "core/linear/solvers/linear_solvers.hpp"
+#include "tests/executor/tested_executor.hpp"
 #include "tests/linear/executor/linear_cases.hpp"
-#include "tests/resident/tested_executor.hpp"
 
-namespace bb::resident::pcg_solves {
+namespace bb::exec::pcg_solves {
 
-using exec::Buffer;
-using exec::Order;
 using test::TestedExecutor;
 
 struct Solved {
@@ -35,7 +33,7 @@ inline Solved solve(const ReducedSystem& system, const VecXd& b, const std::vect
   const OwnedSystem owned(executor, system, fixed, how.split);
   Buffer<double> rhs(executor, "b"), x(executor, "x", 3 * owned.n());
   rhs.upload(plain(b));
-  ResidentPcg pcg(executor, owned.n(), std::make_unique<BlockJacobi>(executor));
+  ExecutorPcg pcg(executor, owned.n(), std::make_unique<BlockJacobi>(executor));
   pcg.launch_plainly(how.plainly);
   Solved out;
   out.report = pcg.solve(owned.matrix(), owned.fixed.data(), rhs.data(), x.data(), how.tolerance, how.cap);
@@ -56,4 +54,4 @@ inline LinearReport host_pcg(const ReducedSystem& system, const VecXd& b, double
   return make_linear_solver(options)->solve(system, b, x);
 }
 
-}  // namespace bb::resident::pcg_solves
+}  // namespace bb::exec::pcg_solves

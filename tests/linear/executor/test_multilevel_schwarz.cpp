@@ -6,15 +6,13 @@
 
 #include "core/linear/executor/multilevel_schwarz.hpp"
 #include "core/linear/solvers/linear_solvers.hpp"
+#include "tests/executor/tested_executor.hpp"
 #include "tests/linear/executor/linear_cases.hpp"
 #include "tests/oracle/dense.hpp"
-#include "tests/resident/tested_executor.hpp"
 
-namespace bb::resident::multilevel_schwarz_test {
+namespace bb::exec::multilevel_schwarz_test {
 namespace {
 
-using exec::Buffer;
-using exec::Order;
 using test::TestedExecutor;
 
 struct Solved {
@@ -32,7 +30,7 @@ Solved solve(const ReducedSystem& system, const std::vector<FixedMask>& fixed, O
   rhs.upload(plain(random_vector(system.lower.rows(), 4)));
   auto schwarz = std::make_unique<MultilevelSchwarz>(executor, cluster);
   const MultilevelSchwarz& levels = *schwarz;
-  ResidentPcg pcg(executor, owned.n(), std::move(schwarz));
+  ExecutorPcg pcg(executor, owned.n(), std::move(schwarz));
   Solved out;
   out.report = pcg.solve(owned.matrix(), owned.fixed.data(), rhs.data(), x.data(), 1e-6, 20000);
   const std::vector<double> numbers = x.download();
@@ -281,4 +279,4 @@ TEST(PcgResident, KeepsLevelsWhileThePatternStays) {
 }
 
 }  // namespace
-}  // namespace bb::resident::multilevel_schwarz_test
+}  // namespace bb::exec::multilevel_schwarz_test

@@ -9,14 +9,12 @@
 #include "core/linear/executor/block_jacobi_kernels.hpp"
 #include "core/linear/executor/pcg_kernels.hpp"
 #include "core/linear/executor/schwarz_kernels.hpp"
+#include "tests/executor/tested_executor.hpp"
 #include "tests/linear/executor/linear_cases.hpp"
-#include "tests/resident/tested_executor.hpp"
 
-namespace bb::resident::pcg_kernels_test {
+namespace bb::exec::pcg_kernels_test {
 namespace {
 
-using exec::Buffer;
-using exec::Order;
 using test::TestedExecutor;
 using Numbers = std::vector<double>;
 
@@ -189,4 +187,4 @@ TEST(FactorizeDiagonal, LooksAtEveryNumber) {
 }
 
 }  // namespace
-}  // namespace bb::resident::pcg_kernels_test
+}  // namespace bb::exec::pcg_kernels_test

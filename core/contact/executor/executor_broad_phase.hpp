@@ -1,0 +1,71 @@
+// Broad phase on an executor: the candidate pairs of a motion, those of BroadPhase (core/contact/candidates.hpp).
+#pragma once
+
+#include "core/contact/executor/box_tree.hpp"
+#include "core/contact/executor/candidate_kernels.hpp"
+#include "core/exec/board.hpp"
+#include "core/model/scene/contact_plan.hpp"
+
+namespace bb::exec {
+
+/// Candidate pairs by kind.
+struct CandidateCounts {
+  Index point_point = 0, point_edge = 0, point_triangle = 0, edge_edge = 0, obstacle = 0, obstacle_edge = 0,
+        obstacle_triangle = 0;
+  Index total() const {
+    return point_point + point_edge + point_triangle + edge_edge + obstacle + obstacle_edge +
+           obstacle_triangle;
+  }
+  /// Of their lists, with the room to grow that they are given.
+  std::size_t bytes() const { return static_cast<std::size_t>(total() + total() / 4) * sizeof(Key); }
+};
+
+class ExecutorBroadPhase {
+ public:
+  using Column = Buffer<double>;
+
+  /// on_executor: that surface there; must outlive this. surface: read here only. plan: of the same scene.
+  ExecutorBroadPhase(Executor& executor, const ExecutorSurface& on_executor, const Surface& surface,
+                     const ContactPlan& plan);
+
+  /// Fits the trees to x0 -> x1 ([3 n_vertices] m; the same buffer: a state) and counts the candidates: how long
+  /// their lists would be is known before there is one. Errors: OutOfMemory.
+  CandidateCounts count(const PositionsView& x0, const PositionsView& x1);
+  /// Writes the candidates of the last count; positions unchanged since. Errors: OutOfMemory.
+  void fill(ExecutorCandidates& out);
+  /// Both. The lists are those of BroadPhase::update in double, entry by entry.
+  void update(const PositionsView& x0, const PositionsView& x1, ExecutorCandidates& out);
+
+  /// Of the last count; for ExecutorStepBound::find_without_list.
+  CandidateSource source() const;
+  /// Gives the trees back; source() needs another count then.
+  void free();
+  /// Whether lists get room to grow; not where they are given back after every motion.
+  void keep_room(bool keep) { room_ = keep; }
+  /// What an executor that only counts buffers is to take the candidates for.
+  void expect(const CandidateCounts& counts) { counts_ = counts; }
+
+ private:
+  void find_frame(const PositionsView& x0, const PositionsView& x1);
+  void fit(const PositionsView& x0, const PositionsView& x1);
+  template <PairKind K>
+  PairSearch search() const;
+  Askers askers() const;
+
+  Executor& executor_;
+  const ExecutorSurface& surface_;
+  const ContactPlan plan_;
+  Buffer<int> connected_, opposite_;
+  Buffer<MotionFrame> frame_;
+  BoxTrees trees_;
+  ExecutorPrimitives<2> lone_;  // edges without triangles in space
+  Buffer<int> edge_of_;         // what they are in the surface
+  Buffer<Index> places_;        // of the candidates of each item of askers()
+  Buffer<Key> held_;            // the first ones of each leaf
+  Reading<CandidateCounts> total_;
+  CandidateCounts counts_;
+  bool room_ = true;
+  const double *x0_ = nullptr, *x1_ = nullptr;
+};
+
+}  // namespace bb::exec

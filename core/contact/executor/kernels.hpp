@@ -1,0 +1,20 @@
+// Every kernel of the room, for what instantiates them; their names are in kernels.inc.
+#pragma once
+
+#include "core/contact/executor/bound_kernels.hpp"
+#include "core/contact/executor/candidate_kernels.hpp"
+#include "core/contact/executor/detour_kernels.hpp"
+#include "core/contact/executor/gather_kernels.hpp"
+#include "core/contact/executor/lagged_kernels.hpp"
+#include "core/contact/executor/row_kappa.hpp"
+#include "core/contact/executor/row_kernels.hpp"
+#include "core/contact/executor/shape_kernels.hpp"
+#include "core/contact/executor/slot_kernels.hpp"
+#include "core/contact/executor/sum_kernels.hpp"
+#include "core/contact/executor/term_kernels.hpp"
+#include "core/contact/executor/tree_kernels.hpp"
+#include "core/contact/stiffness_kernels.hpp"
+#include "core/energy/friction_list.hpp"
+#include "core/exec/sums/compaction_kernels.hpp"
+#include "core/terms/friction_rows.hpp"
+#include "core/terms/restitution_rows.hpp"

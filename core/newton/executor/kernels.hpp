@@ -1,0 +1,6 @@
+// All kernels of this room.
+#pragma once
+
+#include "core/contact/executor/sum_kernels.hpp"
+#include "core/exec/sums/sum_kernels.hpp"
+#include "core/exec/sums/vector_kernels.hpp"

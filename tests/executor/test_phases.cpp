@@ -1,0 +1,66 @@
+// Launches return at once on a card: a wait belongs to the phase that made the work.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/executor/both_systems.hpp"
+
+namespace bb::exec_phases_test {
+namespace {
+
+/// Counts the launches that a phase waited for and another one had made.
+class Waiter final : public exec::HostExecutor {
+ public:
+  PhaseClock* clock = nullptr;
+  std::map<Phase, int> of_others;  // by the phase that waited
+  int waits = 0;
+
+  void synchronize() override { wait(); }
+  void download(void* to, const void* from, std::size_t bytes) override {
+    wait();
+    HostExecutor::download(to, from, bytes);
+  }
+
+ protected:
+  void run(const exec::KernelInfo& kernel, exec::Index n, const void* f) override {
+    if (clock) ++pending_[phase()];
+    HostExecutor::run(kernel, n, f);
+  }
+
+ private:
+  Phase phase() {
+    const Phase now = clock->change(Phase::output);
+    clock->change(now);
+    return now;
+  }
+  void wait() {
+    if (!clock) return;
+    waits += !pending_.empty();
+    for (const auto& [made_by, launches] : pending_) {
+      if (made_by != phase()) of_others[phase()] += launches;
+    }
+    pending_.clear();
+  }
+  std::map<Phase, int> pending_;
+};
+
+TEST(ExecutorPhases, AssemblyIsNotChargedToTheSolve) {
+  const Scene scene = test::touching(test::two_sheets(), 0.01);
+  Method method = test::touching_method();
+  test::use_executor_solver(method, 1e-10);
+  const Plan plan = make_plan(scene, method, plan_options(method));
+  auto made = std::make_unique<Waiter>();
+  Waiter& waiter = *made;
+  test::ExecutorSystem system(std::move(made), scene, method, plan);
+  system.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
+  system.assemble();
+  waiter.clock = &system.clock();
+  system.find_direction();
+  EXPECT_GT(waiter.waits, 2);
+  EXPECT_EQ(waiter.of_others[Phase::linear_solve], 0);
+  system.assemble();
+  EXPECT_EQ(waiter.of_others[Phase::contact_terms] + waiter.of_others[Phase::elastic], 0);
+}
+
+}  // namespace
+}  // namespace bb::exec_phases_test
