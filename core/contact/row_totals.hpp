@@ -26,6 +26,11 @@ struct RowTotals {
     constexpr auto none = exec::Compensated{0, 0, 0};
     return {0, 0, 0, 0, 0, {0, 0, 0, 0, 0, 0, 0, 0}, none, none};
   }
+  BB_HD exec::Key size() const {
+    exec::Key n = 0;
+    for (const exec::Key of : of_kind) n += of;
+    return n;
+  }
   /// Loads and curvatures are those of rows that are not mollified: a mollified one has e(x) kappa |b'| and no load of its own.
   BB_HD void add(const ReportedRow& row) {
     using namespace exec;

@@ -61,8 +61,7 @@ ConstraintSystem::FreeMotion ConstraintSystem::free_motion(const Positions& give
 const std::vector<const ConstraintBatch*>& ConstraintSystem::find(const Positions& x,
                                                                   Inequalities inequalities) {
   found_.clear();
-  const ConstraintRequest request{x, inequalities, *potential_.blocks_, potential_.elastic_,
-                                  potential_.clock()};
+  const ConstraintRequest request{x, inequalities, potential_.clock()};
   for (const auto& term : potential_.terms_) term->add_constraints(request, found_);
   return found_;
 }

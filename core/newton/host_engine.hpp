@@ -73,7 +73,7 @@ class HostEngine final : public IncrementalPotential {
   void make_solver();
   bool set_changing_families();
   TermContext context(const PositionsView& gradient, StepHessian hessian = StepHessian::clamped) const {
-    return {*blocks_, elastic_, gradient, first_projection(hessian), clock()};
+    return {gradient, first_projection(hessian), clock()};
   }
   void linearise_term(Slot& slot, const Column& x, const Column& g);
   void add_families(const Slot& slot, PositionsSpan gradient) const;

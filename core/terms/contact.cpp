@@ -21,8 +21,7 @@ ContactOptions contact_options(const TermOptions& options) {
 }  // namespace
 
 ContactTerm::ContactTerm(const TermInputs& inputs, const TermList& terms)
-    : scene_(inputs.scene),
-      options_(inputs.options),
+    : ContactSteps(inputs.scene, inputs.options),
       fixed_(inputs.fixed),
       terms_(terms),
       contacts_(scene_, contact_options(options_), inputs.contacts),
@@ -74,8 +73,7 @@ void ContactTerm::begin_step(const StepColumns& step, PhaseClock& clock) {
   stiffness_.begin_step();
   if (multipliers_) multipliers_->begin_step();
   if (beside_) beside_->begin_step();
-  change_step(step);
-  first_iterate_ = true;
+  begin_steps(step);
   carries_ = has_multipliers();
   {
     const ScopedPhase timer(clock, Phase::broad_phase);
@@ -87,18 +85,16 @@ void ContactTerm::begin_step(const StepColumns& step, PhaseClock& clock) {
 }
 
 void ContactTerm::change_step(const StepColumns& step) {
-  time_ = {step.dt, step.c};
+  ContactSteps::change_step(step);
   stiffness_.set_time(time_);
 }
 
 void ContactTerm::linearise(const PositionsView& x, const TermContext& context) {
   {
     const ScopedPhase timer(context.clock, Phase::stiffness);
-    start_policy(x, context);
-    const double change = stiffness_.refresh(state_.tables(), context.blocks, context.elastic);
-    kappa_change_ = first_iterate_ ? 0 : change;
-    if (first_iterate_) scale_multipliers();
-    first_iterate_ = false;
+    start_policy(x, context.gradient, state_.size());
+    kappa_change_ = stiffness_.refresh(state_.tables(), *blocks_, *elastic_);
+    if (note_refresh()) scale_multipliers();
   }
   fill_local(x, context.projection);
   contact_energies(state_.rows, families_[0].local.energy, options_.precision);
@@ -188,14 +184,10 @@ void ContactTerm::prepare(const Motion& motion, PhaseClock& clock) {
   }
 }
 
-double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
-  const ScopedPhase timer(clock, Phase::step_bound);
-  bound_ = bounds_each_vertex(options_.contact_options.step_bound)
-               ? contacts_.vertex_bounds(motion.x0, motion.x1)
-               : contacts_.step_bound(motion.x0, motion.x1);
-  report.bound = bound_;
-  report.alpha_ccd = bound_.alpha;
-  return bound_.alpha;
+StepBound ContactTerm::find_bound(const Motion& motion) {
+  return bounds_each_vertex(options_.contact_options.step_bound)
+             ? contacts_.vertex_bounds(motion.x0, motion.x1)
+             : contacts_.step_bound(motion.x0, motion.x1);
 }
 
 bool ContactTerm::add_detour(const PositionsView& x, const PositionsView& dx, double bound,
@@ -207,8 +199,6 @@ std::span<const double> ContactTerm::vertex_parts() const {
   if (bounds_each_vertex(options_.contact_options.step_bound)) return contacts_.vertex_parts();
   return {};
 }
-
-std::string ContactTerm::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
 bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
@@ -254,7 +244,7 @@ void ContactTerm::add_constraints(const ConstraintRequest& request,
   contacts_.find_rows(request.x, found.rows, found.mollified);
   const bool compliant = request.inequalities == Inequalities::compliant;
   ContactState none;  // nothing is linearised: no row has a kappa yet
-  if (compliant) stiffness_.freeze(found.tables(), none.tables(), request.blocks, request.elastic);
+  if (compliant) stiffness_.freeze(found.tables(), none.tables(), *blocks_, *elastic_);
   constraints_.set(found.rows, found.mollified, request.x, compliant);
   out.push_back(&constraints_);
 }

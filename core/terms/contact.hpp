@@ -13,12 +13,11 @@
 #include "core/model/scene/contact_plan.hpp"
 #include "core/terms/carried_loads.hpp"
 #include "core/terms/contact_constraints.hpp"
+#include "core/terms/contact_steps.hpp"
 #include "core/terms/contact_stiffness.hpp"
 #include "core/terms/host_term.hpp"
 #include "core/terms/known_step.hpp"
-#include "core/terms/policy_start.hpp"
 #include "core/terms/registry.hpp"
-#include "core/terms/step_end_gaps.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {
@@ -39,21 +38,17 @@ struct ContactState {
   }
 };
 
-class ContactTerm final : public HostTerm {
+class ContactTerm final : public ContactSteps<HostTerm> {
  public:
   /// All arguments must outlive the term. terms: with those of lines before.
   ContactTerm(const TermInputs& inputs, const TermList& terms);
-  std::string_view name() const override { return "contact"; }
-  TermGroup group() const override { return TermGroup::contact; }
-  Phase phase() const override { return Phase::contact_terms; }
   bool fixed_stencils() const override { return false; }
 
   void begin_step(const StepColumns& step, PhaseClock& clock) override;
   void change_step(const StepColumns& step) override;
   /// Updates multipliers, where there are some (contact_multipliers.hpp).
   bool renew_lag(const PositionsView& x) override;
-  /// Keeps the loads where multipliers are part of them, and tells a policy that adapts which pairs had a row at two step ends in a
-  /// row.
+  /// Keeps the loads where multipliers are part of them.
   void end_step(const PositionsView& x, PhaseClock& clock) override;
   void adopt(const KnownStep& known) override { adopt_stiffness(known.stiffness); }
   void adopt_from(const HostTerm& other) override {
@@ -67,23 +62,16 @@ class ContactTerm final : public HostTerm {
   void add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) override;
   void add_loads(const PositionsView& x, ContactLoads& out) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
-  double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
   std::span<const double> vertex_parts() const override;
   bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
                   PositionsSpan force) override;
-  std::string describe_bound() const override;
   bool admits(const PositionsView& x, PhaseClock& clock) override;
   void freeze(PhaseClock& clock) override;
-  void set_matrix(const BlockSystem& blocks, const BlockSystem::Values& elastic) override {
-    blocks_ = &blocks, elastic_ = &elastic;
-  }
   void evaluate(const PositionsView& x) override;
   void evaluate_iterate(const PositionsView& x) override;
   void accept(PhaseClock& clock) override;
   bool offers_constraints() const override { return true; }
   void add_constraints(const ConstraintRequest& request, std::vector<const ConstraintBatch*>& out) override;
-  void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
-  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) override;
   void report_overload(const PositionsView& x, const PositionsView& others, const PositionsView& dx,
                        StepNumbers& out) override;
 
@@ -102,6 +90,13 @@ class ContactTerm final : public HostTerm {
     stiffness_.adopt(known);
     policy_start_.set_started(true);  // or not yet: that is for the other system to do
   }
+  RowTotals totals(const PositionsView& x) override;
+  double smallest_gap() const override { return state_.gap_min; }
+  double largest_coordinate(const PositionsView& x) override { return x.cwiseAbs().maxCoeff(); }
+  void visit_rows(const PositionsView& x, const std::function<void(const EndRow&)>& f) override;
+  double kappa_change() const override { return kappa_change_; }
+  std::optional<StartSums> start_sums(const PositionsView& x, const PositionsView& others) override;
+  StepBound find_bound(const Motion& motion) override;
   bool has_multipliers() const { return multipliers_ || beside_; }
   void use_state();
   void fill_shape(ContactState& state);
@@ -109,18 +104,12 @@ class ContactTerm final : public HostTerm {
                 std::vector<double>& mollified);
   void fill_local(const PositionsView& x, Projection projection);
   void scale_multipliers();
-  void start_policy(const PositionsView& x, const TermContext& context);
-  StartSums start_sums(const PositionsView& others) const;
   void carry_loads(const PositionsView& x);
 
-  const Scene& scene_;
-  TermOptions& options_;
   const std::vector<std::uint8_t>& fixed_;
   const TermList& terms_;
   ContactSystem contacts_;
   ContactStiffness stiffness_;
-  const BlockSystem* blocks_ = nullptr;  // of set_matrix()
-  const BlockSystem::Values* elastic_ = nullptr;
   std::optional<FoldedBarrier> folded_;  // where the policy has a potential: of kappa that falls as 1/d^2,
   std::optional<GapPotential> gap_potential_;  // of any kappa(d)
   std::optional<ContactMultipliers> multipliers_;
@@ -130,12 +119,7 @@ class ContactTerm final : public HostTerm {
   ContactState state_, trial_;
   ContactState constrained_;  // rows that add_constraints() found last
   ContactConstraints constraints_;
-  StiffnessTime time_;
   double kappa_change_ = 0;
-  bool first_iterate_ = true;
-  PolicyStart policy_start_;
-  StepBound bound_;
-  StepEndGaps gaps_;
 };
 
 /// What is said at the end of a step of rows that have kappa, b and its derivatives.

@@ -18,16 +18,10 @@ void scatter(const TermFamily& family, PositionsSpan gradient) {
 
 }  // namespace
 
-void ContactTerm::start_policy(const PositionsView& x, const TermContext& context) {
-  StiffnessPolicy& policy = stiffness_.policy();
-  if (!policy_start_.due(policy, state_.size())) return;
+std::optional<StartSums> ContactTerm::start_sums(const PositionsView& x, const PositionsView& others) {
   std::fill(state_.rows.kappa.begin(), state_.rows.kappa.end(), 1.0);
   std::fill(state_.mollified.kappa.begin(), state_.mollified.kappa.end(), 1.0);
-  fill_local(x, context.projection);
-  policy_start_.start(policy, scene_, options_.contact, start_sums(context.gradient), time_);
-}
-
-StartSums ContactTerm::start_sums(const PositionsView& others) const {
+  fill_local(x, Projection::none);
   StartSums sums;
   Positions own = Positions::Zero(3, others.cols());
   for (const TermFamily& family : families_) scatter(family, own);
@@ -51,13 +45,7 @@ StartSums ContactTerm::start_sums(const PositionsView& others) const {
 
 void ContactTerm::end_step(const PositionsView& x, PhaseClock& clock) {
   if (has_multipliers()) carry_loads(x);
-  if (!stiffness_.policy().adapts()) return;
-  const ScopedPhase timer(clock, Phase::stiffness);
-  state_.for_each_table([&](const auto& rows) {
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      gaps_.add({rows.pair[r], rows.d[r], options_.contact_options.ccd_park * rows.d_hat[r]});
-  });
-  stiffness_.policy().end_step(gaps_.end_step());
+  ContactSteps::end_step(x, clock);
 }
 
 // The rows of a state that was reached without energies have none of their shape.
@@ -70,11 +58,7 @@ void ContactTerm::carry_loads(const PositionsView& x) {
 }
 
 void ContactTerm::keep(Archive& archive) {
-  bool started = policy_start_.started();
-  archive(started);
-  gaps_.keep(archive);
-  policy_start_.set_started(started);
-  stiffness_.policy().keep(archive);
+  ContactSteps::keep(archive);
   if (has_multipliers()) carried_.keep(archive);
 }
 

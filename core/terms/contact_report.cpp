@@ -39,21 +39,25 @@ std::map<Feature, double> stiffness_of_features(const ContactTable& rows) {
 
 }  // namespace
 
-void ContactTerm::report(const PositionsView&, IterateNumbers& out, PhaseClock&) {
-  out.kappa_change_rel = kappa_change_;
-  report_rows(totals_of(state_), state_.gap_min, out);
+void visit(const ContactState& state, const std::function<void(const EndRow&)>& f) {
+  const auto visit_table = [&f](const auto& rows, bool mollified) {
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      f({rows.pair[r], rows.key(r), rows.d[r], rows.d_hat[r], -rows.force(r), mollified});
+  };
+  visit_table(state.rows, false);
+  visit_table(state.mollified, true);
 }
 
-void ContactTerm::report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) {
-  report_end_of(state_, options_.precision, x, out);
+RowTotals ContactTerm::totals(const PositionsView&) { return totals_of(state_); }
+
+void ContactTerm::visit_rows(const PositionsView&, const std::function<void(const EndRow&)>& f) {
+  visit(state_, f);
 }
 
 void report_end_of(const ContactState& state, Precision precision, const PositionsView& x, StepNumbers& out) {
   report_rows(totals_of(state), state.gap_min, x.cwiseAbs().maxCoeff(), precision, out);
   out.contact_loads.clear();
-  const ContactTable& rows = state.rows;
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    add_load(rows.key(r), rows.d[r] / rows.d_hat[r], -rows.force(r), out);
+  visit(state, [&out](const EndRow& row) { add_load(row, out); });
 }
 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and

@@ -20,10 +20,8 @@ struct KnownStep;
 
 /// What a term may read of the others while it is linearised at an iterate.
 struct TermContext {
-  const BlockSystem& blocks;           // pattern of the iterate's matrix
-  const BlockSystem::Values& elastic;  // H at the iterate; empty unless the plan has policy_submatrix
-  PositionsView gradient;              // N, of the terms before this one
-  Projection projection;               // of the Hessian of every element
+  PositionsView gradient;  // N, of the terms before this one
+  Projection projection;   // of the Hessian of every element
   PhaseClock& clock;
 };
 
@@ -47,8 +45,6 @@ enum class Inequalities { rigid, compliant };
 struct ConstraintRequest {
   PositionsView x;  // [3 x n] m, where those that come and go are found
   Inequalities inequalities;
-  const BlockSystem& blocks;
-  const BlockSystem::Values& elastic;  // H, as in TermContext
   PhaseClock& clock;
 };
 
@@ -71,10 +67,13 @@ class HostTerm : public Term {
   /// The same of that system's own term, which is of the same class.
   virtual void adopt_from(const HostTerm&) {}
 
+  /// Where the pattern of the iterate's matrix is, and H at the iterate: empty unless the plan has policy_submatrix. Once; both outlive
+  /// the term.
+  void set_matrix(const BlockSystem& blocks, const BlockSystem::Values& elastic) {
+    blocks_ = &blocks, elastic_ = &elastic;
+  }
+
   // --- an iterate
-  /// Where pattern and H are, as in TermContext, for what is asked beside linearise(): a trial may come before any iterate was
-  /// linearised. Once; both outlive the term.
-  virtual void set_matrix(const BlockSystem&, const BlockSystem::Values& /*elastic*/) {}
   /// Energies, gradients and Hessians of all families at the iterate x. Elastic terms come first and read of
   /// the context only the projection; convex terms (registry.inc) need none.
   virtual void linearise(const PositionsView& x, const TermContext& context) = 0;
@@ -118,6 +117,8 @@ class HostTerm : public Term {
   double* trial_energies() { return families_[0].trial_energy.data(); }
 
   std::vector<TermFamily> families_;
+  const BlockSystem* blocks_ = nullptr;  // of set_matrix()
+  const BlockSystem::Values* elastic_ = nullptr;
 };
 
 using TermList = ListOfTerms<HostTerm>;

@@ -55,8 +55,8 @@ void report_rows(const RowTotals& rows, double gap_min, double largest, Precisio
   out.gap_min_ulps = gap_min / ulp;
 }
 
-void add_load(const ContactKey& key, double gap_rel, double load, StepNumbers& out) {
-  if (load > 0) out.contact_loads.push_back({key, gap_rel, load});
+void add_load(const EndRow& row, StepNumbers& out) {
+  if (!row.mollified && row.load > 0) out.contact_loads.push_back({row.key, row.d / row.d_hat, row.load});
 }
 
 }  // namespace bb

@@ -109,6 +109,7 @@ struct CpuElements {
     std::vector<Stencils> families;
     for (const auto& term : terms) families.push_back(term->families()[0].stencils);
     blocks.set_elements(families);
+    for (const auto& term : terms) term->set_matrix(blocks, elastic);
     for (const auto& term : terms) term->begin_step(first_step, clock);
   }
   static Plan plan_without_contact(const Scene& scene, const TermOptions& options) {
@@ -120,7 +121,7 @@ struct CpuElements {
     }
     return plan;
   }
-  TermContext context(Projection projection) { return {blocks, elastic, gradient, projection, clock}; }
+  TermContext context(Projection projection) { return {gradient, projection, clock}; }
 
   /// Gradient and local terms at x, every term beginning with the Hessian of `choice`.
   void linearise(const Positions& x, StepHessian choice) {

@@ -119,7 +119,7 @@ struct TermsOf {
     return out;
   }
   TermContext context(Projection projection = Projection::psd) const {
-    return {blocks, no_elastic, no_gradient, projection, const_cast<PhaseClock&>(clock)};
+    return {no_gradient, projection, const_cast<PhaseClock&>(clock)};
   }
 };
 

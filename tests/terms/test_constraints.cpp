@@ -19,7 +19,7 @@ using Batches = std::vector<const ConstraintBatch*>;
 Batches constraints_of(AtIterate& at, std::string_view name, const Positions& x,
                        Inequalities inequalities = Inequalities::rigid) {
   Batches out;
-  const ConstraintRequest request{x, inequalities, at.blocks, at.no_elastic, at.clock};
+  const ConstraintRequest request{x, inequalities, at.clock};
   for (const auto& term : at.terms) {
     if (term->name() == name) term->add_constraints(request, out);
   }
@@ -49,7 +49,7 @@ TEST(Constraints, are_offered_by_springs_stitches_and_contact_alone) {
   std::set<std::string> names;
   for (const auto& term : at.terms) {
     Batches batches;
-    term->add_constraints({at.x, Inequalities::rigid, at.blocks, at.no_elastic, at.clock}, batches);
+    term->add_constraints({at.x, Inequalities::rigid, at.clock}, batches);
     EXPECT_EQ(term->offers_constraints(), !batches.empty()) << term->name();
     if (!batches.empty()) names.emplace(term->name());
   }

@@ -3,15 +3,13 @@
 #include <algorithm>
 
 #include "core/contact/executor/detour_kernels.hpp"
-#include "core/contact/pair_name.hpp"
 #include "core/math/error.hpp"
 
 namespace bb::exec {
 
 ExecutorContact::ExecutorContact(const ExecutorInputs& inputs)
-    : executor_(inputs.executor),
-      scene_(inputs.scene),
-      options_(inputs.options),
+    : ContactSteps(inputs.scene, inputs.options),
+      executor_(inputs.executor),
       vectors_(inputs.vectors),
       mass_(inputs.mass),
       surface_(scene_, options_.contact_options.rest_rule),
@@ -42,8 +40,7 @@ void ExecutorContact::expect(const ExpectedContacts& expected) {
 
 void ExecutorContact::begin_step(const StepColumns& step, PhaseClock&) {
   stiffness_.begin_step();
-  change_step(step);
-  first_iterate_ = true;
+  begin_steps(step);
   if (frugal()) assembly_.free_matrix();
   listed_ = false;
   find_rows(step.x_n);
@@ -134,11 +131,6 @@ void ExecutorContact::look_at_rows(const PositionsView& x) {
   looked_ = true;
 }
 
-void ExecutorContact::change_step(const StepColumns& step) {
-  time_ = {step.dt, step.c};
-  options_.stiffness->set_time(time_);
-}
-
 // What the policy reads of the matrix now, or has read at the step's first iterate.
 void ExecutorContact::keep_elastic(const ExecutorContext& context) {
   elastic_ = context.elastic;
@@ -167,12 +159,11 @@ void ExecutorContact::linearise(const PositionsView& x, const ExecutorContext& c
   if (!has_pattern_) assembly_.set_pattern(rows_);
   if (frugal()) executor_.trim();
   has_pattern_ = true;
-  start_policy(x, g);
+  start_policy(x, g, static_cast<std::size_t>(rows_.size()));
   const bool same = taken_ && evaluated_ && options_.stiffness->uniform() &&
                     rows_.uniform_kappa == policy_kappa();  // as in the trial that was accepted
   refresh_kappa();
-  says_change_ = !first_iterate_;
-  first_iterate_ = false;
+  note_refresh();
   if (!same) barrier_.evaluate(executor_, rows_);
   evaluated_ = true;
   taken_ = false;
@@ -193,9 +184,7 @@ void ExecutorContact::give_back_motion() {
   executor_.trim();
 }
 
-void ExecutorContact::start_policy(const PositionsView& x, const PositionsView& others) {
-  StiffnessPolicy& policy = *options_.stiffness;
-  if (!policy_start_.due(policy, static_cast<std::size_t>(rows_.size()))) return;
+std::optional<StartSums> ExecutorContact::start_sums(const PositionsView& x, const PositionsView& others) {
   rows_.uniform_kappa = 1;
   barrier_.evaluate(executor_, rows_);
   evaluated_ = false;  // with another kappa
@@ -204,8 +193,8 @@ void ExecutorContact::start_policy(const PositionsView& x, const PositionsView& 
   assembly_.add_gradient(rows_, x, part_);
   const StartSums sums{sums_.product(part_, others, vectors_.fixed()),
                        sums_.product(part_, part_, vectors_.fixed()), sums_.mean_mass(rows_, mass_)};
-  if (executor_.counts_only()) return policy_start_.set_started(true);
-  policy_start_.start(policy, scene_, options_.contact, sums, time_);
+  if (executor_.counts_only()) return {};
+  return sums;
 }
 
 void ExecutorContact::look_along(const Motion& motion, PhaseClock& clock) {
@@ -215,12 +204,9 @@ void ExecutorContact::look_along(const Motion& motion, PhaseClock& clock) {
   in_trees_ = true;
 }
 
-double ExecutorContact::bound(const Motion& motion, IterateNumbers& out, PhaseClock& clock) {
-  const ScopedPhase timer(clock, Phase::step_bound);
-  bound_ = listed_ ? step_bound_.finish()
-                   : step_bound_.find_without_list(broad_phase_.source(), motion.x0, motion.x1);
-  out.bound = bound_;
-  return out.alpha_ccd = bound_.alpha;
+StepBound ExecutorContact::find_bound(const Motion& motion) {
+  return listed_ ? step_bound_.finish()
+                 : step_bound_.find_without_list(broad_phase_.source(), motion.x0, motion.x1);
 }
 
 // The barrier of the rows is lost meanwhile.
@@ -239,8 +225,6 @@ bool ExecutorContact::add_detour(const PositionsView& x, const PositionsView& dx
   }
   return held;
 }
-
-std::string ExecutorContact::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
 void ExecutorContact::look_at(const PositionsView& x, const PositionsView& trial, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
@@ -285,14 +269,8 @@ void ExecutorContact::accept(PhaseClock&) {
   stiffness_.keep(of);
 }
 
-void ExecutorContact::end_step(const PositionsView&, PhaseClock& clock) {
-  const ScopedPhase timer(clock, Phase::stiffness);
-  StiffnessPolicy& policy = *options_.stiffness;
-  if (!policy.adapts() || executor_.counts_only()) return;
-  const HostRows rows = rows_.on_host();
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    gaps_.add({rows.pair[r], rows.d[r], options_.contact_options.ccd_park * rows.d_hat[r]});
-  policy.end_step(gaps_.end_step());
+void ExecutorContact::end_step(const PositionsView& x, PhaseClock& clock) {
+  if (!executor_.counts_only()) ContactSteps::end_step(x, clock);
 }
 
 void make_contact_on_executor(const ExecutorInputs& inputs, ExecutorTerms& terms) {

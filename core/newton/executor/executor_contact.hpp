@@ -14,26 +14,19 @@
 #include "core/contact/executor/row_finder.hpp"
 #include "core/contact/executor/sum_kernels.hpp"
 #include "core/contact/step_bound.hpp"
+#include "core/terms/contact_steps.hpp"
 #include "core/terms/executor/term_inputs.hpp"
-#include "core/terms/policy_start.hpp"
-#include "core/terms/step_end_gaps.hpp"
 
 namespace bb::exec {
 
-class ExecutorContact final : public ExecutorTerm {
+class ExecutorContact final : public ContactSteps<ExecutorTerm> {
  public:
   /// Errors: ConfigError for a shape or a policy without a device form; OutOfMemory.
   explicit ExecutorContact(const ExecutorInputs& inputs);
-  std::string_view name() const override { return "contact"; }
-  TermGroup group() const override { return TermGroup::contact; }
-  Phase phase() const override { return Phase::contact_terms; }
 
   // --- a step
   void begin_step(const StepColumns& step, PhaseClock&) override;
-  void change_step(const StepColumns& step) override;
-  /// Tells a policy that adapts which pairs had a row at two step ends in a row.
   void end_step(const PositionsView& x, PhaseClock& clock) override;
-  void keep(Archive& archive) override;
   void drop_caches() override { matrix_ = {}; }
 
   // --- an iterate
@@ -50,8 +43,6 @@ class ExecutorContact final : public ExecutorTerm {
   // --- a motion, and states on it
   void prepare(const Motion& motion, PhaseClock& clock) override;
   void look_along(const Motion& motion, PhaseClock& clock) override;
-  double bound(const Motion& motion, IterateNumbers& out, PhaseClock& clock) override;
-  std::string describe_bound() const override;
   /// Where it is frugal the lists of the motion are gone after that.
   bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
                   PositionsSpan force) override;
@@ -80,8 +71,6 @@ class ExecutorContact final : public ExecutorTerm {
   // --- what is said of it
   void add_energy(const PositionsView& x, ExecutorEnergy&) override { look_at_rows(x); }
   Compensated row_energy() override { return totals_.get().energy; }
-  void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
-  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override;
   void add_known(KnownStep& out) const override;
 
   // --- memory
@@ -109,14 +98,14 @@ class ExecutorContact final : public ExecutorTerm {
   void keep_elastic(const ExecutorContext& context);
   /// Launches the sums over the rows of the iterate, as linearise() or accept() left them.
   void look_at_rows(const PositionsView& x);
-  RowTotals totals(const PositionsView& x) {
-    look_at_rows(x);
-    return totals_.get();
-  }
-  void start_policy(const PositionsView& x, const PositionsView& others);
-  double policy_kappa() const {
-    return options_.stiffness->uniform() ? options_.stiffness->state().kappa : 0;
-  }
+  RowTotals totals(const PositionsView& x) override;
+  double smallest_gap() const override { return rows_.min_gap; }
+  double largest_coordinate(const PositionsView& x) override { return vectors_.max(x); }
+  void visit_rows(const PositionsView& x, const std::function<void(const EndRow&)>& f) override;
+  double kappa_change() const override { return stiffness_.change(); }
+  std::optional<StartSums> start_sums(const PositionsView& x, const PositionsView& others) override;
+  StepBound find_bound(const Motion& motion) override;
+  double policy_kappa() const { return policy().uniform() ? policy().state().kappa : 0; }
   void refresh_kappa();
   KernelKappa kappa_of(ExecutorRows& rows) {
     return {rows, executor_, *options_.stiffness, time_, mass_.data(), elastic_};
@@ -124,8 +113,6 @@ class ExecutorContact final : public ExecutorTerm {
   void give_back_motion();
 
   Executor& executor_;
-  const Scene& scene_;
-  const TermOptions& options_;
   VectorTools& vectors_;
   const Buffer<double>& mass_;
   Surface surface_;
@@ -139,7 +126,6 @@ class ExecutorContact final : public ExecutorTerm {
   ContactAssembly assembly_;
   RowSums sums_;
   ExecutorLeast curved_, straight_;  // HoldTimes
-  StepEndGaps gaps_;
   ExecutorRows rows_, trial_;
   bool lent_ = false;                                // the trial has the columns that the two share
   bool evaluated_ = true, trial_evaluated_ = false;  // the rows have a barrier; those of the trial
@@ -157,11 +143,7 @@ class ExecutorContact final : public ExecutorTerm {
   double uniform_kappa_ = 0;  // N/m, of a policy that has one
   MatrixPart matrix_{};
   ExecutorSums<RowTotals> totals_;
-  StepBound bound_;
-  StiffnessTime time_;
-  PolicyStart policy_start_;
-  bool says_change_ = false;  // of kappa in the last linearise()
-  bool first_iterate_ = true, pattern_changed_ = false;
+  bool pattern_changed_ = false;
   bool has_pattern_ = false;  // that of the rows
 };
 

@@ -15,7 +15,7 @@ namespace bb::exec {
 struct ExecutorInputs {
   Executor& executor;
   const Scene& scene;
-  const TermOptions& options;
+  TermOptions& options;
   const ContactPlan& contacts;
   VectorTools& vectors;
   const Buffer<double>& mass;  // [n_vertices] kg, 0 for prescribed vertices
