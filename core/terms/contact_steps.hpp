@@ -69,7 +69,7 @@ class ContactSteps : public Base {
 
  protected:
   template <class... OfBase>
-  ContactSteps(const Scene& scene, TermOptions& options, OfBase&&... of_base)
+  ContactSteps(const Scene& scene, const TermOptions& options, OfBase&&... of_base)
       : Base(std::forward<OfBase>(of_base)...), scene_(scene), options_(options) {}
 
   // --- what a matrix engine has of its own, of the rows of the iterate x
@@ -105,7 +105,7 @@ class ContactSteps : public Base {
   StiffnessPolicy& policy() const { return *options_.stiffness; }
 
   const Scene& scene_;
-  TermOptions& options_;
+  const TermOptions& options_;
   StiffnessTime time_;
   PolicyStart policy_start_;
   StepEndGaps gaps_;

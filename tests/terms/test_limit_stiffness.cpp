@@ -49,11 +49,12 @@ struct Limited {
   void begin(const Positions& x_n) {
     frame.x_n = frame.x_tilde = x_n;
     frame.dt = dt, frame.c = c;
+    term->set_matrix(blocks, elastic);
     term->begin_step(frame, clock);
   }
   /// Energies of the elements at an iterate, J.
   std::vector<double> linearised(const Positions& x) {
-    term->linearise(x, {blocks, elastic, no_gradient, Projection::psd, clock});
+    term->linearise(x, {no_gradient, Projection::psd, clock});
     return term->families()[0].local.energy;
   }
 };

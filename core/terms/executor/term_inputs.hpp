@@ -15,7 +15,7 @@ namespace bb::exec {
 struct ExecutorInputs {
   Executor& executor;
   const Scene& scene;
-  TermOptions& options;
+  const TermOptions& options;
   const ContactPlan& contacts;
   VectorTools& vectors;
   const Buffer<double>& mass;  // [n_vertices] kg, 0 for prescribed vertices
