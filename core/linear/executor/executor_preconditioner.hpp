@@ -41,7 +41,7 @@ class ExecutorPreconditioner {
   virtual std::string fault_text(Index number) const = 0;
 };
 
-/// resident_preconditioner and executor_cluster_vertices.
+/// resident_preconditioner and resident_cluster_vertices.
 std::vector<Parameter> preconditioner_parameters();
 /// Of complete parameters. Where nothing is computed block Jacobi stands for all: clusters are made from the matrix.
 std::unique_ptr<ExecutorPreconditioner> make_preconditioner(Executor& executor,
