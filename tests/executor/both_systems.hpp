@@ -27,7 +27,7 @@ struct Both {
         resident(std::make_unique<exec::HostExecutor>(), scene, of_executor, plan) {
     Prediction falling;
     falling.x_tilde = scene.x0;
-    falling.x_tilde.row(2).array() -= 2e-3;
+    falling.x_tilde.row(scene.planar ? 1 : 2).array() -= 2e-3;
     Positions target = scene.x0;
     target.row(0).array() += 5e-4;
     for (StepSystem* system : systems()) {

@@ -6,7 +6,8 @@
 #include "core/terms/executor/element_terms.hpp"
 #include "core/terms/executor/family_term.hpp"
 #include "core/terms/executor/hessian_request.hpp"
-#include "tests/executor/cpu_elements.hpp"
+#include "core/terms/plan.hpp"
+#include "tests/executor/term_cases.hpp"
 #include "tests/executor/tested_executor.hpp"
 
 namespace bb::test {
@@ -30,9 +31,7 @@ struct OnExecutor {
   OnExecutor(exec::Executor& on, const Scene& scene, const TermOptions& options, const StepFrame& frame,
              exec::Index piece = exec::ElementMatrix::default_piece)
       : OnExecutor(on, scene, options, piece) {
-    x_n.upload(numbers_of(frame.x_n));
-    x_tilde.upload(numbers_of(frame.x_tilde));
-    for (const auto& term : terms) term->begin_step(step_of(frame), clock);
+    begin_step(frame);
   }
   /// Before a step.
   OnExecutor(exec::Executor& on, const Scene& scene, const TermOptions& options,
@@ -75,14 +74,24 @@ struct OnExecutor {
   StepColumns step_of(const StepFrame& frame) const {
     return {x_n, x_tilde, frame.dt, frame.c, frame.load_factor, frame.t_end};
   }
-  /// H, kappa of the limit, gradient and energies at x. Returns how far kappa of the limit has moved; 0 without one.
-  double linearise(const Positions& at) {
+  void begin_step(const StepFrame& frame) {
+    x_n.upload(numbers_of(frame.x_n));
+    x_tilde.upload(numbers_of(frame.x_tilde));
+    for (const auto& term : terms) term->begin_step(step_of(frame), clock);
+  }
+  void change_step(const StepFrame& frame) {
+    for (const auto& term : terms) term->change_step(step_of(frame));
+  }
+  void end_step(const Positions& at) {
+    x.upload(numbers_of(at));
+    for (const auto& term : terms) term->end_step(x, clock);
+  }
+  /// H, kappa of the limit, gradient and energies at x.
+  void linearise(const Positions& at) {
     x.upload(numbers_of(at));
     fill(TermGroup::elastic, {});
     g.fill_zero();
     for (const auto& term : terms) term->linearise(x, {elements.part(), elements.n_blocks(), clock}, g);
-    const IterateNumbers said = report();
-    return said.limit_kappa_change_rel.finite() ? said.limit_kappa_change_rel.value : 0;
   }
   void fill(TermSet set, const HessianRequest& request) {
     elements.clear();
@@ -157,42 +166,22 @@ struct OnExecutor {
     g.download({out.data(), static_cast<std::size_t>(out.size())});
     return out;
   }
-  /// All numbers of all blocks, in their order.
-  std::vector<double> matrix() const {
+  Eigen::MatrixXd matrix() const {
     const exec::MatrixPart part = elements.part();
-    std::vector<double> out;
-    for (exec::Index j = 0; j < elements.n_blocks(); ++j) {
-      for (int c = 0; c < 9; ++c) out.push_back(part.value[exec::value_index(j, c)]);
+    const Eigen::Index n = elements.n_vertices();
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+    for (Eigen::Index v = 0; v < n; ++v) {
+      for (exec::Index j = part.row_begin[v]; j < part.row_begin[v + 1]; ++j) {
+        EXPECT_TRUE(j == part.row_begin[v] || part.column[j - 1] < part.column[j]);
+        for (int c = 0; c < 9; ++c)
+          out(3 * v + c % 3, 3 * part.column[j] + c / 3) = part.value[exec::value_index(j, c)];
+      }
     }
     return out;
   }
 };
 
 inline double largest(const Positions& a) { return a.cwiseAbs().maxCoeff(); }
-
-/// Largest difference between the blocks, over the largest number; counts what was compared.
-struct Difference {
-  double relative = 0;
-  int n_nonzero = 0;
-};
-inline Difference compare(const OnExecutor& resident, const CpuElements& cpu) {
-  const exec::MatrixPart part = resident.elements.part();
-  double difference = 0, size = 0;
-  int n_nonzero = 0;
-  for (int r = 0; r < cpu.scene.n_vertices(); ++r) {
-    for (exec::Index j = part.row_begin[r]; j < part.row_begin[r + 1]; ++j) {
-      EXPECT_TRUE(j == part.row_begin[r] || part.column[j - 1] < part.column[j]);
-      const Mat3d expected = cpu.block(r, part.column[j]);
-      for (int c = 0; c < 9; ++c) {
-        const double number = part.value[exec::value_index(j, c)];
-        difference = std::max(difference, std::abs(number - expected.data()[c]));
-        size = std::max(size, std::abs(expected.data()[c]));
-        n_nonzero += number != 0;
-      }
-    }
-  }
-  return {difference / size, n_nonzero};
-}
 
 /// The five orders of a host executor.
 inline std::vector<std::unique_ptr<TestedExecutor>> all_orders() {
@@ -203,26 +192,6 @@ inline std::vector<std::unique_ptr<TestedExecutor>> all_orders() {
   }
   out.push_back(std::make_unique<TestedExecutor>(exec::Order::shuffled, 17));
   return out;
-}
-
-/// The matrices at x of every Hessian that has blocks, at each of its levels. tolerance: relative.
-inline void expect_every_matrix(OnExecutor& resident, CpuElements& cpu, const Positions& x,
-                                double tolerance) {
-  for (const StepHessian choice :
-       {StepHessian::clamped, StepHessian::absolute, StepHessian::exact_or_clamped, StepHessian::blend}) {
-    cpu.linearise(x, choice);
-    resident.linearise(x);
-    HessianLevel level({choice});
-    for (;;) {
-      cpu.sum(TermSet::all(), choice, level, {});
-      resident.fill(TermSet::all(), exec::hessian_request(choice, level.t(), level.threshold(), nullptr));
-      const Difference found = compare(resident, cpu);
-      EXPECT_GT(found.n_nonzero, 10);
-      EXPECT_LE(found.relative, tolerance) << to_string(choice) << " " << level.t();
-      if (level.last()) break;
-      level.raise(2);
-    }
-  }
 }
 
 }  // namespace bb::test

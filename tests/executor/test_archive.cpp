@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/archive/archive.hpp"
-#include "tests/executor/system_cases.hpp"
+#include "tests/executor/run_scenes.hpp"
 
 namespace bb::exec_archive_test {
 namespace {
@@ -37,12 +37,16 @@ std::vector<Case> cases() {
   };
   Scene cloth = test::touching(test::cloth_on_plate(), 0.012);
   cloth.v0.row(2).array() -= 0.2;
+  Scene bounced = test::drawn_cloth();
+  bounced.bodies[0].restitution = 0.5;
   return {{"ipc_adaptive", cloth, [] { return adapting("implicit_euler"); }},
           {"bdf2", cloth, [] { return adapting("bdf2"); }},
           {"newmark", cloth, [] { return adapting("newmark"); }},
           {"elasticity_inclusive", cloth,
            [=] { return test::method_with_policy("cubic", "elasticity_inclusive", frozen); }},
-          {"in the middle of a step", cloth, in_parts}};
+          {"in the middle of a step", cloth, in_parts},
+          {"restitution", bounced, [] { return test::rubbing(); }},
+          {"driven", test::driven(), test::cubic}};
 }
 
 void set_path(Method& method, bool resident) {
@@ -94,6 +98,7 @@ TEST(ExecutorArchive, GoesOnToTheBitOnTheHost) {
     EXPECT_EQ(ends.resumed.iterations, ends.straight.iterations);
     EXPECT_EQ(ends.kappa_resumed.kappa, ends.kappa.kappa);
     EXPECT_GT(ends.straight.contacts, 0u);
+    EXPECT_EQ(ends.straight.bounce_work > 0, std::string(each.name) == "restitution");
   }
 }
 

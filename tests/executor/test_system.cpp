@@ -1,4 +1,5 @@
-// The whole step of the resident pipeline against NewtonSystem: numbers of one iterate, states of whole runs.
+// A Newton system on an executor: states that feasibility alone judged, its copy on the host, saddles, what it refuses. States and runs beside
+// the host: test_same_bits.cpp, test_runs.cpp.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -7,89 +8,17 @@
 #include <functional>
 
 #include "tests/executor/both_systems.hpp"
-#include "tests/executor/system_cases.hpp"
+#include "tests/executor/run_scenes.hpp"
 #include "tests/newton/saddle_scenes.hpp"
 
 namespace bb::exec_system_test {
 namespace {
 
 using test::Both;
-using test::expect_same_run;
 using test::run_on_executor;
-using test::run_steps;
-using test::RunEnd;
 using test::touching_method;
 
 constexpr double dt = 0.01;
-
-double relative(const Positions& a, const Positions& b) {
-  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
-}
-
-void expect_same_iterate(Both& both) {
-  ASSERT_GT(contact_state(both.cpu.diagnosis().terms()).size(), 0u);
-  ASSERT_GT(both.cpu.view().energy(TermGroup::contact), 0);
-  EXPECT_NEAR(both.resident.view().energy(), both.cpu.view().energy(),
-              1e-13 * std::abs(both.cpu.view().energy()));
-  for (const TermGroup group : {TermGroup::load, TermGroup::elastic, TermGroup::limit, TermGroup::contact}) {
-    EXPECT_NEAR(both.resident.view().energy(group), both.cpu.view().energy(group),
-                1e-13 * (1 + std::abs(both.cpu.view().energy(group))));
-  }
-  EXPECT_LT(relative(both.resident.view().gradient(), both.cpu.view().gradient()), 1e-13);
-  ASSERT_EQ(both.cpu.find_direction().linear.status, LinearStatus::ok);
-  ASSERT_EQ(both.resident.find_direction().linear.status, LinearStatus::ok);
-  const DirectionSize cpu = both.cpu.direction_size(), resident = both.resident.direction_size();
-  ASSERT_GT(cpu.inf_m, 1e-6);
-  EXPECT_NEAR(resident.inf_m, cpu.inf_m, 1e-9 * cpu.inf_m);
-  EXPECT_NEAR(resident.slope_J, cpu.slope_J, 1e-9 * std::abs(cpu.slope_J));
-  EXPECT_NEAR(resident.vertex_m, cpu.vertex_m, 1e-9 * cpu.vertex_m);
-  for (StepSystem* system : both.systems()) {  // along a direction of free vertices
-    system->set_target(system->view().x());
-    ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
-  }
-  EXPECT_NEAR(both.resident.direction_curvature(), both.cpu.direction_curvature(),
-              1e-9 * std::abs(both.cpu.direction_curvature()));
-}
-
-TEST(ExecutorSystem, HasTheNumbersOfTheIterate) {
-  Both plate(test::touching(test::cloth_on_plate(), 0.012), touching_method);
-  EXPECT_FALSE(plate.cpu.view().at_target());
-  EXPECT_FALSE(plate.resident.view().at_target());
-  expect_same_iterate(plate);
-  EXPECT_TRUE(plate.resident.view().at_target());  // held
-  Both sheets(test::touching(test::two_sheets(), 0.01), touching_method);
-  expect_same_iterate(sheets);
-}
-
-TEST(ExecutorSystem, BoundsAndTriesTheSameMotions) {
-  Both both(test::touching(test::cloth_on_plate(), 0.012), touching_method);
-  for (StepSystem* system : both.systems())
-    ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
-  for (StepSystem* system : both.systems()) {
-    system->scale_direction(30);  // far beyond contact
-    system->prepare_motion(MotionEnd::free, true);
-  }
-  IterationReport a, b;
-  const double bound = both.cpu.bound_motion(a);
-  ASSERT_LT(bound, 1);
-  ASSERT_GT(bound, 0);
-  EXPECT_NEAR(both.resident.bound_motion(b), bound, 1e-9 * bound);
-  EXPECT_EQ(both.resident.view().describe_bound(), both.cpu.view().describe_bound());
-  EXPECT_GT(b.bound.queries, 0);
-  for (const double part : {0.5, 0.9}) {
-    const auto from = both.cpu.try_motion(part * bound), to = both.resident.try_motion(part * bound);
-    ASSERT_TRUE(from && to);
-    ASSERT_NE(from->change, 0);
-    EXPECT_NEAR(to->change, from->change, 1e-9 * from->magnitude);
-    EXPECT_NEAR(to->magnitude, from->magnitude, 1e-9 * from->magnitude);
-  }
-  EXPECT_FALSE(both.resident.try_motion(1e200).has_value());
-  ASSERT_TRUE(both.resident.try_motion(0.5 * bound).has_value());
-  const Positions before = both.resident.view().x();
-  both.resident.accept();
-  EXPECT_EQ(both.resident.view().x_before(), before);
-  EXPECT_NE(both.resident.view().x(), before);
-}
 
 /// The state that a step without energies ends with says what it would, energies of the iterate included.
 TEST(ExecutorSystem, AcceptsWhatFeasibilityAloneJudged) {
@@ -127,61 +56,45 @@ TEST(ExecutorSystem, AcceptsWhatFeasibilityAloneJudged) {
   }
 }
 
+/// Friction and restitution of the step that it is in, which the copy does not find from the iterate.
 TEST(ExecutorSystem, ShowsItsStateToTheCpu) {
-  Both both(test::touching(test::cloth_on_plate(), 0.012), touching_method);
-  ASSERT_EQ(both.resident.find_direction().linear.status, LinearStatus::ok);
-  both.resident.prepare_motion(MotionEnd::on_target, true);
-  IterationReport report;
-  ASSERT_TRUE(both.resident.try_motion(0.5 * both.resident.bound_motion(report)).has_value());
-  both.resident.accept();
-  both.resident.assemble();
-  NewtonSystem& seen = both.resident.on_host();
-  EXPECT_EQ(seen.view().x(), both.resident.view().x());
-  EXPECT_GT(contact_state(seen.diagnosis().terms()).size(), 0u);
-  EXPECT_LT(relative(both.resident.view().gradient(), seen.view().gradient()), 1e-13);
-  EXPECT_NEAR(both.resident.view().energy(), seen.view().energy(), 1e-13 * std::abs(seen.view().energy()));
-}
-
-// --- whole runs
-
-TEST(ExecutorRun, EndsWhereTheCpuEndsForEveryShape) {
-  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
-    SCOPED_TRACE(shape);
-    expect_same_run(
-        test::cloth_on_plate(), [&] { return test::fixed_method(shape, 20); }, 12, 1e-6);
-  }
-}
-
-TEST(ExecutorRun, EndsWhereTheCpuEndsForEveryPolicy) {
-  using Parameters = ParameterMap;
-  const std::pair<const char*, Parameters> policies[] = {
-      {"ipc_adaptive", {}},
-      {"elasticity_inclusive", {{"mass_term", std::string("inertia")}}},
-      {"elasticity_inclusive", {{"mass_term", std::string("inertia")}, {"refresh", std::string("per_step")}}},
-      {"elasticity_inclusive",
-       {{"mass_term", std::string("scaled")},
-        {"refresh", std::string("per_step")},
-        {"derivative", std::string("included")}}}};
-  for (const auto& [name, parameters] : policies) {
-    SCOPED_TRACE(std::string(name) + " " + std::to_string(parameters.size()));
-    expect_same_run(
-        test::two_sheets(), [&] { return test::method_with_policy("cubic", name, parameters); }, 10, 1e-6);
-  }
-}
-
-TEST(ExecutorRun, EndsWhereTheCpuEndsForEveryHessian) {
-  for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
-    for (const StepHessian choice : all_step_hessians) {
-      SCOPED_TRACE(std::string(to_string(choice)) + " " + std::to_string(static_cast<int>(mode)));
-      const auto method = [&] {
-        Method out = test::fixed_method("log", 20);
-        out.hessian_mode = mode;
-        for (const HessianChoice& term : hessian_choices()) out.step_hessian[term.name] = choice;
-        return out;
-      };
-      expect_same_run(test::cloth_on_plate(), method, 8, 1e-6);
-      expect_same_run(test::cloth_on_balls_and_bar(), method, 4, 1e-6);
+  for (const double restitution : {0.0, 0.5}) {
+    Scene scene = test::drawn_cloth();
+    if (restitution > 0) scene.bodies[0].restitution = restitution;
+    Both both(scene, [] {
+      Method method = test::rubbing();
+      method.hessian_mode = HessianMode::projected_full;
+      return method;
+    });
+    for (int step = 0; step < 3; ++step) {
+      if (step > 0) {
+        const Positions x = both.resident.view().x();
+        both.resident.end_step();
+        Prediction falling;
+        falling.x_tilde = x - Positions::Constant(3, x.cols(), 2e-3);
+        both.resident.begin_step(x, falling, dt, 1);
+        both.resident.assemble();
+      }
+      ASSERT_EQ(both.resident.find_direction().linear.status, LinearStatus::ok);
+      both.resident.prepare_motion(MotionEnd::on_target, true);
+      IterationReport report;
+      ASSERT_TRUE(both.resident.try_motion(0.9 * both.resident.bound_motion(report)).has_value());
+      both.resident.accept();
+      both.resident.assemble();
     }
+    NewtonSystem& seen = both.resident.on_host();
+    EXPECT_EQ(seen.view().x(), both.resident.view().x());
+    EXPECT_GT(contact_state(seen.diagnosis().terms()).size(), 0u);
+    const double friction = both.resident.view().energy(TermGroup::friction);
+    EXPECT_GT(friction, 1e-9);
+    EXPECT_NEAR(seen.view().energy(TermGroup::friction), friction, 1e-13 * friction);
+    const Positions found = both.resident.view().gradient(), expected = seen.view().gradient();
+    for (int v = 0; v < scene.n_vertices(); ++v) {  // rows have no force at given vertices on an executor
+      if (scene.mass[static_cast<std::size_t>(v)] == 0) continue;
+      EXPECT_LE((found.col(v) - expected.col(v)).cwiseAbs().maxCoeff(),
+                1e-13 * expected.cwiseAbs().maxCoeff());
+    }
+    EXPECT_NEAR(both.resident.view().energy(), seen.view().energy(), 1e-13 * std::abs(seen.view().energy()));
   }
 }
 
@@ -254,21 +167,6 @@ TEST(ExecutorRun, IsShownToTheCpuWithItsStiffness) {
   }
 }
 
-TEST(ExecutorRun, IsTheSameInEveryOrder) {
-  const auto end = [](exec::Order order) {
-    Method method = test::fixed_method("cubic", 20);
-    run_on_executor(method, order);
-    return run_steps(test::cloth_on_plate(), std::move(method), 8);
-  };
-  const RunEnd first = end(exec::Order::threads);
-  ASSERT_GT(first.contacts, 0u);
-  for (const exec::Order order : {exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
-    const RunEnd other = end(order);
-    EXPECT_EQ(other.x, first.x);
-    EXPECT_EQ(other.iterations, first.iterations);
-  }
-}
-
 TEST(ExecutorSystem, RefusesWhatHasNoDeviceForm) {
   const Scene scene = test::two_sheets();
   const auto message = [&](const std::function<void(Method&)>& change) {
@@ -320,23 +218,6 @@ TEST(ExecutorSystem, SaysTheSameOfSaddles) {
       EXPECT_GT(ends[1].end_check_iterations, 0);
       EXPECT_EQ(ends[0].saddle_curvature_N_per_m.finite(), ends[1].saddle_curvature_N_per_m.finite());
     }
-  }
-}
-
-/// Which part of a direction is rounding: the same on the CPU and resident, with coordinates of all sizes.
-TEST(ExecutorSystem, SplitsDirectionsAtTheSameRounding) {
-  Both both(test::touching(test::cloth_on_plate(), 0.012), touching_method);
-  for (StepSystem* system : both.systems()) {
-    system->set_target(system->view().x());
-    ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
-  }
-  for (const double scale : {1.0, 1e-12, 1e-14, 1e-16}) {
-    for (StepSystem* system : both.systems()) system->scale_direction(scale);
-    const DirectionSize cpu = both.cpu.direction_size(), resident = both.resident.direction_size();
-    EXPECT_EQ(std::max(cpu.beyond_m, cpu.rounding_m), cpu.inf_m);
-    EXPECT_NEAR(resident.beyond_m, cpu.beyond_m, 1e-8 * cpu.inf_m);
-    EXPECT_NEAR(resident.rounding_m, cpu.rounding_m, 1e-8 * cpu.inf_m);
-    for (StepSystem* system : both.systems()) system->scale_direction(1 / scale);
   }
 }
 

@@ -1,0 +1,320 @@
+// Both matrix engines at equal states: energies, gradient, bound of a motion and what is said of every contact have the same bits, for every
+// kind of scene with every kind of method. Where they have not, the test names the term and the reason:
+// - at a vertex of a mollified pair the rows of contact are summed in another order: on the host those of mollified pairs after all others,
+//   on an executor all of them in the order of their pairs;
+// - blocks of contact and friction are added one by one to those of elements on the host, and by themselves on an executor;
+// - where kappa(d) is folded into the barrier, the host divides rows by kappa and multiplies them again;
+// - sums of energies and their changes are of the same parts in another order, each compensated;
+// - the kappa that ipc_adaptive starts with is a quotient of such sums.
+// Elements, loads and limits alone, matrix included: test_terms.cpp; numbers of an element: test_family_columns.cpp; those of a row of
+// friction or restitution: test_lagged_rows.cpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/energy/friction_law.hpp"
+#include "tests/contact/moving_obstacles.hpp"
+#include "tests/executor/both_systems.hpp"
+#include "tests/executor/run_scenes.hpp"
+
+namespace bb::exec_same_bits_test {
+namespace {
+
+using namespace bb::test;
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+struct SceneCase {
+  const char* name;
+  Scene scene;
+};
+std::vector<SceneCase> scene_cases() {
+  std::vector<SceneCase> out;
+  out.push_back({"cloth on a plate", drawn_cloth()});
+  out.push_back({"two sheets", touching(two_sheets(), 0.01)});
+  out.push_back({"cloth on balls and a bar", touching(cloth_on_balls_and_bar(), 0.02)});
+  out.push_back({"moving obstacles", with_moving_obstacles(out.back().scene)});
+  out.push_back({"planar strips", planar_strips(PlanarPairs::point_edge)});
+  out.push_back({"planar strips by their vertices", planar_strips(PlanarPairs::vertex_vertex)});
+  out.push_back({"rod and blocks", rod_and_blocks()});
+  out.push_back({"bouncing", bouncing()});
+  out.push_back({"driven", driven()});
+  return out;
+}
+
+struct MethodCase {
+  std::string name;
+  std::function<Method()> method;
+  double rounding = 0;  // relative, of what a row has
+};
+std::vector<MethodCase> method_cases() {
+  std::vector<MethodCase> out;
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
+    out.push_back({shape, [=] {
+                     Method method = fixed_method(shape, 20);
+                     method.hessian_mode = HessianMode::projected_full;
+                     method.limit_stiffness = fixed_limit(30);
+                     method.solid_limit_stiffness = fixed_limit(30);
+                     return method;
+                   }});
+  }
+  for (const std::string& law : friction_law_names()) out.push_back({law, [=] { return rubbing(law); }});
+  out.push_back({"without a mollifier", [] {
+                   Method method = rubbing();
+                   method.contact_options.mollifier = Mollifier::none;
+                   method.contact.argument = Argument::squared_gap;
+                   return method;
+                 }});
+  const auto add_policy = [&out](const char* term, const char* refresh, const char* derivative) {
+    const ParameterMap parameters = {{"mass_term", std::string(term)},
+                                     {"refresh", std::string(refresh)},
+                                     {"derivative", std::string(derivative)}};
+    out.push_back({std::string(term) + " " + refresh + " " + derivative, [=] {
+                     Method method = method_with_policy("cubic", "elasticity_inclusive", parameters);
+                     method.limit_stiffness = elastic_limit();
+                     method.solid_limit_stiffness = elastic_limit();
+                     return method;
+                   }});
+  };
+  add_policy("paper", "per_iteration", "dropped");
+  add_policy("inertia", "per_step", "dropped");
+  add_policy("scaled", "per_step", "included");
+  out.back().rounding = 4 * eps;
+  return out;
+}
+
+/// What was compared.
+struct Counts {
+  std::size_t contacts = 0, loads = 0, mollified = 0, friction = 0;
+};
+
+class Compared : public Both {
+ public:
+  Compared(const Scene& of, const MethodCase& with) : Both(of, with.method), rounding_(with.rounding) {}
+
+  /// Of the assembled iterate.
+  void expect_same_state(Counts& counts) {
+    EXPECT_EQ(resident.view().x(), cpu.view().x());
+    for (const TermGroup group :
+         {TermGroup::load, TermGroup::elastic, TermGroup::limit, TermGroup::contact, TermGroup::friction}) {
+      const double expected = cpu.view().energy(group);
+      EXPECT_NEAR(resident.view().energy(group), expected, (2 * eps + rounding_) * std::abs(expected));
+      counts.friction += group == TermGroup::friction && expected > 0;
+    }
+    expect_same_gradient(counts);
+    IterateNumbers iterate[2];
+    StepNumbers end[2];
+    for (const std::size_t k : {0, 1}) {
+      systems()[k]->view().report(iterate[k]);
+      systems()[k]->view().report_end(end[k]);
+      end[k].gap_min_iterates_m = end[k].gap_min_m;
+    }
+    expect_same_contacts(iterate[1], iterate[0]);
+    expect_same_contacts(end[1], end[0]);
+    expect_same(iterate[1].contact_curvature_max_N_per_m, iterate[0].contact_curvature_max_N_per_m);
+    expect_same(iterate[1].limit_load_max_N_per_m, iterate[0].limit_load_max_N_per_m);
+    expect_same(end[1].gap_min_rel, end[0].gap_min_rel);
+    EXPECT_EQ(end[1].friction_sliding, end[0].friction_sliding);
+    EXPECT_EQ(end[1].friction_sticking, end[0].friction_sticking);
+    ASSERT_EQ(end[1].contact_loads.size(), end[0].contact_loads.size());
+    for (std::size_t i = 0; i < end[0].contact_loads.size(); ++i) {  // in one order: that of the pairs
+      const ContactLoad &a = end[0].contact_loads[i], &b = end[1].contact_loads[i];
+      EXPECT_EQ(b.key, a.key);
+      EXPECT_EQ(b.gap_rel, a.gap_rel);
+      expect_same(b.load_N, a.load_N);
+    }
+    counts.contacts += end[0].contacts.total();
+    counts.loads += end[0].contact_loads.size();
+  }
+  /// To within rounding of its largest number, at both ends of what a step's Hessian may be.
+  void expect_same_matrix() {
+    HessianLevel exact({StepHessian::blend}), clamped({StepHessian::blend});
+    while (!clamped.last()) clamped.raise(2);
+    for (const HessianLevel* level : {&exact, &clamped}) {
+      const Eigen::MatrixXd expected = matrix(cpu, *level), found = matrix(resident, *level);
+      const double size = expected.cwiseAbs().maxCoeff();
+      ASSERT_GT(size, 1e-3);
+      EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 16 * eps * size);
+    }
+  }
+  /// A motion that contact ends, and a state on the way, which becomes the iterate.
+  double move(const Positions& dx) {
+    double alpha[2];
+    std::optional<EnergyChange> change[2];
+    for (const std::size_t k : {0, 1}) {
+      NewtonSystem& system = k == 0 ? cpu : resident;
+      system.set_direction(dx);
+      system.prepare_motion(MotionEnd::free, true);
+      IterationReport report;
+      alpha[k] = system.bound_motion(report);
+      change[k] = system.try_motion(0.9 * alpha[k]);
+      system.accept();
+      system.assemble();
+    }
+    EXPECT_EQ(alpha[1], alpha[0]);
+    EXPECT_EQ(resident.view().describe_bound(), cpu.view().describe_bound());
+    EXPECT_TRUE(change[0] && change[1]);
+    if (change[0] && change[1]) {
+      EXPECT_NE(change[0]->change, 0);
+      EXPECT_NEAR(change[1]->change, change[0]->change, 4 * eps * change[0]->magnitude);
+      EXPECT_NEAR(change[1]->magnitude, change[0]->magnitude, 1e-13 * change[0]->magnitude);
+    }
+    return alpha[0];
+  }
+  void next_step() {
+    const Positions x = cpu.view().x();
+    for (StepSystem* system : systems()) {
+      system->end_step();
+      system->begin_step(x, falling(x, 1e-3, 1), 0.008, 1);
+      system->assemble();
+    }
+  }
+  /// The step goes on with another length.
+  void restart() {
+    const Positions x = cpu.view().x();
+    for (StepSystem* system : systems()) {
+      system->restart_step(falling(x, 4e-4, 4.0 / 9), 0.003);
+      system->assemble();
+    }
+  }
+
+ private:
+  Prediction falling(const Positions& x, double by, double c) const {
+    Prediction out{c, x};
+    out.x_tilde.row(scene.planar ? 1 : 2).array() -= by;
+    return out;
+  }
+  void expect_same(const Number& found, const Number& expected) const {
+    EXPECT_EQ(found.finite(), expected.finite());
+    if (expected.finite()) expect_same(found.value, expected.value);
+  }
+  void expect_same(double found, double expected) const {
+    EXPECT_LE(std::abs(found - expected), rounding_ * std::abs(expected)) << found << " " << expected;
+  }
+  /// What an iterate and the end of a step both say of contacts.
+  template <class Numbers>
+  void expect_same_contacts(const Numbers& found, const Numbers& expected) const {
+    for (const auto kind :
+         {&ContactCounts::point_point, &ContactCounts::point_edge, &ContactCounts::point_triangle,
+          &ContactCounts::edge_edge, &ContactCounts::obstacle, &ContactCounts::mollified})
+      EXPECT_EQ(found.contacts.*kind, expected.contacts.*kind);
+    expect_same(found.kappa_min_N_per_m, expected.kappa_min_N_per_m);
+    expect_same(found.kappa_max_N_per_m, expected.kappa_max_N_per_m);
+    expect_same(found.contact_load_max_N, expected.contact_load_max_N);
+    expect_same(found.gap_min_iterates_m, expected.gap_min_iterates_m);
+  }
+  /// At given vertices an executor's rows have no force.
+  void expect_same_gradient(Counts& counts) {
+    const Positions expected = cpu.view().gradient(), found = resident.view().gradient();
+    const ContactState& rows = contact_state(cpu.diagnosis().terms());
+    std::vector<char> mollified(scene.mass.size(), 0);
+    for (const int v : rows.mollified.free_vertex) {
+      if (v >= 0) mollified[static_cast<std::size_t>(v)] = 1;
+    }
+    const double size = expected.cwiseAbs().maxCoeff();
+    ASSERT_GT(size, 1e-6);
+    for (int v = 0; v < scene.n_vertices(); ++v) {
+      if (scene.mass[static_cast<std::size_t>(v)] == 0) continue;
+      const bool other_order = mollified[static_cast<std::size_t>(v)] != 0;
+      counts.mollified += other_order;
+      EXPECT_LE((found.col(v) - expected.col(v)).cwiseAbs().maxCoeff(),
+                (other_order ? 8 * eps : 2 * rounding_) * size)
+          << "vertex " << v;
+    }
+  }
+  double rounding_;
+
+  /// Rows and columns of free degrees of freedom.
+  Eigen::MatrixXd matrix(NewtonSystem& system, const HessianLevel& level) const {
+    IncrementalPotential& potential = system.potential();
+    const std::vector<std::uint8_t>& fixed = system.view().fixed();
+    const auto n = static_cast<Eigen::Index>(fixed.size());
+    const Positions at = system.view().x();
+    Column x(potential.executor(), "x"), force(potential.executor(), "force", n / 3),
+        unit(potential.executor(), "unit", n), product(potential.executor(), "product", n);
+    x.upload({at.data(), static_cast<std::size_t>(n)});
+    force.fill_zero();
+    potential.fill_matrix(x, level, force);
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (fixed[static_cast<std::size_t>(j)]) continue;
+      unit.fill_zero();
+      unit.set(j, 1);
+      potential.multiply(unit, product);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (!fixed[static_cast<std::size_t>(i)]) out(i, j) = product.get(i);
+      }
+    }
+    return out;
+  }
+};
+
+/// Towards what lies below, every vertex its own way; prescribed ones stay.
+Positions downwards(const Scene& scene) {
+  Positions dx(3, scene.n_vertices());
+  for (Eigen::Index i = 0; i < dx.size(); ++i)
+    dx.data()[i] = 0.03 * std::cos(2.9 * static_cast<double>(i) + 1);
+  dx.row(scene.planar ? 1 : 2).array() -= 0.03;
+  if (scene.planar) dx.row(2).setZero();
+  for (const Pin& pin : scene.pins) dx.col(pin.vertex).setZero();
+  return dx;
+}
+
+TEST(SameBits, OfBothEnginesAtEqualStates) {
+  Counts all;
+  int n_bounded = 0;
+  for (const SceneCase& one : scene_cases()) {
+    Counts of_scene;
+    for (const MethodCase& with : method_cases()) {
+      SCOPED_TRACE(std::string(one.name) + ", " + with.name);
+      Compared both(one.scene, with);
+      both.expect_same_state(of_scene);
+      both.expect_same_matrix();
+      n_bounded += both.move(downwards(one.scene)) < 1;
+      both.expect_same_state(of_scene);
+      both.next_step();
+      both.expect_same_state(of_scene);
+      both.restart();
+      both.expect_same_state(of_scene);
+      both.expect_same_matrix();
+      both.move(0.3 * downwards(one.scene));
+      both.expect_same_state(of_scene);
+    }
+    EXPECT_GT(of_scene.contacts, 50U) << one.name;
+    EXPECT_GT(of_scene.loads, 50U) << one.name;
+    EXPECT_GT(of_scene.friction, 4U) << one.name;
+    all.mollified += of_scene.mollified;
+  }
+  EXPECT_GT(all.mollified, 100U);
+  EXPECT_GT(n_bounded, 80);
+}
+
+TEST(SameBits, OfTheFirstKappaToRounding) {
+  for (const SceneCase& one : scene_cases()) {
+    SCOPED_TRACE(one.name);
+    if (std::string(one.name) == "bouncing") continue;  // begins without contact
+    Both both(one.scene, [] { return method_with_policy("log", "ipc_adaptive", {}); });
+    const double expected = both.of_cpu.stiffness->state().kappa_start;
+    EXPECT_GT(expected, 0);
+    EXPECT_NEAR(both.of_executor.stiffness->state().kappa_start, expected, 1e-13 * expected);
+  }
+}
+
+// The vertex by which an obstacle moves is no part of its contacts.
+TEST(SameBits, OfTheNameOfAnObstacleThatMovesAndOfOneThatStands) {
+  const Scene still = touching(cloth_on_balls_and_bar(), 0.02);
+  StepNumbers end[2];
+  for (const std::size_t k : {0, 1}) {
+    Both both(k == 0 ? still : with_moving_obstacles(still), touching_method);
+    both.resident.view().report_end(end[k]);
+  }
+  ASSERT_GT(end[0].contact_loads.size(), 5u);
+  ASSERT_EQ(end[1].contact_loads.size(), end[0].contact_loads.size());
+  for (std::size_t i = 0; i < end[0].contact_loads.size(); ++i) {
+    EXPECT_EQ(end[1].contact_loads[i].key, end[0].contact_loads[i].key);
+    EXPECT_TRUE(
+        std::ranges::any_of(end[1].contact_loads[i].key, [](int id) { return obstacle_of(id) >= 0; }));
+  }
+}
+
+}  // namespace
+}  // namespace bb::exec_same_bits_test
