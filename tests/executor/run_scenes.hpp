@@ -49,23 +49,6 @@ inline Scene planar_strips(PlanarPairs pairs) {
   return builder.finish();
 }
 
-/// A sheet whose rim is held, just above a floor.
-inline Scene held_sheet() {
-  SceneBuilder builder("held sheet", false, Vec3d(0, 0, -10), "test");
-  BodySpec sheet = cloth_spec(5, 0.015, 0.02);
-  sheet.material.bending = 1e-2;
-  PinSpec rim;
-  for (int i = 0; i < 25; ++i) {
-    if (i % 5 == 0 || i % 5 == 4 || i < 5 || i >= 20) rim.indices.push_back(i);
-  }
-  sheet.pins = {rim};
-  builder.add_body(sheet);
-  Obstacle floor;
-  floor.name = "floor";
-  builder.add_obstacle(floor);
-  return builder.finish();
-}
-
 /// A rod and a block of two models that fall on a floor.
 inline Scene rod_and_blocks() {
   SceneBuilder builder("rod and blocks", false, Vec3d(0, 0, -10), "test");

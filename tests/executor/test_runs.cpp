@@ -193,12 +193,9 @@ struct FirstTolerances final : StepObserver {
   std::vector<double> of;
 };
 
-/// A rim that rises takes more exact directions, until it is at its pose.
+/// Corners that rise take more exact directions, until they are at their poses.
 TEST(ExecutorRun, SolvesFurtherForPrescribedMotion) {
-  Scene scene = held_sheet();
-  for (Pin& pin : scene.pins) pin.motion = static_cast<int>(scene.motions.size());
-  scene.motions.emplace_back();
-  scene.motions.back().velocity = Vec3d(0, 0, 0.1);
+  const Scene scene = released();
   Method method = cubic();
   run_on_executor(method);
   method.linear.parameters["forcing"] = std::string("eisenstat_walker");
