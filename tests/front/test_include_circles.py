@@ -19,7 +19,7 @@ core/exec/cuda/device core/exec/cuda/device_executor
 core/linear/block_scaling core/linear/condition core/linear/condition_dense core/linear/extreme_pairs core/linear/scaled_matrix core/linear/spectrum_end
 core/linear/block_system core/linear/gather_map core/linear/reduction
 core/linear/cg_runs core/linear/conjugate_gradients core/linear/definiteness core/linear/linear_solver core/linear/preconditioner core/linear/solve_detail
-core/linear/executor/block_jacobi core/linear/executor/multilevel_schwarz core/linear/executor/resident_preconditioner
+core/linear/executor/block_jacobi core/linear/executor/executor_preconditioner core/linear/executor/multilevel_schwarz
 core/model/mesh/mesh_objects core/model/mesh/raw_mesh core/model/mesh/read_mesh
 core/newton/newton_system core/newton/newton_view
 core/terms/contact core/terms/linear_contact
