@@ -57,7 +57,13 @@ std::vector<MethodCase> method_cases() {
                      return method;
                    }});
   }
-  for (const std::string& law : friction_law_names()) out.push_back({law, [=] { return rubbing(law); }});
+  for (const std::string& law : friction_law_names()) {
+    out.push_back({law, [=] {
+                     Method method = rubbing(law);
+                     method.friction.lag_iterations = 2;
+                     return method;
+                   }});
+  }
   out.push_back({"without a mollifier", [] {
                    Method method = rubbing();
                    method.contact_options.mollifier = Mollifier::none;
@@ -84,7 +90,7 @@ std::vector<MethodCase> method_cases() {
 
 /// What was compared.
 struct Counts {
-  std::size_t contacts = 0, loads = 0, mollified = 0, friction = 0;
+  std::size_t contacts = 0, loads = 0, mollified = 0, friction = 0, renewed = 0;
 };
 
 class Compared : public Both {
@@ -92,20 +98,23 @@ class Compared : public Both {
   Compared(const Scene& of, const MethodCase& with) : Both(of, with.method), rounding_(with.rounding) {}
 
   /// Of the assembled iterate.
-  void expect_same_state(Counts& counts) {
-    EXPECT_EQ(resident.view().x(), cpu.view().x());
+  void expect_same_state(Counts& counts) { expect_same_state(resident, counts); }
+  /// What the executor's system shows to the host, whose copy knows what is frozen for the step.
+  void expect_shown(Counts& counts) { expect_same_state(resident.on_host(), counts); }
+  void expect_same_state(NewtonSystem& other, Counts& counts) {
+    EXPECT_EQ(other.view().x(), cpu.view().x());
     for (const TermGroup group :
          {TermGroup::load, TermGroup::elastic, TermGroup::limit, TermGroup::contact, TermGroup::friction}) {
       const double expected = cpu.view().energy(group);
-      EXPECT_NEAR(resident.view().energy(group), expected, (2 * eps + rounding_) * std::abs(expected));
+      EXPECT_NEAR(other.view().energy(group), expected, (2 * eps + rounding_) * std::abs(expected));
       counts.friction += group == TermGroup::friction && expected > 0;
     }
-    expect_same_gradient(counts);
+    expect_same_gradient(other, counts);
     IterateNumbers iterate[2];
     StepNumbers end[2];
     for (const std::size_t k : {0, 1}) {
-      systems()[k]->view().report(iterate[k]);
-      systems()[k]->view().report_end(end[k]);
+      (k == 0 ? cpu : other).view().report(iterate[k]);
+      (k == 0 ? cpu : other).view().report_end(end[k]);
       end[k].gap_min_iterates_m = end[k].gap_min_m;
     }
     expect_same_contacts(iterate[1], iterate[0]);
@@ -168,6 +177,13 @@ class Compared : public Both {
       system->assemble();
     }
   }
+  /// The step goes on with friction of the loads at its iterate.
+  void renew_lag(Counts& counts) {
+    const bool renewed = cpu.renew_lag();
+    EXPECT_EQ(resident.renew_lag(), renewed);
+    counts.renewed += renewed;
+    for (StepSystem* system : systems()) system->assemble();
+  }
   /// The step goes on with another length.
   void restart() {
     const Positions x = cpu.view().x();
@@ -203,8 +219,8 @@ class Compared : public Both {
     expect_same(found.gap_min_iterates_m, expected.gap_min_iterates_m);
   }
   /// At given vertices an executor's rows have no force.
-  void expect_same_gradient(Counts& counts) {
-    const Positions expected = cpu.view().gradient(), found = resident.view().gradient();
+  void expect_same_gradient(NewtonSystem& other, Counts& counts) {
+    const Positions expected = cpu.view().gradient(), found = other.view().gradient();
     const ContactState& rows = contact_state(cpu.diagnosis().terms());
     std::vector<char> mollified(scene.mass.size(), 0);
     for (const int v : rows.mollified.free_vertex) {
@@ -280,10 +296,15 @@ TEST(SameBits, OfBothEnginesAtEqualStates) {
       both.expect_same_matrix();
       both.move(0.3 * downwards(one.scene));
       both.expect_same_state(of_scene);
+      both.expect_shown(of_scene);
+      both.renew_lag(of_scene);
+      both.expect_same_state(of_scene);
+      both.expect_shown(of_scene);
     }
     EXPECT_GT(of_scene.contacts, 50U) << one.name;
     EXPECT_GT(of_scene.loads, 50U) << one.name;
     EXPECT_GT(of_scene.friction, 4U) << one.name;
+    EXPECT_GE(of_scene.renewed, 2U) << one.name;
     all.mollified += of_scene.mollified;
   }
   EXPECT_GT(all.mollified, 100U);
