@@ -111,7 +111,7 @@ TEST(Provenance, SaysWhatThisBinaryIs) {
        {"-ffp-contract=off", "-fno-tree-vectorize", "-fno-math-errno", "-fno-trapping-math"}) {
     EXPECT_NE(p.flags.find(flag), std::string::npos) << flag << " in " << p.flags;
   }
-  EXPECT_EQ(p.build_type == "Release", p.flags.find("hinge_batch.cpp: -O3") != std::string::npos) << p.flags;
+  EXPECT_EQ(p.build_type == "Release", p.flags.find("hinge_lanes.cpp: -O3") != std::string::npos) << p.flags;
   EXPECT_EQ(p.blas.threads, 1);  // also in the first record, before anything was factorised
   EXPECT_NE(p.blas.kernel, "");
   EXPECT_NE(p.blas.config.find("OpenBLAS"), std::string::npos) << p.blas.config;
