@@ -1,6 +1,7 @@
 // Gradient, matrix, energy and given motion of rows on an executor against the terms of the CPU path.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "tests/contact/obstacle_scenes.hpp"
@@ -66,6 +67,43 @@ TEST(ExecutorAssembly, AddsUpWhatTheCpuPathDoes) {
   EXPECT_GT(n_mollified, 100U);
   EXPECT_GT(n_curved, 500U);
   EXPECT_GE(n_forces, 24);
+}
+
+/// To the bit; to rounding where there is a mollifier e: the host has (kappa e) b, an executor e (kappa b).
+TEST(ExecutorAssembly, HasTheEnergiesOfTheHostRowByRow) {
+  std::size_t n_mollified = 0, n_loaded = 0;
+  for (const Subject& s : subjects()) {
+    ContactSystem contacts(s.scene, {});
+    Rows rows = rows_at(contacts, s.x);
+    evaluate_cubic(rows.table);
+    evaluate_cubic(rows.mollified);
+    std::map<PairId, double> expected;
+    std::vector<double> energy;
+    contact_energies(rows.table, energy);
+    for (std::size_t r = 0; r < energy.size(); ++r) expected[rows.table.pair[r]] = energy[r];
+    mollified_energies(rows.mollified, s.x, energy);
+    for (std::size_t r = 0; r < energy.size(); ++r) expected[rows.mollified.pair[r]] = energy[r];
+    TestedExecutor executor;
+    OnExecutor on(executor, s.scene, s.x);
+    on.rows.uniform_kappa = kappa;
+    ExecutorBarrier(cubic(), false).evaluate(executor, on.rows);
+    ContactAssembly assembly(executor, on.resident, s.scene.n_vertices());
+    assembly.set_pattern(on.rows);
+    const exec::RowEnergy found = assembly.row_energy(on.rows, on.x);
+    ASSERT_EQ(static_cast<std::size_t>(on.rows.size()), expected.size());
+    for (Index r = 0; r < on.rows.size(); ++r) {
+      exec::Compensated of_row = exec::Compensated::zero();
+      found(r, of_row);
+      const double of_host = expected.at(found.rows.pair[r]);
+      const double rounding =
+          found.rows.mollified(r) ? 4 * std::numeric_limits<double>::epsilon() * of_host : 0;
+      EXPECT_NEAR(of_row.value(), of_host, rounding);
+      n_loaded += of_row.value() > 0;
+    }
+    n_mollified += rows.mollified.size();
+  }
+  EXPECT_GT(n_mollified, 10U);
+  EXPECT_GT(n_loaded, 300U);
 }
 
 TEST(ExecutorAssembly, ClampsTheRowsAtVerticesWithALargeForce) {
