@@ -164,7 +164,7 @@ TEST(ExecutorTerms, HaveEveryMatrixOfTheHost) {
       exec::Buffer<double> force_there(both.executor, "force");
       force_there.upload(force);
       both.linearise(both.second());
-      HessianLevel level({choice});
+      HessianLevel level({choice, StepHessian::blend});  // the levels of both
       for (;;) {
         const Eigen::MatrixXd expected = both.host.matrix(level, force);
         both.there.fill(TermSet::all(),
