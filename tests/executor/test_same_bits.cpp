@@ -338,6 +338,32 @@ TEST(SameBits, OfTheFirstKappaToRounding) {
   }
 }
 
+/// Where its formula has the length of the step; else it stays.
+TEST(SameBits, OfAKappaThatFollowsTheLengthOfTheStep) {
+  struct {
+    const char *term, *refresh;
+    bool follows;
+  } const cases[] = {{"inertia", "per_iteration", true},
+                     {"scaled", "per_iteration", true},
+                     {"paper", "per_iteration", false},
+                     {"inertia", "per_step", false}};
+  for (const auto& [term, refresh, follows] : cases) {
+    SCOPED_TRACE(std::string(term) + " " + refresh);
+    const ParameterMap parameters = {{"mass_term", std::string(term)}, {"refresh", std::string(refresh)}};
+    Both both(touching(cloth_on_plate(), 0.012),
+              [&] { return method_with_policy("cubic", "elasticity_inclusive", parameters); });
+    for (StepSystem* system : both.systems()) {
+      IterateNumbers whole, shorter;
+      system->view().report(whole);
+      system->restart_step({1, both.scene.x0}, 0.004);
+      system->assemble();
+      system->view().report(shorter);
+      ASSERT_GT(whole.kappa_max_N_per_m.value, 0);
+      EXPECT_EQ(shorter.kappa_max_N_per_m.value > 1.5 * whole.kappa_max_N_per_m.value, follows);
+    }
+  }
+}
+
 // The vertex by which an obstacle moves is no part of its contacts.
 TEST(SameBits, OfTheNameOfAnObstacleThatMovesAndOfOneThatStands) {
   const Scene still = touching(cloth_on_balls_and_bar(), 0.02);
