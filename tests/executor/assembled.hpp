@@ -157,7 +157,7 @@ inline Assembled assemble(exec::Executor& executor, const Scene& scene, const Po
   OnExecutor on(executor, scene, x);
   on.rows.uniform_kappa = kappa;
   ExecutorBarrier(cubic(), false).evaluate(executor, on.rows);
-  ContactAssembly assembly(executor, on.resident, n, options);
+  ContactAssembly assembly(executor, on.surface_there, n, options);
   assembly.set_pattern(on.rows);
   Assembled out;
   exec::Buffer<double> gradient(executor, "gradient", 3 * n), force(executor, "force", 3 * n),

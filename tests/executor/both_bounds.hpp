@@ -15,7 +15,7 @@ struct BothBounds {
   StepBound listed, unlisted;
 };
 inline BothBounds bounds(exec::Executor& executor, ExecutorMotion& motion, const BoundBatches& batches = {}) {
-  exec::ExecutorStepBound bound(executor, motion.resident, stop_level, batches);
+  exec::ExecutorStepBound bound(executor, motion.surface_there, stop_level, batches);
   motion.update();
   return {bound.find(motion.candidates, motion.x0, motion.x1),
           bound.find_without_list(motion.broad_phase.source(), motion.x0, motion.x1)};

@@ -16,7 +16,7 @@ struct Both {
   Method of_cpu, of_executor;
   Plan plan;
   NewtonSystem cpu;
-  ExecutorSystem resident;
+  ExecutorSystem there;
 
   Both(Scene in, const std::function<Method()>& method)
       : scene(std::move(in)),
@@ -24,7 +24,7 @@ struct Both {
         of_executor(method()),
         plan(solved(of_cpu, of_executor)),
         cpu(scene, of_cpu, plan),
-        resident(std::make_unique<exec::HostExecutor>(), scene, of_executor, plan) {
+        there(std::make_unique<exec::HostExecutor>(), scene, of_executor, plan) {
     Prediction falling;
     falling.x_tilde = scene.x0;
     falling.x_tilde.row(scene.planar ? 1 : 2).array() -= 2e-3;
@@ -36,7 +36,7 @@ struct Both {
       system->assemble();
     }
   }
-  std::array<StepSystem*, 2> systems() { return {&cpu, &resident}; }
+  std::array<StepSystem*, 2> systems() { return {&cpu, &there}; }
 
  private:
   Plan solved(Method& a, Method& b) {

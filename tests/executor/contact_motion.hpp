@@ -14,18 +14,18 @@ namespace bb::test {
 
 inline constexpr StopLevel stop_level{1e-6, 4096};
 
-/// A motion of a scene: the resident side.
+/// A motion of a scene: the side of the executor.
 struct ExecutorMotion {
   Surface surface;
-  exec::ExecutorSurface resident;
+  exec::ExecutorSurface surface_there;
   exec::ExecutorBroadPhase broad_phase;
   exec::ExecutorCandidates candidates;
   exec::Buffer<double> x0, x1;
 
   ExecutorMotion(exec::Executor& executor, const Scene& scene, const Positions& from, const Positions& to)
       : surface(scene),
-        resident(executor, scene, surface),
-        broad_phase(executor, resident, surface, plan_contact(scene)),
+        surface_there(executor, scene, surface),
+        broad_phase(executor, surface_there, surface, plan_contact(scene)),
         candidates(executor),
         x0(executor, "x0"),
         x1(executor, "x1") {

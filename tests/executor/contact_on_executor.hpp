@@ -95,11 +95,11 @@ struct OnExecutor {
   OnExecutor(exec::Executor& executor, const Scene& scene, const Positions& state,
              exec::KappaColumns columns = exec::KappaColumns::uniform)
       : surface(scene),
-        resident(executor, scene, surface),
+        surface_there(executor, scene, surface),
         candidates(executor),
         x(executor, "positions"),
         rows(executor, columns),
-        finder(executor, resident, plan_contact(scene).mollifier.needed) {
+        finder(executor, surface_there, plan_contact(scene).mollifier.needed) {
     find(scene, state, rows);
   }
   void find(const Scene& scene, const Positions& state, exec::ExecutorRows& out) {
@@ -120,7 +120,7 @@ struct OnExecutor {
   }
 
   const Surface surface;
-  exec::ExecutorSurface resident;
+  exec::ExecutorSurface surface_there;
   exec::ExecutorCandidates candidates;
   exec::Buffer<double> x;
   exec::ExecutorRows rows;

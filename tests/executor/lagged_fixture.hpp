@@ -150,8 +150,8 @@ struct OnRows {
   template <class Make>
   OnRows(exec::Executor& executor, const Scene& scene, const Positions& x, double length, const Make& make)
       : on(executor, scene, x),
-        contact(executor, on.resident, scene.n_vertices()),
-        family(make(on.resident.view().body)),
+        contact(executor, on.surface_there, scene.n_vertices()),
+        family(make(on.surface_there.view().body)),
         assembly(executor, family->rows(), scene.n_vertices()),
         x_n(executor, "start"),
         y(executor, "state"),

@@ -1,4 +1,4 @@
-// Scenes that are in contact or soon will be: planar ones, rods and solids, what slides, bounces, moves and is driven.
+// Scenes that are in contact or soon will be: planar ones, rods and solids, what slides, bounces, moves, is driven and is held.
 #pragma once
 
 #include "core/model/mesh/solid_generators.hpp"
@@ -160,6 +160,23 @@ inline Scene driven() {
   block.d_hat = 0.02;
   builder.add_body(block);
   builder.add_stitch({"cloth", "block", {24}, {0}, 3, 0.1}, "/stitches/0");
+  Obstacle floor;
+  floor.name = "floor";
+  builder.add_obstacle(floor);
+  return builder.finish();
+}
+
+/// A sheet whose rim is held, just above a floor.
+inline Scene held_sheet() {
+  SceneBuilder builder("held sheet", false, Vec3d(0, 0, -10), "test");
+  BodySpec sheet = cloth_spec(5, 0.015, 0.02);
+  sheet.material.bending = 1e-2;
+  PinSpec rim;
+  for (int v = 0; v < 25; ++v) {
+    if (v % 5 == 0 || v % 5 == 4 || v < 5 || v >= 20) rim.indices.push_back(v);
+  }
+  sheet.pins = {rim};
+  builder.add_body(sheet);
   Obstacle floor;
   floor.name = "floor";
   builder.add_obstacle(floor);

@@ -1,4 +1,4 @@
-// Small scenes and methods that the resident pipeline and the CPU path both run.
+// Small scenes and methods that the engine of an executor and the CPU path both run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace bb::test {
 
-/// A method of the resident pipeline: conjugate gradients, tight by default.
+/// A method for an executor: conjugate gradients, tight by default.
 inline void use_executor_solver(Method& method, double tolerance = 1e-11) {
   method.linear.name = "pcg_resident";
   method.linear.parameters["forcing"] = std::string("fixed");
@@ -39,8 +39,8 @@ class ExecutorSystem final : public NewtonSystem {
       : NewtonSystem(scene, put_on(executor, method), plan) {
     method.make_potential = nullptr;
   }
-  exec::ExecutorEngine& resident() { return dynamic_cast<exec::ExecutorEngine&>(potential()); }
-  const exec::MemoryLedger& memory() { return resident().memory(); }
+  exec::ExecutorEngine& engine() { return dynamic_cast<exec::ExecutorEngine&>(potential()); }
+  const exec::MemoryLedger& memory() { return engine().memory(); }
 
  private:
   static Method& put_on(std::unique_ptr<exec::Executor>& executor, Method& method) {
@@ -150,6 +150,7 @@ inline Method method_with_policy(const std::string& shape, const std::string& po
 
 struct RunEnd {
   Positions x;
+  std::vector<Positions> x_of_steps;  // at the ends of all steps
   std::vector<StepStatus> status;
   std::vector<int> iterations, retries;
   std::vector<double> dt_s;
@@ -159,11 +160,20 @@ struct RunEnd {
   double kappa_start = 0;                     // N/m, of a policy that starts itself
   int sticking = 0, sliding = 0;              // contacts with friction, of all steps
   double friction_work = 0, bounce_work = 0;  // J, of all steps
+  double solved_to = 0;                       // largest relative residual that a linear solve was allowed
+};
+
+class LinearTolerances final : public StepObserver {
+ public:
+  void on_iteration(const IterationReport& report) override {
+    largest = std::max(largest, report.solve.linear.tolerance);
+  }
+  double largest = 0;
 };
 
 /// Goes on for so many steps, parts of steps counted.
 inline RunEnd run_steps(Simulation& simulation, int steps) {
-  StepObserver observer;
+  LinearTolerances observer;
   RunEnd end;
   for (int i = 0; i < steps; ++i) {
     const StepReport report = simulation.step(observer);
@@ -179,8 +189,10 @@ inline RunEnd run_steps(Simulation& simulation, int steps) {
     if (report.restitution_dissipation_J.finite()) end.bounce_work += report.restitution_dissipation_J.value;
     if (report.limit_load_max_N_per_m.finite())
       end.limit_load_max = std::max(end.limit_load_max, report.limit_load_max_N_per_m.value);
+    end.x_of_steps.push_back(simulation.history().x);
   }
   end.x = simulation.history().x;
+  end.solved_to = observer.largest;
   return end;
 }
 
@@ -191,36 +203,39 @@ inline RunEnd run_steps(const Scene& scene, Method method, int steps, double dt 
   return end;
 }
 
-/// Both runs end within a tolerance (m), step by step with one status and length, and were in contact.
-inline void expect_same_end(const RunEnd& resident, const RunEnd& cpu, double tolerance) {
-  EXPECT_EQ(resident.status, cpu.status);
-  EXPECT_EQ(resident.retries, cpu.retries);
-  ASSERT_EQ(resident.dt_s.size(), cpu.dt_s.size());
+/// Both runs are within a tolerance (m) after every step, with one status and length, and were in contact.
+inline void expect_same_end(const RunEnd& there, const RunEnd& cpu, double tolerance) {
+  EXPECT_EQ(there.status, cpu.status);
+  EXPECT_EQ(there.retries, cpu.retries);
+  ASSERT_EQ(there.dt_s.size(), cpu.dt_s.size());
   for (std::size_t i = 0; i < cpu.dt_s.size(); ++i) {
-    EXPECT_NEAR(resident.dt_s[i], cpu.dt_s[i], 1e-6 * cpu.dt_s[i]) << "step " << i;
+    EXPECT_NEAR(there.dt_s[i], cpu.dt_s[i], 1e-6 * cpu.dt_s[i]) << "step " << i;
+    EXPECT_LT((there.x_of_steps[i] - cpu.x_of_steps[i]).cwiseAbs().maxCoeff(), tolerance) << "step " << i;
   }
   EXPECT_GT(cpu.contacts, 0u);
-  EXPECT_EQ(resident.contacts, cpu.contacts);
-  EXPECT_LT((resident.x - cpu.x).cwiseAbs().maxCoeff(), tolerance);
-  EXPECT_EQ(resident.sticking, cpu.sticking);
-  EXPECT_EQ(resident.sliding, cpu.sliding);
-  EXPECT_NEAR(resident.friction_work, cpu.friction_work, 1e-5 * cpu.friction_work);
-  EXPECT_NEAR(resident.bounce_work, cpu.bounce_work, 1e-5 * cpu.bounce_work);
-  EXPECT_NEAR(resident.kappa_min, cpu.kappa_min, 1e-6 * cpu.kappa_min);
-  EXPECT_NEAR(resident.kappa_max, cpu.kappa_max, 1e-6 * cpu.kappa_max);
-  EXPECT_NEAR(resident.kappa_start, cpu.kappa_start, 1e-6 * cpu.kappa_start);
+  EXPECT_EQ(there.contacts, cpu.contacts);
+  EXPECT_EQ(there.sticking, cpu.sticking);
+  EXPECT_EQ(there.sliding, cpu.sliding);
+  EXPECT_NEAR(there.friction_work, cpu.friction_work, 1e-5 * cpu.friction_work);
+  EXPECT_NEAR(there.bounce_work, cpu.bounce_work, 1e-5 * cpu.bounce_work);
+  EXPECT_NEAR(there.kappa_min, cpu.kappa_min, 1e-6 * cpu.kappa_min);
+  EXPECT_NEAR(there.kappa_max, cpu.kappa_max, 1e-6 * cpu.kappa_max);
+  EXPECT_NEAR(there.kappa_start, cpu.kappa_start, 1e-6 * cpu.kappa_start);
 }
 
-/// The run on the CPU path, after comparing it with that of the resident pipeline.
-inline RunEnd expect_same_run(const Scene& scene, const std::function<Method()>& method, int steps,
-                              double tolerance) {
-  Method on_host = method(), resident = method();
+/// The run on an executor, after comparing it with that on the CPU path. change: of the method on the executor alone.
+inline RunEnd expect_same_run(
+    const Scene& scene, const std::function<Method()>& method, int steps, double tolerance,
+    const std::function<void(Method&)>& change = [](Method&) {}) {
+  Method on_host = method(), elsewhere = method();
   use_executor_solver(on_host);
-  run_on_executor(resident);
-  RunEnd cpu = run_steps(scene, std::move(on_host), steps);
-  expect_same_end(run_steps(scene, std::move(resident), steps), cpu, tolerance);
-  EXPECT_GT((cpu.x - scene.x0).cwiseAbs().maxCoeff(), 1e-3);
-  return cpu;
+  run_on_executor(elsewhere);
+  change(elsewhere);
+  const RunEnd cpu = run_steps(scene, std::move(on_host), steps);
+  RunEnd there = run_steps(scene, std::move(elsewhere), steps);
+  expect_same_end(there, cpu, tolerance);
+  EXPECT_GT((there.x - scene.x0).cwiseAbs().maxCoeff(), 1e-3);
+  return there;
 }
 
 }  // namespace bb::test

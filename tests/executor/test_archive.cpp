@@ -49,8 +49,8 @@ std::vector<Case> cases() {
           {"driven", test::driven(), test::cubic}};
 }
 
-void set_path(Method& method, bool resident) {
-  if (resident) {
+void set_path(Method& method, bool on_executor) {
+  if (on_executor) {
     test::run_on_executor(method);
   } else {
     test::use_executor_solver(method);
@@ -108,9 +108,9 @@ TEST(ExecutorArchive, GoesOnFromPathToPath) {
     for (const bool from_executor : {false, true}) {
       SCOPED_TRACE(std::string(each.name) + (from_executor ? " to the CPU" : " from the CPU"));
       const Ends ends = run_both(each, from_executor, !from_executor);
-      const RunEnd &resident = from_executor ? ends.straight : ends.resumed,
+      const RunEnd &there = from_executor ? ends.straight : ends.resumed,
                    &cpu = from_executor ? ends.resumed : ends.straight;
-      test::expect_same_end(resident, cpu, 1e-6);
+      test::expect_same_end(there, cpu, 1e-6);
       EXPECT_EQ(ends.kappa_resumed.doublings, ends.kappa.doublings);
       doublings += ends.kappa.doublings - ends.doublings_before;
       in_parts += ends.in_parts ? 1 : 0;

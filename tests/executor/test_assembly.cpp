@@ -87,7 +87,7 @@ TEST(ExecutorAssembly, HasTheEnergiesOfTheHostRowByRow) {
     OnExecutor on(executor, s.scene, s.x);
     on.rows.uniform_kappa = kappa;
     ExecutorBarrier(cubic(), false).evaluate(executor, on.rows);
-    ContactAssembly assembly(executor, on.resident, s.scene.n_vertices());
+    ContactAssembly assembly(executor, on.surface_there, s.scene.n_vertices());
     assembly.set_pattern(on.rows);
     const exec::RowEnergy found = assembly.row_energy(on.rows, on.x);
     ASSERT_EQ(static_cast<std::size_t>(on.rows.size()), expected.size());
@@ -167,7 +167,7 @@ TEST(ExecutorAssembly, HoldsTheDiagonalOfEveryTouchedVertexAndBothTriangles) {
   const Subject s = subjects().front();
   TestedExecutor executor(exec::Order::shuffled);
   OnExecutor on(executor, s.scene, s.x);
-  ContactAssembly assembly(executor, on.resident, s.scene.n_vertices());
+  ContactAssembly assembly(executor, on.surface_there, s.scene.n_vertices());
   assembly.set_pattern(on.rows);
   const exec::BlockSources blocks = assembly.pattern().blocks();
   std::set<std::pair<int, int>> expected, got;

@@ -177,7 +177,7 @@ TEST(ExecutorBroadPhase, FindsAllPairsOfBoxes) {
     motion.update();
     const auto frame = frame_of(motion.surface, scene.x0, x1);
     const exec::MotionView view{motion.x0.data(), motion.x1.data(), &frame};
-    const auto surface = motion.resident.view();
+    const auto surface = motion.surface_there.view();
     const auto source = motion.broad_phase.source();
     const auto pt =
         brute_force<PairKind::point_triangle>(source.point_triangle, surface.points, surface.triangles, view);

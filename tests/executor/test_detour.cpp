@@ -44,13 +44,13 @@ Room on_executor(exec::Executor& executor, const Scene& scene, const Positions& 
   OnExecutor on(executor, scene, x);
   on.rows.uniform_kappa = kappa;
   exec::ExecutorBarrier(cubic(), false).evaluate(executor, on.rows);
-  exec::ContactAssembly assembly(executor, on.resident, n);
+  exec::ContactAssembly assembly(executor, on.surface_there, n);
   assembly.set_pattern(on.rows);
   exec::Buffer<double> moved(executor, "motion"), force(executor, "force", 3 * n);
   upload(moved, dx);
   force.fill_zero();
   exec::ExecutorLeast curved(executor), straight(executor);
-  executor.each(on.rows.size(), exec::DetourRows{on.rows.view(), on.resident.view(), on.x.data(),
+  executor.each(on.rows.size(), exec::DetourRows{on.rows.view(), on.surface_there.view(), on.x.data(),
                                                  moved.data(), curved.data(), straight.data()});
   assembly.add_gradient(on.rows, on.x, force);
   return {{curved.smallest(), straight.smallest()},

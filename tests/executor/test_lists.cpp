@@ -36,7 +36,7 @@ struct AtAMotion {
     executor = own.get();
     const Plan plan = make_plan(scene, method, plan_options(method));
     system = std::make_unique<test::ExecutorSystem>(std::move(own), scene, method, plan);
-    system->resident().set_list_budget(budget);
+    system->engine().set_list_budget(budget);
     Prediction falling{1, scene.x0};
     falling.x_tilde.row(2).array() -= 2e-3;
     system->begin_step(scene.x0, falling, 0.01, 1);
@@ -152,11 +152,11 @@ TEST(ExecutorLists, AreCountedWhereOnlyStatesHaveThem) {
   test::use_executor_solver(method);
   const Plan plan = make_plan(scene, method, plan_options(method));
   test::ExecutorSystem system(std::make_unique<exec::CountingExecutor>(), scene, method, plan);
-  system.resident().set_list_budget(no_lists);
+  system.engine().set_list_budget(no_lists);
   exec::ExpectedContacts expected;
   expected.rows = 1 << 20;
   expected.candidates.edge_edge = 2 << 20;
-  exec::count_memory(system, system.resident(), scene, expected);
+  exec::count_memory(system, system.engine(), scene, expected);
   EXPECT_GE(system.memory().at_peak().at("candidates edge-edge"), std::size_t{16} << 20);
 }
 

@@ -1,4 +1,4 @@
-// Memory of the whole resident pipeline: what is counted before a run, what large scenes give back, and that neither
+// Memory of the whole pipeline on an executor: what is counted before a run, what large scenes give back, and that neither
 // changes a number.
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ Peak counted(const Scene& scene, const exec::ExpectedContacts& contacts) {
   const Plan plan = make_plan(scene, method, plan_options(method));
   EXPECT_TRUE(plan.term("contact").needed);
   test::ExecutorSystem system(std::make_unique<exec::CountingExecutor>(true), scene, method, plan);
-  exec::count_memory(system, system.resident(), scene, contacts);
+  exec::count_memory(system, system.engine(), scene, contacts);
   return {system.memory().at_peak(), static_cast<double>(system.memory().peak())};
 }
 

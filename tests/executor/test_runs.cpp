@@ -22,7 +22,9 @@ struct RunCase {
   std::function<Method()> method = cubic;
   std::function<bool(const RunEnd&)> shows = [](const RunEnd&) {
     return true;
-  };  // what the case is there for
+  };                                                           // what the case is there for
+  std::function<void(Method&)> change_there = [](Method&) {};  // of the executor's method alone
+  double allowed = 2 * tolerance;                              // m
 };
 
 bool slides(const RunEnd& end) { return end.sliding > 10 && end.friction_work > 1e-6; }
@@ -63,13 +65,16 @@ void add_policies(std::vector<RunCase>& out) {
                  [] { return with_elastic_kappa("scaled", "per_step", "included"); }});
   Scene limited = cloth_on_plate();
   std::fill(limited.limit.onset.begin(), limited.limit.onset.end(), 1e-3);
-  out.push_back({"kappa of the strain limit", limited, 8,
-                 with(cubic,
-                      [](Method& m) {
-                        m.limit_stiffness =
-                            elastic_limit({.mass_term = MassTerm::scaled, .refresh = Refresh::per_step});
-                      }),
-                 [](const RunEnd& end) { return end.limit_load_max > 0; }});
+  const std::pair<Refresh, KappaDerivative> rules[] = {{Refresh::per_iteration, KappaDerivative::dropped},
+                                                       {Refresh::per_step, KappaDerivative::dropped},
+                                                       {Refresh::per_step, KappaDerivative::included}};
+  for (const auto& [refresh, derivative] : rules) {
+    const ElasticityInclusive rule{
+        .mass_term = MassTerm::scaled, .refresh = refresh, .derivative = derivative};
+    out.push_back({"kappa of the strain limit, rule " + std::to_string(out.size()), limited, 8,
+                   with(cubic, [=](Method& m) { m.limit_stiffness = elastic_limit(rule); }),
+                   [](const RunEnd& end) { return end.limit_load_max > 0; }});
+  }
   for (const StepHessian choice : {StepHessian::blend, StepHessian::progressive}) {
     out.push_back({std::string(to_string(choice)), cloth_on_balls_and_bar(), 4, with(cubic, [=](Method& m) {
                      m.contact = {require_shape("log"), Argument::gap};
@@ -105,11 +110,22 @@ void add_bounds(std::vector<RunCase>& out) {
   for (const PlanarPairs pairs : {PlanarPairs::point_edge, PlanarPairs::vertex_vertex})
     out.push_back({"planar", planar_strips(pairs), 10, cubic,
                    [](const RunEnd& end) { return end.x.row(2).cwiseAbs().maxCoeff() == 0; }});
-  for (const char* preconditioner : {"block_jacobi", "multilevel_schwarz"}) {
-    out.push_back({preconditioner, cloth_on_plate(), 8, with(cubic, [=](Method& m) {
-                     m.linear.parameters["resident_preconditioner"] = std::string(preconditioner);
-                   })});
-  }
+}
+
+/// How a direction is solved for, and steps of a load.
+void add_solves(std::vector<RunCase>& out) {
+  out.push_back({"multilevel_schwarz", cloth_on_plate(), 8, with(cubic, [](Method& m) {
+                   m.linear.parameters["resident_preconditioner"] = std::string("multilevel_schwarz");
+                 })});
+  out.push_back(
+      {"inexact solves", cloth_on_plate(), 8, cubic, [](const RunEnd& end) { return end.solved_to > 1e-3; },
+       [](Method& m) { m.linear.parameters["forcing"] = std::string("eisenstat_walker"); }, 10 * tolerance});
+  out.push_back({"load steps without inertia", held_sheet(), 8,
+                 [] { return fixed_method("cubic", 20, "quasi_static"); },
+                 [](const RunEnd& end) {  // the load grows from step to step
+                   return (end.x_of_steps[0] - end.x_of_steps[4]).cwiseAbs().maxCoeff() > 1e-4 &&
+                          (end.x_of_steps[4] - end.x).cwiseAbs().maxCoeff() > 1e-4;
+                 }});
 }
 
 void add_lagged(std::vector<RunCase>& out) {
@@ -159,10 +175,10 @@ void add_lagged(std::vector<RunCase>& out) {
 
 TEST(ExecutorRun, EndsWhereTheHostEnds) {
   std::vector<RunCase> cases;
-  add_policies(cases), add_bounds(cases), add_lagged(cases);
+  add_policies(cases), add_bounds(cases), add_solves(cases), add_lagged(cases);
   for (const RunCase& one : cases) {
     SCOPED_TRACE(one.name);
-    const RunEnd end = expect_same_run(one.scene, one.method, one.steps, 2 * tolerance);
+    const RunEnd end = expect_same_run(one.scene, one.method, one.steps, one.allowed, one.change_there);
     EXPECT_TRUE(one.shows(end));
   }
   EXPECT_GT(cases.size(), 30U);

@@ -25,8 +25,8 @@ TEST(ExecutorSurface, HoldsTheSurface) {
   scene.obstacles.emplace_back();
   const Surface surface(scene);
   test::TestedExecutor executor;
-  const exec::ExecutorSurface resident(executor, scene, surface);
-  const exec::SurfaceView view = resident.view();
+  const exec::ExecutorSurface there(executor, scene, surface);
+  const exec::SurfaceView view = there.view();
   ASSERT_EQ(view.triangles.n, 2);
   ASSERT_EQ(view.edges.n, 5);
   ASSERT_EQ(view.points.n, 4);

@@ -24,30 +24,30 @@ TEST(ExecutorSystem, AcceptsWhatFeasibilityAloneJudged) {
     Both known(test::touching(test::cloth_on_plate(), 0.012), touching_method),
         late(test::touching(test::cloth_on_plate(), 0.012), touching_method);
     for (Both* both : {&known, &late}) {
-      ASSERT_EQ(both->resident.find_direction().linear.status, LinearStatus::ok);
-      both->resident.scale_direction(30);
-      both->resident.prepare_motion(MotionEnd::free, true);
+      ASSERT_EQ(both->there.find_direction().linear.status, LinearStatus::ok);
+      both->there.scale_direction(30);
+      both->there.prepare_motion(MotionEnd::free, true);
       IterationReport report;
-      const double alpha = 0.5 * both->resident.bound_motion(report);
-      EXPECT_FALSE(both->resident.try_feasible(1e200));
+      const double alpha = 0.5 * both->there.bound_motion(report);
+      EXPECT_FALSE(both->there.try_feasible(1e200));
       if (both == &known) {
-        ASSERT_TRUE(both->resident.try_motion(alpha).has_value());
+        ASSERT_TRUE(both->there.try_motion(alpha).has_value());
       } else {
-        ASSERT_TRUE(both->resident.try_feasible(alpha));
+        ASSERT_TRUE(both->there.try_feasible(alpha));
       }
-      both->resident.accept();
+      both->there.accept();
     }
     StepNumbers a, b;
-    if (first_asks) known.resident.view().report_end(a), late.resident.view().report_end(b);
+    if (first_asks) known.there.view().report_end(a), late.there.view().report_end(b);
     for (const TermGroup group : {TermGroup::load, TermGroup::elastic, TermGroup::contact}) {
-      EXPECT_NE(known.resident.view().energy(group), 0);
-      EXPECT_EQ(late.resident.view().energy(group), known.resident.view().energy(group));
+      EXPECT_NE(known.there.view().energy(group), 0);
+      EXPECT_EQ(late.there.view().energy(group), known.there.view().energy(group));
     }
-    if (!first_asks) known.resident.view().report_end(a), late.resident.view().report_end(b);
+    if (!first_asks) known.there.view().report_end(a), late.there.view().report_end(b);
     ASSERT_GT(a.contacts.total(), 0U);
     EXPECT_GT(a.contact_load_sum_N.value, 0);
     EXPECT_EQ(b.contact_load_sum_N.value, a.contact_load_sum_N.value);
-    const auto from = known.resident.try_motion(1e-3), to = late.resident.try_motion(1e-3);
+    const auto from = known.there.try_motion(1e-3), to = late.there.try_motion(1e-3);
     ASSERT_TRUE(from && to);
     EXPECT_NE(from->change, 0);
     EXPECT_EQ(to->change, from->change);
@@ -75,7 +75,7 @@ TEST(ExecutorSystem, RefusesWhatHasNoDeviceForm) {
       "nothing");
 }
 
-/// Steps of sheets between two planes, on the CPU and resident: the same word for the end, from both sides of it.
+/// Steps of sheets between two planes, on the CPU and on an executor: the same word for the end, from both sides of it.
 TEST(ExecutorSystem, SaysTheSameOfSaddles) {
   for (const double speed : {0.2, -0.2}) {
     for (const SaddleRule rule : {SaddleRule::report, SaddleRule::escape}) {
@@ -83,16 +83,16 @@ TEST(ExecutorSystem, SaysTheSameOfSaddles) {
       sheet.speed = speed;
       std::array<StepReport, 2> ends;
       std::array<double, 2> height{};
-      for (const std::size_t resident : {0, 1}) {
+      for (const std::size_t there : {0, 1}) {
         Scene scene = test::driven_sheet(sheet);
         Method method = test::saddle_method(rule);
-        if (resident == 1) test::run_on_executor(method);
+        if (there == 1) test::run_on_executor(method);
         Simulation simulation(scene, method, test::sheet_dt, 1);
         StepObserver nobody;
-        ends[resident] = simulation.step(nobody);
-        height[resident] = simulation.history().x.row(2).cwiseAbs().maxCoeff();
-        ASSERT_EQ(ends[resident].status, StepStatus::converged) << ends[resident].detail;
-        ASSERT_GT(ends[resident].contacts.total(), 0U);
+        ends[there] = simulation.step(nobody);
+        height[there] = simulation.history().x.row(2).cwiseAbs().maxCoeff();
+        ASSERT_EQ(ends[there].status, StepStatus::converged) << ends[there].detail;
+        ASSERT_GT(ends[there].contacts.total(), 0U);
         for (const Pin& pin : scene.pins) {  // an escape moves no prescribed vertex
           EXPECT_EQ(simulation.history().x.col(pin.vertex), Vec3d(pin_pose(scene, pin, test::sheet_dt)));
         }

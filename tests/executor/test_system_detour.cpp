@@ -1,4 +1,4 @@
-// Detours round curved gaps of the resident pipeline: those of the CPU path, whatever memory is given back meanwhile.
+// Detours round curved gaps on an executor: those of the CPU path, whatever memory is given back meanwhile.
 #include <gtest/gtest.h>
 
 #include "tests/executor/system_cases.hpp"
@@ -47,15 +47,15 @@ TEST(ExecutorSystem, GoesRoundCurvedGapsAsTheCpuPathDoes) {
   EXPECT_GT(cpu.detours, 0);
   EXPECT_LT(cpu.iterations, 60);
   constexpr std::size_t all_lists = std::size_t{1} << 40;
-  const End resident = take_steps(executor_method(1000, all_lists));
-  EXPECT_EQ(resident.detours, cpu.detours);
-  EXPECT_NEAR(resident.iterations, cpu.iterations, 2);
-  EXPECT_LT((resident.x - cpu.x).cwiseAbs().maxCoeff(), 1e-7);
+  const End there = take_steps(executor_method(1000, all_lists));
+  EXPECT_EQ(there.detours, cpu.detours);
+  EXPECT_NEAR(there.iterations, cpu.iterations, 2);
+  EXPECT_LT((there.x - cpu.x).cwiseAbs().maxCoeff(), 1e-7);
   for (const auto& [frugal_from, budget] :
        {std::pair<exec::Index, std::size_t>{0, all_lists}, {1000, 0}, {0, 0}}) {
     const End other = take_steps(executor_method(frugal_from, budget));
-    EXPECT_TRUE(other.x == resident.x) << frugal_from << " " << budget;
-    EXPECT_EQ(other.detours, resident.detours);
+    EXPECT_TRUE(other.x == there.x) << frugal_from << " " << budget;
+    EXPECT_EQ(other.detours, there.detours);
   }
 }
 

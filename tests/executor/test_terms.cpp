@@ -2,6 +2,7 @@
 // limit, in steps that follow one another, and the same bits in every order. What an element has itself: tests/energy.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/exec/counting_executor.hpp"
 #include "core/math/error.hpp"
@@ -130,24 +131,42 @@ TEST(ExecutorTerms, HaveTheBitsOfTheHostInStepsThatFollowOneAnother) {
   EXPECT_GE(n_moved, 20);
 }
 
+/// Where a limit ends a motion, and where it is stopped before that end.
 TEST(ExecutorTerms, BoundAMotionAsTheHostDoes) {
-  int n_below = 0, n_beyond = 0;
+  int n_below = 0, n_ended = 0, n_beyond = 0, n_earlier = 0;
   for (const TermCase& one : limit_cases()) {
     if (one.literal() || !one.name.starts_with("cubic, rule")) continue;
     SCOPED_TRACE(one.name);
-    Both both(one);
-    both.linearise(both.first());
-    for (const double size : {1e-4, 0.03, 0.1, 0.7, 20.0}) {
-      const Positions dx = wave(one.scene, size), x = both.first();
-      const double alpha = both.expect_same_bound(dx);
-      n_below += alpha > 0 && alpha < 1;
-      EXPECT_TRUE(both.expect_same_trial(x + alpha * dx));
-      both.linearise(x);
-      n_beyond += !both.expect_same_trial(x + 1.01 * alpha * dx);
+    std::map<double, double> at_the_end;  // by the size of the motion: its bound without a stop level
+    for (const double park : {0.0, 1e-4, 0.3}) {
+      TermCase parked = one;
+      parked.method = [&] {
+        Method out = one.method();
+        out.contact_options.ccd_park = park;
+        return out;
+      };
+      Both both(parked);
+      const Positions x = both.first();
+      for (const double size : {1e-4, 0.03, 0.1, 0.7, 20.0}) {
+        both.linearise(x);
+        const Positions dx = wave(one.scene, size);
+        const double alpha = both.expect_same_bound(dx),
+                     end = at_the_end.try_emplace(size, alpha).first->second;
+        EXPECT_LE(alpha, end);
+        n_below += alpha > 0 && alpha < 1;
+        n_earlier += alpha < 0.99 * end;
+        EXPECT_TRUE(both.expect_same_trial(x + alpha * dx));
+        if (end == 1) continue;
+        ++n_ended;
+        both.linearise(x);
+        n_beyond += !both.expect_same_trial(x + 1.01 * end * dx);
+      }
     }
   }
-  EXPECT_GT(n_below, 20);
-  EXPECT_EQ(n_beyond, n_below);
+  EXPECT_GT(n_ended, 60);
+  EXPECT_EQ(n_beyond, n_ended);
+  EXPECT_GE(n_below, n_ended);
+  EXPECT_GT(n_earlier, 20);
 }
 
 /// Every choice of a step's Hessian at all its levels, some vertices with a large force.
