@@ -2,6 +2,8 @@
 // itself in contact_report.cpp.
 #include "core/terms/contact.hpp"
 
+#include <utility>
+
 #include "core/contact/contact_loads.hpp"
 #include "core/contact/pair_name.hpp"
 #include "core/math/error.hpp"
@@ -73,7 +75,8 @@ void ContactTerm::begin_step(const StepColumns& step, PhaseClock& clock) {
   stiffness_.begin_step();
   if (multipliers_) multipliers_->begin_step();
   if (beside_) beside_->begin_step();
-  begin_steps(step);
+  change_step(step);
+  first_iterate_ = true;
   carries_ = has_multipliers();
   {
     const ScopedPhase timer(clock, Phase::broad_phase);
@@ -93,8 +96,8 @@ void ContactTerm::linearise(const PositionsView& x, const TermContext& context) 
   {
     const ScopedPhase timer(context.clock, Phase::stiffness);
     start_policy(x, context.gradient, state_.size());
-    kappa_change_ = stiffness_.refresh(state_.tables(), *blocks_, *elastic_);
-    if (note_refresh()) scale_multipliers();
+    kappa_change_ = stiffness_.refresh(state_.tables(), pattern(), elastic_values());
+    if (std::exchange(first_iterate_, false)) scale_multipliers();
   }
   fill_local(x, context.projection);
   contact_energies(state_.rows, families_[0].local.energy, options_.precision);
@@ -208,7 +211,7 @@ bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
 
 void ContactTerm::freeze(PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::stiffness);
-  stiffness_.freeze(trial_.tables(), state_.tables(), *blocks_, *elastic_);
+  stiffness_.freeze(trial_.tables(), state_.tables(), pattern(), elastic_values());
 }
 
 void ContactTerm::evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,
@@ -244,7 +247,7 @@ void ContactTerm::add_constraints(const ConstraintRequest& request,
   contacts_.find_rows(request.x, found.rows, found.mollified);
   const bool compliant = request.inequalities == Inequalities::compliant;
   ContactState none;  // nothing is linearised: no row has a kappa yet
-  if (compliant) stiffness_.freeze(found.tables(), none.tables(), *blocks_, *elastic_);
+  if (compliant) stiffness_.freeze(found.tables(), none.tables(), pattern(), elastic_values());
   constraints_.set(found.rows, found.mollified, request.x, compliant);
   out.push_back(&constraints_);
 }

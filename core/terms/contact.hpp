@@ -120,6 +120,7 @@ class ContactTerm final : public ContactSteps<HostTerm> {
   ContactState constrained_;  // rows that add_constraints() found last
   ContactConstraints constraints_;
   double kappa_change_ = 0;
+  bool first_iterate_ = true;
 };
 
 /// What is said at the end of a step of rows that have kappa, b and its derivatives.

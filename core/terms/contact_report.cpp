@@ -55,9 +55,9 @@ void ContactTerm::visit_rows(const PositionsView&, const std::function<void(cons
 }
 
 void report_end_of(const ContactState& state, Precision precision, const PositionsView& x, StepNumbers& out) {
-  report_rows(totals_of(state), state.gap_min, x.cwiseAbs().maxCoeff(), precision, out);
-  out.contact_loads.clear();
-  visit(state, [&out](const EndRow& row) { add_load(row, out); });
+  report_rows_of_end(
+      totals_of(state), state.gap_min, precision, [&x] { return x.cwiseAbs().maxCoeff(); },
+      [&state](const auto& f) { visit(state, f); }, out);
 }
 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and

@@ -56,15 +56,15 @@ class ContactSteps : public Base {
   std::string describe_bound() const override { return pair_name(scene_, bound_.key, bound_.kind); }
 
   void report(const PositionsView& x, IterateNumbers& out, PhaseClock&) override {
-    out.kappa_change_rel = says_change_ ? kappa_change() : 0;
-    report_rows(totals(x), smallest_gap(), out);
+    out.kappa_change_rel = kappa_change();
+    const RowTotals rows = totals(x);
+    report_rows(rows, smallest_gap(), out);
   }
   void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override {
-    out.contact_loads.clear();
     const RowTotals rows = totals(x);
-    if (rows.size() == 0) return;
-    report_rows(rows, smallest_gap(), largest_coordinate(x), options_.precision, out);
-    visit_rows(x, [&out](const EndRow& row) { add_load(row, out); });
+    report_rows_of_end(
+        rows, smallest_gap(), options_.precision, [&] { return largest_coordinate(x); },
+        [&](const auto& f) { visit_rows(x, f); }, out);
   }
 
  protected:
@@ -86,21 +86,12 @@ class ContactSteps : public Base {
   virtual std::optional<StartSums> start_sums(const PositionsView& x, const PositionsView& others) = 0;
   virtual StepBound find_bound(const Motion& motion) = 0;
 
-  void begin_steps(const StepColumns& step) {
-    change_step(step);
-    first_iterate_ = true;
-  }
   /// Before kappa of an iterate with so many rows is refreshed.
   void start_policy(const PositionsView& x, const PositionsView& others, std::size_t n_rows) {
     if (!policy_start_.due(policy(), n_rows)) return;
     const std::optional<StartSums> sums = start_sums(x, others);
     if (!sums) return policy_start_.set_started(true);
     policy_start_.start(policy(), scene_, options_.contact, *sums, time_);
-  }
-  /// kappa of an iterate was refreshed. Whether it is the first one of the step.
-  bool note_refresh() {
-    says_change_ = !first_iterate_;
-    return std::exchange(first_iterate_, false);
   }
   StiffnessPolicy& policy() const { return *options_.stiffness; }
 
@@ -110,10 +101,6 @@ class ContactSteps : public Base {
   PolicyStart policy_start_;
   StepEndGaps gaps_;
   StepBound bound_;
-
- private:
-  bool first_iterate_ = true;
-  bool says_change_ = false;  // of kappa in the last linearise()
 };
 
 }  // namespace bb

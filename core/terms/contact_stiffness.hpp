@@ -32,11 +32,8 @@ class ContactStiffness {
       : policy_(policy), mass_(mass), update_(executor, policy) {}
 
   void begin_step() { update_.begin_step(); }
-  /// Step length (s) and inertia weight c that policies read.
-  void set_time(const StiffnessTime& time) {
-    time_ = time;
-    policy_.set_time(time);
-  }
+  /// Step length (s) and inertia weight c that a policy reads beside its rows.
+  void set_time(const StiffnessTime& time) { time_ = time; }
 
   // --- as those of StiffnessUpdate. elastic: values of the elastic matrix H, read only when the policy needs it
   /// Returns StiffnessUpdate::change().
@@ -46,8 +43,6 @@ class ContactStiffness {
   void keep(const ContactTables& rows);
   void adopt(const KnownStiffness& known) { update_.adopt(known); }
   KnownStiffness known() const { return update_.known(); }
-
-  StiffnessPolicy& policy() { return policy_; }
 
   /// Columns of one row as the policy sees it (for matching at the contact that carried the load).
   PolicyColumns columns(const ContactTable& rows, int row, const BlockSystem& blocks,

@@ -3,6 +3,8 @@
 #include "core/terms/host_term.hpp"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "core/math/parallel.hpp"
@@ -44,6 +46,12 @@ void HostTerm::change(const PositionsView&, const PositionsView&, EnergyParts& o
 
 void HostTerm::take_energies() {
   for (TermFamily& family : families_) std::swap(family.local.energy, family.trial_energy);
+}
+
+void HostTerm::require_matrix() const {
+  if (blocks_) return;
+  throw std::logic_error("the term " + std::string(name()) +
+                         " reads a matrix before set_matrix() has said where it is");
 }
 
 }  // namespace bb

@@ -116,8 +116,22 @@ class HostTerm : public Term {
   double* energies() { return families_[0].local.energy.data(); }
   double* trial_energies() { return families_[0].trial_energy.data(); }
 
+  /// Of set_matrix(). Errors: std::logic_error before it.
+  const BlockSystem& pattern() const {
+    require_matrix();
+    return *blocks_;
+  }
+  const BlockSystem::Values& elastic_values() const {
+    require_matrix();
+    return *elastic_;
+  }
+
   std::vector<TermFamily> families_;
-  const BlockSystem* blocks_ = nullptr;  // of set_matrix()
+
+ private:
+  void require_matrix() const;
+
+  const BlockSystem* blocks_ = nullptr;
   const BlockSystem::Values* elastic_ = nullptr;
 };
 

@@ -24,4 +24,15 @@ struct EndRow {
 /// Its load, where it has one and no mollifier. In the order of the pairs.
 void add_load(const EndRow& row, StepNumbers& out);
 
+/// The end of a step whose rows have these totals. largest(), as above, and visit(f), which calls f(each EndRow), are asked where there
+/// are rows; those without mollifier come in the order of their pairs.
+template <class Largest, class Visit>
+void report_rows_of_end(const RowTotals& rows, double gap_min, Precision precision, const Largest& largest,
+                        const Visit& visit, StepNumbers& out) {
+  out.contact_loads.clear();
+  const bool any = rows.size() > 0;
+  report_rows(rows, gap_min, any ? largest() : 0, precision, out);
+  if (any) visit([&out](const EndRow& row) { add_load(row, out); });
+}
+
 }  // namespace bb

@@ -27,7 +27,7 @@ StrainLimitTerm::StrainLimitTerm(exec::Executor& executor, const Scene& scene, c
 void StrainLimitTerm::linearise(const PositionsView& x, const TermContext& context) {
   ElasticMatrix elastic;
   if (state_->asks_for_elastic()) {
-    elastic = gather_elastic(state_->family(), *blocks_, *elastic_, hess_);
+    elastic = gather_elastic(state_->family(), pattern(), elastic_values(), hess_);
   }
   state_->refresh(x.data(), elastic, energies());
   state_->family().derivatives(x.data(), context.projection, families_[0].local);

@@ -33,6 +33,7 @@ struct Limited {
     for (std::size_t i = 0; i < elastic.size(); i += 9)
       elastic[i] = elastic[i + 4] = elastic[i + 8] = diagonal;
     term = std::make_unique<StrainLimitTerm>(executor, scene, options, fixed, false);
+    term->set_matrix(blocks, elastic);
   }
   static Scene two_triangles() {
     SceneBuilder builder("limited", false, Vec3d::Zero(), "test");
@@ -49,7 +50,6 @@ struct Limited {
   void begin(const Positions& x_n) {
     frame.x_n = frame.x_tilde = x_n;
     frame.dt = dt, frame.c = c;
-    term->set_matrix(blocks, elastic);
     term->begin_step(frame, clock);
   }
   /// Energies of the elements at an iterate, J.

@@ -10,8 +10,8 @@ RowTotals ExecutorContact::totals(const PositionsView& x) {
   return totals_.get();
 }
 
-void ExecutorContact::visit_rows(const PositionsView&, const std::function<void(const EndRow&)>& f) {
-  const HostRows of = rows_.on_host();
+void ExecutorContact::visit_rows(const PositionsView& x, const std::function<void(const EndRow&)>& f) {
+  const HostRows of = rows(x).on_host();
   for (std::size_t r = 0; r < of.size(); ++r)
     f({of.pair[r], of.key(r), of.d[r], of.d_hat[r], -of.force[r], of.kind[r] == mollified_kind});
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/contact/executor/detour_kernels.hpp"
-#include "core/math/error.hpp"
 
 namespace bb::exec {
 
@@ -40,7 +39,7 @@ void ExecutorContact::expect(const ExpectedContacts& expected) {
 
 void ExecutorContact::begin_step(const StepColumns& step, PhaseClock&) {
   stiffness_.begin_step();
-  begin_steps(step);
+  change_step(step);
   if (frugal()) assembly_.free_matrix();
   listed_ = false;
   find_rows(step.x_n);
@@ -163,7 +162,6 @@ void ExecutorContact::linearise(const PositionsView& x, const ExecutorContext& c
   const bool same = taken_ && evaluated_ && options_.stiffness->uniform() &&
                     rows_.uniform_kappa == policy_kappa();  // as in the trial that was accepted
   refresh_kappa();
-  note_refresh();
   if (!same) barrier_.evaluate(executor_, rows_);
   evaluated_ = true;
   taken_ = false;

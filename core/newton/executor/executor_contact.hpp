@@ -1,4 +1,4 @@
-// The contact term in an executor's memory: what ContactTerm does on the CPU, row by row and pair by pair.
+// The contact term in an executor's memory: its rows, their search and their sums, with memory that is given back where scenes are large.
 #pragma once
 
 #include <memory>
@@ -140,7 +140,6 @@ class ExecutorContact final : public ContactSteps<ExecutorTerm> {
   Column
       elastic_value_;  // H that the policy reads: of the iterate; of one with a potential that of the step's first
   MatrixPart elastic_{};
-  double uniform_kappa_ = 0;  // N/m, of a policy that has one
   MatrixPart matrix_{};
   ExecutorSums<RowTotals> totals_;
   bool pattern_changed_ = false;

@@ -49,7 +49,8 @@ ExecutorEngine::ExecutorEngine(std::unique_ptr<Executor> executor, const Scene& 
       least_(*executor_) {
   require_double(method);
   mass_.upload(scene.mass);
-  terms_ = make_terms_on_executor(plan, {*executor_, scene, method, plan.contacts, vectors_, mass_, elements_});
+  terms_ =
+      make_terms_on_executor(plan, {*executor_, scene, method, plan.contacts, vectors_, mass_, elements_});
   set_terms(terms_);
   elements_.finish();
   pcg_ = std::make_unique<ExecutorPcg>(*executor_, scene.n_vertices(),
