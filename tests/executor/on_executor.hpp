@@ -1,6 +1,8 @@
 // The terms of a scene with stencils that stay on an executor, with their vectors, as tests ask them.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include "core/exec/host_executor.hpp"
 #include "core/model/scene/pinned_vertices.hpp"
 #include "core/terms/executor/element_terms.hpp"

@@ -1,5 +1,7 @@
 // Columns of every family on an executor, which its matrix is summed from, against the local terms that the host's is summed from, number by
 // number: energies, gradients, Hessians of every request, in every order and in pieces.
+#include <gtest/gtest.h>
+
 #include "core/energy/families/families.hpp"
 #include "core/math/lower_blocks.hpp"
 #include "core/model/bodies/part.hpp"

@@ -192,7 +192,7 @@ class Compared : public Both {
   }
   /// A motion that contact ends, and a state on the way, which becomes the iterate.
   double move(const Positions& dx) {
-    double alpha[2];
+    double alpha[2] = {0, 0};
     std::optional<EnergyChange> change[2];
     for (const std::size_t k : {0, 1}) {
       NewtonSystem& system = k == 0 ? cpu : there;
@@ -315,8 +315,8 @@ class Compared : public Both {
     Column x(potential.executor(), "x"), force(potential.executor(), "force", n / 3),
         unit(potential.executor(), "unit", n), product(potential.executor(), "product", n);
     x.upload({at.data(), static_cast<std::size_t>(n)});
-    std::vector<double> sizes;
-    for (int v = 0; v < scene.n_vertices(); ++v) sizes.push_back(1 + std::sin(5.0 * v));  // N
+    std::vector<double> sizes(static_cast<std::size_t>(scene.n_vertices()));  // N
+    for (std::size_t v = 0; v < sizes.size(); ++v) sizes[v] = 1 + std::sin(5.0 * static_cast<double>(v));
     force.upload(sizes);
     potential.fill_matrix(x, level, force);
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);

@@ -1,5 +1,7 @@
 // Terms with stencils that stay: an executor's sums have the bits of the host's engine at equal states, for every kind of element, load and
 // limit, in steps that follow one another, and the same bits in every order. What an element has itself: tests/energy.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -58,7 +60,7 @@ struct Both {
   /// Gradient, energies of every group and what is reported at x.
   Positions expect_same_state(const Positions& x) {
     linearise(x);
-    const Positions gradient = host.gradient();
+    Positions gradient = host.gradient();
     EXPECT_GT(largest(gradient), 1e-3);
     EXPECT_EQ(there.gradient(), gradient);
     double magnitude = 0;
