@@ -177,8 +177,8 @@ TEST(ExecutorTerms, HaveEveryMatrixOfTheHost) {
   for (const TermCase& one : all_cases()) {
     if (one.name.find("exponential") == 0 || one.name.find("two_stage") == 0) continue;
     SCOPED_TRACE(one.name);
-    std::vector<double> force;
-    for (int v = 0; v < one.scene.n_vertices(); ++v) force.push_back(1 + std::sin(5.0 * v));
+    std::vector<double> force(static_cast<std::size_t>(one.scene.n_vertices()));
+    for (std::size_t v = 0; v < force.size(); ++v) force[v] = 1 + std::sin(5.0 * static_cast<double>(v));
     Eigen::MatrixXd exact, clamped;
     for (const StepHessian choice : all_step_hessians) {
       Both both(one, choice);
