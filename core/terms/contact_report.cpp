@@ -23,6 +23,15 @@ RowTotals totals_of(const ContactState& state) {
   return out;
 }
 
+void visit(const ContactState& state, const std::function<void(const EndRow&)>& f) {
+  const auto visit_table = [&f](const auto& rows, bool mollified) {
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      f({rows.pair[r], rows.key(r), rows.d[r], rows.d_hat[r], -rows.force(r), mollified});
+  };
+  visit_table(state.rows, false);
+  visit_table(state.mollified, true);
+}
+
 /// What the rows of pairs with one closest feature share; their capacity goes with d_hat and offset.
 using Feature = std::tuple<ContactKey, ContactKind, double, double>;
 
@@ -38,15 +47,6 @@ std::map<Feature, double> stiffness_of_features(const ContactTable& rows) {
 }
 
 }  // namespace
-
-void visit(const ContactState& state, const std::function<void(const EndRow&)>& f) {
-  const auto visit_table = [&f](const auto& rows, bool mollified) {
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      f({rows.pair[r], rows.key(r), rows.d[r], rows.d_hat[r], -rows.force(r), mollified});
-  };
-  visit_table(state.rows, false);
-  visit_table(state.mollified, true);
-}
 
 RowTotals ContactTerm::totals(const PositionsView&) { return totals_of(state_); }
 

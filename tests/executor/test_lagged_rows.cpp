@@ -1,5 +1,5 @@
 // Families of rows on lagged contacts, friction and restitution, on an executor against the functions of core/energy row by row:
-// coefficients and loads of the rows, gradient, matrix, motion of given vertices; and against their form for the CPU path bit by bit.
+// coefficients and loads of the rows, gradient, matrix, motion of prescribed vertices; and against their form for the CPU path bit by bit.
 #include <gtest/gtest.h>
 
 #include <optional>

@@ -85,8 +85,8 @@ Terms on_the_device(cuda::DeviceExecutor& device, const BarrierFunction& barrier
   device.upload(v.d, gaps.d.data(), bytes);
   device.upload(v.d_hat, gaps.d_hat.data(), bytes);
   if (kept) device.upload(v.kappa, gaps.kappa.data(), bytes);
-  const ExecutorBarrier resident(barrier, false);
-  for (int i = 0; i < 2; ++i) resident.evaluate(device, rows);  // loaded once
+  const ExecutorBarrier barrier_there(barrier, false);
+  for (int i = 0; i < 2; ++i) barrier_there.evaluate(device, rows);  // loaded once
   Terms out{std::vector<double>(n_gaps), std::vector<double>(n_gaps), std::vector<double>(n_gaps)};
   device.download(out.energy.data(), v.energy, bytes);
   device.download(out.force.data(), v.force, bytes);

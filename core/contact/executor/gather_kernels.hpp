@@ -42,7 +42,7 @@ struct RowForce {
   }
 };
 
-/// How the gradient changes along a motion of given vertices [3 n_vertices]: add_given_motion() of
+/// How the gradient changes along a motion of prescribed vertices [3 n_vertices]: add_given_motion() of
 /// core/contact/contact_terms.hpp.
 struct RowGivenMotion {
   const double* motion;

@@ -123,7 +123,7 @@ struct MollifiedGradients {
   }
 };
 
-/// How those gradients change, to first order, along a motion of given vertices.
+/// How those gradients change, to first order, along a motion of prescribed vertices.
 struct MollifiedChanges {
   MollifiedRowAt at;
   const std::uint32_t* list;
