@@ -37,6 +37,11 @@ void config_arguments(CLI::App& app, RunVerb& verb) {
   set_argument(app, verb.set, "override: /pointer=value, e.g. /time/dt_s=0.005");
 }
 
+void RunLimits::put_in(RunOptions& options) const {
+  options.time_limit_s = time_limit_s;
+  options.step_limit = step_limit;
+}
+
 void limit_arguments(CLI::App& app, RunLimits& limits) {
   app.add_flag(
       "--resume", limits.resume,
@@ -46,6 +51,11 @@ void limit_arguments(CLI::App& app, RunLimits& limits) {
                  "seconds that one run may take: it ends between two steps with the outcome timeout, and "
                  "--resume goes on")
       ->check(finite_number(0, 1e9, true));
+  app.add_option(
+         "--step-limit", limits.step_limit,
+         "steps of a pass after which the run ends with the outcome timeout, on a machine of any speed; "
+         "--resume goes on for as many")
+      ->check(CLI::Range(1, 1000000000));
 }
 
 }  // namespace bb::cli

@@ -102,7 +102,7 @@ int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& com
   options.folder = verb.out.empty() ? fresh_folder(run_label(config)) : fs::path(verb.out);
   options.keep_inputs = verb.keep_inputs;
   options.replace = verb.replace ? Replace::all : Replace::own;
-  options.time_limit_s = verb.limits.time_limit_s;
+  verb.limits.put_in(options);
   options.note = stored.record.labels.note;
   options.rerun_of = stored.record.ids.run_id;
   return compare(stored, run_and_show(config, options, common));

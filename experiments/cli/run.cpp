@@ -58,7 +58,7 @@ int run(const RunVerb& verb, const CommonOptions& common) {
   options.keep_inputs = verb.keep_inputs;
   options.replace = verb.replace ? Replace::all : Replace::own;
   options.resume = verb.limits.resume ? Resume::yes : Resume::no;
-  options.time_limit_s = verb.limits.time_limit_s;
+  verb.limits.put_in(options);
   if (verb.limits.resume && is_over(config, options)) {
     remove_dead_lock(options.folder);  // of a process that was killed with its record in place
     show("already there\n{}\n", (options.folder / "run.json").string());

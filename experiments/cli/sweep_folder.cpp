@@ -114,7 +114,7 @@ RunOptions case_options(const Sweep& sweep, std::size_t i) {
   options.resume = sweep.verb.limits.resume ? Resume::yes
                    : sweep.verb.again       ? Resume::no
                                             : Resume::if_this_run;
-  options.time_limit_s = sweep.verb.limits.time_limit_s;
+  sweep.verb.limits.put_in(options);
   return options;
 }
 

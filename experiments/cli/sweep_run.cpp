@@ -178,6 +178,8 @@ class SweepRun {
     if (verb.limits.resume) out.push_back("--resume");
     if (verb.limits.time_limit_s > 0)
       out.insert(out.end(), {"--time-limit", fmt::format("{}", verb.limits.time_limit_s)});
+    if (verb.limits.step_limit > 0)
+      out.insert(out.end(), {"--step-limit", std::to_string(verb.limits.step_limit)});
     return out;
   }
 

@@ -35,6 +35,9 @@ struct CommonOptions {
 struct RunLimits {
   bool resume = false;      // go on from a checkpoint where there is one
   double time_limit_s = 0;  // of every run; 0: none
+  int step_limit = 0;       // steps that one process takes of each pass; 0: none
+
+  void put_in(RunOptions& options) const;
 };
 
 struct RunVerb {

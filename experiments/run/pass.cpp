@@ -41,6 +41,7 @@ PassResult Pass::run(const std::function<void(Moment)>& save) {
   const int every = config_.output.checkpoint_every;
   start_s_ = now_s();
   t_begin_ = simulation_.time();
+  begun_with_ = result_.steps.size();
   try {
     while (result_.verdict.outcome == Outcome::ok && simulation_.time() < t_end_) {
       if (should_stop()) {
@@ -74,18 +75,23 @@ void Pass::cut(Outcome outcome, const char* what) {
   result_.verdict = {outcome, fmt::format("pass {}, step {}: {}", name_, result_.steps.size(), what)};
 }
 
+bool Pass::is_at_step_limit() const {
+  return options_.step_limit > 0 &&
+         result_.steps.size() >= begun_with_ + static_cast<std::size_t>(options_.step_limit);
+}
+
 bool Pass::should_stop() const {
-  return (options_.interrupted && options_.interrupted->load()) ||
+  return is_at_step_limit() || (options_.interrupted && options_.interrupted->load()) ||
          (options_.deadline_s > 0 && now_s() >= options_.deadline_s);
 }
 
 void Pass::stop() {
   if (options_.interrupted && options_.interrupted->load()) throw Interrupted{};
-  result_.verdict = {
-      Outcome::timeout,
-      fmt::format("pass {}: the time limit of {:g} s was reached before step {}, at {:.6g} of {:.6g} s",
-                  name_, options_.time_limit_s, result_.steps.size(), simulation_.time(),
-                  end_time(config_.time))};
+  const std::string limit = is_at_step_limit() ? fmt::format("step limit of {}", options_.step_limit)
+                                               : fmt::format("time limit of {:g} s", options_.time_limit_s);
+  result_.verdict = {Outcome::timeout,
+                     fmt::format("pass {}: the {} was reached before step {}, at {:.6g} of {:.6g} s", name_,
+                                 limit, result_.steps.size(), simulation_.time(), end_time(config_.time))};
 }
 
 void Pass::step() {

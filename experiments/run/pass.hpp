@@ -32,7 +32,7 @@ class Pass {
  public:
   enum class Moment {
     between,  // after every config.output.checkpoint_every-th step but the last
-    stop,     // a signal or the time limit ends the pass here
+    stop,     // a signal, the time limit or the step limit ends the pass here
     before_device,  // before every step of a run on a device, where a step may end in an error from which nothing can
                     // be read any more
   };
@@ -43,7 +43,8 @@ class Pass {
 
   /// Goes on to the end. save() is called between two steps, at the moments below: a pass that goes on from an archive
   /// of such a moment is the same, bit for bit. std::bad_alloc and exec::OutOfMemory of a step are the outcome oom,
-  /// exec::ExecutionError is kernel_failed, options.time_limit the outcome timeout.
+  /// exec::ExecutionError is kernel_failed, options.time_limit_s and options.step_limit
+  /// the outcome timeout.
   /// Errors: Interrupted.
   PassResult run(const std::function<void(Moment)>& save);
   /// All that the rest of the pass depends on, and what it has recorded so far.
@@ -54,6 +55,7 @@ class Pass {
  private:
   void step();
   void show(const StepReport& step) const;
+  bool is_at_step_limit() const;
   bool should_stop() const;
   void stop();
   void cut(Outcome outcome, const char* what);
@@ -67,6 +69,7 @@ class Pass {
   Simulation simulation_;
   PassResult result_;
   double t_end_ = 0, t_begin_ = 0;  // s, simulated: of the run, of what this process does
+  std::size_t begun_with_ = 0;      // steps that were over when this process took the pass
   double start_s_ = 0;              // on the clock
 };
 

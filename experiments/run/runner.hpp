@@ -52,6 +52,7 @@ struct RunOptions {
   const std::atomic<bool>* interrupted = nullptr;
   Resume resume = Resume::no;
   double time_limit_s = 0;  // of this process, looked at between two steps, those of the pilot too; 0: none
+  int step_limit = 0;       // of this process in each pass; 0: none
   double deadline_s = 0;    // set by run_config: when that is over, as now_s() counts
 
   RunLimits limits() const { return {interrupted, deadline_s, time_limit_s}; }

@@ -1,4 +1,4 @@
-"""Checkpoints: results do not depend on them, they do not grow with the steps, and a run that time ends keeps one."""
+"""Checkpoints: results do not depend on them, they do not grow with the steps, and a run that a limit ends keeps one."""
 
 import json
 import signal
@@ -64,40 +64,29 @@ def test_a_checkpoint_changes_no_number(program, config, tmp_path, name):
             assert found[every][part] == value, (every, part)
 
 
-def stop_again_and_again(program: str, config: Path, folder: Path, more: list[str]) -> int:
-    """Stops a run by its time limit until it is over; returns how often that was within its steps, not in its pilot."""
-    limit, steps, within, record_steps = 0.1, -1, 0, 0
-    for stops in range(200):
-        done = bench(program, "run", config, "--out", folder, *more, "--time-limit", limit, *(["--resume"] if stops else []))
-        if within and done.returncode == 75:  # on a busy machine the start alone may take that long: what is there stays
-            assert "run.json stays" in done.stderr and (folder / "checkpoint.bin").exists() and len(record_of(folder)["steps"]) == record_steps
-            limit *= 1.5
-            continue
+def stop_again_and_again(program: str, config: Path, folder: Path, more: list[str]) -> list[tuple[str, int]]:
+    """Stops a run after every six steps until it is over; returns the passes and steps at which that was."""
+    stops = []
+    while True:
+        done = bench(program, "run", config, "--out", folder, *more, "--step-limit", "6", "--resume")
         assert done.returncode == 0, done.stderr
         record = record_of(folder)
-        record_steps = len(record["steps"])
         if record["status"]["outcome"] != "timeout":
-            return within
-        if "there was no first step" in record["status"]["detail"]:  # then nothing was computed that could be kept
-            assert not within and not record["steps"] and not (folder / "checkpoint.bin").exists()
-            limit *= 1.5
-            continue
-        within += 1
+            return stops
         assert (folder / "checkpoint.bin").exists() and "run.json.part" not in left(folder)
-        assert (folder / "trace.jsonl").exists() == ("pass diagnose" in record["status"]["detail"])
-        reached = ("pass diagnose" in record["status"]["detail"], len(record["steps"]))
-        limit *= 1.5 if reached == steps else 1  # where the start alone takes that long
-        assert steps == -1 or reached >= steps
-        steps = reached
-    raise AssertionError("it is never over")
+        diagnoses = "pass diagnose" in record["status"]["detail"]
+        assert (folder / "trace.jsonl").exists() == diagnoses
+        stops.append(("diagnose" if diagnoses else "time", len(record["steps"])))
+        assert len(stops) < 20
 
 
 @pytest.mark.parametrize("name", ["cholmod", "lagged_cholesky", "pcg schwarz", "pcg_resident multilevel_schwarz", "device host multilevel_schwarz"])
-def test_a_run_that_time_stops_goes_on_where_it_was(program, config, tmp_path, name):
-    """Without any checkpoint but those that the time limit itself leaves."""
+def test_a_run_that_a_limit_stops_goes_on_where_it_was(program, config, tmp_path, name):
+    """Without any checkpoint but those that the limit itself leaves."""
     more = settings({**GIVEN, **SOLVERS[name], "/output/checkpoint_every": 0, "/output/frames_every": 5, "/time/steps": 20})
     assert bench(program, "run", config, "--out", tmp_path / "whole", *more).returncode == 0
-    assert stop_again_and_again(program, config, tmp_path / "stopped", more) >= 2
+    stops = stop_again_and_again(program, config, tmp_path / "stopped", more)
+    assert stops == [(name, steps) for name in ("time", "diagnose") for steps in (6, 12, 18)]
     expected, found = result(tmp_path / "whole"), result(tmp_path / "stopped")
     assert expected["outcome"] == "ok" and len(expected["artifacts"]) == 2 + 4 + 1 + 1
     for part, value in expected.items():
@@ -107,36 +96,50 @@ def test_a_run_that_time_stops_goes_on_where_it_was(program, config, tmp_path, n
 
 def test_a_longer_record_of_the_same_run_stays(program, config, tmp_path):
     folder, words = tmp_path / "run", settings({**GIVEN, "/time/steps": 100000})
-    assert bench(program, "run", config, "--out", folder, *words, "--time-limit", "3").returncode == 0
+    assert bench(program, "run", config, "--out", folder, *words, "--step-limit", "40").returncode == 0
     earlier = (folder / "run.json").read_bytes()
-    assert json.loads(earlier)["status"]["outcome"] == "timeout" and len(json.loads(earlier)["steps"]) > 10
+    assert json.loads(earlier)["status"]["outcome"] == "timeout" and len(json.loads(earlier)["steps"]) == 40
     kept = {file.name: file.read_bytes() for file in folder.glob("checkpoint*")}
     told = bench(program, "run", config, "--out", folder, *words, "--resume", "--time-limit", "0.000001")  # stopped before the resumed pass goes on
     refused(told, "run.json stays", "--resume goes on", code=75)
     assert kept and {file.name: file.read_bytes() for file in folder.glob("checkpoint*")} == kept and (folder / "run.json").read_bytes() == earlier
     for file in folder.glob("checkpoint*"):
         file.unlink()
-    for limit in ("0.000001", "0.5"):  # before the start is looked at, and within the steps
-        told = bench(program, "run", config, "--out", folder, *words, "--resume", "--time-limit", limit)
+    for limit in (("--time-limit", "0.000001"), ("--step-limit", "5")):  # before the start is looked at, and within the steps
+        told = bench(program, "run", config, "--out", folder, *words, "--resume", *limit)
         refused(told, "run.json stays", "steps of this run", code=75)
         assert (folder / "run.json").read_bytes() == earlier
-        assert ("--resume goes on" in told.stderr) == (folder / "checkpoint.bin").exists() == (limit == "0.5")
-    again = bench(program, "run", config, "--out", folder, *words, "--time-limit", "0.5")
+        assert ("--resume goes on" in told.stderr) == (folder / "checkpoint.bin").exists() == (limit[0] == "--step-limit")
+    again = bench(program, "run", config, "--out", folder, *words, "--step-limit", "5")
     assert again.returncode == 75 and "checkpoint.bin goes" in again.stderr and "without --resume" in again.stderr
     assert (folder / "run.json").read_bytes() == earlier
 
 
-def test_a_sweep_goes_on_from_what_time_stopped(program, config, tmp_path):
+def test_a_step_limit_counts_the_steps_of_each_pass_and_process(program, config, tmp_path):
+    folder, more = tmp_path / "run", settings({**GIVEN, "/time/steps": 5, "/passes/time": True, "/passes/diagnose": True})
+    for resumed, cut, steps in ((-1, "time", 3), (3, "diagnose", 3), (3, None, 5)):
+        done = bench(program, "run", config, "--out", folder, *more, "--step-limit", "3", "--resume")
+        assert done.returncode == 0, done.stderr
+        status = record_of(folder)["status"]
+        assert len(record_of(folder)["steps"]) == steps and (status["resumed_from_step"] or -1) == resumed
+        if cut:
+            assert status["outcome"] == "timeout" and status["detail"].startswith(f"pass {cut}: the step limit of 3 was reached before step 3")
+    assert status["outcome"] == "ok"
+    for wrong in ("0", "-1", "2.5", "x"):
+        refused(bench(program, "run", config, "--step-limit", wrong), "--step-limit", code=2)
+
+
+def test_a_sweep_goes_on_from_where_its_limit_stopped_it(program, config, tmp_path):
     spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "formulations", "base": str(config),
                                            "set": {**GIVEN, "/time/steps": 50}, "axes": [{"pointer": "/formulation/stiffness_policy/kappa_N_per_m", "values": [50, 60]}]})
     out = tmp_path / "out"
-    assert bench(program, "sweep", spec, "--out", out, "--time-limit", "0.5").returncode == 0
+    assert bench(program, "sweep", spec, "--out", out, "--step-limit", "3").returncode == 0
     stopped = [json.loads(p.read_text())["status"]["outcome"] for p in sorted(out.glob("*/run.json"))]
     assert stopped == ["timeout", "timeout"] and len(list(out.glob("*/checkpoint.bin"))) == 2
     done = bench(program, "sweep", spec, "--out", out)
     assert done.returncode == 0 and "it ended as timeout" in done.stdout, done.stderr
     for record in (json.loads(p.read_text()) for p in out.glob("*/run.json")):
-        assert record["status"]["outcome"] == "ok" and record["status"]["resumed_from_step"] >= 0
+        assert record["status"]["outcome"] == "ok" and record["status"]["resumed_from_step"] == 3
     assert not list(out.glob("*/checkpoint*"))
     assert bench(program, "sweep", spec, "--out", out).stdout.count("already there") == 2
 
@@ -146,20 +149,16 @@ def test_a_sweep_begins_anew_where_the_checkpoint_is_of_another_run(program, con
     spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "one", "base": str(config),
                                            "set": {**GIVEN, "/time/steps": 50}, "axes": [{"pointer": "/time/dt_s", "values": [0.01]}]})
     out = tmp_path / "out"
-    stopped = ["sweep", spec, "--out", out, "--time-limit"]
-    assert bench(program, *stopped, "0.5").returncode == 0
+    stopped = ["sweep", spec, "--out", out, "--step-limit"]
+    assert bench(program, *stopped, "2").returncode == 0
     (folder,) = (p.parent for p in out.glob("*/checkpoint.bin"))
-    begun = bench(program, *stopped, "0.8", "--set", "/threads=2")
+    begun = bench(program, *stopped, "3", "--set", "/threads=2")
     assert begun.returncode == 0 and "checkpoint.bin goes" in begun.stderr and "threads" in begun.stderr
-    for limit in ("1.6", "3.2", "6.4"):  # a busy machine may have come to no step yet
-        if record_of(folder)["steps"]:
-            break
-        assert bench(program, *stopped, limit, "--set", "/threads=2").returncode == 0
-    assert record_of(folder)["status"]["outcome"] == "timeout" and len(record_of(folder)["steps"]) > 0
+    assert record_of(folder)["status"]["outcome"] == "timeout" and len(record_of(folder)["steps"]) == 3
     assert bench(program, "sweep", spec, "--out", out, "--set", "/threads=2").returncode == 0
     assert bench(program, "run", config, "--out", tmp_path / "whole", *settings({**GIVEN, "/time/steps": 50, "/time/dt_s": 0.01, "/threads": 2})).returncode == 0
     whole, found = record_of(tmp_path / "whole"), record_of(folder)
-    assert found["status"]["resumed_from_step"] > 0 and found["summary"]["state_hash"] == whole["summary"]["state_hash"]
+    assert found["status"]["resumed_from_step"] == 3 and found["summary"]["state_hash"] == whole["summary"]["state_hash"]
     assert [s["t_s"] for s in found["steps"]] == [s["t_s"] for s in whole["steps"]]
 
 
@@ -175,13 +174,13 @@ def test_a_run_that_is_stopped_before_its_first_step_leaves_no_folder(program, t
     assert not out.exists()
 
 
-@pytest.mark.parametrize("ends", ["whole", "stalls", "time"])
+@pytest.mark.parametrize("ends", ["whole", "stalls", "limit"])
 def test_the_last_state_of_a_run_has_a_frame(program, tmp_path, ends):
-    more = {"/time/steps": 1000000 if ends == "time" else 6, "/output/frames_every": 4, "/passes/time": False}
+    more = {"/time/steps": 1000000 if ends == "limit" else 6, "/output/frames_every": 4, "/passes/time": False}
     if ends == "stalls":
         more |= {"/time/steps": 100, "/matching": {"rule": "as_given"},
                  "/formulation": {"name": "cubic", "d_hat_m": 0.01, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 1}}}
-    limit = ["--time-limit", "0.5"] if ends == "time" else []
+    limit = ["--step-limit", "7"] if ends == "limit" else []
     assert bench(program, "run", BLOCK, "--out", tmp_path / "out", *settings(more), *limit).returncode == 0
     record = record_of(tmp_path / "out")
     assert (record["status"]["outcome"] == "ok") == (ends == "whole")

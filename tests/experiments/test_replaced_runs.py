@@ -101,7 +101,7 @@ def test_a_setting_that_an_earlier_program_did_not_have_makes_no_other_run(progr
 
 def test_a_run_that_was_cut_is_no_less_the_record_of_another_config(program, tmp_path):
     out = tmp_path / "out"
-    assert bench(program, "run", BLOCK, "--set", "/time/steps=100000", "--time-limit", "0.2", "--out", out).returncode == 0
+    assert bench(program, "run", BLOCK, "--set", "/time/steps=100000", "--step-limit", "3", "--out", out).returncode == 0
     assert json.loads((out / "run.json").read_text())["status"]["outcome"] == "timeout"
     (out / "checkpoint.bin").unlink(missing_ok=True)
     before = contents(out)
