@@ -60,6 +60,7 @@ TABLE = (
     Verb("figure", "make", PROGRAM, "figures.rebuild", "NAME... [--quick]", "a figure of the comparison, rebuilt byte for byte from its spec configs/figures/NAME.json: PNG, PDF, SVG, numbers, caption", "./bench figure work_precision --quick"),
     Verb("pictures", "make", PROGRAM, "pictures", "", "the stills at the top of README, docs/picture_*.png, from runs of seconds", "./bench pictures"),
     Verb("matrix-corpus", "make", PROGRAM, "matrix_corpus", "[--table]", "the hard systems of results/matrices from configs/matrices/corpus.json, and their table", "./bench matrix-corpus --table"),
+    Verb("step-corpus", "make", PROGRAM, "step_corpus", "[--make | --take | --table]", "the hard time steps of results/steps from configs/steps/corpus.json, each by every step solver and Hessian: results/STEPS.md, docs/steps.png", "./bench step-corpus --table"),
     Verb("condition-table", "make", PROGRAM, "condition_table", "", "results/CONDITION.md: what Spectra and our Lanczos take for the condition numbers of the demo and of results/matrices, and how far they differ", "./bench condition-table"),
     Verb("gpu-report", "make", ENVIRONMENT, "gpu_report", "", "results/GPU.md and its figure from the records of cards that experiments/gpu_evidence.sh made", "./bench gpu-report"),
     Verb("mesh", "make", PROGRAM, "mesh_file", "IN OUT.ply", "a mesh of Gmsh (MSH 2.2, 4.1), VTK (VTU, VTP, legacy) or another program, tetrahedra too, as PLY; tetrahedra within a closed surface", "./bench mesh gear.msh gear.ply"),

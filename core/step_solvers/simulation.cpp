@@ -120,7 +120,7 @@ void Simulation::begin_anew() {
   system_->keep(again);
 }
 
-void Simulation::keep(Archive& archive) {
+void Simulation::keep_motion(Archive& archive) {
   archive.section("simulation");
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
           history_.v_prev, history_.t, history_.anew, step_, nominal_, nominal_start_, parts_);
@@ -129,6 +129,10 @@ void Simulation::keep(Archive& archive) {
     archive(holding);
     hold_pins(std::move(holding));
   }
+}
+
+void Simulation::keep(Archive& archive) {
+  keep_motion(archive);
   system_->keep(archive);
   if (archive.reads()) drop_caches();
   Archive solver;  // apart, since a system on a device has none

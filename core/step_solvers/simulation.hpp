@@ -29,6 +29,9 @@ class Simulation {
   StepReport step(StepObserver& observer);
   /// All that the next step depends on: a simulation that read it goes on, bit for bit, as the one that wrote it.
   void keep(Archive& archive);
+  /// The first part of it: positions, velocities and time, without what terms, policies and solvers remember. A simulation with
+  /// another step solver begins with that part of an archive.
+  void keep_motion(Archive& archive);
   /// Forgets what earlier steps left on a device, so that the next step is that of a run that goes on elsewhere.
   void drop_caches();
 

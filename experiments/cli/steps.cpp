@@ -1,5 +1,9 @@
-// The verb steps: a table of single steps on stdout, and their residuals in a file for the figure.
+// The verb steps: single steps of a run by every choice of Hessian, and states of steps: keeps one of a run, takes a folder of them
+// by every step solver.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "core/base/record/writer.hpp"
 #include "experiments/cli/options.hpp"
@@ -7,6 +11,7 @@
 #include "experiments/cli/say.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
+#include "experiments/run/step_corpus.hpp"
 #include "experiments/run/step_study.hpp"
 
 namespace bb::cli {
@@ -17,6 +22,10 @@ struct StepsVerb {
   std::vector<std::string> set;
   std::vector<int> at;  // steps, from 0
   std::string out;      // JSON file; empty: none
+  std::string keep;     // files of the state before the step, without their endings; empty: none
+  std::string corpus;   // folder of states, with the two lists below
+  std::vector<std::string> only;
+  std::string split;
 };
 
 std::string in_tolerances(const Number& error, double tolerance) {
@@ -24,7 +33,7 @@ std::string in_tolerances(const Number& error, double tolerance) {
 }
 
 /// Single steps of a run with every choice of Hessian: study_steps() as a table.
-int steps(const StepsVerb& verb, const CommonOptions& common) {
+int study(const StepsVerb& verb, const CommonOptions& common) {
   const RunConfig config = load_run(verb.config, verb.set);
   RunOptions options = run_options(common);
   const std::vector<StepTrial> trials = study_steps(config, verb.at, options);
@@ -43,17 +52,87 @@ int steps(const StepsVerb& verb, const CommonOptions& common) {
   return exit_ok;
 }
 
+int keep(const StepsVerb& verb, const CommonOptions& common) {
+  if (verb.at.size() != 1)
+    throw ConfigError("--keep", fmt::format("--at with {} steps", verb.at.size()), "one step");
+  keep_step_state(load_run(verb.config, verb.set), verb.at.front(), verb.keep, run_options(common));
+  show("{0}.json\n{0}.state\n", verb.keep);
+  return exit_ok;
+}
+
+/// The states of --only, or all. Errors: ConfigError for a name that is not there.
+std::vector<std::string> chosen_names(const StepsVerb& verb) {
+  const std::vector<std::string> all = step_states_in(verb.corpus);
+  for (const std::string& name : verb.only) {
+    if (std::find(all.begin(), all.end(), name) == all.end())
+      throw ConfigError("--only", '"' + name + '"',
+                        fmt::format("states of {}: {}", verb.corpus, fmt::join(all, ", ")));
+  }
+  return verb.only.empty() ? all : verb.only;
+}
+
+/// All states are read before the first is taken.
+int corpus(const StepsVerb& verb, const CommonOptions& common) {
+  std::vector<StepState> states;
+  for (const std::string& name : chosen_names(verb)) {
+    StepState state = read_step_state(verb.corpus, name);
+    if (verb.split.empty() || state.split == verb.split) states.push_back(std::move(state));
+  }
+  if (states.empty())
+    throw ConfigError("--split", '"' + verb.split + '"', "a split that one of the chosen states has");
+  const RunOptions options = run_options(common);
+  ProgressLine line(common);
+  std::vector<CorpusState> out;
+  for (const StepState& state : states) {
+    out.push_back(take_state(state, options, [&line](const std::string& text) { line.tell(text); }));
+    line.clear();
+    show("{}", corpus_table(out.back()));
+  }
+  show(
+      "error in tolerances, against the minimum of the letter (-: none is within 10 tolerances; the error is "
+      "against A); A is that of line_search at a thousandth of the tolerance\n"
+      "to tol: iterations until that error was first below the tolerance; factors, products: those of the "
+      "check of the end too\n");
+  if (!verb.out.empty()) write_atomically(verb.out, corpus_json(out, options));
+  return exit_ok;
+}
+
+/// Errors: ConfigError for options that do not go together.
+int steps(const StepsVerb& verb, const CommonOptions& common) {
+  const bool of_run = !verb.config.empty() || !verb.at.empty() || !verb.set.empty() || !verb.keep.empty();
+  if (!verb.corpus.empty()) {
+    if (of_run)
+      throw ConfigError("--corpus", "a config, --at, --set or --keep with it",
+                        "none of these: its states have their configs");
+    return corpus(verb, common);
+  }
+  if (!verb.only.empty() || !verb.split.empty())
+    throw ConfigError(verb.only.empty() ? "--split" : "--only", "no --corpus", "--corpus DIR with it");
+  if (verb.config.empty()) throw ConfigError("config", "nothing", "a config file, or --corpus DIR");
+  if (verb.at.empty()) throw ConfigError("--at", "nothing", "steps of the run, from 0");
+  return verb.keep.empty() ? study(verb, common) : keep(verb, common);
+}
+
 }  // namespace
 
 Action verb::steps(CLI::App& app) {
   const auto verb = std::make_shared<StepsVerb>();
-  app.add_option("config", verb->config, "a config file")->required();
+  app.add_option("config", verb->config, "a config file");
   set_argument(app, verb->set, "override: /pointer=value");
   app.add_option("--at", verb->at, "steps, from 0, ascending, with commas between")
-      ->required()
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--out", verb->out, "JSON file with every |dx|, for ./bench figures");
+  app.add_option("--keep", verb->keep,
+                 "keep the state before the step of --at as STEM.json and STEM.state, and take no step");
+  app.add_option("--corpus", verb->corpus,
+                 "take the states of a folder, as results/steps, by every step solver and Hessian");
+  app.add_option("--only", verb->only, "of --corpus: states by name, with commas between")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--split", verb->split, "of --corpus: the half that options are tuned on, or the other one")
+      ->check(CLI::IsMember({"tune", "report"}));
+  app.add_option("--out", verb->out,
+                 "JSON file with every |dx|, for ./bench figures; of --corpus: its record");
   return [verb](const CommonOptions& common) { return install_interrupt(), cli::steps(*verb, common); };
 }
 

@@ -1,110 +1,42 @@
 #include "experiments/run/step_study.hpp"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/archive/archive.hpp"
 #include "core/base/record/provenance.hpp"
 #include "core/math/error.hpp"
-#include "core/step_solvers/simulation.hpp"
-#include "core/terms/contact.hpp"
 #include "experiments/config/parse.hpp"
-#include "experiments/run/calibration.hpp"
-#include "experiments/run/method.hpp"
-#include "experiments/run/plan.hpp"
+#include "experiments/run/step_trial.hpp"
 
 namespace bb {
 namespace {
 
-/// The run in front of a step: an archive of its simulation, with the memory of its policies.
-struct Start {
-  int step;
-  std::string bytes;
-};
-
-/// What all trials share.
-struct Study {
-  const RunConfig& config;
-  const Scene& scene;
-  const Calibration& calibration;
-  const Plan plan;
-};
-
-class Watch final : public StepObserver {
- public:
-  void on_iteration(const IterationReport& report) override {
-    dx_.push_back(report.dx_inf_m);
-    estimate_ = report.error_estimate_m;
-  }
-  std::vector<double> dx_;
-  Number estimate_;
-};
-
-std::vector<Start> starts(const Study& study, const std::vector<int>& steps, const RunOptions& options) {
-  Method method = make_method(study.config, study.calibration);
-  Simulation simulation(study.scene, method, study.plan, study.config.time.dt, study.config.time.steps);
-  StepObserver nobody;
-  std::vector<Start> out;
-  for (int step = 0; out.size() < steps.size(); ++step) {
-    if (step == steps[out.size()]) {
-      Archive archive;
-      simulation.keep(archive);
-      out.push_back({step, archive.bytes()});
-      if (out.size() == steps.size()) break;
-    }
-    if (options.interrupted && options.interrupted->load()) throw Interrupted{};
-    const StepReport report = simulation.step(nobody);
-    if (report.status != StepStatus::converged) {
-      throw ConfigError(
-          "--at", std::to_string(steps[out.size()]),
-          fmt::format("a step up to {}: there the run ends with {}", step, to_string(report.status)));
-    }
-  }
-  return out;
-}
-
-/// @param finer  the tolerance is divided by it
-/// @param x      the end state
-StepTrial run_step(const Study& study, const Start& start, StepHessian hessian, double finer, Positions& x) {
-  Method method = make_method(study.config, study.calibration);
-  for (auto& [term, choice] : method.step_hessian) choice = hessian;
-  method.step_solver.tol_velocity /= finer;
-  Simulation simulation(study.scene, method, study.plan, study.config.time.dt, study.config.time.steps);
-  Archive archive(start.bytes);
-  simulation.keep(archive);
-  Watch watch;
-  const StepReport report = simulation.step(watch);
-  x = simulation.history().x;
+StepTrial trial_of(const TakenStep& taken, int step, StepHessian hessian) {
   StepTrial out;
-  out.step = start.step;
+  out.step = step;
   out.hessian = to_string(hessian);
-  out.status = report.status;
-  out.newton_iterations = report.newton_iterations;
-  out.linear_solves = report.linear_solves;
-  out.hessian_fallbacks = report.hessian_fallbacks;
-  out.tolerance_m = method.step_solver.tol_velocity * study.config.time.dt;
-  out.error_estimate_m = watch.estimate_;
-  out.dx_inf_m = watch.dx_;
-  out.contacts = contact_state(simulation.system().diagnosis().terms()).size();
-  out.state_hash = state_hash(x);
+  out.status = taken.report.status;
+  out.newton_iterations = taken.report.newton_iterations;
+  out.linear_solves = taken.report.linear_solves;
+  out.hessian_fallbacks = taken.report.hessian_fallbacks;
+  out.tolerance_m = taken.tolerance_m;
+  for (const IterationReport& report : taken.iterations) out.dx_inf_m.push_back(report.dx_inf_m);
+  if (!taken.iterations.empty()) out.error_estimate_m = taken.iterations.back().error_estimate_m;
+  out.contacts = taken.report.contacts.total();
+  out.state_hash = state_hash(taken.end);
   return out;
 }
 
-void study_step(const Study& study, const Start& start, std::vector<StepTrial>& out) {
-  constexpr double finer = 1000;
-  Positions reference, x;
-  const StepTrial fine = run_step(study, start, StepHessian::blend, finer, reference);
+void study_step(const StepSetting& setting, const StepStart& start, std::vector<StepTrial>& out) {
+  const TakenStep fine = take_step(setting, start.bytes, {StepHessian::blend, reference_finer});
   for (const StepHessian hessian : all_step_hessians) {
-    StepTrial trial = run_step(study, start, hessian, 1, x);
-    if (fine.status == StepStatus::converged) trial.error_true_m = (x - reference).cwiseAbs().maxCoeff();
+    const TakenStep taken = take_step(setting, start.bytes, {hessian});
+    StepTrial trial = trial_of(taken, start.step, hessian);
+    if (fine.report.status == StepStatus::converged)
+      trial.error_true_m = (taken.end - fine.end).cwiseAbs().maxCoeff();
     out.push_back(std::move(trial));
   }
-}
-
-nlohmann::ordered_json json_of(const Number& n) {
-  return n.finite() ? nlohmann::ordered_json(n.value) : nlohmann::ordered_json();
 }
 
 }  // namespace
@@ -119,19 +51,15 @@ std::vector<StepTrial> study_steps(const RunConfig& config, const std::vector<in
   if (steps.empty()) {
     throw ConfigError("--at", "no step", fmt::format("steps from 0 to {}", config.time.steps - 1));
   }
-  const oneapi::tbb::global_control threads(
-      oneapi::tbb::global_control::max_allowed_parallelism,
-      config.threads > 0
-          ? static_cast<std::size_t>(config.threads)
-          : oneapi::tbb::global_control::active_value(oneapi::tbb::global_control::max_allowed_parallelism));
+  const auto threads = threads_of(config);
   const Scene scene = build_scene(config);
   MatchingRecord matching;
   const Calibration calibration = calibrate(config, scene, options, matching);
-  const Study study{config, scene, calibration, plan_of(config, scene)};
+  const StepSetting setting{config, scene, calibration, plan_of(config, scene)};
   std::vector<StepTrial> out;
-  for (const Start& start : starts(study, steps, options)) {
+  for (const StepStart& start : step_starts(setting, steps, "--at", options)) {
     if (options.interrupted && options.interrupted->load()) throw Interrupted{};
-    study_step(study, start, out);
+    study_step(setting, start, out);
   }
   return out;
 }

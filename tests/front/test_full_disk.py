@@ -42,14 +42,14 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
     ("score (d_hat-d)^3/d --out out", "cache/formulas", 0),
     *((f"{words} out", file, 1000) for words, file in (  # and what they begin with, which names the first of hours of runs
         ("causes config.json --out", "out/probe"), ("gate --case drape --out", "out/"), ("calibrate --copies 1 --out", "out/"),
-        ("pareto --results out --runs", "a temporary file"), ("work-precision --out out --runs", "out/"), ("matrix-corpus --out", "probe"),
+        ("pareto --results out --runs", "a temporary file"), ("work-precision --out out --runs", "out/"), ("matrix-corpus --out", "probe"), ("step-corpus --results", "out/"),
         ("figure work_precision --quick --out out --runs", "out/"), ("stress S09 --runs", "out/"), ("claims K3 --runs", "out/"),
         ("ablation --shards 1 --runs", "out/"), ("robust drape --seeds 1 --runs", "out/drape.json"), ("pictures --runs", "out/"),
         ("catalogue drape --formulations log --runs", "out/drape.json"), ("gpu-report --results", "out/GPU.md"),
         ("condition-table --out", "a temporary file"))),
     ("gap-map --quick --results out --runs out", "a temporary file", 0),
 ]
-PLANNED = set("match causes gate calibrate pareto work-precision figure stress claims ablation robust catalogue pictures matrix-corpus".split())
+PLANNED = set("match causes gate calibrate pareto work-precision figure stress claims ablation robust catalogue pictures matrix-corpus step-corpus".split())
 READ = set("status surface-gaps trend setup".split())  # which write nothing, or for the script ./bench
 DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop"}
 IN_THE_TREE = set("demo engine accept readme".split())  # what they write is at a fixed place

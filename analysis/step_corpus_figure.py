@@ -1,0 +1,60 @@
+"""docs/steps.png: iterations of each state by cause, and by Hessian rule."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .step_corpus_page import OWN, hessians, trial_of
+from .style import WIDE_IN, plt
+from .whole_file import write_figure
+
+COLOURS = {
+    "full": "#0072b2",
+    "indefinite": "#d55e00",
+    "contact": "#009e73",
+    "limit": "#e69f00",
+    "armijo": "#a03060",
+    "noise": "#999999",
+    "failed": "#000000",
+}
+MARKS = "osD^vP<>Xh*"
+
+
+def _by_cause(axis, states: list[dict]) -> None:
+    for place, state in enumerate(states):
+        left = 0
+        for cause, count in trial_of(state, OWN)["causes"].items():
+            axis.barh(place, count, left=left, color=COLOURS[cause], height=0.7)
+            left += count
+    used = [c for c in COLOURS if any(trial_of(s, OWN)["causes"][c] for s in states)]
+    handles = [plt.Rectangle((0, 0), 1, 1, color=COLOURS[cause]) for cause in used]
+    axis.legend(handles, ["Armijo" if cause == "armijo" else cause for cause in used], frameon=False)
+    axis.set(xlabel=f"iterations of line_search, {OWN}, by cause")
+
+
+def _by_rule(axis, states: list[dict], rules: list[str]) -> None:
+    """Hollow where the trial did not converge."""
+    for k, rule in enumerate(rules):
+        colour = f"C{k}"
+        for place, state in enumerate(states):
+            trial = trial_of(state, rule)
+            face = colour if trial["status"] == "converged" else "none"
+            label = rule if place == 0 else None
+            axis.plot(
+                trial["iterations"], place, MARKS[k % len(MARKS)], color=colour, mfc=face, ms=4, label=label
+            )
+    axis.set(xscale="log", xlabel="iterations by Hessian rule (hollow: not converged)")
+    axis.legend(frameon=False)
+
+
+def paint(record: dict, path: Path) -> None:
+    states = record["states"]
+    figure, axes = plt.subplots(
+        1, 2, figsize=(WIDE_IN, 2 + 0.2 * len(states)), layout="constrained", sharey=True, squeeze=False
+    )
+    _by_cause(axes[0, 0], states)
+    _by_rule(axes[0, 1], states, hessians(record))
+    axes[0, 0].set_yticks(range(len(states)), [state["name"] for state in states])
+    axes[0, 0].invert_yaxis()
+    write_figure(figure, path, dpi=160)
+    plt.close(figure)

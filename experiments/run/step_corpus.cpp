@@ -1,0 +1,191 @@
+#include "experiments/run/step_corpus.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/record/provenance.hpp"
+#include "core/math/error.hpp"
+#include "core/step_solvers/registry.hpp"
+#include "experiments/config/parse.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double same_minimum = 10;  // tolerances between an end and its minimum
+constexpr const char* reference_solver = "line_search";
+
+/// A step solver that ends a step by a rule of its own, with the setting that lets it go on to the tolerance.
+struct Tightened {
+  const char *solver, *parameter;
+  double value;
+};
+constexpr Tightened tightened[] = {{"pncg", "pncg_epsilon", 1e-10}};
+
+/// The config with another step solver, where what depends on it has its own default again. Errors: ConfigError for what the
+/// solver cannot have.
+RunConfig with_step_solver(const RunConfig& config, const std::string& name) {
+  if (config.step_solver.name == name) return config;
+  nlohmann::json document = resolved_document(config);
+  document["step_solver"]["name"] = name;
+  document["step_solver"].erase("saddle");
+  document.erase("hessian");
+  document["contact"].erase("hessian_mode");
+  for (const Tightened& each : tightened) {
+    if (name == each.solver) document["step_solver"][each.parameter] = each.value;
+  }
+  RunConfig out = parse_config(document.dump(), config.source);
+  out.linear_solver_reason = config.linear_solver_reason;
+  return out;
+}
+
+/// The first violation without the name of the file.
+std::string refusal_of(const ConfigError& error) {
+  const Violation& first = error.violations().front();
+  const std::string place = first.where.substr(first.where.find('#') + 1);
+  return fmt::format("{}: found {}; allowed: {}", place, first.found, first.allowed);
+}
+
+double cap_fraction_of(const StepSolverConfig& solver) {
+  const StepSolverEntry& entry = step_solvers().require(solver.name, "/step_solver/name");
+  const bool has = find_named(entry.parameters, "cap_fraction") != nullptr;
+  return has ? number(solver.parameters, "cap_fraction") : 1;
+}
+
+double apart(const Positions& a, const Positions& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+/// The minima that trials of a state ended in, in the order of their letters.
+class Minima {
+ public:
+  explicit Minima(double tolerance) : tolerance_(tolerance) {}
+  void add(Positions x) { list_.push_back(std::move(x)); }
+  bool empty() const { return list_.empty(); }
+  /// That within ten tolerances of x, the nearest; list_.size() where none is.
+  std::size_t nearest(const Positions& x) const {
+    std::size_t out = list_.size();
+    double least = same_minimum * tolerance_;
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      if (const double d = apart(x, list_[i]); d <= least) least = d, out = i;
+    }
+    return out;
+  }
+  std::size_t size() const { return list_.size(); }
+  const Positions& at(std::size_t i) const { return list_[i]; }
+
+ private:
+  double tolerance_;
+  std::vector<Positions> list_;
+};
+
+void count_causes(const TakenStep& taken, double cap_fraction, CorpusTrial& out) {
+  for (const IterationReport& report : taken.iterations) {
+    ++out.causes[static_cast<std::size_t>(cause_of(report, cap_fraction))];
+    out.regularised += is_regularised(report);
+    out.work += report;
+  }
+}
+
+/// A step that is converged far from all known minima ends in another one, which the same trial shows at a thousandth of the
+/// tolerance.
+void find_minimum(const StepSetting& setting, const std::string& archive, const StepVariant& variant,
+                  const TakenStep& taken, Minima& minima) {
+  StepVariant fine = variant;
+  fine.finer = reference_finer, fine.keeps_states = false;
+  TakenStep end = take_step(setting, archive, fine);
+  if (end.report.status == StepStatus::converged &&
+      apart(end.end, taken.end) <= same_minimum * taken.tolerance_m)
+    minima.add(std::move(end.end));
+}
+
+void judge_end(const TakenStep& taken, const Minima& minima, CorpusTrial& out) {
+  if (minima.empty()) return;
+  const std::size_t found = minima.nearest(taken.end);
+  const Positions& x = minima.at(found < minima.size() ? found : 0);
+  if (found < minima.size()) out.minimum = std::string(1, static_cast<char>('A' + found % 26));
+  out.error_m = apart(taken.end, x);
+  for (std::size_t k = 0; k < taken.states.size() && !out.iterations_to_tolerance; ++k) {
+    if (apart(taken.states[k], x) < taken.tolerance_m) out.iterations_to_tolerance = static_cast<int>(k) + 1;
+  }
+}
+
+void take_trial(const StepState& state, const std::string& solver, std::optional<StepHessian> hessian,
+                Minima& minima, CorpusTrial& out) {
+  const RunConfig config = with_step_solver(state.config, solver);
+  const StepSolverEntry& entry = step_solvers().require(solver, "/step_solver/name");
+  check_step_solver_forms(config, state.scene);
+  const StepSetting setting{config, state.scene, state.calibration, plan_of(config, state.scene)};
+  const StepVariant variant{hessian, 1, true};
+  const TakenStep taken = take_step(setting, state.start.bytes, variant);
+  const bool own_energy = entry.needs.multipliers;  // with multipliers another function is minimised
+  if (!minima.empty() && !own_energy && entry.asked_to_converge &&
+      taken.report.status == StepStatus::converged && minima.nearest(taken.end) == minima.size())
+    find_minimum(setting, state.start.bytes, variant, taken, minima);
+  out.status = taken.report.status;
+  out.has_memory = taken.has_memory;
+  out.iterations = static_cast<int>(taken.iterations.size());
+  out.seconds = taken.seconds;
+  out.state_hash = state_hash(taken.end);
+  count_causes(taken, cap_fraction_of(config.step_solver), out);
+  judge_end(taken, minima, out);
+}
+
+/// line_search at a thousandth of the tolerance; its end is the minimum A where it converges.
+void find_reference(const StepState& state, Minima& minima, CorpusState& out) {
+  const RunConfig config = with_step_solver(state.config, reference_solver);
+  const StepSetting setting{config, state.scene, state.calibration, plan_of(config, state.scene)};
+  TakenStep fine = take_step(setting, state.start.bytes, {StepHessian::blend, reference_finer});
+  out.reference = fine.report.status;
+  out.reference_iterations = fine.report.newton_iterations;
+  out.contacts = fine.report.contacts.total();
+  if (out.reference == StepStatus::converged) minima.add(std::move(fine.end));
+}
+
+std::vector<CorpusTrial> trials_of() {
+  std::vector<CorpusTrial> out;
+  for (const StepHessian hessian : all_step_hessians) {
+    out.emplace_back();
+    out.back().step_solver = reference_solver;
+    out.back().hessian = to_string(hessian);
+  }
+  for (const StepSolverEntry& entry : step_solvers()) {
+    if (entry.name == reference_solver) continue;
+    out.emplace_back();
+    out.back().step_solver = entry.name;
+  }
+  return out;
+}
+
+}  // namespace
+
+CorpusState take_state(const StepState& state, const RunOptions& options,
+                       const std::function<void(const std::string&)>& tell) {
+  const auto threads = threads_of(state.config);
+  CorpusState out;
+  out.name = state.name, out.hard_for = state.hard_for, out.split = state.split;
+  out.formulation = label_of(state.config.formulation);
+  out.step_solver = state.config.step_solver.name;
+  out.linear_solver = state.config.linear_solver.name;
+  out.step = state.start.step;
+  out.vertices = state.scene.n_vertices();
+  out.tolerance_m = state.config.step_solver.tol_velocity * state.config.time.dt;
+  const auto begin = [&](const std::string& what) {
+    if (options.interrupted && options.interrupted->load()) throw Interrupted{};
+    if (tell) tell(fmt::format("{}: {}", state.name, what));
+  };
+  begin("reference");
+  Minima minima(out.tolerance_m);
+  find_reference(state, minima, out);
+  for (CorpusTrial& trial : out.trials = trials_of()) {
+    begin(trial.step_solver + " " + trial.hessian);
+    const auto hessian = trial.hessian.empty() ? std::nullopt : std::optional(step_hessian_of(trial.hessian));
+    try {
+      take_trial(state, trial.step_solver, hessian, minima, trial);
+    } catch (const ConfigError& error) {
+      trial.refused = refusal_of(error);
+    }
+  }
+  return out;
+}
+
+}  // namespace bb

@@ -1,0 +1,55 @@
+// Hard time steps by every step solver and every Hessian: each state of a folder to the same true error, with what each
+// iteration was short for.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/newton/iteration_cause.hpp"
+#include "experiments/run/step_state.hpp"
+
+namespace bb {
+
+/// A state by one step solver and one Hessian.
+struct CorpusTrial {
+  std::string step_solver,
+      hessian;          // hessian: of line_search; empty: that of the config, or the solver's own
+  std::string refused;  // why this step solver cannot take the state; empty: it was taken
+  StepStatus status = StepStatus::converged;
+  bool has_memory = true;  // TakenStep
+  /// A letter of the minimum that it ended in, A that of the reference; empty where its end is within ten tolerances of none.
+  std::string minimum;
+  Number error_m;  // |x - x_min|_inf of its end, against that minimum, else against A
+  std::optional<int> iterations_to_tolerance;  // until that error was first below the tolerance
+  int iterations = 0, regularised = 0;         // regularised: is_regularised()
+  std::array<int, std::size(all_iteration_causes)>
+      causes{};  // iterations by cause; they add up to `iterations`
+  WorkCounts work;
+  double seconds = 0;
+  std::string state_hash;  // sha256 of the end positions
+};
+
+struct CorpusState {
+  std::string name, hard_for, split, formulation, step_solver, linear_solver;
+  int step = 0, vertices = 0;
+  std::size_t contacts = 0;  // at the end of the reference
+  double tolerance_m = 0;
+  StepStatus reference = StepStatus::converged;  // how line_search ended at a thousandth of the tolerance
+  int reference_iterations = 0;
+  std::vector<CorpusTrial> trials;
+};
+
+/// All trials of a state: line_search with each of all_step_hessians, then every other step solver of the registry with its own
+/// Hessian. `tell` hears of each before it begins. Errors: Interrupted.
+CorpusState take_state(const StepState& state, const RunOptions& options,
+                       const std::function<void(const std::string&)>& tell);
+
+/// {"schema": "barrierbench.step_corpus/1", ...}; numbers that are absent are null.
+std::string corpus_json(const std::vector<CorpusState>& states, const RunOptions& options);
+/// The same of one state for people.
+std::string corpus_table(const CorpusState& state);
+
+}  // namespace bb
