@@ -1,6 +1,7 @@
 #include "core/linear/block_scaling.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -8,9 +9,13 @@
 #include "core/linear/block_starts.hpp"
 #include "core/linear/parallel.hpp"
 #include "core/math/at.hpp"
+#include "core/math/lanes.hpp"
 
 namespace bb {
 namespace {
+
+constexpr std::size_t blocks_abreast = 4;
+using OfFour = Lanes<double, 4>;
 
 /// x <- f(L_b) x_b for every block.
 template <class F>
@@ -48,7 +53,19 @@ LinearStatus BlockScaling::setup(const ReducedSystem& system, Scaling scaling) {
     worst = status;
     bad_dof_ = start_[b];
   }
+  if (worst == LinearStatus::ok) place_abreast();
   return worst;
+}
+
+void BlockScaling::place_abreast() {
+  constexpr int row[] = {0, 1, 2, 1, 2, 2}, column[] = {0, 1, 2, 0, 0, 1};
+  fours_.resize(6 * blocks_abreast * ((l_.size() + blocks_abreast - 1) / blocks_abreast));
+  for (std::size_t b = 0; b < fours_.size() / 6; ++b) {
+    double* to = fours_.data() + 6 * blocks_abreast * (b / blocks_abreast) + b % blocks_abreast;
+    for (int k = 0; k < 6; ++k, to += blocks_abreast) {
+      *to = b < l_.size() ? l_[b](row[k], column[k]) : (k < 3 ? 1.0 : 0.0);
+    }
+  }
 }
 
 void BlockScaling::read_blocks(const ReducedSystem& system) {
@@ -115,6 +132,55 @@ void BlockScaling::solve_upper(VecXd& x) const {
     v[1] = (v[1] - l(2, 1) * v[2]) / l(1, 1);
     v[0] = (v[0] - l(1, 0) * v[1] - l(2, 0) * v[2]) / l(0, 0);
   });
+}
+
+// Numbers that are stored one by one and read as four at once would have to reach the cache first: full blocks go without.
+void BlockScaling::solve_four(std::size_t group, const VecXd& b, VecXd& x) const {
+  const double* l = fours_.data() + 6 * blocks_abreast * group;
+  const auto of = [l](std::size_t k) { return load_lanes<4>(l + blocks_abreast * k); };
+  const OfFour l00 = of(0), l11 = of(1), l22 = of(2), l10 = of(3), l20 = of(4), l21 = of(5);
+  const auto solve = [&](OfFour& v0, OfFour& v1, OfFour& v2) {
+    v0 /= l00;
+    v1 = (v1 - l10 * v0) / l11;
+    v2 = (v2 - l20 * v0 - l21 * v1) / l22;
+    v2 /= l22;
+    v1 = (v1 - l21 * v2) / l11;
+    v0 = (v0 - l10 * v1 - l20 * v2) / l00;
+  };
+  const std::size_t first = blocks_abreast * group, beyond = std::min(first + blocks_abreast, l_.size());
+  if (start_[beyond] - start_[first] == 12) {
+    const double* from = b.data() + start_[first];
+    double* to = x.data() + start_[first];
+    OfFour v0 = OfFour::Vector{from[0], from[3], from[6], from[9]},
+           v1 = OfFour::Vector{from[1], from[4], from[7], from[10]},
+           v2 = OfFour::Vector{from[2], from[5], from[8], from[11]};
+    solve(v0, v1, v2);
+    to[0] = v0[0], to[1] = v1[0], to[2] = v2[0];
+    to[3] = v0[1], to[4] = v1[1], to[5] = v2[1];
+    to[6] = v0[2], to[7] = v1[2], to[8] = v2[2];
+    to[9] = v0[3], to[10] = v1[3], to[11] = v2[3];
+    return;
+  }
+  double gathered[3][blocks_abreast] = {};
+  for (std::size_t k = first; k < beyond; ++k) {
+    for (int i = start_[k]; i < start_[k + 1]; ++i) gathered[i - start_[k]][k - first] = b[i];
+  }
+  OfFour v0 = load_lanes<4>(gathered[0]), v1 = load_lanes<4>(gathered[1]), v2 = load_lanes<4>(gathered[2]);
+  solve(v0, v1, v2);
+  store_lanes(v0, gathered[0]), store_lanes(v1, gathered[1]), store_lanes(v2, gathered[2]);
+  for (std::size_t k = first; k < beyond; ++k) {
+    for (int i = start_[k]; i < start_[k + 1]; ++i) x[i] = gathered[i - start_[k]][k - first];
+  }
+}
+
+void BlockScaling::solve(const VecXd& b, VecXd& x) const {
+  x.resize(b.size());
+  if (scaling_ == Scaling::none) {
+    x = b;
+    return;
+  }
+  parallel_items(fours_.size() / (6 * blocks_abreast), 256,
+                 [&](std::size_t group) { solve_four(group, b, x); });
 }
 
 long double BlockScaling::quadratic(const VecXd& u) const {

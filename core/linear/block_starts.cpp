@@ -16,6 +16,20 @@ void check_block_starts(const ReducedSystem& system) {
   if (!good) throw ConfigError("ReducedSystem block_start", "a list", "0 to n in steps of 1 to 3");
 }
 
+namespace {
+
+/// Whether each column of [begin, end) has the rows of the first one from its own diagonal on.
+bool has_full_column(int begin, int end, const int* outer, const int* inner) {
+  for (int j = begin; j < end; ++j) {
+    const int *first = inner + outer[begin] + (j - begin), *beyond = inner + outer[begin + 1];
+    if (first >= beyond || *first != j) return false;
+    if (!std::equal(first, beyond, inner + outer[j], inner + outer[j + 1])) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 void lower_block_columns(const ReducedSystem& system, std::vector<int>& start, std::vector<int>& row) {
   check_block_starts(system);
   const std::vector<int>& first = system.block_start;
@@ -27,7 +41,8 @@ void lower_block_columns(const ReducedSystem& system, std::vector<int>& start, s
   start.assign(1, 0);
   row.clear();
   for (int c = 0; c + 1 < static_cast<int>(first.size()); ++c) {
-    for (int j = first[at(c)]; j < first[at(c) + 1]; ++j) {
+    const bool full = has_full_column(first[at(c)], first[at(c) + 1], outer, inner);
+    for (int j = first[at(c)]; j < (full ? first[at(c)] + 1 : first[at(c) + 1]); ++j) {
       for (int k = outer[j]; k < outer[j + 1]; ++k) {
         if (inner[k] < j) {
           throw ConfigError("ReducedSystem", "an entry above the diagonal", "lower triangle only");
@@ -38,7 +53,9 @@ void lower_block_columns(const ReducedSystem& system, std::vector<int>& start, s
         row.push_back(r);
       }
     }
-    std::sort(row.begin() + start.back(), row.end());
+    if (!std::is_sorted(row.begin() + start.back(), row.end())) {
+      std::sort(row.begin() + start.back(), row.end());
+    }
     start.push_back(static_cast<int>(row.size()));
   }
 }

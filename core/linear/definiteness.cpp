@@ -41,14 +41,14 @@ Definiteness definiteness_of(const LinearReport& report) {
   return out;
 }
 
-Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
-                                  int max_iterations) {
-  SymmetricProduct product;
-  product.update(a);
+namespace {
+
+Definiteness examine_rows(const SymmetricProduct& product, const Preconditioner& preconditioner,
+                          int max_iterations) {
   ConjugateGradients gradients;
   LinearReport report;
   VecXd x;
-  const VecXd b = definiteness_right_hand_side(a.lower.rows());
+  const VecXd b = definiteness_right_hand_side(product.n());
   gradients.solve(product, preconditioner, b, definiteness_tolerance, max_iterations, x, report);
   Definiteness out = definiteness_of(report);
   if (out.verdict != Definiteness::Verdict::negative) return out;
@@ -60,13 +60,23 @@ Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& 
   return out;
 }
 
+}  // namespace
+
+Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
+                                  int max_iterations) {
+  SymmetricProduct product;
+  product.update(a);
+  return examine_rows(product, preconditioner, max_iterations);
+}
+
 Definiteness examine_preconditioned(const ReducedSystem& a, const NearMatrix& near,
-                                    Preconditioner& preconditioner, int max_iterations) {
+                                    Preconditioner& preconditioner, int max_iterations,
+                                    SymmetricProduct& rows) {
   const ReducedSystem& other = near();
-  SymmetricProduct rows;
   rows.update(other);
   if (preconditioner.setup(other, rows) != LinearStatus::ok) return {};
-  return examine_by_gradients(a, preconditioner, max_iterations);
+  rows.update(a);
+  return examine_rows(rows, preconditioner, max_iterations);
 }
 
 }  // namespace bb

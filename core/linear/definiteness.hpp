@@ -9,6 +9,7 @@
 namespace bb {
 
 class Preconditioner;
+class SymmetricProduct;
 struct LinearReport;
 
 struct Definiteness {
@@ -41,8 +42,10 @@ Definiteness definiteness_of(const LinearReport& report);
 Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
                                   int max_iterations);
 
-/// The same with a preconditioner that is set up from `near`. Unknown where it cannot be.
+/// The same with a preconditioner that is set up from `near`. Unknown where it cannot be. rows: of an earlier matrix, whose
+/// pattern is kept where it is still that one; afterwards of one of these two.
 Definiteness examine_preconditioned(const ReducedSystem& a, const NearMatrix& near,
-                                    Preconditioner& preconditioner, int max_iterations);
+                                    Preconditioner& preconditioner, int max_iterations,
+                                    SymmetricProduct& rows);
 
 }  // namespace bb

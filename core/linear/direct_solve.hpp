@@ -63,7 +63,8 @@ Definiteness examine_directly(Factor& factor, const ReducedSystem& a, const Near
   const LinearStatus status = factor.factorize(a);
   if (status == LinearStatus::matrix_indefinite) {
     Applied applied(factor);
-    out = examine_preconditioned(a, near, applied, most_iterations);
+    SymmetricProduct rows;
+    out = examine_preconditioned(a, near, applied, most_iterations, rows);
     ++out.factorizations;
   } else if (status == LinearStatus::ok) {
     out.verdict = Definiteness::Verdict::positive;

@@ -45,7 +45,8 @@ LinearReport LinearSolver::solve(const ReducedSystem& system, const VecXd& b, Ve
 
 Definiteness LinearSolver::examine(const ReducedSystem& a, const NearMatrix& near) {
   constexpr int most_iterations = 10000;
-  return examine_preconditioned(a, near, *make_preconditioner("block_jacobi"), most_iterations);
+  SymmetricProduct rows;
+  return examine_preconditioned(a, near, *make_preconditioner("block_jacobi"), most_iterations, rows);
 }
 
 }  // namespace bb

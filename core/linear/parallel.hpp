@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "core/math/parallel.hpp"
@@ -9,24 +10,37 @@
 
 namespace bb {
 
-/// Dot products with partial sums over chunks of fixed size, added in the order of the chunks.
+/// Dot products with partial sums over chunks of fixed size, added in the order of the chunks. A sum of a chunk waits for each of
+/// its additions, so a task makes two side by side.
 class ChunkedDot {
  public:
   double operator()(const VecXd& a, const VecXd& b) {
-    const Eigen::Index n = a.size();
-    const int n_chunks = static_cast<int>((n + kChunk - 1) / kChunk);
-    partial_.assign(static_cast<std::size_t>(n_chunks), 0.0);
-    parallel_items(n_chunks, 1, [&](int c) {
-      const Eigen::Index begin = c * kChunk, length = std::min(kChunk, n - begin);
-      partial_[static_cast<std::size_t>(c)] = a.segment(begin, length).dot(b.segment(begin, length));
+    const std::size_t n = static_cast<std::size_t>(a.size()), n_chunks = (n + chunk - 1) / chunk;
+    partial_.resize(n_chunks + 1);  // the last of an odd number has an empty one beside it
+    parallel_items((n_chunks + 1) / 2, 1, [&](std::size_t pair) {
+      const std::size_t begin = 2 * pair * chunk;
+      sum_two(a.data() + begin, b.data() + begin, n - begin, partial_.data() + 2 * pair);
     });
     double sum = 0;
-    for (const double p : partial_) sum += p;
+    for (std::size_t c = 0; c < n_chunks; ++c) sum += partial_[c];
     return sum;
   }
 
  private:
-  static constexpr Eigen::Index kChunk = 8192;  // 64 KiB a vector: in cache, and worth a task
+  static constexpr std::size_t chunk = 8192;  // 64 KiB a vector: in cache
+
+  /// Of n > 0 numbers, those from `chunk` on in the second sum.
+  static void sum_two(const double* a, const double* b, std::size_t n, double* sums) {
+    const std::size_t first = std::min(n, chunk), second = std::min(n - first, chunk);
+    double low = a[0] * b[0], high = second > 0 ? a[chunk] * b[chunk] : 0.0;
+    for (std::size_t i = 1; i < second; ++i) {
+      low += a[i] * b[i];
+      high += a[chunk + i] * b[chunk + i];
+    }
+    for (std::size_t i = std::max(second, std::size_t{1}); i < first; ++i) low += a[i] * b[i];
+    sums[0] = low, sums[1] = high;
+  }
+
   std::vector<double> partial_;
 };
 

@@ -19,11 +19,7 @@ class Scaled final : public Preconditioner {
     return status;
   }
   std::string detail() const override { return detail_; }
-  void apply(const VecXd& r, VecXd& z) const override {
-    z = r;
-    scaling_.solve_lower(z);
-    scaling_.solve_upper(z);
-  }
+  void apply(const VecXd& r, VecXd& z) const override { scaling_.solve(r, z); }
 
  private:
   Scaling kind_;

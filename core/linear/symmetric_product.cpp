@@ -7,12 +7,12 @@
 #include "core/linear/parallel.hpp"
 #include "core/math/at.hpp"
 #include "core/math/error.hpp"
+#include "core/math/lanes.hpp"
 
 namespace bb {
 namespace {
 constexpr int rows_a_task = 256;  // block rows a task
-using Vec4d = Eigen::Matrix<double, 4, 1>;
-using FourAt = Eigen::Map<const Vec4d>;
+using RowSum = Lanes<double, 4>;
 }  // namespace
 
 void SymmetricProduct::update(const ReducedSystem& system) {
@@ -24,9 +24,33 @@ void SymmetricProduct::update(const ReducedSystem& system) {
       throw;
     }
   }
-  const double* value = system.lower.valuePtr();
-  parallel_items(static_cast<int>(system.lower.nonZeros()), 16384,
-                 [&](int k) { value_[slot_[2 * at(k)]] = value_[slot_[2 * at(k) + 1]] = value[k]; });
+  parallel_items(n_blocks(), rows_a_task, [&](int c) { take_column(system.lower, c); });
+}
+
+// The entries of a block column, which come in ascending rows, and their mirror images.
+void SymmetricProduct::take_column(const Eigen::SparseMatrix<double>& lower, int c) {
+  const int *outer = lower.outerIndexPtr(), *inner = lower.innerIndexPtr();
+  const double* value = lower.valuePtr();
+  const int first = start_[at(c)], size = start_[at(c) + 1] - first;
+  int next[3] = {}, beyond[3] = {};  // of each column
+  for (int j = 0; j < size; ++j) next[j] = outer[first + j], beyond[j] = outer[first + j + 1];
+  for (int b = lower_start_[at(c)]; b < lower_start_[at(c) + 1]; ++b) {
+    const int begin = start_[at(lower_row_[at(b)])], end = start_[at(lower_row_[at(b)]) + 1];
+    double *block = value_.data() + 9 * at(lower_at_[at(b)]),
+           *mirror = value_.data() + 9 * at(upper_at_[at(b)]);
+    for (int j = 0; j < size; ++j) {
+      const int k = next[j];
+      if (end - begin == 3 && k + 3 <= beyond[j] && inner[k] == begin && inner[k + 2] == begin + 2) {
+        for (int i = 0; i < 3; ++i) block[3 * i + j] = mirror[3 * j + i] = value[k + i];
+        next[j] = k + 3;
+        continue;
+      }
+      for (; next[j] < beyond[j] && inner[next[j]] < end; ++next[j]) {
+        const int i = inner[next[j]] - begin;
+        block[3 * i + j] = mirror[3 * j + i] = value[next[j]];
+      }
+    }
+  }
 }
 
 void SymmetricProduct::build_rows(const ReducedSystem& system) {
@@ -37,10 +61,6 @@ void SymmetricProduct::build_rows(const ReducedSystem& system) {
   lower_block_columns(system, lower_start_, lower_row_);
   n_ = static_cast<int>(system.lower.rows());
   start_ = system.block_start;
-  block_of_.resize(at(n_));
-  for (int b = 0; b < n_blocks(); ++b) {
-    for (int i = start_[at(b)]; i < start_[at(b) + 1]; ++i) block_of_[at(i)] = b;
-  }
   row_start_.assign(at(n_blocks()) + 1, 0);
   for (int c = 0; c < n_blocks(); ++c) {
     for (int k = lower_start_[at(c)]; k < lower_start_[at(c) + 1]; ++k) {
@@ -50,35 +70,22 @@ void SymmetricProduct::build_rows(const ReducedSystem& system) {
   }
   for (int r = 0; r < n_blocks(); ++r) row_start_[at(r) + 1] += row_start_[at(r)];
   column_.resize(at(row_start_.back()));
+  lower_at_.resize(lower_row_.size());
+  upper_at_.resize(lower_row_.size());
   cursor_.assign(row_start_.begin(), row_start_.end() - 1);
   // Columns in ascending order: a row receives its blocks left of the diagonal first, all ascending.
   for (int c = 0; c < n_blocks(); ++c) {
     for (int k = lower_start_[at(c)]; k < lower_start_[at(c) + 1]; ++k) {
       const int r = lower_row_[at(k)];
+      lower_at_[at(k)] = upper_at_[at(k)] = cursor_[at(r)];
       column_[at(cursor_[at(r)]++)] = c;
-      if (r != c) column_[at(cursor_[at(c)]++)] = r;
+      if (r == c) continue;
+      upper_at_[at(k)] = cursor_[at(c)];
+      column_[at(cursor_[at(c)]++)] = r;
     }
   }
   value_.assign(9 * column_.size() + 1, 0.0);
   x_.assign(4 * at(n_blocks()), 0.0);
-  build_slots(system);
-}
-
-void SymmetricProduct::build_slots(const ReducedSystem& system) {
-  const int *outer = system.lower.outerIndexPtr(), *inner = system.lower.innerIndexPtr();
-  slot_.resize(2 * at(static_cast<int>(system.lower.nonZeros())));
-  parallel_items(n_, 512, [&](int j) {
-    const auto slot = [this](int i, int col) {
-      const int r = block_of_[at(i)], c = block_of_[at(col)];
-      const auto begin = column_.begin() + row_start_[at(r)], end = column_.begin() + row_start_[at(r) + 1];
-      const auto k = static_cast<std::uint32_t>(std::lower_bound(begin, end, c) - column_.begin());
-      return 9 * k + static_cast<std::uint32_t>(3 * (i - start_[at(r)]) + col - start_[at(c)]);
-    };
-    for (int k = outer[j]; k < outer[j + 1]; ++k) {
-      slot_[2 * at(k)] = slot(inner[k], j);
-      slot_[2 * at(k) + 1] = slot(j, inner[k]);
-    }
-  });
 }
 
 void SymmetricProduct::multiply(const VecXd& x, VecXd& y) const {
@@ -87,13 +94,13 @@ void SymmetricProduct::multiply(const VecXd& x, VecXd& y) const {
     for (int i = start_[at(b)]; i < start_[at(b) + 1]; ++i) x_[4 * at(b) + at(i - start_[at(b)])] = x[i];
   });
   parallel_items(n_blocks(), rows_a_task, [&](int r) {
-    Vec4d row0 = Vec4d::Zero(), row1 = row0, row2 = row0;  // the fourth sum is of no meaning
+    RowSum row0(0.0), row1 = row0, row2 = row0;  // the fourth sum is of no meaning
     for (int k = row_start_[at(r)]; k < row_start_[at(r) + 1]; ++k) {
-      const Vec4d v = FourAt(x_.data() + 4 * at(column_[at(k)]));
+      const RowSum v = load_lanes<4>(x_.data() + 4 * at(column_[at(k)]));
       const double* a = block(k);
-      row0 += FourAt(a).cwiseProduct(v);
-      row1 += FourAt(a + 3).cwiseProduct(v);
-      row2 += FourAt(a + 6).cwiseProduct(v);
+      row0 += load_lanes<4>(a) * v;
+      row1 += load_lanes<4>(a + 3) * v;
+      row2 += load_lanes<4>(a + 6) * v;
     }
     const double sums[] = {row0[0] + row0[1] + row0[2], row1[0] + row1[1] + row1[2],
                            row2[0] + row2[1] + row2[2]};

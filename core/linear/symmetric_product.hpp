@@ -4,7 +4,6 @@
 // times faster on one thread and as much slower on two, at 860,000 as fast.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/linear/block_system.hpp"
@@ -38,18 +37,18 @@ class SymmetricProduct {
 
  private:
   void build_rows(const ReducedSystem& system);
-  void build_slots(const ReducedSystem& system);
+  void take_column(const Eigen::SparseMatrix<double>& lower, int c);
   template <class F>
   void for_row(int row, const F& f) const;
 
   int n_ = 0;
   PatternKey key_;
   std::vector<int> start_, row_start_, column_;
-  std::vector<std::uint32_t> slot_;  // [2 nonzeros] where an entry and its mirror image are in value_
-  std::vector<double> value_;        // [9 blocks + 1]: the last block is read four numbers at a time too
-  mutable std::vector<double> x_;    // [4 n_blocks] 0 beyond the size of the vertex
-  // scratch of build_rows
-  std::vector<int> block_of_, lower_start_, lower_row_, cursor_;
+  std::vector<int> lower_start_, lower_row_;  // [n_blocks + 1] blocks of the lower triangle, column by column
+  std::vector<int> lower_at_, upper_at_;      // where such a block and its mirror image are in column_
+  std::vector<double> value_;      // [9 blocks + 1]: the last block is read four numbers at a time too
+  mutable std::vector<double> x_;  // [4 n_blocks] 0 beyond the size of the vertex
+  std::vector<int> cursor_;        // scratch of build_rows
 };
 
 }  // namespace bb

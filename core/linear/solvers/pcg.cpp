@@ -22,7 +22,7 @@ class Pcg final : public LinearSolver {
   void keep(Archive& archive) override { preconditioner_->keep(archive); }
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
   Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {
-    return examine_preconditioned(a, near, *preconditioner_, max_iterations_);
+    return examine_preconditioned(a, near, *preconditioner_, max_iterations_, product_);
   }
 
  private:
