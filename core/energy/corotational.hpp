@@ -6,7 +6,7 @@
 namespace bb {
 
 /// psi = mu sum (s-1)^2 + lambda/2 (sum (s-1))^2.
-/// Host-device: yes. Total. Cusp where two values add up to 0 (rotation undefined).
+/// Host-device: yes. Lanes: of triangles. Total. Cusp where two values add up to 0 (rotation undefined).
 struct Corotational {
   template <class T, int N>
   BB_HD static Density<T, N> eval(const Vec<T, N>& s, T lame_mu, T lame_lambda) {
@@ -25,7 +25,7 @@ struct Corotational {
         const T others = N == 3 ? e[3 - i - j] : T(0);
         const T force = T(2) * (lame_mu + lame_lambda) * (e[i] + e[j]) + T(2) * lame_lambda * others;
         out.flip[sigma_pair(i, j)] = T(2) * lame_mu;
-        out.twist[sigma_pair(i, j)] = sum > T(0) ? force / sum : T(0);
+        out.twist[sigma_pair(i, j)] = select(sum > T(0), force / sum, T(0));
       }
     }
     return out;

@@ -40,10 +40,13 @@ template <class T, int R, int C>
 BB_HD void add_mode(T eigenvalue, const Mat<T, R, C>& mode, Projection projection,
                     Mat<T, R * C, R * C>& hess) {
   const T projected = project_eigenvalue(eigenvalue, projection);
-  if (projected == T(0)) return;
+  const MaskOf<T> nothing = projected == T(0);
+  if (!any(!nothing)) return;
   for (int i = 0; i < R * C; ++i) {
     const T scaled = projected * mode.data()[i];
-    for (int j = 0; j <= i; ++j) hess(i, j) += scaled * mode.data()[j];
+    for (int j = 0; j <= i; ++j) {
+      hess(i, j) = select(nothing, hess(i, j), hess(i, j) + scaled * mode.data()[j]);
+    }
   }
 }
 
@@ -65,7 +68,7 @@ BB_HD Mat<T, R, C> scaled_axes(const Svd<T, R, C>& svd, const Vec<T, C>& d) {
 ///   twist    Q = [0 -1; 1 0]/sqrt 2 in (i, j)    (psi_i + psi_j)/(s_i + s_j)
 ///   3x2 only, out of plane: n v_k^T              psi_k/s_k, n = u_0 x u_1
 /// Where s_k = 0 exactly, psi_k/s_k is replaced by its limit psi_kk for a smooth density (psi_k = 0), by 0 at
-/// the top of a cusp. Host-device: yes. Total. Cost: R C rank-1 updates. Source: Smith, de Goes, Kim 2019
+/// the top of a cusp. Host-device: yes. Lanes: 3 x 2. Total. Cost: R C rank-1 updates. Source: Smith, de Goes, Kim 2019
 /// (Analytic Eigensystems for Isotropic Distortion Energies); Poya et al. 2023.
 template <class T, int R, int C>
 BB_HD DensityTerms<T, R, C> isotropic_terms(const Svd<T, R, C>& svd, const Density<T, C>& density,
@@ -81,7 +84,7 @@ BB_HD DensityTerms<T, R, C> isotropic_terms(const Svd<T, R, C>& svd, const Densi
   for (int k = 0; k < C; ++k) {
     add_mode<T, R, C>(values[k], scaled_axes<T, R, C>(svd, vectors.col(k)), projection, out.hess);
   }
-  const T inv_sqrt2 = T(0.70710678118654752440);
+  const T inv_sqrt2(static_cast<typename ScalarOf<T>::type>(0.70710678118654752440));
   for (int i = 0; i < C; ++i) {
     for (int j = i + 1; j < C; ++j) {
       const Mat<T, R, C> ij = svd.U.col(i) * svd.V.col(j).transpose();
@@ -96,7 +99,8 @@ BB_HD DensityTerms<T, R, C> isotropic_terms(const Svd<T, R, C>& svd, const Densi
     const Vec<T, 3> n = u0.cross(u1);
     for (int k = 0; k < C; ++k) {
       const T s = svd.sigma[k], dpsi = density.dpsi[k];
-      const T eigenvalue = s > T(0) ? dpsi / s : (dpsi < T(0) ? T(0) : density.d2psi(k, k));
+      const T at_zero = select(dpsi < T(0), T(0), density.d2psi(k, k));
+      const T eigenvalue = select(s > T(0), dpsi / s, at_zero);
       add_mode<T, R, C>(eigenvalue, n * svd.V.col(k).transpose(), projection, out.hess);
     }
   }

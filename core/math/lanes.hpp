@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "core/math/scale.hpp"
 #include "core/math/select.hpp"
@@ -55,6 +56,16 @@ struct Lanes {
   Lanes& operator*=(const Lanes& b) { return *this = *this * b; }
   Lanes& operator/=(const Lanes& b) { return *this = *this / b; }
 
+  /// std::fma, lane by lane.
+  friend Lanes fma(const Lanes& a, const Lanes& b, const Lanes& c) {
+#if defined(__AVX__) && defined(__FMA__)
+    if constexpr (std::is_same_v<T, double> && W == 4) return __builtin_ia32_vfmaddpd256(a.v, b.v, c.v);
+#endif
+    Lanes out;
+    for (int lane = 0; lane < W; ++lane) out.v[lane] = std::fma(a.v[lane], b.v[lane], c.v[lane]);
+    return out;
+  }
+
   friend Mask operator<(const Lanes& a, const Lanes& b) { return Mask(a.v < b.v); }
   friend Mask operator>(const Lanes& a, const Lanes& b) { return Mask(a.v > b.v); }
   friend Mask operator<=(const Lanes& a, const Lanes& b) { return Mask(a.v <= b.v); }
@@ -93,6 +104,9 @@ bool any(const LaneMask<T, W>& mask) {
 
 template <class T, int W>
 Lanes<T, W> sqrt(const Lanes<T, W>& a) {
+#if defined(__AVX__)
+  if constexpr (std::is_same_v<T, double> && W == 4) return __builtin_ia32_sqrtpd256(a.v);
+#endif
   Lanes<T, W> out;
   for (int lane = 0; lane < W; ++lane) out.v[lane] = std::sqrt(a.v[lane]);
   return out;

@@ -33,47 +33,53 @@ namespace detail {
 template <class T, int M, int N>
 BB_HD inline void orthogonalise_columns(Mat<T, M, N>& w, Mat<T, N, N>& v) {
   using std::abs, std::sqrt;
-  constexpr T eps = std::numeric_limits<T>::epsilon();
+  const T eps(std::numeric_limits<typename ScalarOf<T>::type>::epsilon());
   constexpr int max_sweeps = 20;  // 3 to 6 are usual; graded matrices need a few more
   v.setIdentity();
-  bool rotated = true;
-  for (int sweep = 0; sweep < max_sweeps && rotated; ++sweep) {
+  MaskOf<T> rotated = true;
+  for (int sweep = 0; sweep < max_sweeps && any(rotated); ++sweep) {
+    const MaskOf<T> going = rotated;
     rotated = false;
     for (int p = 0; p < N; ++p) {
       for (int q = p + 1; q < N; ++q) {
-        if (w.col(p).squaredNorm() < w.col(q).squaredNorm()) {  // a quarter turn: swaps, stays a rotation
-          rotate_columns(w, p, q, T(0), T(-1));
-          rotate_columns(v, p, q, T(0), T(-1));
-          rotated = true;  // pairs seen before in this sweep are others now
+        const MaskOf<T> swap = going && w.col(p).squaredNorm() < w.col(q).squaredNorm();
+        if (any(swap)) {  // a quarter turn: swaps, stays a rotation
+          rotate_columns(swap, w, p, q, T(0), T(-1));
+          rotate_columns(swap, v, p, q, T(0), T(-1));
+          rotated = rotated || swap;  // pairs seen before in this sweep are others now
         }
         const T pp = w.col(p).squaredNorm(), qq = w.col(q).squaredNorm(), pq = w.col(p).dot(w.col(q));
-        if (!(abs(pq) > eps * sqrt(pp) * sqrt(qq))) continue;
+        const MaskOf<T> turn = going && abs(pq) > eps * sqrt(pp) * sqrt(qq);
+        if (!any(turn)) continue;
         const JacobiRotation<T> r(pp, pq, qq);
-        rotate_columns(w, p, q, r.c, r.s);
-        rotate_columns(v, p, q, r.c, r.s);
-        rotated = true;
+        rotate_columns(turn, w, p, q, r.c, r.s);
+        rotate_columns(turn, v, p, q, r.c, r.s);
+        rotated = rotated || turn;
       }
     }
   }
 }
 
-/// A unit vector at a right angle to the unit vector u.
+/// A unit vector at a right angle to the unit vector u: beside the axis in which u is shortest, the first of these.
 template <class T>
 BB_HD inline Vec<T, 3> any_perpendicular(const Vec<T, 3>& u) {
-  using std::abs;
-  int least = 0;
-  for (int i = 1; i < 3; ++i) least = abs(u[i]) < abs(u[least]) ? i : least;
-  Vec<T, 3> axis = Vec<T, 3>::Zero();
-  axis[least] = 1;
-  return accurate_cross(u, axis).normalized();
+  using std::abs, std::sqrt;
+  const T size[] = {abs(u[0]), abs(u[1]), abs(u[2])};
+  const MaskOf<T> second = size[1] < size[0], third = size[2] < select(second, size[1], size[0]);
+  const Vec<T, 3> axis(select(second || third, T(0), T(1)), select(second && !third, T(1), T(0)),
+                       select(third, T(1), T(0)));
+  const Vec<T, 3> n = accurate_cross(u, axis);
+  const T length_sq = n.squaredNorm();
+  const Vec<T, 3> unit = n / sqrt(length_sq);
+  return select_entries(length_sq > T(0), unit, n);
 }
 
 /// w / |w|, or the fallback for a zero vector; length receives |w|.
 template <class T, int M>
 BB_HD inline Vec<T, M> direction_or(const Vec<T, M>& w, const Vec<T, M>& fallback, T& length) {
   length = w.norm();
-  if (!(length > 0)) return fallback;
-  return w / length;
+  const Vec<T, M> unit = w / length;
+  return select_entries(length > T(0), unit, fallback);
 }
 
 }  // namespace detail
@@ -101,7 +107,7 @@ BB_HD inline Svd22<T> svd_2x2(const Mat<T, 2, 2>& F) {
 
 /// U 3x2 with orthonormal columns, sigma_0 >= sigma_1 >= 0, V 2x2 with det V = 1.
 /// Both singular values to a few eps of themselves; factors orthonormal for every finite F, zero included.
-/// Errors: none; a non-finite F gives non-finite factors.   Host-device.
+/// Errors: none; a non-finite F gives non-finite factors.   Host-device, lanes.
 template <class T>
 BB_HD inline Svd32<T> svd_3x2(const Mat<T, 3, 2>& F) {
   const T scale = power_of_two_scale(F);
@@ -115,8 +121,8 @@ BB_HD inline Svd32<T> svd_3x2(const Mat<T, 3, 2>& F) {
   out.U.col(0) = u0;
   out.U.col(1) = detail::direction_or(second, detail::any_perpendicular(u0), s1);
   const Vec<T, 3> f0 = unit.col(0), f1 = unit.col(1);
-  s1 = s0 > 0 ? accurate_cross(f0, f1).norm() / s0 : T(0);  // the area is the product of both
-  out.sigma << s0 * scale, (s1 > s0 ? s0 : s1) * scale;
+  s1 = select(s0 > T(0), accurate_cross(f0, f1).norm() / s0, T(0));  // the area is the product of both
+  out.sigma << s0 * scale, select(s1 > s0, s0, s1) * scale;
   return out;
 }
 

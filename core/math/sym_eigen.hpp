@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "core/math/scale.hpp"
+#include "core/math/select.hpp"
 #include "core/math/tridiagonal_eigen.hpp"
 #include "core/math/types.hpp"
 
@@ -20,37 +21,51 @@ struct JacobiRotation {
   T c, s, t;
   BB_HD JacobiRotation(T app, T apq, T aqq) {
     using std::abs, std::sqrt;
-    const T tau = (aqq - app) / (2 * apq);  // infinite when apq is negligible: then t = 0
-    t = (tau < 0 ? T(-1) : T(1)) / (abs(tau) + sqrt(1 + tau * tau));
-    c = 1 / sqrt(1 + t * t);
+    const T tau = (aqq - app) / (T(2) * apq);  // infinite when apq is negligible: then t = 0
+    t = select(tau < T(0), T(-1), T(1)) / (abs(tau) + sqrt(T(1) + tau * tau));
+    c = T(1) / sqrt(T(1) + t * t);
     s = t * c;
   }
 };
 
 namespace detail {
 
-/// Columns p and q of m become c p - s q and s p + c q.
+/// Columns p and q of m become c p - s q and s p + c q where the mask holds.
 template <class T, int R, int C>
-BB_HD inline void rotate_columns(Mat<T, R, C>& m, int p, int q, T c, T s) {
+BB_HD inline void rotate_columns(const MaskOf<T>& turn, Mat<T, R, C>& m, int p, int q, T c, T s) {
   for (int i = 0; i < R; ++i) {
     const T mp = m(i, p), mq = m(i, q);
-    m(i, p) = c * mp - s * mq;
-    m(i, q) = s * mp + c * mq;
+    m(i, p) = select(turn, c * mp - s * mq, mp);
+    m(i, q) = select(turn, s * mp + c * mq, mq);
   }
 }
 
-/// One rotation of the symmetric a that makes a(p, q) zero.
+/// One rotation of the symmetric a that makes a(p, q) zero, where the mask holds.
 template <class T, int N>
-BB_HD inline void rotate_symmetric(Mat<T, N, N>& a, int p, int q, const JacobiRotation<T>& r) {
-  a(p, p) -= r.t * a(p, q);
-  a(q, q) += r.t * a(p, q);
-  a(p, q) = a(q, p) = 0;
+BB_HD inline void rotate_symmetric(const MaskOf<T>& turn, Mat<T, N, N>& a, int p, int q,
+                                   const JacobiRotation<T>& r) {
+  const T apq = a(p, q);
+  a(p, p) = select(turn, a(p, p) - r.t * apq, a(p, p));
+  a(q, q) = select(turn, a(q, q) + r.t * apq, a(q, q));
+  a(p, q) = a(q, p) = select(turn, T(0), apq);
   for (int i = 0; i < N; ++i) {
     if (i == p || i == q) continue;
     const T aip = a(i, p), aiq = a(i, q);
-    a(i, p) = a(p, i) = r.c * aip - r.s * aiq;
-    a(i, q) = a(q, i) = r.s * aip + r.c * aiq;
+    a(i, p) = a(p, i) = select(turn, r.c * aip - r.s * aiq, aip);
+    a(i, q) = a(q, i) = select(turn, r.s * aip + r.c * aiq, aiq);
   }
+}
+
+/// Of two, lanes too.
+template <class T>
+BB_HD inline void sort_two(Vec<T, 2>& values, Mat<T, 2, 2>& vectors) {
+  const MaskOf<T> swap = values[1] < values[0];
+  const Vec<T, 2> low = vectors.col(0), high = vectors.col(1);
+  const T first = values[0];
+  values[0] = select(swap, values[1], first);
+  values[1] = select(swap, first, values[1]);
+  vectors.col(0) = select_entries(swap, high, low);
+  vectors.col(1) = select_entries(swap, low, high);
 }
 
 template <class T, int N>
@@ -77,23 +92,27 @@ BB_HD inline void sort_ascending(Vec<T, N>& values, Mat<T, N, N>& vectors) {
 template <class T, int N>
 BB_HD inline void jacobi_eigen(Mat<T, N, N>& a, Mat<T, N, N>& vectors) {
   using std::abs;
-  constexpr T eps = std::numeric_limits<T>::epsilon();
+  using Scalar = typename ScalarOf<T>::type;
+  constexpr Scalar eps = std::numeric_limits<Scalar>::epsilon();
   constexpr int max_sweeps = 16;  // convergence is quadratic
   // An entry is nothing when it is below rounding of both of its diagonal entries, or of rounding itself.
-  constexpr T relative_sq = eps * eps / 16;
-  constexpr T floor_sq = relative_sq * eps;
+  constexpr Scalar relative_sq = eps * eps / 16;
+  constexpr Scalar floor_sq = relative_sq * eps;
   vectors.setIdentity();
-  bool rotated = true;
-  for (int sweep = 0; sweep < max_sweeps && rotated; ++sweep) {
+  MaskOf<T> rotated = true;
+  for (int sweep = 0; sweep < max_sweeps && any(rotated); ++sweep) {
+    const MaskOf<T> going = rotated;
     rotated = false;
     for (int p = 0; p < N; ++p) {
       for (int q = p + 1; q < N; ++q) {
         const T apq_sq = a(p, q) * a(p, q);
-        if (apq_sq <= floor_sq || apq_sq <= relative_sq * abs(a(p, p) * a(q, q))) continue;
+        const MaskOf<T> done = apq_sq <= T(floor_sq) || apq_sq <= T(relative_sq) * abs(a(p, p) * a(q, q));
+        const MaskOf<T> turn = going && !done;
+        if (!any(turn)) continue;
         const JacobiRotation<T> r(a(p, p), a(p, q), a(q, q));
-        rotate_symmetric(a, p, q, r);
-        rotate_columns(vectors, p, q, r.c, r.s);
-        rotated = true;
+        rotate_symmetric(turn, a, p, q, r);
+        rotate_columns(turn, vectors, p, q, r.c, r.s);
+        rotated = rotated || turn;
       }
     }
   }
@@ -101,13 +120,13 @@ BB_HD inline void jacobi_eigen(Mat<T, N, N>& a, Mat<T, N, N>& vectors) {
 
 }  // namespace detail
 
-/// A = vectors diag(values) vectors^T of the symmetric part of A, the eigenvalues in no order.
+/// A = vectors diag(values) vectors^T of the symmetric part of A, the eigenvalues in no order. Of lanes never by Jacobi.
 /// @param values  error a few eps of the largest |A_ij|; with N <= 4 of the value itself when A is well
 /// scaled
 /// @param vectors orthonormal columns (det +-1)
 /// Errors: none for finite A; a non-finite A gives non-finite values.   Host-device; lanes too.
 /// Cost: O(N^3); no allocation.
-template <class T, int N>
+template <class T, int N, bool by_jacobi = N <= 4 && std::is_floating_point_v<T>>
 BB_HD inline void eigen_unsorted(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
   const T unit = power_of_two_scale(A);
   const T half = T(0.5) / unit;  // exact
@@ -115,7 +134,7 @@ BB_HD inline void eigen_unsorted(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T
   for (int j = 0; j < N; ++j) {
     for (int i = j; i < N; ++i) a(i, j) = a(j, i) = A(i, j) * half + A(j, i) * half;
   }
-  if constexpr (N <= 4 && std::is_floating_point_v<T>) {
+  if constexpr (by_jacobi) {
     detail::jacobi_eigen<T, N>(a, vectors);
     values = a.diagonal();
   } else {
@@ -124,11 +143,15 @@ BB_HD inline void eigen_unsorted(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T
   values *= unit;
 }
 
-/// eigen_unsorted with the eigenvalues ascending. One number, no lanes.
+/// eigen_unsorted with the eigenvalues ascending. Lanes, with the bits of one number: N = 2 alone.
 template <class T, int N>
 BB_HD inline void sym_eigen(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
-  eigen_unsorted<T, N>(A, values, vectors);
-  detail::sort_ascending(values, vectors);
+  eigen_unsorted<T, N, N <= 4>(A, values, vectors);
+  if constexpr (N == 2) {
+    detail::sort_two(values, vectors);
+  } else {
+    detail::sort_ascending(values, vectors);
+  }
 }
 
 }  // namespace bb

@@ -10,10 +10,12 @@
 // where there is no Hessian, linear = true; where elements are all vertices, in their order, every_vertex = true;
 // where a host takes several abreast, with the bits of terms(),
 //   lanes, void terms_abreast<T>(const double* x, Index first, Projection, TermsAbreast<T, lanes, width>& out)
+//   and, where it has that too, void values_abreast<T>(const double* x, Index first, T (&energy)[lanes]), J
 #pragma once
 
 #include <cstring>
 
+#include "core/energy/element_lanes.hpp"
 #include "core/energy/families/pieces.hpp"
 #include "core/energy/terms.hpp"
 #include "core/math/precision.hpp"
@@ -66,6 +68,10 @@ concept HasChange = requires(const Elements& of, const double* x) {
   of.change(x, x, exec::Index{});
 };
 template <class Elements>
+concept HasLaneValues = requires(const Elements& of, const double* x, double (&energy)[4]) {
+  of.template values_abreast<double>(x, exec::Index{}, energy);
+};
+template <class Elements>
 concept IsLinear = requires {
   requires Elements::linear;
 };
@@ -90,6 +96,12 @@ struct ElementValues {
     } else {
       energy[e] = elements.template value<T>(x, e);
     }
+  }
+  static constexpr int lanes = lanes_of<Elements>();
+  void abreast(exec::Index first) const requires HasLaneValues<Elements> {
+    T of_four[lanes];
+    elements.values_abreast(x, first, of_four);
+    for (int lane = 0; lane < lanes; ++lane) energy[first + lane] = of_four[lane];
   }
 };
 
@@ -122,14 +134,11 @@ struct ElementLocalTerms {
   void abreast(exec::Index first) const requires(lanes > 1) {
     TermsAbreast<T, lanes, Elements::width> terms;
     elements.terms_abreast(x, first, projection, terms);
-    for (int lane = 0; lane < lanes; ++lane) {
-      const exec::Index e = first + lane;
-      if (parts.values) {
-        energy[e] = terms.energy[lane];
-        for (int c = 0; c < size; ++c) grad[size * e + c] = terms.grad[c][lane];
-      }
-      for (exec::Index k = 0; parts.hessians && k < numbers; ++k) hess[numbers * e + k] = terms.hess[k][lane];
+    if (parts.values) {
+      for (int lane = 0; lane < lanes; ++lane) energy[first + lane] = terms.energy[lane];
+      store_by_element(terms.grad, size, size, grad + size * first);
     }
+    if (parts.hessians) store_by_element(terms.hess, numbers, numbers, hess + numbers * first);
   }
 
  private:

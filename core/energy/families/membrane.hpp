@@ -6,6 +6,7 @@
 
 #include "core/energy/families/element_kernels.hpp"
 #include "core/energy/families/rest_kernels.hpp"
+#include "core/energy/membrane_lanes.hpp"
 #include "core/energy/membrane_list.hpp"
 #include "core/energy/membrane_rest.hpp"
 
@@ -75,8 +76,35 @@ struct Membrane : ElementVertices<3> {
                                          static_cast<T>(lame_lambda[e]));
   }
 };
+/// Models without lanes (membrane_lanes.hpp) are taken one by one.
 template <class Model>
 struct SpaceMembrane : Membrane<Model, 3> {};
+template <>
+struct SpaceMembrane<membrane::corotational> : Membrane<membrane::corotational, 3> {
+  static constexpr int lanes = membrane_lanes;
+  template <class T>
+  void terms_abreast(const double* x, exec::Index first, Projection projection,
+                     TermsAbreast<T, lanes, 3>& out) const {
+    corotational_terms_abreast(triangles<T>(x, first), projection, out);
+  }
+  template <class T>
+  void values_abreast(const double* x, exec::Index first, T (&energy)[lanes]) const {
+    corotational_values_abreast(triangles<T>(x, first), energy);
+  }
+
+ private:
+  template <class T>
+  TrianglesAbreast<T> triangles(const double* x, exec::Index first) const {
+    TrianglesAbreast<T> out;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const exec::Index e = first + lane;
+      Vec<T, 3> p[3];
+      points(x, e, p);
+      out.set(lane, p, rest.at<T>(e, n), static_cast<T>(lame_mu[e]), static_cast<T>(lame_lambda[e]));
+    }
+    return out;
+  }
+};
 template <class Model>
 struct PlanarMembrane : Membrane<Model, 2> {};
 
