@@ -2,6 +2,7 @@
 // one cache line, from which a time is proven up to which two primitives cannot meet.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 
 #include "core/contact/float_rounding.hpp"
@@ -18,25 +19,38 @@ struct alignas(64) MotionBox {
   Four slowest, fastest;  // m per unit of time, per axis
 };
 
+namespace detail {
+
+using FourDoubles = VectorOf<double, 4>::type;
+
+/// float_below() and float_above(), four abreast.
+inline MotionBox::Four floats_below(const FourDoubles& x) {
+  const FourDoubles size = x < 0 ? -x : x;
+  return __builtin_convertvector(x - (size * 0x1p-23 + 0x1p-140), MotionBox::Four);
+}
+inline MotionBox::Four floats_above(const FourDoubles& x) { return -floats_below(-x); }
+
+inline FourDoubles point_of(const PositionsView& x, int vertex) {
+  const double* p = x.data() + 3 * static_cast<std::ptrdiff_t>(vertex);
+  return FourDoubles{p[0], p[1], p[2], 0.0};
+}
+
+}  // namespace detail
+
 /// Box of the points that `corners` numbers, every one of them surrounded by `reach` (m).
 template <class Corners>
 MotionBox motion_box(const Corners& corners, double reach, const PositionsView& x0, const PositionsView& x1) {
   constexpr double inf = std::numeric_limits<double>::infinity();
-  Vec3d lo = Vec3d::Constant(inf), hi = -lo, slowest = lo, fastest = hi;
+  detail::FourDoubles lo = inf - detail::FourDoubles{}, hi = -lo, slowest = lo, fastest = hi;
   for (const int v : corners) {
-    const Vec3d x = x0.col(v), dx = x1.col(v) - x;
-    lo = lo.cwiseMin(x);
-    hi = hi.cwiseMax(x);
-    slowest = slowest.cwiseMin(dx);
-    fastest = fastest.cwiseMax(dx);
+    const detail::FourDoubles x = detail::point_of(x0, v), dx = detail::point_of(x1, v) - x;
+    lo = x < lo ? x : lo;
+    hi = hi < x ? x : hi;
+    slowest = dx < slowest ? dx : slowest;
+    fastest = fastest < dx ? dx : fastest;
   }
-  MotionBox box{};
-  for (int c = 0; c < 3; ++c) {
-    box.lo[c] = float_below(lo[c] - reach);
-    box.hi[c] = float_above(hi[c] + reach);
-    box.slowest[c] = float_below(slowest[c]);
-    box.fastest[c] = float_above(fastest[c]);
-  }
+  MotionBox box{detail::floats_below(lo - reach), detail::floats_above(hi + reach),
+                detail::floats_below(slowest), detail::floats_above(fastest)};
   box.lo[3] = 1;
   box.hi[3] = 2;
   return box;
