@@ -20,6 +20,10 @@ COLOURS = {
 MARKS = "osD^vP<>Xh*"
 
 
+def _key(axis, handles: list, labels: list[str]) -> None:
+    axis.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, frameon=False)
+
+
 def _by_cause(axis, states: list[dict]) -> None:
     for place, state in enumerate(states):
         left = 0
@@ -28,7 +32,7 @@ def _by_cause(axis, states: list[dict]) -> None:
             left += count
     used = [c for c in COLOURS if any(trial_of(s, OWN)["causes"][c] for s in states)]
     handles = [plt.Rectangle((0, 0), 1, 1, color=COLOURS[cause]) for cause in used]
-    axis.legend(handles, ["Armijo" if cause == "armijo" else cause for cause in used], frameon=False)
+    _key(axis, handles, ["Armijo" if cause == "armijo" else cause for cause in used])
     axis.set(xlabel=f"iterations of line_search, {OWN}, by cause")
 
 
@@ -44,17 +48,18 @@ def _by_rule(axis, states: list[dict], rules: list[str]) -> None:
                 trial["iterations"], place, MARKS[k % len(MARKS)], color=colour, mfc=face, ms=4, label=label
             )
     axis.set(xscale="log", xlabel="iterations by Hessian rule (hollow: not converged)")
-    axis.legend(frameon=False)
+    _key(axis, *axis.get_legend_handles_labels())
 
 
 def paint(record: dict, path: Path) -> None:
     states = record["states"]
     figure, axes = plt.subplots(
-        1, 2, figsize=(WIDE_IN, 2 + 0.2 * len(states)), layout="constrained", sharey=True, squeeze=False
+        1, 2, figsize=(WIDE_IN, 1.5 + 0.18 * len(states)), layout="constrained", sharey=True, squeeze=False
     )
     _by_cause(axes[0, 0], states)
     _by_rule(axes[0, 1], states, hessians(record))
     axes[0, 0].set_yticks(range(len(states)), [state["name"] for state in states])
-    axes[0, 0].invert_yaxis()
+    axes[0, 0].set(ylim=(len(states) - 0.5, -0.5))
+    axes[0, 0].set_axisbelow(True)
     write_figure(figure, path, dpi=160)
     plt.close(figure)

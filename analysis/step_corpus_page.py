@@ -32,8 +32,9 @@ thousandth of the run's tolerance, whose end is the minimum A. A trial that conv
 tolerances from all known minima is continued to a thousandth of the tolerance, and its end is the next
 letter. *To tol* counts iterations until the true error, the largest coordinate of x - x_min, was first
 below the tolerance; `-`: it never was. Step solvers other than `line_search` have their own Hessian and
-settings; multipliers begin at 0, and those that need them minimise another function, so that few of them end
-near a letter. `accumulated_toi` may end its step earlier in time than asked, which counts as an error here.
+settings; multipliers begin at 0, `xpbd` and `projection` sweep and have no iterations, and solvers with
+multipliers minimise another function, so that few of them end near a letter. `accumulated_toi` may end its
+step earlier in time than asked, which counts as an error here.
 
 Why an iteration was short or many (one cause each, so that they add up): *full*: the whole direction of the
 first matrix that the Hessian rule made; *indefinite*: the whole direction of a regularised matrix, since
@@ -66,12 +67,15 @@ def _count(value: int | None) -> str:
     return "-" if value is None else str(value)
 
 
-def _cell(trial: dict) -> str:
-    """Iterations, those to the tolerance, and the minimum where it is another one than A."""
+def _cell(state: dict, trial: dict) -> str:
+    """Iterations, those to the tolerance, and where it ended unless that is A."""
     if trial["status"] != "converged":
         return f"{trial['iterations']}, {trial['status'].replace('_', ' ')}"
-    other = "" if trial["minimum"] == "A" else f" {trial['minimum'] or 'no minimum'}"
-    return f"{trial['iterations']} ({_count(trial['iterations_to_tolerance'])}){other}"
+    counts = f"{trial['iterations']} ({_count(trial['iterations_to_tolerance'])})"
+    if trial["minimum"] == "A" or trial["error_m"] is None:
+        return counts
+    far = f"{trial['error_m'] / state['tolerance_m']:.2g} tolerances from A"
+    return f"{counts} {trial['minimum'] or far}"
 
 
 def _states(record: dict) -> list[str]:
@@ -95,7 +99,7 @@ def _states(record: dict) -> list[str]:
 
 def _rules(record: dict) -> list[str]:
     rules = hessians(record)
-    rows = [[f"`{s['name']}`", *(_cell(trial_of(s, rule)) for rule in rules)] for s in record["states"]]
+    rows = [[f"`{s['name']}`", *(_cell(s, trial_of(s, rule)) for rule in rules)] for s in record["states"]]
     return markdown(["state", *rules], rows)
 
 
@@ -188,11 +192,11 @@ def _refusals(record: dict) -> list[str]:
 def page(record: dict) -> str:
     states = record["states"]
     taken = [t for s in states for t in s["trials"] if "refused" not in t]
-    seconds = sum(t["seconds"] for t in taken)
+    minutes = sum(s["seconds"] for s in states) / 60
     parts = [
         HEAD,
-        f"{len(states)} states, {len(taken)} trials, {seconds / 60:.1f} minutes of steps on one core"
-        f" ({record['cpu']}); references and other minima come on top.",
+        f"{len(states)} states, {len(taken)} trials, {minutes:.1f} minutes of one processor with the"
+        f" references ({record['cpu']}).",
         "\n## States\n",
         *_states(record),
         "\n## Hessian rules of line_search\n",

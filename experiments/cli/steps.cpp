@@ -124,8 +124,11 @@ Action verb::steps(CLI::App& app) {
       ->allow_extra_args(false);
   app.add_option("--keep", verb->keep,
                  "keep the state before the step of --at as STEM.json and STEM.state, and take no step");
-  app.add_option("--corpus", verb->corpus,
-                 "take the states of a folder, as results/steps, by every step solver and Hessian");
+  app.add_option(
+         "--corpus", verb->corpus,
+         "take the states of a folder by every step solver and Hessian (without a value: results/steps)")
+      ->expected(0, 1)
+      ->default_str("results/steps");
   app.add_option("--only", verb->only, "of --corpus: states by name, with commas between")
       ->delimiter(',')
       ->allow_extra_args(false);

@@ -93,6 +93,7 @@ void find_minimum(const StepSetting& setting, const std::string& archive, const 
   StepVariant fine = variant;
   fine.finer = reference_finer, fine.keeps_states = false;
   TakenStep end = take_step(setting, archive, fine);
+  if (minima.nearest(end.end) < minima.size()) return;  // the trial had stopped too early
   if (end.report.status == StepStatus::converged &&
       apart(end.end, taken.end) <= same_minimum * taken.tolerance_m)
     minima.add(std::move(end.end));
@@ -161,6 +162,7 @@ std::vector<CorpusTrial> trials_of() {
 CorpusState take_state(const StepState& state, const RunOptions& options,
                        const std::function<void(const std::string&)>& tell) {
   const auto threads = threads_of(state.config);
+  const double start = processor_seconds();
   CorpusState out;
   out.name = state.name, out.hard_for = state.hard_for, out.split = state.split;
   out.formulation = label_of(state.config.formulation);
@@ -185,6 +187,7 @@ CorpusState take_state(const StepState& state, const RunOptions& options,
       trial.refused = refusal_of(error);
     }
   }
+  out.seconds = processor_seconds() - start;
   return out;
 }
 

@@ -28,7 +28,7 @@ struct CorpusTrial {
   std::array<int, std::size(all_iteration_causes)>
       causes{};  // iterations by cause; they add up to `iterations`
   WorkCounts work;
-  double seconds = 0;
+  double seconds = 0;      // of the processor
   std::string state_hash;  // sha256 of the end positions
 };
 
@@ -39,6 +39,7 @@ struct CorpusState {
   double tolerance_m = 0;
   StepStatus reference = StepStatus::converged;  // how line_search ended at a thousandth of the tolerance
   int reference_iterations = 0;
+  double seconds = 0;  // of all trials, the reference and other minima
   std::vector<CorpusTrial> trials;
 };
 

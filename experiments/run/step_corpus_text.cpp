@@ -52,6 +52,7 @@ json json_of(const CorpusState& s) {
           {"tolerance_m", s.tolerance_m},
           {"reference_status", to_string(s.reference)},
           {"reference_iterations", s.reference_iterations},
+          {"seconds", s.seconds},
           {"trials", std::move(trials)}};
 }
 

@@ -42,13 +42,16 @@ struct StepVariant {
 struct TakenStep {
   StepReport report;
   double tolerance_m = 0;  // h tol_velocity
-  double seconds = 0;
+  double seconds = 0;      // of the processor
   bool has_memory =
       true;  // false: what terms and policies remember of the run is no memory of this step solver
   std::vector<IterationReport> iterations;
   std::vector<Positions> states;  // after each of them, where asked for
   Positions end;
 };
+
+/// That this process has used so far: other processes of the machine do not count.
+double processor_seconds();
 
 /// null where there is none.
 nlohmann::ordered_json json_of(const Number& number);
