@@ -26,9 +26,11 @@ BB_HD T hinge_angle(const Vec<T, 3> (&x)[4]) {
 /// theta - rest_angle brought to (-pi, pi]. Unchanged when already there.
 template <class T>
 BB_HD T hinge_deviation(T angle, T rest_angle) {
-  using std::remainder;
-  const T pi = T(3.14159265358979323846);
-  const T deviation = remainder(angle - rest_angle, T(2) * pi);
+  using std::abs, std::remainder;
+  const T pi = T(3.14159265358979323846), difference = angle - rest_angle;
+  if (abs(difference) < pi)
+    return difference;  // which remainder() gives back bit for bit, after a long division
+  const T deviation = remainder(difference, T(2) * pi);
   return deviation > -pi ? deviation : deviation + T(2) * pi;
 }
 

@@ -13,8 +13,8 @@ double ConjugateGradients::true_residual() {
 
 // x and r after a step along p, and the next p where there is a next iteration.
 CgState ConjugateGradients::iterate(const CgState& now, double alpha) {
-  *x_ += alpha * p_;
-  r_ -= alpha * ap_;
+  add_scaled(alpha, p_, *x_);
+  add_scaled(-alpha, ap_, r_);
   CgState after = cg_take_residual(now, dot_(r_, r_), goal_.target);
   if (after.iteration > now.iteration) alpha_.push_back(alpha);
   if (!after.running()) return after;
@@ -22,7 +22,7 @@ CgState ConjugateGradients::iterate(const CgState& now, double alpha) {
   after = cg_go_on(after, dot_(r_, z_), max_iterations_);
   if (!after.running()) return after;
   beta_.push_back(after.rz / now.rz);
-  p_ = z_ + beta_.back() * p_;
+  scale_and_add(beta_.back(), z_, p_);
   return after;
 }
 

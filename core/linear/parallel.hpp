@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/math/lanes.hpp"
 #include "core/math/parallel.hpp"
 #include "core/math/types.hpp"
 
@@ -43,5 +44,23 @@ class ChunkedDot {
 
   std::vector<double> partial_;
 };
+
+/// y += a x, number by number, and p = z + b p; four abreast.
+inline void add_scaled(double a, const VecXd& x, VecXd& y) {
+  const std::size_t n = static_cast<std::size_t>(y.size()), whole = n - n % 4;
+  const Lanes<double, 4> factor(a);
+  for (std::size_t i = 0; i < whole; i += 4) {
+    store_lanes(load_lanes<4>(y.data() + i) + factor * load_lanes<4>(x.data() + i), y.data() + i);
+  }
+  for (std::size_t i = whole; i < n; ++i) y.data()[i] += a * x.data()[i];
+}
+inline void scale_and_add(double b, const VecXd& z, VecXd& p) {
+  const std::size_t n = static_cast<std::size_t>(p.size()), whole = n - n % 4;
+  const Lanes<double, 4> factor(b);
+  for (std::size_t i = 0; i < whole; i += 4) {
+    store_lanes(load_lanes<4>(z.data() + i) + factor * load_lanes<4>(p.data() + i), p.data() + i);
+  }
+  for (std::size_t i = whole; i < n; ++i) p.data()[i] = z.data()[i] + b * p.data()[i];
+}
 
 }  // namespace bb

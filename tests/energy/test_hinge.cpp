@@ -154,6 +154,23 @@ TEST(Hinge, FloatAgreesWithDouble) {
   }
 }
 
+/// Within half a turn, where most hinges are, and beyond it.
+template <class T>
+void compare_deviations() {
+  const T half_turn = T(pi);
+  int beyond = 0;
+  for (int i = -900; i <= 900; ++i) {
+    const T rest = T(0.4), angle = T(i) / T(100) * half_turn / T(3) + rest,
+            turns = std::remainder(angle - rest, T(2) * half_turn);
+    EXPECT_EQ(hinge_deviation<T>(angle, rest), turns > -half_turn ? turns : turns + T(2) * half_turn) << i;
+    beyond += std::abs(angle - rest) > half_turn;
+  }
+  EXPECT_GT(beyond, 100);
+  EXPECT_LT(beyond, 1700);
+}
+
+TEST(Hinge, DeviationIsWhatIsLeftOfWholeTurns) { compare_deviations<double>(), compare_deviations<float>(); }
+
 /// Bits: what kernels on the host and the CPU path take four of.
 template <class T>
 void compare_abreast() {

@@ -64,5 +64,18 @@ TEST(ChunkedDot, AddsNumberByNumberInChunksWhateverTheThreads) {
   }
 }
 
+TEST(Updates, HaveTheBitsOfNumberByNumber) {
+  for (const Eigen::Index n : {0, 1, 3, 4, 5, 1003}) {
+    const VecXd x = random_vector(n, 1), start = random_vector(n, 2);
+    VecXd y = start, p = start;
+    add_scaled(-0.37, x, y);
+    scale_and_add(1.91, x, p);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      EXPECT_EQ(y[i], start[i] - 0.37 * x[i]);
+      EXPECT_EQ(p[i], x[i] + 1.91 * start[i]);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bb::block_scaling_test
