@@ -137,7 +137,7 @@ MotionHashes read_motion(const StepSetting& setting, const std::string& bytes) {
 }
 
 json read_document(const fs::path& file) {
-  const json document = json::parse(read_input_file(file.string(), state_file), nullptr, false);
+  json document = json::parse(read_input_file(file.string(), state_file), nullptr, false);
   if (!document.is_object()) refuse(file, "no JSON object", "a file that ./bench steps --keep wrote");
   const json schema = document.value("schema", json());
   if (schema != step_state_schema) {
