@@ -1,5 +1,5 @@
-"""One record of what experiments/gpu_evidence.sh saw on a card, from its raw files:
-results/gpu/<card>-<day>.json.
+"""One record of what experiments/gpu_evidence.sh saw on a card, from its raw files, or from the archives of a
+lease (--lease): results/gpu/<card>-<day>.json.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ import datetime
 import json
 import re
 import sys
+import tarfile
+import tempfile
 from pathlib import Path
 
 from . import input_file
@@ -30,6 +32,7 @@ SCENES = (
     "dense_8m",
 )
 RECORDS = ROOT / "results/gpu"
+RUN_SCHEMA = ROOT / "configs/schema/run.schema.json"
 # Kernels of the graph of iterations, which return at once when the solve is over.
 OF_SOLVE = (
     "MultiplyDot",
@@ -111,10 +114,42 @@ def scene_numbers(folder: Path) -> dict | None:
         "newton_ms": per(wall, newton),
         "pcg_ms": per(solve, pcg),
         "end_check_s": summary["time"].get("end_check_s") if wall is not None else None,
+        **_phases(run["steps"]),
         "linear_solver": run["labels"]["linear_solver"],
         "run_id": run["ids"]["run_id"],
         "state_hash": summary.get("state_hash"),
     }
+
+
+def _phases(steps: list[dict]) -> dict:
+    """Every phase in ms a Newton iteration, of the steps after the first one, which warms up; of that where
+    it is alone. Nothing of a run that took no times. A record leaves out what took no time.
+    """
+    timed = [step for step in steps if step.get("time")]
+    counted = timed[1:] or timed
+    newton = sum(step["newton_iterations"] for step in counted)
+    names = read_object(RUN_SCHEMA)["$defs"]["PhaseTimes"]["properties"] if newton > 0 else ()
+    return {
+        "first_step_s": timed[0]["wall_s"] if timed else None,
+        "phases_ms": {
+            name: 1000.0 * sum(step["time"].get(name, 0.0) for step in counted) / newton for name in names
+        },
+    }
+
+
+def stages_of(folder: Path) -> list[dict]:
+    """The stages of a lease in their order; empty where there was none."""
+    path = folder / "stages.tsv"
+    stages = []
+    for line in input_file.read_text(path).splitlines() if path.exists() else []:
+        try:
+            name, code, seconds, limit = line.split("\t")
+            stages.append(
+                {"name": name, "exit_code": int(code), "seconds": int(seconds), "limit_s": int(limit)}
+            )
+        except ValueError:
+            raise UserError(f"{path}: not a stage: {line!r}") from None
+    return stages
 
 
 def same_runs(folder: Path) -> list[dict]:
@@ -147,19 +182,36 @@ def functor(kernel: str) -> str:
     return found.group(1) if found else re.sub(r"[<(].*", "", kernel.removeprefix("void "))
 
 
+def launches_of(path: Path) -> dict[str, dict[str, dict[str, float]]]:
+    """functor -> number of a launch -> metrics, of Nsight Compute's table; empty where it was not there or
+    had no rights.
+    """
+    lines = input_file.read_text(path).splitlines() if path.exists() else []
+    start = next((i for i, line in enumerate(lines) if line.startswith('"ID"')), None)
+    launches: dict[str, dict[str, dict[str, float]]] = {}
+    for row in csv.DictReader(lines[start:]) if start is not None else []:
+        if row.get("Metric Name"):
+            of_launch = launches.setdefault(functor(row["Kernel Name"]), {}).setdefault(row["ID"], {})
+            of_launch[row["Metric Name"]] = float(row["Metric Value"].replace(",", ""))
+    return launches
+
+
+def counters_of(folder: Path) -> list[dict]:
+    """Hardware counters of one launch of each kernel, in a lease; longest first."""
+    rows = [
+        {"name": name, **metrics}
+        for name, of in launches_of(folder / "logs/counters.out").items()
+        for metrics in of.values()
+    ]
+    return sorted(rows, key=lambda row: (-row.get("gpu__time_duration.sum", 0.0), row["name"]))
+
+
 def measured_kernels(folder: Path) -> dict[str, dict]:
     """functor -> launches, seconds, bytes, of Nsight Compute's table; empty where it was not there or had no
     rights. `idle` of the launches did nothing: those of conjugate gradients that a graph makes after the last
     iteration. Their seconds and bytes are not counted.
     """
-    path = folder / "logs/kernels.out"
-    lines = input_file.read_text(path).splitlines() if path.exists() else []
-    start = next((i for i, line in enumerate(lines) if line.startswith('"ID"')), None)
-    launches: dict[str, dict[str, dict[str, float]]] = {}  # functor -> number of a launch -> metrics
-    for row in csv.DictReader(lines[start:]) if start is not None else []:
-        if row.get("Metric Name"):
-            of_launch = launches.setdefault(functor(row["Kernel Name"]), {}).setdefault(row["ID"], {})
-            of_launch[row["Metric Name"]] = float(row["Metric Value"].replace(",", ""))
+    launches = launches_of(folder / "logs/kernels.out")
     return {name: _of_launches(name, list(of.values())) for name, of in launches.items()}
 
 
@@ -213,10 +265,37 @@ def collect(folder: Path, commit: str, seconds: int) -> dict:
         "device": device,
         "card": card_state(folder),
         "parts": parts_of(folder),
-        "scenes": {name: scene_numbers(folder / name) for name in SCENES},
+        "scenes": {name: scene_numbers(folder / name) for name in scene_names(folder)},
         "same": same_runs(folder),
         "kernels": kernels_of(folder),
+        "stages": stages_of(folder),
+        "counters": counters_of(folder),
     }
+
+
+def scene_names(folder: Path) -> list[str]:
+    """Those of every record, then what else ran: a lease has runs of its own."""
+    own = sorted(path.parent.name for path in folder.glob("*/run.json"))
+    return [*SCENES, *(name for name in own if name not in SCENES)]
+
+
+def unpacked(folder: Path, into: Path) -> Path:
+    """The raw files: `folder` itself, or `into` with what the archives of a lease in it hold, the last one's
+    version of each file. Errors: UserError for an archive that cannot be read.
+    """
+    archives = sorted(folder.glob("[1-8]-*.tar.gz"))
+    for path in archives:
+        try:
+            with tarfile.open(path) as archive:
+                for member in archive:
+                    if not member.isfile() or ".." in Path(member.name).parts or member.name.startswith("/"):
+                        raise UserError(
+                            f"{path}: {member.name!r}; allowed: files below the folder of a lease"
+                        )
+                    archive.extract(member, into, set_attrs=False)
+        except (tarfile.TarError, OSError, EOFError) as error:
+            raise UserError(f"{path}: not an archive of a lease: {error}") from None
+    return into if archives else folder
 
 
 def file_name(record: dict) -> str:
@@ -226,7 +305,7 @@ def file_name(record: dict) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="gpu_evidence", description=__doc__)
-    parser.add_argument("folder", type=Path, help="raw files")
+    parser.add_argument("folder", type=Path, help="raw files, or the archives of a lease")
     parser.add_argument("--commit", default="", help="of the program")
     parser.add_argument("--seconds", type=int, default=0, help="that the script took")
     parser.add_argument(
@@ -234,7 +313,8 @@ def main(arguments: list[str] | None = None) -> int:
     )
     asked = parser.parse_args(arguments)
     try:
-        record = collect(asked.folder, asked.commit, asked.seconds)
+        with tempfile.TemporaryDirectory() as scratch:
+            record = collect(unpacked(asked.folder, Path(scratch)), asked.commit, asked.seconds)
     except (UserError, OSError, KeyError, ValueError) as error:
         print(f"gpu_evidence: {asked.folder}: {error}", file=sys.stderr)
         return 2

@@ -24,13 +24,16 @@ from .gpu_tables import (
     card_rows,
     copy_rate,
     cost_rows,
+    counter_rows,
     fallen,
     judged,
     kernel_rows,
     mixes_idle,
+    phase_rows,
     plain_runs,
     same_rows,
     scene_rows,
+    stage_rows,
 )
 from .json_file import read_object
 from .places import ROOT
@@ -87,7 +90,19 @@ def _of_card(record: dict, copy: float) -> list[str]:
         text += [f"## What failed {on}, {day}", "", *lines, ""]
     if lines := judged(record):
         text += [f"## Kernels and launches of the tests {on}, {day}", "", *lines, ""]
+    if rows := stage_rows(record):
+        head = ["stage", "exit code", "s", "s at most"]
+        text += [f"## Stages of the lease {on}, {day}", "", *_table(head, rows)]
     text += [f"## Scenes {on}, {day}", "", *_table(SCENE_HEAD, scene_rows(record))]
+    head, rows = phase_rows(record)
+    if rows:
+        said = (
+            "Milliseconds a Newton iteration, without the first step, which warms up, where there are more."
+        )
+        text += [f"## Phases {on}, {day}", "", said, "", *_table(head, rows)]
+    head, rows = counter_rows(record)
+    if rows:
+        text += [f"## Hardware counters {on}, {day}", "", *_table(head, rows)]
     if record.get("same"):
         text += [
             f"## Runs {on} beside the host executor, {day}",

@@ -9,15 +9,13 @@ MEMORY_RUN = ("dense_8m", "dense_184m")  # the second one: in records of 2026-11
 MOST_KERNELS = 12
 PLAIN = "plain_"  # in records until 2026-11-28: runs of which no kernel called a library
 DIFFERENT = {False: "not the bits of the host", None: "whether it has the bits of the host is not known"}
-ROOMS = ("sums", "linear", "elements", "contact", "system", "runs")
-CHECKS = (
-    "device_tests",
-    *(f"card_{room}" for room in ROOMS),
-    "memcheck",
-    "racecheck",
-    "initcheck",
-    "synccheck",
-)
+CHECKS = ("memcheck", "racecheck", "initcheck", "synccheck")
+COUNTERS = {
+    "gpu__time_duration.sum": ("us", 1e-3),
+    "dram__bytes.sum": ("DRAM, MB", 1e-6),
+    "sm__warps_active.avg.pct_of_peak_sustained_active": ("occupancy, %", 1),
+    "launch__registers_per_thread": ("registers", 1),
+}
 WORDS = {"passed": "passed", "failed": "**failed**", "timed_out": "**timed out**", "left_out": "not run"}
 
 
@@ -99,7 +97,10 @@ def judged(record: dict) -> list[str]:
 def check_text(record: dict) -> str:
     """Every check with its verdict, those with the same one together; what failed comes first."""
     of_word: dict[str, list[str]] = {}
-    for name in CHECKS:
+    tests = sorted(name for name in record["parts"] if name.startswith("card_"))
+    sanitized = sorted(name for name in record["parts"] if name.split("_")[0] in CHECKS)
+    missing = [check for check in CHECKS if not any(name.split("_")[0] == check for name in sanitized)]
+    for name in ("device_tests", *tests, *sanitized, *missing):
         part = record["parts"].get(name, {"status": "left_out"})
         of_word.setdefault(WORDS[part["status"]], []).append(name.replace("_", " "))
     order = ("**failed**", "**timed out**", "passed", "not run")
@@ -127,6 +128,52 @@ def scene_rows(record: dict) -> list[list[str]]:
             ]
         )
     return rows
+
+
+def phase_rows(record: dict) -> tuple[list[str], list[list[str]]]:
+    """Head and rows: every phase of the scenes that have them, ms a Newton iteration after the first step."""
+    scenes = {
+        name: scene
+        for name, scene in record["scenes"].items()
+        if scene is not None and scene.get("phases_ms")
+    }
+    phases = {phase: None for scene in scenes.values() for phase in scene["phases_ms"]}
+    rows = [
+        [
+            phase.removesuffix("_s").replace("_", " "),
+            *(number(scene["phases_ms"].get(phase)) for scene in scenes.values()),
+        ]
+        for phase in phases
+    ]
+    return ["phase", *scenes], rows
+
+
+def counter_rows(record: dict) -> tuple[list[str], list[list[str]]]:
+    """Head and rows: hardware counters of one launch of each kernel."""
+    load, local = "l1tex__t_{}_pipe_lsu_mem_global_op_ld.sum", "l1tex__t_bytes_pipe_lsu_mem_local_op_{}.sum"
+    rows = []
+    for kernel in record.get("counters", []):
+        requests, sectors = kernel.get(load.format("requests")), kernel.get(load.format("sectors"))
+        spilled = [kernel[name] for name in map(local.format, ("ld", "st")) if name in kernel]
+        rows.append(
+            [
+                f"`{kernel['name']}`",
+                *(
+                    number(kernel[name] * factor if name in kernel else None)
+                    for name, (_, factor) in COUNTERS.items()
+                ),
+                number(sectors / requests if requests and sectors is not None else None),
+                number(1e-6 * sum(spilled) if spilled else None),
+            ]
+        )
+    return ["kernel", *(head for head, _ in COUNTERS.values()), "sectors a load", "local, MB"], rows
+
+
+def stage_rows(record: dict) -> list[list[str]]:
+    return [
+        [stage["name"], str(stage["exit_code"]), str(stage["seconds"]), str(stage["limit_s"])]
+        for stage in record.get("stages", [])
+    ]
 
 
 def _share(part: float | None, whole: float | None) -> str:

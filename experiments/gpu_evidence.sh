@@ -8,15 +8,24 @@ set -euo pipefail
 usage() {
   cat <<'HELP'
 usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER] [--only GROUPS]
-       experiments/gpu_evidence.sh --bundle FOLDER
+       experiments/gpu_evidence.sh --lease [--out FOLDER] [--archives FOLDER] [--seconds N] [--dry]
+       experiments/gpu_evidence.sh --bundle FOLDER [--before COMMIT]
 
   --out FOLDER       where the raw files go (default: results/runs/gpu_evidence/<UTC time>); calls with the same folder and
                      other --only add to it, if they are of the same commit
   --records FOLDER   where the record goes (default: results/gpu)
   --only GROUPS      of: tests, sanitizer, same, catalogue, scenes, memory, kernels; separated by commas (default: all)
+  --lease            the stages of a card that is lent for ten minutes (docs/device.md, Ten minutes of a card), each with its own
+                     time limit; after each of them its files are an archive
+  --archives FOLDER  where the archives go, at most 8 of 16 MiB each (default: archives in the folder of --out)
+  --seconds N        time of the lease, from 60 to 3600 (default: 540)
+  --dry              a lease without a card: the host executor, tiny scenes; no record can be made of it
   --bundle FOLDER    builds, and puts all that the evidence needs into FOLDER: this script, programs, their libraries,
                      configs. FOLDER/gpu_evidence.sh then runs on a machine that has a card and a driver and nothing else
                      of ours; it leaves the raw files, and `python -m analysis.gpu_evidence RAW` makes the record here.
+                     FOLDER.tar.xz is the same as one archive, below 64 MiB
+  --before COMMIT    the program of that commit goes along, for runs before and after a change (default: the commit before this
+                     one; none: without)
 
 The record is kept as results/gpu/<card>-<day>.json; commit it, and ./bench gpu-report makes results/GPU.md of all records.
 Found by themselves and left out with a word where they are not: compute-sanitizer, ncu (Nsight Compute), nvidia-smi.
@@ -32,10 +41,14 @@ fi
 out="$root/results/runs/gpu_evidence/$(date -u +%Y-%m-%dT%H%M%SZ)"
 records="$root/results/gpu"
 only=tests,sanitizer,same,catalogue,scenes,memory,kernels
-bundle=""
+bundle="" before=HEAD~1 lease="" dry="" archives="" seconds=540
 while [ "$#" -gt 0 ]; do
   case "$1" in
-    --out | --records | --only | --bundle)
+    --lease | --dry)
+      declare "${1#--}=yes"
+      shift
+      ;;
+    --out | --records | --only | --bundle | --before | --archives | --seconds)
       [ "$#" -ge 2 ] || { usage >&2; exit 2; }
       declare "${1#--}=$2"
       shift 2
@@ -54,6 +67,14 @@ for group in ${only//,/ } ""; do
       ;;
   esac
 done
+if [[ ! "$seconds" =~ ^[0-9]{2,4}$ ]] || [ "$seconds" -lt 60 ] || [ "$seconds" -gt 3600 ]; then
+  printf 'gpu_evidence: --seconds %s: an integer from 60 to 3600\n' "$seconds" >&2
+  exit 2
+fi
+if [ -n "$dry$archives" ] && [ -z "$lease" ]; then
+  printf 'gpu_evidence: --dry and --archives belong to --lease\n' >&2
+  exit 2
+fi
 if [ "$here" = "$root" ] && [ -n "$bundle" ]; then
   printf 'gpu_evidence: --bundle: this is a bundle; one is made in a checkout\n' >&2
   exit 2
@@ -61,36 +82,11 @@ fi
 bench="${BARRIERBENCH_BENCH:-$bench}"
 tests="${BARRIERBENCH_DEVICE_TESTS:-$tests}"
 
-say() { printf 'gpu_evidence: %s\n' "$*" >&2; }
-rooms="sums linear elements contact system runs"
-
-# write_minis FOLDER: the configs of the catalogue at their small size, without those that are refused.
-write_minis() {
-  mkdir -p "$1"
-  for file in "$root"/configs/catalogue/*.json; do
-    local name
-    name="$(basename "$file" .json)"
-    case "$name" in intersect-*) continue ;; esac
-    "$bench" scenes "$name" --write "$1/$name.json" >&2
-  done
-}
+. "$here/card/parts.sh"
 
 if [ -n "$bundle" ]; then
-  "$bench" build release >&2 || exit 70
-  build="$root/build/release"
-  mkdir -p "$bundle/bin" "$bundle/lib" "$bundle/configs"
-  for program in experiments/barrierbench tests/standin/test_device $(cd "$build" && ls tests/standin/test_formula_log tests/standin/test_formula_functions 2>/dev/null) $(printf 'tests/card/test_card_%s ' $rooms); do
-    strip -o "$bundle/bin/$(basename "$program")" "$build/$program"
-  done
-  ldd "$bundle"/bin/* | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
-    grep -Ev '/(libc|libm|libdl|librt|libpthread|ld-linux[^/]*)\.so' | xargs -I{} cp -L {} "$bundle/lib/"
-  cp -r "$root/configs/." "$bundle/configs/"
-  write_minis "$bundle/minis"
-  cp "${BASH_SOURCE[0]}" "$bundle/gpu_evidence.sh"
-  git -C "$root" rev-parse HEAD >"$bundle/commit" 2>/dev/null || true
-  printf '#!/bin/sh\nhere="$(dirname "$(readlink -f "$0")")"\nexport LD_LIBRARY_PATH="$here/lib" BARRIERBENCH_CONFIGS="$here/configs"\nexec "$here/bin/barrierbench" "$@"\n' >"$bundle/bench"
-  chmod +x "$bundle/bench"
-  say "$(du -sh "$bundle" | cut -f 1) in $bundle"
+  . "$here/card/bundle.sh"
+  make_bundle
   exit 0
 fi
 if [ -d "$root/lib" ]; then export LD_LIBRARY_PATH="$root/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"; fi
@@ -104,29 +100,16 @@ fi
 printf '%s\n' "$commit" >"$out/commit"
 touch "$out/parts.tsv"
 
-# part NAME SECONDS COMMAND...: runs it with a time limit; its output is kept and its verdict written to parts.tsv.
-part() {
-  local name="$1" limit="$2" start="$SECONDS" code=0 status=passed
-  shift 2
-  say "$name"
-  timeout --kill-after=10 "$limit" "$@" >"$out/logs/$name.out" 2>"$out/logs/$name.err" || code="$?"
-  case "$code" in 0) ;; 124 | 137) status=timed_out ;; *) status=failed ;; esac
-  [ "$status" = passed ] || say "  $name: $status (exit code $code): $(tail -n 1 "$out/logs/$name.err")"
-  printf '%s\t%s\t%s\t%s\n' "$name" "$status" "$code" "$((SECONDS - start))" >>"$out/parts.tsv"
-}
-# without NAME WHY: a part that cannot be run here.
-without() {
-  say "$1: left out, $2"
-  printf '%s\tleft_out\t%s\t0\n' "$1" "$2" >>"$out/parts.tsv"
-}
-tool() { command -v "$1" 2>/dev/null || { [ -x "/usr/local/cuda/bin/$1" ] && printf '/usr/local/cuda/bin/%s\n' "$1"; }; }
-# test_of ROOM: the program of its tests.
-test_of() { find "$tests" -name "test_card_$1" -type f | head -n 1; }
-
 # ---------------------------------------------------------------- the card
 
 if [ -z "${BARRIERBENCH_BENCH:-}" ] && [ "$bench" = "$root/bench" ] && [ ! -e "$root/bin" ]; then
   "$bench" build release >&2 || exit 70
+fi
+if [ -n "$lease" ]; then
+  . "$here/card/lease.sh"
+  archives="${archives:-$out/archives}"
+  lease
+  exit 0
 fi
 verdict=0
 "$bench" device --json --measure >"$out/device.json" 2>"$out/logs/device.err" || verdict="$?"
@@ -134,28 +117,17 @@ if [ "$verdict" -ne 0 ]; then
   say "$("$bench" device 2>&1 | tail -n 1)"
   exit 5
 fi
-if smi="$(tool nvidia-smi)"; then
-  "$smi" --format=csv,nounits --query-gpu=name,driver_version,clocks.sm,clocks.max.sm,clocks.mem,clocks.max.mem,power.limit,ecc.mode.current,temperature.gpu \
-    --id=0 >"$out/card.csv" 2>/dev/null || rm -f "$out/card.csv"
-fi
+card_state "$out/card.csv"
 
 # ---------------------------------------------------------------- correctness
 
-if wanted tests; then
-  part device_tests 60 "$(find "$tests" -name test_device -type f | head -n 1)" &
-  for sample in log functions; do
-    found="$(find "$tests" -name "test_formula_$sample" -type f | head -n 1)"  # none with a CUDA before 12.8
-    if [ -n "$found" ]; then part "formula_$sample" 60 "$found" & fi
-  done
-  for room in $rooms; do part "card_$room" 240 "$(test_of "$room")" & done
-  wait
-fi
+if wanted tests; then device_tests; fi
 if wanted sanitizer; then
   if sanitizer="$(tool compute-sanitizer)"; then
     for check in memcheck racecheck initcheck synccheck; do
       runs='*HaveTheBitsOfTheHost/0'
       [ "$check" != racecheck ] || runs='CardRuns.FewStepsHaveTheBitsOfTheHost'  # it slows a run down the most
-      part "$check" 150 "$sanitizer" --tool "$check" --error-exitcode 9 "$(test_of runs)" --gtest_filter="$runs" &
+      part "$check" 150 "$sanitizer" --tool "$check" --error-exitcode 9 "$(test_of test_card_runs)" --gtest_filter="$runs" &
     done
     wait
   else

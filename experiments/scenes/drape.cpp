@@ -73,7 +73,8 @@ ProceduralScene make_scene_drape() {
       {"layers", count(1, 100), 5, "number of cloths"},
       {"n", count(2, 1000), 16, "vertices along a side of each cloth"},
       {"width_m", positive("m"), 1, "side of each cloth"},
-      {"spacing_d_hat", number_in(1, 1e6, "d_hat"), 1.5, "distance between neighbouring layers at the start"},
+      {"spacing_d_hat", open_low(number_in(0, 1e6, "d_hat")), 1.5,
+       "distance between neighbouring layers at the start; below 1 they are in contact there"},
       {"start_gap_d_hat", positive("d_hat"), 1.2, "gap between the sphere and the lowest layer at the start"},
       {"twist_deg", number_in(-360, 360, "deg"), 9,
        "turn of each layer against the one below; 0 puts vertex over vertex, every contact on a "
