@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <functional>
+#include <string_view>
 
 #include "barriers/shapes/registry.hpp"
 #include "core/contact/executor/executor_barrier.hpp"
@@ -22,6 +23,7 @@ namespace bb {
 namespace {
 
 constexpr const char* memory_variable = "BARRIERBENCH_DEVICE_MEMORY";
+constexpr const char* phases_variable = "BARRIERBENCH_SYNCHRONIZE_PHASES";
 constexpr const char* failure_variable = "BARRIERBENCH_FAIL_KERNEL";
 
 std::size_t positive(const char* variable, const std::string& text) {
@@ -102,6 +104,13 @@ std::unique_ptr<exec::Executor> make_executor(Device device) {
       device == Device::cuda ? cuda::make_device_executor() : make_host_executor();
   out->limit_memory(memory_limit());
   return out;
+}
+
+bool synchronizes_phases() {
+  const char* const text = std::getenv(phases_variable);
+  if (!text || std::string_view(text) == "0") return false;
+  if (std::string_view(text) != "1") throw ConfigError(phases_variable, text, "0 or 1");
+  return true;
 }
 
 bool can_lose_device(const RunConfig& config) {

@@ -17,6 +17,10 @@ namespace bb {
 /// Errors: ConfigError for a malformed variable, and without a usable card.
 std::unique_ptr<exec::Executor> make_executor(Device device);
 
+/// Whether phases of a run on an executor wait for what they launched before they end (BARRIERBENCH_SYNCHRONIZE_PHASES=1), so that
+/// each has the time of its own kernels; that costs time. Errors: ConfigError for another value.
+bool synchronizes_phases();
+
 /// Whether a kernel or a card can fail in it: a device, or a solver on a card.
 bool can_lose_device(const RunConfig& config);
 

@@ -96,7 +96,9 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
     method.make_potential = [device = config.device](const Scene& scene, Method& of, const Plan& plan,
                                                      const std::vector<std::uint8_t>& fixed,
                                                      PhaseClock& clock) {
-      return std::make_unique<exec::ExecutorEngine>(make_executor(device), scene, of, plan, fixed, clock);
+      auto out = std::make_unique<exec::ExecutorEngine>(make_executor(device), scene, of, plan, fixed, clock);
+      if (synchronizes_phases()) out->synchronize_phases();
+      return out;
     };
   }
   return method;

@@ -29,12 +29,14 @@ class Waiter final : public exec::HostExecutor {
 
  private:
   Phase phase() {
+    asks_ = true;  // a clock that waits at the ends of phases comes back here
     const Phase now = clock->change(Phase::output);
     clock->change(now);
+    asks_ = false;
     return now;
   }
   void wait() {
-    if (!clock) return;
+    if (!clock || asks_) return;
     waits += !pending_.empty();
     for (const auto& [made_by, launches] : pending_) {
       if (made_by != phase()) of_others[phase()] += launches;
@@ -42,7 +44,41 @@ class Waiter final : public exec::HostExecutor {
     pending_.clear();
   }
   std::map<Phase, int> pending_;
+  bool asks_ = false;
 };
+
+/// Launches of a whole Newton iteration, line search and acceptance included, that another phase waited for.
+int launches_of_others(bool synchronize) {
+  const Scene scene = test::touching(test::two_sheets(), 0.01);
+  Method method = test::touching_method();
+  test::use_executor_solver(method, 1e-10);
+  const Plan plan = make_plan(scene, method, plan_options(method));
+  auto made = std::make_unique<Waiter>();
+  Waiter& waiter = *made;
+  test::ExecutorSystem system(std::move(made), scene, method, plan);
+  if (synchronize) dynamic_cast<exec::ExecutorEngine&>(system.potential()).synchronize_phases();
+  waiter.clock = &system.clock();
+  system.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
+  system.set_target(scene.x0);
+  system.assemble();
+  system.find_direction();
+  system.prepare_motion(MotionEnd::free, true);
+  IterationReport report;
+  const double bound = system.bound_motion(report);
+  EXPECT_TRUE(system.try_motion(0.5 * bound));
+  system.accept();
+  system.assemble();
+  waiter.synchronize();
+  EXPECT_GT(waiter.waits, 10);
+  int out = 0;
+  for (const auto& [phase, launches] : waiter.of_others) out += launches;
+  return out;
+}
+
+TEST(ExecutorPhases, EachWaitsForItsOwnLaunchesWhereThatIsAskedFor) {
+  EXPECT_GT(launches_of_others(false), 0);
+  EXPECT_EQ(launches_of_others(true), 0);
+}
 
 TEST(ExecutorPhases, AssemblyIsNotChargedToTheSolve) {
   const Scene scene = test::touching(test::two_sheets(), 0.01);

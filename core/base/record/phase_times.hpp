@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <string_view>
 #include <utility>
 
@@ -78,6 +79,9 @@ inline double now_s() {
 /// that of now_s().
 class PhaseClock {
  public:
+  /// From now on `wait` is called before each moment that ends a phase, so that what the phase started is over by then;
+  /// it does not throw. For profiles of an executor whose launches return at once: what waits costs time itself.
+  void wait_at_ends(std::function<void()> wait) { wait_ = std::move(wait); }
   /// Sets all phases to zero and charges `phase` from now on.
   void restart(Phase phase) {
     times_ = lap_start_ = {};
@@ -109,6 +113,7 @@ class PhaseClock {
 
  private:
   void charge() {
+    if (wait_) wait_();
     const double now = now_s();
     times_[phase_] += now - since_;
     since_ = now;
@@ -117,6 +122,7 @@ class PhaseClock {
   PhaseTimes times_, lap_start_;
   Phase phase_ = Phase::step_control;
   double since_ = now_s();
+  std::function<void()> wait_;
 };
 
 /// Charges everything until the end of the scope to one phase, whatever scopes inside it say.

@@ -236,7 +236,8 @@ bool ExecutorContact::admits(const PositionsView&, PhaseClock& clock) {
   return trial_.feasible();
 }
 
-void ExecutorContact::freeze(PhaseClock&) {
+void ExecutorContact::freeze(PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::stiffness);
   trial_.uniform_kappa = policy_kappa();
   const StiffnessRows trial[] = {trial_.stiffness_rows()}, iterate[] = {rows_.stiffness_rows()};
   const KernelKappa kappa = kappa_of(trial_);
@@ -261,8 +262,9 @@ void ExecutorContact::add_rows(RowEnergies& out) {
   out.after = out.after + sums_.energy();
 }
 
-void ExecutorContact::accept(PhaseClock&) {
+void ExecutorContact::accept(PhaseClock& clock) {
   take_trial();
+  const ScopedPhase timer(clock, Phase::stiffness);
   const StiffnessRows of[] = {rows_.stiffness_rows()};
   stiffness_.keep(of);
 }

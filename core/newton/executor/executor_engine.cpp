@@ -57,7 +57,16 @@ ExecutorEngine::ExecutorEngine(std::unique_ptr<Executor> executor, const Scene& 
                                        make_preconditioner(*executor_, linear_parameters(method)));
 }
 
-ExecutorEngine::~ExecutorEngine() = default;
+ExecutorEngine::~ExecutorEngine() { clock().wait_at_ends({}); }
+
+void ExecutorEngine::synchronize_phases() {
+  clock().wait_at_ends([this] {
+    try {
+      executor_->synchronize();
+    } catch (const ExecutionError&) {
+    }
+  });
+}
 
 // The clusters of a preconditioner go with the pattern that they were made for.
 void ExecutorEngine::drop_caches() {

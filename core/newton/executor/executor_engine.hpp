@@ -31,6 +31,9 @@ class ExecutorEngine final : public IncrementalPotential {
   Executor& executor() override { return *executor_; }
 
   void drop_caches() override;
+  /// From now on the end of a phase waits for what the phase launched (PhaseClock::wait_at_ends). What a kernel did wrong
+  /// is said by the next call that waits.
+  void synchronize_phases();
 
   bool pattern_changed() const override;
   void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;

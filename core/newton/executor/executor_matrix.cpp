@@ -113,6 +113,7 @@ void ExecutorEngine::solve(const Column& b, RightSide of, Column& step, SolveRep
     linear = pcg_->solve(matrix(), vectors_.fixed().data(), b.data(), step.data(),
                          forcing_.tolerance(b_norm, of), max_pcg_iterations_, pattern_id_);
   }
+  clock().move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
   report.add_attempt(linear);
 }
 
