@@ -11,6 +11,7 @@
 #include "core/audit/segment_triangle.hpp"
 #include "core/audit/tally.hpp"
 #include "core/audit/touch.hpp"
+#include "core/math/stop_request.hpp"
 
 namespace bb::audit {
 namespace {
@@ -158,8 +159,11 @@ StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitiv
   StateAudit out;
   out.finite = x.allFinite();
   if (!out.finite) return out;
+  heed_stop();
   const StateJudge judge(mesh, x, include_rigid);
+  heed_stop();
   out.merge(mesh.planar ? judge.boundary_edges() : judge.edges_and_triangles());
+  heed_stop();
   judge.decide_touches(out);
   if (mesh.planar) out.merge(judge.inversions());
   if (mesh.obstacles.empty()) return out;

@@ -1,39 +1,84 @@
 #include "core/audit/surface_edges.hpp"
 
 #include <algorithm>
-#include <map>
+#include <span>
 
 namespace bb::audit {
 namespace {
 
+/// An edge of a triangle or of a segment, in the list of its lower vertex.
+struct Side {
+  static constexpr int of_segment = -1;
+  int upper, third;  // third: vertex of the triangle, or of_segment
+};
+
+/// The sides of all triangles in their order, then the segments, by lower vertex: those of vertex v are
+/// side[start[v], start[v + 1]).
+struct SidesByVertex {
+  std::vector<std::size_t> start;
+  std::vector<Side> side;
+
+  SidesByVertex(const std::vector<TriangleVertices>& triangles, const std::vector<EdgeVertices>& segments) {
+    const auto for_each = [&](const auto& f) {
+      for (const TriangleVertices& t : triangles) {
+        for (std::size_t k = 0; k < 3; ++k) f(ascending(t[k], t[(k + 1) % 3]), t[(k + 2) % 3]);
+      }
+      for (const EdgeVertices& e : segments) f(ascending(e[0], e[1]), Side::of_segment);
+    };
+    int highest = -1;
+    for_each([&](const EdgeVertices& edge, int) { highest = std::max(highest, edge[0]); });
+    start.assign(static_cast<std::size_t>(highest + 2), 0);
+    for_each([&](const EdgeVertices& edge, int) { ++start[static_cast<std::size_t>(edge[0]) + 1]; });
+    for (std::size_t v = 1; v < start.size(); ++v) start[v] += start[v - 1];
+    side.resize(start.back());
+    std::vector<std::size_t> next(start.begin(), start.end() - 1);
+    for_each([&](const EdgeVertices& edge, int third) {
+      side[next[static_cast<std::size_t>(edge[0])]++] = {edge[1], third};
+    });
+  }
+};
+
+/// What shares an edge: the sides that are equal.
 struct Sharers {
   int triangles = 0;
   int third = -1;  // of the last of the triangles; -1: of none
   bool segment = false;
+
+  explicit Sharers(std::span<const Side> equal) {
+    for (const Side& side : equal) {
+      if (side.third == Side::of_segment) {
+        segment = true;
+      } else {
+        ++triangles, third = side.third;
+      }
+    }
+  }
 };
 
 }  // namespace
 
 void set_edges(const std::vector<TriangleVertices>& triangles, const std::vector<EdgeVertices>& segments,
                AuditMesh& mesh) {
-  std::map<EdgeVertices, Sharers> edges;
-  for (const TriangleVertices& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      Sharers& edge = edges[ascending(t[k], t[(k + 1) % 3])];
-      ++edge.triangles, edge.third = t[(k + 2) % 3];
+  SidesByVertex sides(triangles, segments);
+  std::vector<EdgeVertices> edges;
+  mesh.opposite.clear();
+  for (std::size_t v = 0; v + 1 < sides.start.size(); ++v) {
+    const std::span<Side> own(sides.side.data() + sides.start[v], sides.start[v + 1] - sides.start[v]);
+    std::ranges::stable_sort(own, {}, &Side::upper);
+    for (auto first = own.begin(); first != own.end();) {
+      const auto last =
+          std::find_if(first, own.end(), [&](const Side& s) { return s.upper != first->upper; });
+      const Sharers sharers({first, last});
+      const EdgeVertices edge{static_cast<int>(v), first->upper};
+      first = last;
+      if (mesh.planar && sharers.triangles > 1 && !sharers.segment) continue;
+      edges.push_back(edge);
+      if (mesh.planar) mesh.opposite.push_back(sharers.third);
     }
   }
-  for (const EdgeVertices& e : segments) edges[ascending(e[0], e[1])].segment = true;
-  if (mesh.planar) {
-    std::erase_if(edges, [](const auto& edge) { return edge.second.triangles > 1 && !edge.second.segment; });
-  }
   mesh.edges.resize(2, static_cast<Eigen::Index>(edges.size()));
-  mesh.opposite.clear();
-  Eigen::Index i = 0;
-  for (const auto& [edge, sharers] : edges) {
-    mesh.edges.col(i++) << edge[0], edge[1];
-    if (mesh.planar) mesh.opposite.push_back(sharers.third);
-  }
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    mesh.edges.col(static_cast<Eigen::Index>(i)) << edges[i][0], edges[i][1];
 }
 
 void set_points(const std::vector<int>& vertices, int n_vertices, AuditMesh& mesh) {

@@ -14,7 +14,7 @@ using TriangleVertices = std::array<int, 3>;  // counter-clockwise where the sid
 inline EdgeVertices ascending(int a, int b) { return a < b ? EdgeVertices{a, b} : EdgeVertices{b, a}; }
 
 /// Fills edges and, of planar scenes, opposite vertices: every edge once, ascending. In space the edges of triangles
-/// and the segments; in the plane the segments and edges of exactly one triangle. Cost: O(n log n).
+/// and the segments; in the plane the segments and edges of exactly one triangle. Cost: O(n), and a sort of the edges at each vertex.
 void set_edges(const std::vector<TriangleVertices>& triangles, const std::vector<EdgeVertices>& segments,
                AuditMesh& mesh);
 

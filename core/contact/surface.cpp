@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/math/stop_request.hpp"
+
 namespace bb {
 
 namespace {
@@ -79,6 +81,7 @@ Surface::Surface(const Scene& scene, RestRule rule)
       planar(scene.planar),
       planar_pairs(scene.planar_pairs),
       rest_rule(rule) {
+  heed_stop();
   for (const Pin& pin : scene.pins) {
     if (pin.span.always()) vertex_free[static_cast<std::size_t>(pin.vertex)] = 0;
   }

@@ -121,7 +121,7 @@ int check(const RunVerb& verb) {
   if (!verb.out.empty()) write_start(scene, verb.out);
   check_device_forms(config, scene);
   check_step_solver_forms(config, scene);
-  if (const auto failure = start_failure(config, scene, {&interrupted()})) {
+  if (const auto failure = start_failure(config, scene, plan_of(config, scene).contacts, {&interrupted()})) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
   show("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));

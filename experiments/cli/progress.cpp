@@ -7,9 +7,11 @@
 #include <csignal>
 
 #include "core/base/input/names.hpp"
+#include "core/math/stop_request.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/summary_table.hpp"
 #include "experiments/cli/terminal.hpp"
+#include "experiments/run/run_limits.hpp"
 
 namespace bb::cli {
 namespace {
@@ -95,6 +97,9 @@ void ProgressLine::clear() {
 const std::atomic<bool>& interrupted() { return stop; }
 
 void install_interrupt() {
+  set_stop_request([] {
+    if (interrupted()) throw Interrupted{};
+  });
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   std::signal(sweep_died, [](int) { stop.store(true); });

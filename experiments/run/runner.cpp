@@ -57,7 +57,7 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
   const Plan plan = plan_of(config, scene);
   fill_plan(config, plan, record);
   const double before_check = now_s();
-  auto failure = start_failure(config, scene, options.limits());
+  auto failure = start_failure(config, scene, plan.contacts, options.limits());
   const double start_check_s = now_s() - before_check;
   record.summary.start_check_s = start_check_s;
   Calibration calibration;

@@ -103,16 +103,19 @@ std::optional<Verdict> too_long(const RunConfig& config, const Scene& scene) {
 }
 
 // Errors: Interrupted; TimeOver.
-std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& scene, const RunLimits& limits) {
+std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& scene, const ContactPlan& plan,
+                                       const RunLimits& limits) {
   limits.look_up(part, "before the start was looked at");
   if (auto found = too_long(config, scene)) return found;
+  limits.look_up(part, "before the surface was collected");
   const audit::AuditMesh mesh = make_audit_mesh(scene, config.time.dt);
+  limits.look_up(part, "before crossings were looked for");
   audit::Audit judge(mesh);
   judge.check_state(scene.x0, -1);
   const audit::AuditLedger& ledger = judge.ledger();
   if (ledger.scene_faults > 0) return judge_audit(scene, mesh, ledger);
   limits.look_up(part, "before the gaps at the start were looked at");
-  ContactSystem contacts(scene, {config.contact.mollifier, config.contact.ccd_park});
+  ContactSystem contacts(scene, {config.contact.mollifier, config.contact.ccd_park}, plan);
   if (const auto overlap = contacts.check_initial(scene.x0)) {
     return Verdict{Outcome::initial_intersection,
                    fmt::format("{} (gap {:.3g} m)", overlap->text, overlap->gap)};
@@ -127,9 +130,10 @@ std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& sce
 
 }  // namespace
 
-std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene, const RunLimits& limits) {
+std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene, const ContactPlan& contacts,
+                                     const RunLimits& limits) {
   try {
-    return failure_in_time(config, scene, limits);
+    return failure_in_time(config, scene, contacts, limits);
   } catch (const TimeOver& over) {
     return Verdict{Outcome::timeout, over.detail};
   }

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/model/scene/contact_plan.hpp"
 #include "experiments/config/run_config.hpp"
 #include "experiments/run/outcome.hpp"
 #include "experiments/run/run_limits.hpp"
@@ -16,7 +17,8 @@ namespace bb {
 /// Cost: one audit of the surface, and one of the prescribed surface per step when prescribed bodies move
 /// relative to each other or to an obstacle; of rigid bodies only what comes near another is looked at.
 /// Errors: Interrupted when limits.interrupted becomes true.
-std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene,
+/// contacts: of the scene's plan.
+std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene, const ContactPlan& contacts,
                                      const RunLimits& limits = {});
 
 }  // namespace bb

@@ -126,7 +126,7 @@ void SteppedRun::prepare() {
   fill_plan(config_, plan_, record_);
   t_end_ = end_time(config_.time) * (1 - 1e-9);
   const double before_check = now_s();
-  auto failure = start_failure(config_, scene_, {});
+  auto failure = start_failure(config_, scene_, plan_.contacts);
   record_.summary.start_check_s = now_s() - before_check;
   if (!failure) failure = find_stiffness(config_, scene_, named, record_.matching, calibration_);
   if (failure) {

@@ -8,7 +8,9 @@
 #include <filesystem>
 
 #include "core/base/record/phase_times.hpp"
+#include "core/math/stop_request.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/plan.hpp"
 #include "experiments/run/runner.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -44,7 +46,31 @@ RunConfig given_sheets(double up) {
 }
 
 std::optional<Verdict> failure(const RunConfig& config, const RunLimits& limits = {}) {
-  return start_failure(config, build_scene(config), limits);
+  const Scene scene = build_scene(config);
+  return start_failure(config, scene, plan_of(config, scene).contacts, limits);
+}
+
+int asked_to_stop, stop_at;
+
+TEST(StartCheck, AStopIsHeardBetweenAllPartsOfWhatComesBeforeTheFirstStep) {
+  const RunConfig config = given_sheets(1);
+  const auto all_of_it = [&config] {
+    const Scene scene = build_scene(config);
+    const Plan plan = plan_of(config, scene);
+    EXPECT_FALSE(start_failure(config, scene, plan.contacts));
+  };
+  asked_to_stop = 0, stop_at = 0;
+  set_stop_request([] {
+    if (++asked_to_stop == stop_at) throw Interrupted{};
+  });
+  all_of_it();
+  const int parts = asked_to_stop;
+  EXPECT_GE(parts, 7);  // two bodies, the scene, the audit in three parts, the surface
+  for (stop_at = 1; stop_at <= parts; ++stop_at) {
+    asked_to_stop = 0;
+    EXPECT_THROW(all_of_it(), Interrupted) << stop_at;
+  }
+  set_stop_request(nullptr);
 }
 
 TEST(StartCheck, GivenSheetsThatPassThroughEachOtherAreNamedWhateverTheirPosition) {

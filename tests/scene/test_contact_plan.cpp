@@ -1,6 +1,9 @@
 // Which contacts a scene can have at all.
 #include <gtest/gtest.h>
 
+#include <random>
+#include <set>
+
 #include "core/model/scene/contact_plan.hpp"
 #include "tests/bodies/bodies.hpp"
 
@@ -90,6 +93,35 @@ TEST(ContactPlan, of_a_scene_without_free_surface_is_empty) {
   for (int v = 0; v < scene.n_vertices(); ++v) scene.pins.push_back({v, 0});
   EXPECT_FALSE(plan_contact(scene).any());
   EXPECT_EQ(plan_contact(scene).obstacles.reason, "no free surface vertex");
+}
+
+/// Edges and triangles among few vertices, many of them more than once and in both directions.
+Scene tangle(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> vertex(0, 24), size(0, 60);
+  Scene scene;
+  scene.x0.resize(3, 25);
+  for (int i = size(random); i > 0; --i) scene.surface_edges.push_back({vertex(random), vertex(random)});
+  for (int i = size(random) / 4; i > 0; --i)
+    scene.surface_triangles.push_back({vertex(random), vertex(random), vertex(random)});
+  return scene;
+}
+
+TEST(ContactPlan, LoneEdgesAreThoseThatASetOfEdgesHas) {
+  std::size_t found = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    const Scene scene = tangle(seed);
+    const auto ascending = [](int a, int b) { return a < b ? std::array{a, b} : std::array{b, a}; };
+    std::set<std::array<int, 2>> expected;
+    for (const auto& e : scene.surface_edges) expected.insert(ascending(e[0], e[1]));
+    for (const auto& t : scene.surface_triangles) {
+      for (std::size_t k = 0; k < 3; ++k) expected.erase(ascending(t[k], t[(k + 1) % 3]));
+    }
+    const std::vector<std::array<int, 2>> lone = lone_edges(scene);
+    EXPECT_EQ(lone, (std::vector<std::array<int, 2>>(expected.begin(), expected.end()))) << seed;
+    found += lone.size();
+  }
+  EXPECT_GT(found, 1000u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/input/memory.hpp"
+#include "core/math/stop_request.hpp"
 #include "core/model/bodies/part.hpp"
 #include "core/model/bodies/pin_selection.hpp"
 #include "core/model/bodies/scene_checks.hpp"
@@ -57,6 +58,7 @@ void SceneBuilder::check_name(const std::string& what, const std::string& name) 
 }
 
 void SceneBuilder::add_body(const BodySpec& spec) {
+  heed_stop();
   check_name("body", spec.name);
   const std::size_t before = violations_.size();
   check_body(spec, scene_.planar, where_, violations_);
@@ -252,6 +254,7 @@ void SceneBuilder::append_obstacle_vertices() {
 }
 
 Scene SceneBuilder::finish() {
+  heed_stop();
   if (scene_.n_vertices() > 0) append_obstacle_vertices();
   if (violations_.empty()) append_collisions();
   check_scene(scene_, held_, where_, violations_);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 namespace bb {
 namespace {
@@ -12,6 +11,19 @@ using Flags = std::vector<char>;
 
 bool is_set(const Flags& flags, int vertex) { return flags[static_cast<std::size_t>(vertex)] != 0; }
 
+/// Vertices, each counted once.
+struct VertexSet {
+  Flags has;
+  std::size_t n = 0;
+
+  explicit VertexSet(const Scene& scene) : has(static_cast<std::size_t>(scene.n_vertices()), 0) {}
+  void insert(int vertex) {
+    char& flag = has[static_cast<std::size_t>(vertex)];
+    n += flag == 0;
+    flag = 1;
+  }
+};
+
 /// How many primitives of one kind there are, on how many vertices, and whether one of them can move.
 struct PrimitiveCount {
   std::size_t n = 0, n_vertices = 0;
@@ -19,7 +31,7 @@ struct PrimitiveCount {
 };
 
 template <std::size_t N>
-void add(const std::vector<std::array<int, N>>& list, const Flags& is_free, std::set<int>& vertices,
+void add(const std::vector<std::array<int, N>>& list, const Flags& is_free, VertexSet& vertices,
          PrimitiveCount& out) {
   out.n += list.size();
   for (const auto& primitive : list) {
@@ -28,21 +40,23 @@ void add(const std::vector<std::array<int, N>>& list, const Flags& is_free, std:
       out.free = out.free || is_set(is_free, vertex);
     }
   }
-  out.n_vertices = vertices.size();
+  out.n_vertices = vertices.n;
 }
 
-PrimitiveCount count_points(const Scene& scene, const Flags& is_free) {
+PrimitiveCount count_points(const Scene& scene, const Flags& is_free, VertexSet& vertices) {
   PrimitiveCount out;
-  std::set<int> vertices(scene.surface_vertices.begin(), scene.surface_vertices.end());
-  out.n = out.n_vertices = vertices.size();
-  out.free = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return is_set(is_free, v); });
+  for (const int v : scene.surface_vertices) {
+    vertices.insert(v);
+    out.free = out.free || is_set(is_free, v);
+  }
+  out.n = out.n_vertices = vertices.n;
   return out;
 }
 
 // Sides of triangles count in space, where they are in pairs of edges.
 PrimitiveCount count_edges(const Scene& scene, const Flags& is_free) {
   PrimitiveCount out;
-  std::set<int> vertices;
+  VertexSet vertices(scene);
   add(scene.surface_edges, is_free, vertices, out);
   if (!scene.planar) {
     add(scene.surface_triangles, is_free, vertices, out);
@@ -53,17 +67,16 @@ PrimitiveCount count_edges(const Scene& scene, const Flags& is_free) {
 
 PrimitiveCount count_triangles(const Scene& scene, const Flags& is_free) {
   PrimitiveCount out;
-  std::set<int> vertices;
+  VertexSet vertices(scene);
   add(scene.surface_triangles, is_free, vertices, out);
   return out;
 }
 
 /// Edges that are no side of a triangle, each once.
 PrimitiveCount count_lone_edges(const Scene& scene, const Flags& is_free) {
-  const std::vector<std::array<int, 2>> lone = lone_edges(scene);
   PrimitiveCount out;
-  std::set<int> vertices;
-  add(lone, is_free, vertices, out);
+  VertexSet vertices(scene);
+  add(lone_edges(scene), is_free, vertices, out);
   return out;
 }
 
@@ -74,17 +87,19 @@ struct Bodies {
   bool pairs_in_one = false;  // a deformable body with vertices that are not neighbours
 };
 
-Bodies count_bodies(const Scene& scene, const Flags& is_free, const PrimitiveCount& lone) {
+/// surface: vertices of the surface.
+Bodies count_bodies(const Scene& scene, const Flags& is_free, const VertexSet& surface,
+                    const PrimitiveCount& lone) {
   // so many vertices of one body never make a pair
   const int few = scene.planar ? 1 : lone.n > 0 ? 2 : 3;
   Bodies out;
-  const std::set<int> surface(scene.surface_vertices.begin(), scene.surface_vertices.end());
+  const auto some = [](const Flags& flags, const Body& body) {
+    const auto begin = flags.begin() + body.first_vertex;
+    return std::any_of(begin, begin + body.n_vertices, [](char f) { return f != 0; });
+  };
   for (const Body& body : scene.bodies) {
-    const auto first = surface.lower_bound(body.first_vertex);
-    if (first == surface.end() || *first >= body.first_vertex + body.n_vertices)
-      continue;  // an obstacle's point
-    const auto begin = is_free.begin() + body.first_vertex;
-    const bool deformable = std::any_of(begin, begin + body.n_vertices, [](char f) { return f != 0; });
+    if (!some(surface.has, body)) continue;  // an obstacle's point
+    const bool deformable = some(is_free, body);
     ++(deformable ? out.deformable : out.given);
     out.pairs_in_one = out.pairs_in_one || (deformable && body.n_vertices > few);
   }
@@ -150,13 +165,27 @@ bool has_axis_outside(const Scene& scene) {
 
 std::vector<std::array<int, 2>> lone_edges(const Scene& scene) {
   const auto ascending = [](int a, int b) { return a < b ? std::array{a, b} : std::array{b, a}; };
-  std::set<std::array<int, 2>> lone;
-  for (const auto& e : scene.surface_edges) lone.insert(ascending(e[0], e[1]));
-  if (lone.empty()) return {};
+  std::vector<std::array<int, 2>> edges, lone;
+  edges.reserve(scene.surface_edges.size());
+  for (const auto& e : scene.surface_edges) edges.push_back(ascending(e[0], e[1]));
+  std::ranges::sort(edges);
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  if (edges.empty()) return lone;
+  std::vector<std::size_t> start(static_cast<std::size_t>(scene.n_vertices()) + 1, 0);  // by lower vertex
+  for (const auto& e : edges) ++start[static_cast<std::size_t>(e[0]) + 1];
+  for (std::size_t v = 1; v < start.size(); ++v) start[v] += start[v - 1];
+  Flags is_side(edges.size(), 0);
   for (const auto& t : scene.surface_triangles) {
-    for (std::size_t k = 0; k < 3; ++k) lone.erase(ascending(t[k], t[(k + 1) % 3]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<int, 2> side = ascending(t[k], t[(k + 1) % 3]);
+      const auto lower = static_cast<std::size_t>(side[0]);
+      for (std::size_t i = start[lower]; i < start[lower + 1]; ++i) is_side[i] |= edges[i][1] == side[1];
+    }
   }
-  return {lone.begin(), lone.end()};
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (!is_side[i]) lone.push_back(edges[i]);
+  }
+  return lone;
 }
 
 PlanItem plan_item(bool needed, std::string yes, std::string no) {
@@ -168,9 +197,10 @@ ContactPlan plan_contact(const Scene& scene, Mollifier mollifier) {
   for (const Pin& pin : scene.pins) {
     if (pin.span.always()) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
   }
-  const PrimitiveCount points = count_points(scene, is_free);
+  VertexSet surface(scene);
+  const PrimitiveCount points = count_points(scene, is_free, surface);
   const PrimitiveCount lone = count_lone_edges(scene, is_free);
-  const Bodies bodies = count_bodies(scene, is_free, lone);
+  const Bodies bodies = count_bodies(scene, is_free, surface, lone);
   ContactPlan plan;
   plan.collisions = plan_collisions(scene.collisions);
   const bool meet = bodies_meet(scene, is_free);

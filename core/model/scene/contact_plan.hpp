@@ -36,7 +36,7 @@ struct ContactPlan {
   bool any() const { return broad_phase.needed || obstacles.needed; }
 };
 
-/// Errors: none.   Cost: O(surface log surface).
+/// Errors: none.   Cost: O(vertices + surface), and a sort of the edges.
 ContactPlan plan_contact(const Scene& scene, Mollifier mollifier = Mollifier::ipc);
 
 }  // namespace bb

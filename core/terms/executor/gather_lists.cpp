@@ -8,6 +8,7 @@
 #include "core/math/at.hpp"
 #include "core/math/error.hpp"
 #include "core/math/lower_blocks.hpp"
+#include "core/math/stop_request.hpp"
 
 namespace bb::exec {
 namespace {
@@ -42,11 +43,31 @@ BlockRows both_triangles(const BlockPattern& lower) {
   return rows;
 }
 
+/// The stencils of a piece with their vertices counted from `first`: the maps of a piece are as long as the range of its vertices.
+struct Ranged {
+  int first = 0, n_vertices = 0;
+  std::vector<int> vertices;
+
+  explicit Ranged(const Stencils& stencils) : vertices(stencils.vertices.begin(), stencils.vertices.end()) {
+    int least = std::numeric_limits<int>::max(), largest = -1;
+    for (const int v : vertices) {
+      if (v < 0) continue;
+      least = std::min(least, v), largest = std::max(largest, v);
+    }
+    if (largest < 0) return;
+    first = least, n_vertices = largest - least + 1;
+    for (int& v : vertices) {
+      if (v >= 0) v -= first;
+    }
+  }
+};
+
 }  // namespace
 
 BlockRows block_rows(int n_vertices, std::span<const Stencils> families) {
   BlockPattern pattern = diagonal_pattern(n_vertices), next;
   for (const Stencils& stencils : families) {
+    heed_stop();
     GatherMap map;
     map.build(stencils, n_vertices);
     unite(pattern, map.column_start(), map.rows(), next);
@@ -67,19 +88,20 @@ void GatherLists::Lists::upload(std::span<const std::uint32_t> targets, std::spa
 
 GatherLists::GatherLists(Executor& executor, const Stencils& stencils, const BlockRows& rows)
     : vertices_(executor, "element gradient gather"), blocks_(executor, "element matrix gather") {
-  const int n_vertices = static_cast<int>(rows.row_begin.size()) - 1;
   if (stencils.size() > std::size_t{1} << 27) {
     throw ConfigError("piece of elements", std::to_string(stencils.size()) + " elements", "2^27");
   }
+  heed_stop();
+  const Ranged own(stencils);
   GatherMap map;
-  map.build(stencils, n_vertices);
+  map.build({stencils.width, own.vertices}, own.n_vertices);
   const std::size_t width = static_cast<std::size_t>(map.width()), size = n_lower_blocks(width);
 
   std::vector<std::uint32_t> target, start, source;
   const auto vertex_start = map.gradient_start();
   for (std::size_t v = 0; v + 1 < vertex_start.size(); ++v) {
     if (vertex_start[v] == vertex_start[v + 1]) continue;
-    target.push_back(narrow(v));
+    target.push_back(narrow(v + at(own.first)));
     start.push_back(narrow(vertex_start[v]));
   }
   for (const std::size_t from : map.gradient_sources()) {
@@ -90,10 +112,10 @@ GatherLists::GatherLists(Executor& executor, const Stencils& stencils, const Blo
   vertices_.upload(target, start, source);
 
   target.clear(), start.clear(), source.clear();
-  for (int c = 0; c < n_vertices; ++c) {
+  for (int c = 0; c < own.n_vertices; ++c) {
     for (int t = map.column_start()[at(c)]; t < map.column_start()[at(c) + 1]; ++t) {
-      const int r = map.rows()[at(t)];
-      target.push_back(narrow(at(find_block(rows.row_begin.data(), rows.column.data(), r, c))));
+      const int r = own.first + map.rows()[at(t)];
+      target.push_back(narrow(at(find_block(rows.row_begin.data(), rows.column.data(), r, own.first + c))));
       start.push_back(map.source_start()[at(t)]);
     }
   }

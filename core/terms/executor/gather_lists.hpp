@@ -21,7 +21,7 @@ struct BlockRows {
 /// Errors: ConfigError for a vertex outside [-1, n_vertices) and for more than 2^32 blocks.
 BlockRows block_rows(int n_vertices, std::span<const Stencils> families);
 
-/// Cost: O(elements) on the host. Memory: 4 B a contribution and 8 B a target.
+/// Cost: O(elements, and the range of their vertices) on the host. Memory: 4 B a contribution and 8 B a target.
 class GatherLists {
  public:
   /// stencils: of one piece, at most 2^27 elements.

@@ -1,0 +1,16 @@
+// Whether somebody asked the program to stop while long work that has no limits of its own is under way: the scene is built, a
+// system is set up. The program that hears signals says how; where nobody has, work goes on to its end.
+#pragma once
+
+namespace bb {
+
+/// Throws when the work should stop, and returns otherwise.
+using StopRequest = void (*)();
+
+/// From now on heed_stop() calls `request`; null: nothing.
+void set_stop_request(StopRequest request);
+
+/// To be called between the parts of long work, from code that may throw: not inside a parallel loop. Errors: those of the request.
+void heed_stop();
+
+}  // namespace bb
