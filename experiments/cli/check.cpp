@@ -19,6 +19,7 @@
 #include "experiments/cli/terminal.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/artifacts.hpp"
+#include "experiments/run/device_memory.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
@@ -115,17 +116,26 @@ void write_start(const Scene& scene, const std::filesystem::path& folder) {
   if (error) throw ConfigError("--start-frame", error.message(), "a folder that can be written");
 }
 
+void print_contacts(const DeviceMemory& memory) {
+  print_wrapped(fmt::format("  on the device: {:.4g} contacts ({}), {} at the peak of a step; bench explain "
+                            "has it by buffer",
+                            memory.contacts, memory.source, exec::bytes_text(memory.total)),
+                4);
+}
+
 int check(const RunVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
+  const Plan plan = plan_of(config, scene);
   if (!verb.out.empty()) write_start(scene, verb.out);
   check_device_forms(config, scene);
   check_step_solver_forms(config, scene);
-  if (const auto failure = start_failure(config, scene, plan_of(config, scene).contacts, {&interrupted()})) {
+  if (const auto failure = start_failure(config, scene, plan.contacts, {&interrupted()})) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
   show("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));
   print_sizes(config, scene);
+  if (config.device != Device::cpu) print_contacts(count_device_memory(config, scene, plan, {}));
   return exit_ok;
 }
 

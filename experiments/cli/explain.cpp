@@ -184,7 +184,8 @@ int explain(const RunVerb& verb, const ContactDemand& demand) {
 
 void demand_arguments(CLI::App& app, ContactDemand& demand) {
   app.add_option("--contacts", demand.contacts,
-                 "with a device: so many contacts are expected (default: estimated from the scene)")
+                 "with a device: so many contacts are expected (default: those of the start where they are "
+                 "at least one a vertex, else estimated from the scene)")
       ->check(finite_number(0, 1e12));
   app.add_option("--blocks-per-contact", demand.upper_blocks_a_contact,
                  "stored 3x3 blocks on and above the diagonal that a contact has (default 1.738, of "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "core/contact/executor/executor_rows.hpp"
 #include "core/contact/executor/policy_kernels.hpp"
@@ -12,6 +13,7 @@
 #include "core/exec/counting_executor.hpp"
 #include "core/newton/executor/executor_engine.hpp"
 #include "core/newton/newton_system.hpp"
+#include "experiments/run/contact_count.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -49,6 +51,19 @@ exec::ExpectedContacts expected_contacts(const ContactDemand& demand, double con
   return out;
 }
 
+/// What contact there is at the start where that is at least one a vertex, else an estimate of what there may be; and in words.
+std::pair<double, std::string> expected_number(const RunConfig& config, const Scene& scene,
+                                               const Plan& plan) {
+  const StartContacts start =
+      contacts_at_start(scene, plan.contacts, {config.contact.mollifier, config.contact.ccd_park});
+  if (start.a_vertex >= 1) {
+    return {std::ceil(start.total), fmt::format("at the start: {:.4g} a vertex, counted at {} vertices",
+                                                start.a_vertex, start.sampled)};
+  }
+  return {std::ceil(estimated_contacts(scene)),
+          "estimated: every sheet lies on one other at half its activation distance"};
+}
+
 }  // namespace
 
 double estimated_contacts(const Scene& scene) {
@@ -74,10 +89,7 @@ DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, co
   out.source = "--contacts";
   if (plan.term("contact").needed) {
     out.contacts = demand.contacts;
-    if (demand.contacts == 0) {
-      out.contacts = std::ceil(estimated_contacts(scene));
-      out.source = "estimated: every sheet lies on one other at half its activation distance";
-    }
+    if (demand.contacts == 0) std::tie(out.contacts, out.source) = expected_number(config, scene, plan);
     out.bytes_a_row = bytes_a_row(method);
   }
   method.make_potential = [](const Scene& of, Method& with, const Plan& parts,
