@@ -59,6 +59,7 @@ class Size:
 SIZES = [
     Size("drape_82k", 81.9e3, 161e3, "drape_82k"),
     Size("drape_1m", 1e6, 2e6, "drape_1m"),
+    Size("packed_8m", 8.2e6, 16.4e6, "packed_patch"),
     Size("dense_8m", 8.2e6, 16.4e6, "dense_patch"),
 ]
 
