@@ -30,11 +30,12 @@ the others to `report`.
 Every trial begins in one state and is judged by one reference: `line_search` with the Hessian `blend` at a
 thousandth of the run's tolerance, whose end is the minimum A. A trial that converges farther than ten
 tolerances from all known minima is continued to a thousandth of the tolerance, and its end is the next
-letter. *To tol* counts iterations until the true error, the largest coordinate of x - x_min, was first
-below the tolerance; `-`: it never was. Step solvers other than `line_search` have their own Hessian and
-settings; multipliers begin at 0, `xpbd` and `projection` sweep and have no iterations, and solvers with
-multipliers minimise another function, so that few of them end near a letter. `accumulated_toi` may end its
-step earlier in time than asked, which counts as an error here.
+letter. Where that does not confirm its end, its distance from A is stated instead. *To tol* counts
+iterations until the true error, the largest coordinate of x - x_min, was first below the tolerance; `-`: it
+never was. Step solvers other than `line_search` have their own Hessian and settings; multipliers begin at
+0, `xpbd` and `projection` sweep and have no iterations, and solvers with multipliers minimise another
+function, so that few of them end near a letter. `accumulated_toi` may end its step earlier in time than
+asked, which counts as an error here.
 
 Why an iteration was short or many (one cause each, so that they add up): *full*: the whole direction of the
 first matrix that the Hessian rule made; *indefinite*: the whole direction of a regularised matrix, since
