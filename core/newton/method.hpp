@@ -13,6 +13,7 @@
 #include "core/linear/linear_solver.hpp"
 #include "core/model/integrators/integrator.hpp"
 #include "core/newton/saddle_rule.hpp"
+#include "core/newton/step_size.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "core/terms/step_needs.hpp"
 #include "core/terms/term_options.hpp"
@@ -48,6 +49,7 @@ struct Method : TermOptions {
   }
   std::unique_ptr<Integrator> integrator;
   StepSolverOptions step_solver;
+  StepSizeOptions step_size;
   StepNeeds step_needs;  // of the step solver (fit_terms, choose_step_solver)
   LinearOptions linear;
   /// Where E is summed and solved; empty: on the host (HostEngine).

@@ -1,5 +1,5 @@
-// Where a run is within a nominal step dt: it is one step, until an attempt at it fails; then it goes on in parts
-// of half the length, and halves again. All numbers are exact, so that the run is back on its grid at the end.
+// Where a run is within a nominal step dt: it is one step, until an attempt at it fails or shorter ones are chosen; then it
+// goes on in parts of half the length, and halves again. All numbers are exact, so that the run is back on its grid at the end.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@ namespace bb {
 
 class StepParts {
  public:
-  /// most: halvings of a nominal step, 0 to 20.
+  /// most: halvings of a nominal step, 0 to 30.
   explicit StepParts(int most) : most_(most) {}
 
   /// Length of the next part, s.
@@ -18,6 +18,12 @@ class StepParts {
   bool ends_here() const { return done_ + part() == whole(); }
   bool can_halve() const { return halvings_ < most_; }
   void halve() { ++halvings_; }
+  int halvings() const { return halvings_; }
+  /// The next part is dt / 2^halvings long, or the longest above that begins here on the grid of its length.
+  void choose(int halvings) {
+    halvings_ = halvings;
+    while (done_ % part() != 0) ++halvings_;
+  }
   /// The part is over. A part that was not reached to its end leaves the grid: a nominal step begins.
   void next(bool reached) {
     done_ += part();

@@ -62,7 +62,8 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       plan_(plan),
       dt_(dt),
       n_steps_(n_steps),
-      parts_(method.step_solver.retries),
+      size_(method.step_size),
+      parts_(method.step_solver.retries + size_.most_halvings()),
       entry_(step_solvers().require(method.step_solver.name, "/step_solver/name")),
       solver_(make_step_solver(method.step_solver)) {
   if (method.step_needs != entry_.needs) {
@@ -124,6 +125,7 @@ void Simulation::keep_motion(Archive& archive) {
   archive.section("simulation");
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
           history_.v_prev, history_.t, history_.anew, step_, nominal_, nominal_start_, parts_);
+  if (size_.adaptive()) archive(size_);
   if (held_.changes()) {
     std::vector<int> holding = held_.holding();
     archive(holding);
@@ -156,7 +158,9 @@ StepReport Simulation::step(StepObserver& observer) {
   if (others || other_pulls()) begin_anew();
   StepReport report = attempt_until_converged(charged);
 
+  const int halvings = parts_.halvings();
   remember(system_->view().x(), report.dt_s);
+  if (size_.adaptive()) choose_length(report, halvings);
   report.t_s = history_.t;
   measure_end(*system_, report);
   if (end_residual_ && report.status == StepStatus::converged) measure_residual(report);
@@ -169,6 +173,15 @@ StepReport Simulation::step(StepObserver& observer) {
   ++step_;
   report.time = clock.read();
   return report;
+}
+
+// After a step of dt / 2^halvings.
+void Simulation::choose_length(const StepReport& report, int halvings) {
+  const double error = size_.asks_for_error() ? embedded_error(history_.x_prev, history_.v_prev, history_.x,
+                                                               history_.v, report.dt_s)
+                                              : 0;
+  size_.took(halvings, report.newton_iterations, error);
+  parts_.choose(size_.halvings());
 }
 
 // The next part of the nominal step, from the history. The load of quasi_static grows with the parts.

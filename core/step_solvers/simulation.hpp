@@ -9,6 +9,7 @@
 #include "core/newton/end_residual.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/newton/step_parts.hpp"
+#include "core/newton/step_size.hpp"
 #include "core/newton/step_solver.hpp"
 
 namespace bb {
@@ -52,6 +53,7 @@ class Simulation {
   StepReport attempt(StepObserver& observer);
   StepReport attempt_until_converged(StepObserver& observer);
   void measure_residual(StepReport& report);
+  void choose_length(const StepReport& report, int halvings);
   void remember(const PositionsView& x, double dt_used);
   void follow_pins(double t_end, double dt);
   void advance_time(double dt_used);
@@ -64,6 +66,7 @@ class Simulation {
   int n_steps_ = 0, step_ = 0, nominal_ = 0;  // step_: every part counts
   double nominal_start_ = 0;                  // s
   double load_factor_ = 1;                    // of the last attempt
+  StepSize size_;
   StepParts parts_;
   std::unique_ptr<NewtonSystem> system_;
   const StepSolverEntry entry_;  // a copy: the registry may get others while it runs

@@ -275,6 +275,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   }
   check_contact(config, complain);
   check_step_solver(config, complain);
+  check_step_size(config, complain);
   check_damping(config, complain);
   check_policies(config, complain);
   check_formula_of_inertia(config, complain);

@@ -27,6 +27,8 @@ std::optional<BarrierFunction> barrier_of(const std::string& shape, Argument arg
 void refuse_restitution(const RunConfig& config, const std::string& allowed, const Complain& complain);
 /// Says of every coefficient of friction above 0 what is allowed.
 void refuse_friction(const RunConfig& config, const std::string& allowed, const Complain& complain);
+/// What steps of chosen length ask of the other sections (check_step_size.cpp).
+void check_step_size(const RunConfig& config, const Complain& complain);
 /// What a step solver asks of the other sections (check_step_solver.cpp).
 void check_step_solver(const RunConfig& config, const Complain& complain);
 /// What matching asks of them (check_matching.cpp).

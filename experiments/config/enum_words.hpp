@@ -41,6 +41,9 @@ inline EnumWords<ContactWeighting> words_of(ContactWeighting) {
 inline EnumWords<ContactModel> words_of(ContactModel) {
   return {{ContactModel::all_pairs, "all_pairs"}, {ContactModel::offset_geometric, "offset_geometric"}};
 }
+inline EnumWords<StepSizeRule> words_of(StepSizeRule) {
+  return {{StepSizeRule::fixed, "fixed"}, {StepSizeRule::adaptive, "adaptive"}};
+}
 inline EnumWords<RestRule> words_of(RestRule) { return {{RestRule::on, "on"}, {RestRule::off, "off"}}; }
 inline EnumWords<CombineRule> words_of(CombineRule) {
   return {{CombineRule::min, "min"}, {CombineRule::max, "max"}, {CombineRule::mean, "mean"}};

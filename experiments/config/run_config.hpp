@@ -17,6 +17,7 @@
 #include "core/math/precision.hpp"
 #include "core/model/bodies/body_spec.hpp"
 #include "core/newton/saddle_rule.hpp"
+#include "core/newton/step_size.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {

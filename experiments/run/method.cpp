@@ -29,6 +29,15 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
   return out;
 }
 
+StepSizeOptions step_size_options(const TimeConfig& time) {
+  StepSizeOptions out;
+  out.rule = time.step_size.value_or(out.rule);
+  out.iterations = time.step_iterations.value_or(out.iterations);
+  out.halvings = time.step_halvings.value_or(out.halvings);
+  out.error_m = time.step_error.value_or(out.error_m);
+  return out;
+}
+
 }  // namespace
 
 std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
@@ -87,6 +96,7 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
                      config.friction.lag_iterations, config.friction.eps_v};
   method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);
   method.step_solver = step_solver_options(config);
+  method.step_size = step_size_options(config.time);
   fit_terms(method);
   for (const HessianChoice& choice : hessian_choices()) {
     method.step_hessian[choice.name] = step_hessian_of(text(config.hessian.parameters, choice.name));
