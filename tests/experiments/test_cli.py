@@ -101,7 +101,7 @@ def test_list_names_what_configs_may_name(program):
 
 @pytest.mark.parametrize(("section", "parts"), [
     ("generators", ["icosphere", "radius_m             0.5 m            a number >= 1e-15 and <= 1e+15 (m)", "closed               true             true or false", "vertices along x"]),
-    ("scenes", ["start_gap_d_hat      1.2 d_hat        a number >= 1e-36 and <= 1e+18 (d_hat)", "a number >= 1 and <= 1000000 (d_hat)",
+    ("scenes", ["start_gap_d_hat      1.2 d_hat        a number >= 1e-36 and <= 1e+18 (d_hat)", "a number >= 1e-36 and <= 1000000 (d_hat)",
                 "/time/dt_s 0.01 s, /time/steps 100, /formulation/d_hat_m 0.005 m, /strain_limit/limit 0.02", "bodies"]),
 ])
 def test_list_shows_parameters_with_defaults_units_and_ranges(program, section, parts):
