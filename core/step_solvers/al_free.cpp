@@ -79,6 +79,7 @@ class AlFree final : public StepSolver {
   // One outer iteration; returns the part of the way to the iterate that the anchor went.
   double iterate(StepSystem& system, StepReport& step, const StepTask& task, StepObserver& observer) {
     double first_dx = 0;
+    const Positions before = contact_ ? contact_->anchor() : task.history->x;
     for (int inner = 1;; ++inner) {
       IterationReport report = begin_iteration(system, task.step, step.newton_iterations);
       if (step.newton_iterations == 0) set_penalty(system);
@@ -91,9 +92,13 @@ class AlFree final : public StepSolver {
       if (inner == 1) first_dx = report.dx_inf_m;
       const bool whole = search(system, report);
       const bool over = whole || inner == inner_ || step.newton_iterations + 1 >= options_.max_iterations;
-      const double alpha = over ? move_anchor(system, report, task, first_dx, observer) : 0;
+      const double alpha = over ? move_anchor(system, report, first_dx) : 0;
       finish_iteration(system, step, report, observer);
-      if (over) return alpha;
+      if (!over) continue;
+      // The motion is shown after its iteration, as by every step solver.
+      if (alpha > 0 && observer.watches_motions())
+        observer.on_motion(before, contact_ ? contact_->anchor() : Positions(system.view().x()), task.step);
+      return alpha;
     }
   }
 
@@ -120,22 +125,16 @@ class AlFree final : public StepSolver {
     }
   }
 
-  double move_anchor(StepSystem& system, IterationReport& report, const StepTask& task, double dx,
-                     StepObserver& observer) {
+  double move_anchor(StepSystem& system, IterationReport& report, double dx) {
     if (!contact_) {
-      const Positions& from = task.history->x;
-      if (observer.watches_motions()) observer.on_motion(from, system.view().x(), task.step);
       moved_ = dx;
       return 1;
     }
     const PositionsView x = system.view().x();
     const double change = contact_->update(x);
-    const Positions before = contact_->anchor();
     const LinearContact::Advance done = contact_->advance(x, system.clock());
     report.bound = done.bound;
     report.alpha_ccd = done.bound.alpha;
-    if (observer.watches_motions() && done.time > 0)
-      observer.on_motion(before, contact_->anchor(), task.step);
     moved_ = std::max({dx, change, done.time < 1 ? 1.0 : 0.0});
     counts_["al_free_bounds"] += done.hits > 0;
     counts_["al_free_bounds_known"] += done.hits > 0 && done.known;

@@ -98,6 +98,22 @@ TEST(AlFree, a_weight_rests_at_the_standoff_and_its_multiplier_is_the_weight) {
   }
 }
 
+/// An observer takes a motion for that of the iteration that it saw last.
+TEST(AlFree, an_iteration_is_shown_before_its_motion) {
+  struct Order final : StepObserver {
+    int motions = 0;
+    bool ends_with_motion = false;
+    void on_iteration(const IterationReport&) override { ends_with_motion = false; }
+    void on_motion(const Positions&, const Positions&, int) override { ++motions, ends_with_motion = true; }
+  } order;
+  const Scene scene = test::particle_over_plane(mass, 0.5 * d_hat, d_hat);
+  Method method = method_of();
+  Simulation simulation(scene, method, 0.05, 1);
+  EXPECT_EQ(simulation.step(order).status, StepStatus::converged);
+  EXPECT_GT(order.motions, 1);
+  EXPECT_TRUE(order.ends_with_motion);
+}
+
 /// The multiplier goes to the load as the update says: of a free mass M/h^2 = m the error shrinks by m/(m + mu) an update.
 TEST(AlFree, the_multiplier_converges_as_fast_as_mass_and_penalty_say) {
   const double dt = 0.05, m = mass / (dt * dt), penalty = 3 * m;
