@@ -23,15 +23,19 @@ DOC = """Makes the states from configs/steps/corpus.json, takes each by every st
 
 
 def take(states: Path, record: Path) -> None:
-    done = started("steps", "--corpus", str(states), "--out", str(record), "--progress", "none")
+    """An earlier record is replaced when all states are taken."""
+    part = record.with_name("steps.part.json")
+    done = started("steps", "--corpus", str(states), "--out", str(part), "--progress", "none")
     if done.returncode != 0:
-        raise UserError(done.stderr.strip(), passed_on(done.returncode))
+        kept = f"; {part} has the states that were taken" if part.exists() else ""
+        raise UserError(done.stderr.strip() + kept, passed_on(done.returncode))
+    part.replace(record)
 
 
 def write_page(results: Path) -> None:
     record = read_of_schema(results / "steps.json", SCHEMA, "; ./bench steps --corpus --out makes it")
     write_whole(results / "STEPS.md", page(record))
-    paint(record, (ROOT / "docs" if results == RESULTS else results) / "steps.png")
+    paint(record, (ROOT / "docs" if results.resolve() == RESULTS.resolve() else results) / "steps.png")
 
 
 @tells("step-corpus")
@@ -43,14 +47,13 @@ def main(argv: list[str]) -> int:
     parser.add_argument(
         "--results", type=Path, default=RESULTS, help="folder of steps/, steps.json and STEPS.md"
     )
-    parser.add_argument("--make", action="store_true", help="only the states")
+    part = parser.add_mutually_exclusive_group()
+    part.add_argument("--make", action="store_true", help="only the states")
     parser.add_argument(
         "--only", default="", metavar="NAME,...", help="with --make: these states alone, by name"
     )
-    parser.add_argument(
-        "--take", action="store_true", help="only record, page and figure, of the states there"
-    )
-    parser.add_argument("--table", action="store_true", help="only page and figure, from the record there")
+    part.add_argument("--take", action="store_true", help="only record, page and figure, of the states there")
+    part.add_argument("--table", action="store_true", help="only page and figure, from the record there")
     args = parser.parse_args(argv)
     only = [name for name in args.only.split(",") if name]
     if only and not args.make:

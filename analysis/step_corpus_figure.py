@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .step_corpus_page import OWN, hessians, trial_of
+from .step_corpus_page import OWN, hessians, taken_states, trial_of
 from .style import WIDE_IN, plt
 from .whole_file import write_figure
 
@@ -52,12 +52,12 @@ def _by_rule(axis, states: list[dict], rules: list[str]) -> None:
 
 
 def paint(record: dict, path: Path) -> None:
-    states = record["states"]
+    states = taken_states(record)
     figure, axes = plt.subplots(
         1, 2, figsize=(WIDE_IN, 1.5 + 0.18 * len(states)), layout="constrained", sharey=True, squeeze=False
     )
     _by_cause(axes[0, 0], states)
-    _by_rule(axes[0, 1], states, hessians(record))
+    _by_rule(axes[0, 1], states, hessians({"states": states}))
     axes[0, 0].set_yticks(range(len(states)), [state["name"] for state in states])
     axes[0, 0].set(ylim=(len(states) - 0.5, -0.5))
     axes[0, 0].set_axisbelow(True)

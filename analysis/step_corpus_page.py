@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import groupby
 
+from .errors import UserError
 from .step_corpus_states import HALVES
 from .text_table import markdown
 
@@ -46,6 +47,13 @@ iterations with a raised matrix, whatever held them then.
 
 ![iterations by cause, and by Hessian rule](../docs/steps.png)
 """
+
+
+def taken_states(record: dict) -> list[dict]:
+    """Those that line_search can take. Errors: UserError for none."""
+    if not (out := [state for state in record["states"] if "refused" not in state]):
+        raise UserError(f"steps.json: none of {len(record['states'])} states has trials; one is needed")
+    return out
 
 
 def trial_of(state: dict, hessian: str) -> dict:
@@ -190,7 +198,17 @@ def _refusals(record: dict) -> list[str]:
     return markdown(["step solver", "why it is refused", "states"], rows)
 
 
+def _refused_states(states: list[dict]) -> list[str]:
+    if not states:
+        return []
+    rows = [[f"`{s['name']}`", s["hard_for"], s["split"], s["refused"]] for s in states]
+    head = ["state", "hard for", "half", f"why {SOLVER} cannot take it"]
+    return ["\n## States without trials\n", *markdown(head, rows)]
+
+
 def page(record: dict) -> str:
+    refused = [s for s in record["states"] if "refused" in s]
+    record = {**record, "states": taken_states(record)}
     states = record["states"]
     taken = [t for s in states for t in s["trials"] if "refused" not in t]
     minutes = sum(s["seconds"] for s in states) / 60
@@ -209,4 +227,5 @@ def page(record: dict) -> str:
     for half in HALVES:
         parts += [f"\n## Totals of the half {half}\n", *_totals(record, half)]
     parts += ["\n## Other step solvers\n", *_solvers(record), "\n## Refused\n", *_refusals(record)]
+    parts += _refused_states(refused)
     return "\n".join(parts) + "\n"

@@ -16,6 +16,7 @@ from .program import started
 from .spec_file import read_spec, refused, require_base
 from .whole_file import write_whole
 
+SCHEMA = "barrierbench.step_state/1"
 HALVES = ("tune", "report")
 MOST_BYTES = 12 << 20  # of all states together
 MOST_OF_ONE = 800 << 10
@@ -72,8 +73,25 @@ def chosen(spec: dict, path: Path, only: list[str]) -> list[tuple[int, dict]]:
     return [(k, state) for k, state in enumerate(spec["states"]) if not only or state["name"] in only]
 
 
+def _is_of_corpus(document: Path) -> bool:
+    """Whether the corpus made the state: one of `barrierbench steps --keep` alone has no half."""
+    kept = read_object(document)
+    return kept.get("schema") == SCHEMA and kept.get("split") in HALVES
+
+
+def drop_unlisted(out: Path, names: list[str]) -> None:
+    """Removes what an earlier list of the corpus made, and names it."""
+    for document in sorted(out.glob("*.json")):
+        if document.stem in names or not _is_of_corpus(document):
+            continue
+        for file in (document.with_suffix(".state"), document):
+            if file.exists():
+                file.unlink()
+                print(f"{file}: removed, since the list has no state of this name", file=sys.stderr)
+
+
 def make(spec_file: Path, out: Path, only: list[str]) -> None:
-    """Each is kept when it is made. Without `only` what the list does not have goes. Errors: UserError, also
+    """Each is kept when it is made. Without `only` what an earlier list had goes. Errors: UserError, also
     for states that are too large for the repository.
     """
     spec = read_corpus(spec_file)
@@ -86,14 +104,14 @@ def make(spec_file: Path, out: Path, only: list[str]) -> None:
             _keep(state, _base(state, k, spec_file, Path(scratch)), spec["set"], stem)
             _name(stem.with_suffix(".json"), state["hard_for"], half[state["name"]])
             print(f"{state['name']}: step {state['step']}", file=sys.stderr)
-    for file in out.iterdir() if not only else ():
-        if file.suffix in (".json", ".state") and file.stem not in names:
-            file.unlink()
-    _require_small(out)
+    if not only:
+        drop_unlisted(out, names)
+    _require_small(out, names)
 
 
-def _require_small(out: Path) -> None:
-    sizes = {file: file.stat().st_size for file in out.iterdir() if file.suffix in (".json", ".state")}
+def _require_small(out: Path, names: list[str]) -> None:
+    files = (out / f"{name}{ending}" for name in names for ending in (".json", ".state"))
+    sizes = {file: file.stat().st_size for file in files if file.exists()}
     if large := [file for file, size in sizes.items() if size > MOST_OF_ONE]:
         raise UserError(f"{large[0]}: {sizes[large[0]]} bytes; allowed: {MOST_OF_ONE}, a smaller scene")
     if (total := sum(sizes.values())) > MOST_BYTES:

@@ -71,7 +71,7 @@ std::vector<std::string> chosen_names(const StepsVerb& verb) {
   return verb.only.empty() ? all : verb.only;
 }
 
-/// All states are read before the first is taken.
+/// All states are read before the first is taken; the record is written after each, so that an interrupt loses none.
 int corpus(const StepsVerb& verb, const CommonOptions& common) {
   std::vector<StepState> states;
   for (const std::string& name : chosen_names(verb)) {
@@ -86,6 +86,7 @@ int corpus(const StepsVerb& verb, const CommonOptions& common) {
   for (const StepState& state : states) {
     out.push_back(take_state(state, options, [&line](const std::string& text) { line.tell(text); }));
     line.clear();
+    if (!verb.out.empty()) write_atomically(verb.out, corpus_json(out, options));
     show("{}", corpus_table(out.back()));
   }
   show(
@@ -93,7 +94,6 @@ int corpus(const StepsVerb& verb, const CommonOptions& common) {
       "against A); A is that of line_search at a thousandth of the tolerance\n"
       "to tol: iterations until that error was first below the tolerance; factors, products: those of the "
       "check of the end too\n");
-  if (!verb.out.empty()) write_atomically(verb.out, corpus_json(out, options));
   return exit_ok;
 }
 
@@ -134,8 +134,9 @@ Action verb::steps(CLI::App& app) {
       ->allow_extra_args(false);
   app.add_option("--split", verb->split, "of --corpus: the half that options are tuned on, or the other one")
       ->check(CLI::IsMember({"tune", "report"}));
-  app.add_option("--out", verb->out,
-                 "JSON file with every |dx|, for ./bench figures; of --corpus: its record");
+  app.add_option(
+      "--out", verb->out,
+      "JSON file with every |dx|, for ./bench figures; of --corpus: its record, written after each state");
   return [verb](const CommonOptions& common) { return install_interrupt(), cli::steps(*verb, common); };
 }
 

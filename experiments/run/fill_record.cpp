@@ -1,7 +1,6 @@
 #include "experiments/run/fill_record.hpp"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/info.h>
 
 #include "core/linear/preconditioner.hpp"
 #include "core/linear/solvers/linear_solvers.hpp"
@@ -112,10 +111,6 @@ void fill_stiffness(const PassResult& pass, RunRecord& record) {
   if (!(pass.stiffness.kappa > 0)) return;
   record.summary.stiffness = {pass.stiffness.kappa_start, pass.stiffness.kappa, pass.stiffness.doublings,
                               pass.stiffness.saturated};
-}
-
-int thread_count(const RunConfig& config) {
-  return config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
 }
 
 }  // namespace bb

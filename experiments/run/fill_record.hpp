@@ -34,7 +34,4 @@ void fill_stiffness(const PassResult& pass, RunRecord& record);
 /// detail says it, and the whole run will have that outcome.
 void merge(Verdict& verdict, Outcome outcome, const std::string& detail);
 
-/// Threads that the run may use.
-int thread_count(const RunConfig& config);
-
 }  // namespace bb

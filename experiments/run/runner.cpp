@@ -1,7 +1,6 @@
 #include "experiments/run/runner.hpp"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
 #include <new>
@@ -26,6 +25,7 @@
 #include "experiments/run/plan.hpp"
 #include "experiments/run/start_check.hpp"
 #include "experiments/run/stored_run.hpp"
+#include "experiments/run/thread_limit.hpp"
 
 namespace bb {
 namespace {
@@ -247,8 +247,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   RunOptions options = given;
   if (options.note.empty()) options.note = own_note(config);
   if (options.time_limit_s > 0) options.deadline_s = now_s() + options.time_limit_s;
-  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(thread_count(config)));
+  const auto threads = threads_of(config);
   set_one_blas_thread();  // before the record says how many there are, and before anything computes
   // before anything is written: what config and files can tell is refused here
   const Scene scene = build_scene(config);

@@ -9,6 +9,7 @@
 #include "core/math/error.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/thread_limit.hpp"
 
 namespace bb {
 namespace {
@@ -103,7 +104,7 @@ void judge_end(const TakenStep& taken, const Minima& minima, CorpusTrial& out) {
   if (minima.empty()) return;
   const std::size_t found = minima.nearest(taken.end);
   const Positions& x = minima.at(found < minima.size() ? found : 0);
-  if (found < minima.size()) out.minimum = std::string(1, static_cast<char>('A' + found % 26));
+  if (found < minima.size()) out.minimum = minimum_name(found);
   out.error_m = apart(taken.end, x);
   for (std::size_t k = 0; k < taken.states.size() && !out.iterations_to_tolerance; ++k) {
     if (apart(taken.states[k], x) < taken.tolerance_m) out.iterations_to_tolerance = static_cast<int>(k) + 1;
@@ -131,7 +132,8 @@ void take_trial(const StepState& state, const std::string& solver, std::optional
   judge_end(taken, minima, out);
 }
 
-/// line_search at a thousandth of the tolerance; its end is the minimum A where it converges.
+/// line_search at a thousandth of the tolerance; its end is the minimum A where it converges. Errors: ConfigError for a
+/// state that line_search cannot have.
 void find_reference(const StepState& state, Minima& minima, CorpusState& out) {
   const RunConfig config = with_step_solver(state.config, reference_solver);
   const StepSetting setting{config, state.scene, state.calibration, plan_of(config, state.scene)};
@@ -157,12 +159,8 @@ std::vector<CorpusTrial> trials_of() {
   return out;
 }
 
-}  // namespace
-
-CorpusState take_state(const StepState& state, const RunOptions& options,
-                       const std::function<void(const std::string&)>& tell) {
-  const auto threads = threads_of(state.config);
-  const double start = processor_seconds();
+/// Of the state alone.
+CorpusState described(const StepState& state) {
   CorpusState out;
   out.name = state.name, out.hard_for = state.hard_for, out.split = state.split;
   out.formulation = label_of(state.config.formulation);
@@ -171,13 +169,36 @@ CorpusState take_state(const StepState& state, const RunOptions& options,
   out.step = state.start.step;
   out.vertices = state.scene.n_vertices();
   out.tolerance_m = state.config.step_solver.tol_velocity * state.config.time.dt;
+  return out;
+}
+
+}  // namespace
+
+std::string minimum_name(std::size_t place) {
+  constexpr std::size_t letters = 26;
+  std::string out;
+  for (std::size_t n = place + 1; n > 0; n = (n - 1) / letters)
+    out.insert(out.begin(), static_cast<char>('A' + (n - 1) % letters));
+  return out;
+}
+
+CorpusState take_state(const StepState& state, const RunOptions& options,
+                       const std::function<void(const std::string&)>& tell) {
+  const auto threads = threads_of(state.config);
+  const double start = processor_seconds();
+  CorpusState out = described(state);
   const auto begin = [&](const std::string& what) {
     if (options.interrupted && options.interrupted->load()) throw Interrupted{};
     if (tell) tell(fmt::format("{}: {}", state.name, what));
   };
   begin("reference");
   Minima minima(out.tolerance_m);
-  find_reference(state, minima, out);
+  try {
+    find_reference(state, minima, out);
+  } catch (const ConfigError& error) {
+    out.refused = refusal_of(error);
+    return out;
+  }
   for (CorpusTrial& trial : out.trials = trials_of()) {
     begin(trial.step_solver + " " + trial.hessian);
     const auto hessian = trial.hessian.empty() ? std::nullopt : std::optional(step_hessian_of(trial.hessian));

@@ -20,7 +20,7 @@ struct CorpusTrial {
   std::string refused;  // why this step solver cannot take the state; empty: it was taken
   StepStatus status = StepStatus::converged;
   bool has_memory = true;  // TakenStep
-  /// A letter of the minimum that it ended in, A that of the reference; empty where its end is within ten tolerances of none.
+  /// The minimum that it ended in (minimum_name), A that of the reference; empty where its end is within ten tolerances of none.
   std::string minimum;
   Number error_m;  // |x - x_min|_inf of its end, against that minimum, else against A
   std::optional<int> iterations_to_tolerance;  // until that error was first below the tolerance
@@ -34,6 +34,8 @@ struct CorpusTrial {
 
 struct CorpusState {
   std::string name, hard_for, split, formulation, step_solver, linear_solver;
+  std::string
+      refused;  // why line_search cannot take it, so that there is no trial of it; empty: it was taken
   int step = 0, vertices = 0;
   std::size_t contacts = 0;  // at the end of the reference
   double tolerance_m = 0;
@@ -42,6 +44,9 @@ struct CorpusState {
   double seconds = 0;  // of all trials, the reference and other minima
   std::vector<CorpusTrial> trials;
 };
+
+/// A to Z, then AA, AB ...
+std::string minimum_name(std::size_t place);
 
 /// All trials of a state: line_search with each of all_step_hessians, then every other step solver of the registry with its own
 /// Hessian. `tell` hears of each before it begins. Errors: Interrupted.

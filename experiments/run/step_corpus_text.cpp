@@ -38,22 +38,27 @@ json json_of(const CorpusTrial& t) {
 }
 
 json json_of(const CorpusState& s) {
+  json out = {{"name", s.name},
+              {"hard_for", s.hard_for},
+              {"split", s.split},
+              {"formulation", s.formulation},
+              {"step_solver", s.step_solver},
+              {"linear_solver", s.linear_solver},
+              {"step", s.step},
+              {"vertices", s.vertices}};
+  if (!s.refused.empty()) {
+    out["refused"] = s.refused;
+    return out;
+  }
   json trials = json::array();
   for (const CorpusTrial& trial : s.trials) trials.push_back(json_of(trial));
-  return {{"name", s.name},
-          {"hard_for", s.hard_for},
-          {"split", s.split},
-          {"formulation", s.formulation},
-          {"step_solver", s.step_solver},
-          {"linear_solver", s.linear_solver},
-          {"step", s.step},
-          {"vertices", s.vertices},
-          {"contacts", s.contacts},
-          {"tolerance_m", s.tolerance_m},
-          {"reference_status", to_string(s.reference)},
-          {"reference_iterations", s.reference_iterations},
-          {"seconds", s.seconds},
-          {"trials", std::move(trials)}};
+  out["contacts"] = s.contacts;
+  out["tolerance_m"] = s.tolerance_m;
+  out["reference_status"] = to_string(s.reference);
+  out["reference_iterations"] = s.reference_iterations;
+  out["seconds"] = s.seconds;
+  out["trials"] = std::move(trials);
+  return out;
 }
 
 /// "2 contact, 1 full": those that there are.
@@ -80,6 +85,8 @@ std::string corpus_json(const std::vector<CorpusState>& states, const RunOptions
 }
 
 std::string corpus_table(const CorpusState& state) {
+  if (!state.refused.empty())
+    return fmt::format("{}, step {}: refused: {}\n", state.name, state.step, state.refused);
   std::string out = fmt::format("{}, step {}, {} vertices, {} contacts, {}: {}\n", state.name, state.step,
                                 state.vertices, state.contacts, state.linear_solver, state.hard_for);
   out += fmt::format("  {:<20} {:<17} {:>10} {:>6} {:>6} {:>8} {:>8} {:>10} {:>3}  {:<18} {}\n",

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/input_files.hpp"
 #include "experiments/run/method.hpp"
+#include "experiments/run/thread_limit.hpp"
 
 namespace bb {
 namespace {
@@ -181,6 +183,33 @@ void require_same(const StepState& state, const json& document) {
          "an archive of what this program keeps of a simulation");
 }
 
+/// The two files of a state.
+struct StateFiles {
+  explicit StateFiles(const fs::path& stem) : document(stem), archive(stem) {
+    document += ".json", archive += ".state";
+  }
+  /// Before the run rather than after it. Errors: RecordError.
+  void check_writable() const {
+    for (const fs::path* path : {&document, &archive}) {
+      if (fs::is_directory(*path)) fail_with(*path, "cannot be written", EISDIR);
+      const StagedFile probe(*path, "a byte");  // which goes without commit()
+    }
+  }
+  /// Both or, where the second cannot be written, none. Errors: RecordError.
+  void write(const std::string& packed, const std::string& text) const {
+    StagedFile first(archive, packed), second(document, text);
+    first.commit();
+    try {
+      second.commit();
+    } catch (const RecordError&) {
+      std::error_code ignored;
+      fs::remove(archive, ignored);
+      throw;
+    }
+  }
+  fs::path document, archive;
+};
+
 }  // namespace
 
 void keep_step_state(const RunConfig& config, int step, const fs::path& stem, const RunOptions& options) {
@@ -188,6 +217,8 @@ void keep_step_state(const RunConfig& config, int step, const fs::path& stem, co
     throw ConfigError("--at", std::to_string(step),
                       fmt::format("a step of the run, 0 to {}", config.time.steps - 1));
   }
+  const StateFiles files(stem);
+  files.check_writable();
   const auto threads = threads_of(config);
   const Scene scene = build_scene(config);
   MatchingRecord matching;
@@ -196,8 +227,6 @@ void keep_step_state(const RunConfig& config, int step, const fs::path& stem, co
   const StepStart start = step_starts(setting, {step}, "--at", options).front();
   const MotionHashes motion = read_motion(setting, start.bytes);
   const std::string packed = deflated(start.bytes);
-  fs::path json_path = stem, state_path = stem;
-  json_path += ".json", state_path += ".state";
   const json out = {
       {"schema", step_state_schema},
       {"step", step},
@@ -210,8 +239,7 @@ void keep_step_state(const RunConfig& config, int step, const fs::path& stem, co
        {{"bytes", start.bytes.size()}, {"sha256", sha256_hex(start.bytes)}, {"packed_bytes", packed.size()}}},
       {"calibration", json_of(calibration)},
       {"config", json::parse(resolved_json(name_from(stem.parent_path(), config)))}};
-  write_atomically(state_path, packed);
-  write_atomically(json_path, out.dump(1) + "\n");
+  files.write(packed, out.dump(1) + "\n");
 }
 
 std::vector<std::string> step_states_in(const fs::path& folder) {

@@ -24,7 +24,7 @@ struct StepState {
 };
 
 /// Runs the config to the start of a step and writes stem.state and stem.json. Errors: as run_config; ConfigError when the step is
-/// beyond the run, or the run does not get there; RecordError.
+/// beyond the run, or the run does not get there; RecordError, before the run where the files cannot be written.
 void keep_step_state(const RunConfig& config, int step, const std::filesystem::path& stem,
                      const RunOptions& options);
 

@@ -8,6 +8,7 @@
 #include "core/math/error.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/step_trial.hpp"
+#include "experiments/run/thread_limit.hpp"
 
 namespace bb {
 namespace {

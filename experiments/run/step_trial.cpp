@@ -14,6 +14,7 @@
 namespace bb {
 namespace {
 
+/// Relies on an iteration being shown before its motion.
 class StepWatch final : public StepObserver {
  public:
   StepWatch(TakenStep& out, const Positions& start, bool keeps_states)
@@ -64,13 +65,6 @@ double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_P
 
 nlohmann::ordered_json json_of(const Number& number) {
   return number.finite() ? nlohmann::ordered_json(number.value) : nlohmann::ordered_json();
-}
-
-oneapi::tbb::global_control threads_of(const RunConfig& config) {
-  using oneapi::tbb::global_control;
-  return {global_control::max_allowed_parallelism,
-          config.threads > 0 ? static_cast<std::size_t>(config.threads)
-                             : global_control::active_value(global_control::max_allowed_parallelism)};
 }
 
 std::vector<StepStart> step_starts(const StepSetting& setting, const std::vector<int>& steps,

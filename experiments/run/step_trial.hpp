@@ -2,8 +2,6 @@
 // step solver.
 #pragma once
 
-#include <oneapi/tbb/global_control.h>
-
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -55,9 +53,6 @@ double processor_seconds();
 
 /// null where there is none.
 nlohmann::ordered_json json_of(const Number& number);
-
-/// The threads of a config, as long as the answer lives.
-oneapi::tbb::global_control threads_of(const RunConfig& config);
 
 /// Runs the setting to the start of each of `steps` (ascending, from 0, all in the run). Errors: ConfigError naming `option` where
 /// the run does not get there; Interrupted.

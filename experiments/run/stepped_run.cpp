@@ -1,7 +1,6 @@
 #include "experiments/run/stepped_run.hpp"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <new>
 #include <stdexcept>
@@ -21,6 +20,7 @@
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/start_check.hpp"
+#include "experiments/run/thread_limit.hpp"
 #include "experiments/run/validity.hpp"
 
 namespace bb {
@@ -66,9 +66,7 @@ class HookedRecorder final : public StepObserver {
 
 class ThreadLimit {
  public:
-  explicit ThreadLimit(const RunConfig& config)
-      : limit_(oneapi::tbb::global_control::max_allowed_parallelism,
-               static_cast<std::size_t>(thread_count(config))) {}
+  explicit ThreadLimit(const RunConfig& config) : limit_(threads_of(config)) {}
 
  private:
   oneapi::tbb::global_control limit_;

@@ -9,8 +9,10 @@ import zlib
 from pathlib import Path
 
 import pytest
+from processes import started, wait_until
 
 from analysis.errors import UserError
+from analysis import step_corpus
 from analysis import step_corpus_figure as figure
 from analysis import step_corpus_page as page
 from analysis import step_corpus_states as make
@@ -19,6 +21,8 @@ ROOT = Path(__file__).resolve().parents[2]
 CONFIG = [str(ROOT / "configs/scenes/drape.json"), "--set", "/scene/layers=2", "--set", "/scene/n=6", "--set", "/threads=1",
           "--set", "/matching/load_N=1", "--set", "/matching/limit_load_N_per_m=10"]
 STEP = 9
+LITERAL = ["/scene/variant=pinned", "/scene/protocol=article_literal", "/scene/pairs=vertex_vertex", "/time/steps=4", "/threads=1",
+           "/formulation/stiffness_policy/kappa_N_per_m=1", "/strain_limit/shape=log"]
 
 
 def bench(program: str, *words) -> subprocess.CompletedProcess:
@@ -55,8 +59,10 @@ def test_the_runs_own_choice_gives_the_step_of_the_run(program, taken, tmp_path)
 
 def test_every_solver_of_the_registry_is_taken_or_refused_by_name_and_causes_add_up(program, taken):
     [state] = taken[1]["states"]
-    listed = {line.split()[0] for line in bench(program, "list", "step-solvers").stdout.splitlines() if re.match(r"[a-z]", line)}
-    assert {trial["step_solver"] for trial in state["trials"]} >= {"line_search", "xpbd", "pncg"} and (not listed or {t["step_solver"] for t in state["trials"]} <= listed)
+    done = bench(program, "list", "step_solvers")
+    listed = set(re.findall(r"^  ([a-z_]+) ", done.stdout, re.MULTILINE))
+    assert done.returncode == 0 and {"line_search", "xpbd", "pncg"} < listed
+    assert {trial["step_solver"] for trial in state["trials"]} == listed
     assert state["contacts"] > 0 and state["reference_status"] == "converged"
     judged = 0
     for trial in state["trials"]:
@@ -69,6 +75,42 @@ def test_every_solver_of_the_registry_is_taken_or_refused_by_name_and_causes_add
         judged += trial["step_solver"] == "line_search" and trial["minimum"] == "A" and trial["error_m"] < 10 * state["tolerance_m"]
     assert judged == len(page.hessians(taken[1])) >= 5
     assert "refused: /formulation/shape" in taken[0] and "small, step 9" in taken[0]
+
+
+def test_a_state_that_line_search_cannot_have_is_a_row_and_the_others_are_taken(program, kept, tmp_path):
+    literal = [ROOT / "configs/scenes/drape2d.json", *(word for value in LITERAL for word in ("--set", value))]
+    folder = shutil.copytree(kept, tmp_path / "states")
+    done = bench(program, "steps", *literal, "--at", "1", "--keep", folder / "literal")
+    assert done.returncode == 0, done.stderr
+    done = bench(program, "steps", "--corpus", folder, "--out", tmp_path / "steps.json")
+    assert done.returncode == 0 and "literal, step 1: refused: /step_solver/name" in done.stdout, done.stderr
+    record = json.loads((tmp_path / "steps.json").read_text())
+    literal, small = record["states"]
+    assert literal["refused"].startswith('/step_solver/name: found "line_search"') and "trials" not in literal
+    assert len(small["trials"]) > 10
+    written = page.page(record)
+    assert "1 states, " in written and "States without trials" in written and literal["refused"] in written
+    figure.paint(record, tmp_path / "steps.png")
+    with pytest.raises(UserError, match="none of 1 states has trials"):
+        page.page({**record, "states": [literal]})
+
+
+def test_a_record_has_every_state_that_was_taken_before_the_program_was_killed(program, kept, tmp_path):
+    folder = shutil.copytree(kept, tmp_path / "states")
+    for ending in (".json", ".state"):  # minutes of work
+        shutil.copy(ROOT / f"results/steps/large_five_twist{ending}", folder / f"twist{ending}")
+    out = tmp_path / "steps.json"
+    with started(program, "steps", "--corpus", folder, "--out", out, "--progress", "none") as process:
+        wait_until(out.exists, process)
+    assert [state["name"] for state in json.loads(out.read_text())["states"]] == ["small"]
+
+
+def test_a_place_that_cannot_be_written_is_refused_and_neither_file_is_left(program, tmp_path):
+    for taken in ("json", "state"):
+        (tmp_path / taken / f"x.{taken}").mkdir(parents=True)
+        done = bench(program, "steps", *CONFIG, "--at", STEP, "--keep", tmp_path / taken / "x")
+        assert done.returncode != 0 and f"x.{taken}: cannot be written" in done.stderr, done.stderr
+        assert [file.name for file in (tmp_path / taken).iterdir()] == [f"x.{taken}"]
 
 
 def damaged(kept: Path, folder: Path, edit) -> Path:
@@ -164,3 +206,49 @@ def test_the_committed_record_and_page_are_of_the_committed_states():
 def test_the_figure_draws_every_state(taken, tmp_path):
     figure.paint(taken[1], tmp_path / "steps.png")
     assert (tmp_path / "steps.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("words", [("--make", "--take"), ("--make", "--table"), ("--take", "--table")])
+def test_two_parts_of_the_work_at_once_are_refused(words, capsys):
+    assert step_corpus.main(list(words)) == 2
+    assert "not allowed with" in capsys.readouterr().err
+
+
+def test_the_figure_of_the_results_goes_to_docs_however_the_folder_is_written(monkeypatch, tmp_path):
+    (tmp_path / "results").mkdir()
+    painted = []
+    monkeypatch.setattr(step_corpus, "RESULTS", tmp_path / "results")
+    monkeypatch.setattr(step_corpus, "ROOT", tmp_path)
+    monkeypatch.setattr(step_corpus, "read_of_schema", lambda *_: {})
+    monkeypatch.setattr(step_corpus, "page", lambda _: "")
+    monkeypatch.setattr(step_corpus, "paint", lambda _, path: painted.append(path))
+    monkeypatch.chdir(tmp_path)
+    step_corpus.write_page(Path("results"))
+    step_corpus.write_page(Path("results/../results"))
+    assert painted == [tmp_path / "docs/steps.png"] * 2
+
+
+def test_what_an_earlier_list_had_goes_by_name_and_own_files_stay(tmp_path, capsys):
+    kept = {"schema": "barrierbench.step_state/1"}
+    for name, document in [("listed", {**kept, "split": "tune"}), ("earlier", {**kept, "split": "report"}), ("mine", kept), ("other", {"split": "tune"})]:
+        (tmp_path / f"{name}.json").write_text(json.dumps(document))
+        (tmp_path / f"{name}.state").write_bytes(b"x")
+    (tmp_path / "lone.state").write_bytes(b"x")
+    make.drop_unlisted(tmp_path, ["listed"])
+    assert {file.stem for file in tmp_path.iterdir()} == {"listed", "mine", "other", "lone"}
+    said = capsys.readouterr().err
+    assert said.count("removed") == 2 and f"{tmp_path}/earlier.json" in said and f"{tmp_path}/earlier.state" in said
+
+
+def test_a_take_that_is_cut_off_leaves_the_earlier_record(monkeypatch, tmp_path):
+    record = tmp_path / "steps.json"
+    record.write_text("earlier")
+
+    def cut_off(*words):
+        Path(words[words.index("--out") + 1]).write_text("a part")
+        return subprocess.CompletedProcess(words, 130, "", "interrupted")
+
+    monkeypatch.setattr(step_corpus, "started", cut_off)
+    with pytest.raises(UserError, match=re.escape(f"{tmp_path}/steps.part.json has the states that were taken")):
+        step_corpus.take(tmp_path, record)
+    assert record.read_text() == "earlier"

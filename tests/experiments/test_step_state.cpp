@@ -53,6 +53,13 @@ TEST(StepState, AKeptStateHasTheCalibrationAndGivesTheStepOfItsRun) {
   EXPECT_EQ(judged, 1);
 }
 
+TEST(StepState, AMinimumBeyondTheAlphabetHasTwoLetters) {
+  EXPECT_EQ(minimum_name(0), "A");
+  EXPECT_EQ(minimum_name(25), "Z");
+  EXPECT_EQ(minimum_name(26), "AA");
+  EXPECT_EQ(minimum_name(52), "BA");
+}
+
 TEST(StepState, TheStatesOfTheRepositoryAreReadByThisProgram) {
   std::ifstream in(source / "configs/steps/corpus.json");
   const auto spec = nlohmann::json::parse(in);
