@@ -97,7 +97,7 @@ def test_a_state_that_line_search_cannot_have_is_a_row_and_the_others_are_taken(
 
 def test_a_record_has_every_state_that_was_taken_before_the_program_was_killed(program, kept, tmp_path):
     folder = shutil.copytree(kept, tmp_path / "states")
-    for ending in (".json", ".state"):  # minutes of work
+    for ending in (".json", ".state"):  # seconds of work
         shutil.copy(ROOT / f"results/steps/large_five_twist{ending}", folder / f"twist{ending}")
     out = tmp_path / "steps.json"
     with started(program, "steps", "--corpus", folder, "--out", out, "--progress", "none") as process:
