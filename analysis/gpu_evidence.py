@@ -62,7 +62,7 @@ def parts_of(folder: Path) -> dict[str, dict]:
             said = _lines(folder / "logs" / f"{name}.err")
             parts[name]["why"] = said[-1] if said else f"exit code {more}"
         judged = [line for line in _lines(folder / "logs" / f"{name}.out") if " kernels in " in line]
-        if judged:  # a test of the rooms: kernels and launches
+        if judged:  # a test of the modules: kernels and launches
             parts[name]["judged"] = judged[-1]
     return parts
 
@@ -248,8 +248,15 @@ def kernels_of(folder: Path) -> list[dict]:
     return sorted(rows, key=lambda row: (-row["seconds"], row["name"]))
 
 
-def collect(folder: Path, commit: str, seconds: int) -> dict:
-    """The record; commit and seconds of a bundle are in its raw files. Errors: UserError."""
+def collect(folder: Path, commit: str, seconds: int, dry: bool = False) -> dict:
+    """The record; commit and seconds of a bundle are in its raw files. dry: also of a lease without a card.
+    Errors: UserError.
+    """
+    if (folder / "dry").exists() and not dry:
+        raise UserError(
+            f"{folder}/dry: these files are of a lease without a card (--dry), and no record is "
+            "made of them; allowed: files of a machine with a card"
+        )
     if not commit and (folder / "commit").exists():
         commit = input_file.read_text(folder / "commit").strip()
     if seconds == 0 and (folder / "seconds").exists():
@@ -269,6 +276,7 @@ def collect(folder: Path, commit: str, seconds: int) -> dict:
         "same": same_runs(folder),
         "kernels": kernels_of(folder),
         "stages": stages_of(folder),
+        "synchronized": _lines(folder / "synchronized"),  # runs whose phases wait for what they launched
         "counters": counters_of(folder),
     }
 

@@ -98,6 +98,7 @@ def _of_card(record: dict, copy: float) -> list[str]:
     if rows:
         said = (
             "Milliseconds a Newton iteration, without the first step, which warms up, where there are more."
+            " Only in a run that is called synchronised is a phase charged what it launched, and no other."
         )
         text += [f"## Phases {on}, {day}", "", said, "", *_table(head, rows)]
     head, rows = counter_rows(record)

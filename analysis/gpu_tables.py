@@ -90,7 +90,7 @@ def plain_runs(record: dict) -> list[dict]:
 
 
 def judged(record: dict) -> list[str]:
-    """What each test of the rooms and each sanitizer launched."""
+    """What each test of the modules and each sanitizer launched."""
     return [f"- {name}: {part['judged']}" for name, part in record["parts"].items() if "judged" in part]
 
 
@@ -131,7 +131,9 @@ def scene_rows(record: dict) -> list[list[str]]:
 
 
 def phase_rows(record: dict) -> tuple[list[str], list[list[str]]]:
-    """Head and rows: every phase of the scenes that have them, ms a Newton iteration after the first step."""
+    """Head and rows: every phase of the scenes that have them, ms a Newton iteration after the first step.
+    Where phases are not synchronised, one may have what an earlier one launched.
+    """
     scenes = {
         name: scene
         for name, scene in record["scenes"].items()
@@ -145,7 +147,8 @@ def phase_rows(record: dict) -> tuple[list[str], list[list[str]]]:
         ]
         for phase in phases
     ]
-    return ["phase", *scenes], rows
+    waiting = record.get("synchronized", [])
+    return ["phase", *(f"{name}, synchronised" if name in waiting else name for name in scenes)], rows
 
 
 def counter_rows(record: dict) -> tuple[list[str], list[list[str]]]:

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Evidence from a card: tests of every kernel beside the host, compute-sanitizer, runs beside the host executor's, rates of
 # copies and kernels, timed scenes, the memory run of 8.2 million vertices. One JSON.
-# All talk goes to stderr, the name of the JSON to stdout. Exit codes: 0 a record was written (what failed is in it), 2 wrong
-# usage, 5 no usable card, 70 the program does not build.
+# All talk goes to stderr, the name of the JSON to stdout.
 set -euo pipefail
 
 usage() {
@@ -19,8 +18,8 @@ usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER] [--only GRO
                      time limit; after each of them its files are an archive
   --archives FOLDER  where the archives go, at most 8 of 16 MiB each (default: archives in the folder of --out)
   --seconds N        time of the lease, from 60 to 3600 (default: 540)
-  --dry              a lease without a card: the host executor, tiny scenes; no record can be made of it
-  --bundle FOLDER    builds, and puts all that the evidence needs into FOLDER: this script, programs, their libraries,
+  --dry              a lease without a card: the host executor, tiny scenes; no record is made of its files
+  --bundle FOLDER    builds, and puts all that the evidence needs into FOLDER, which is new or empty: this script, programs, their libraries,
                      configs. FOLDER/gpu_evidence.sh then runs on a machine that has a card and a driver and nothing else
                      of ours; it leaves the raw files, and `python -m analysis.gpu_evidence RAW` makes the record here.
                      FOLDER.tar.xz is the same as one archive, below 64 MiB
@@ -28,6 +27,8 @@ usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER] [--only GRO
                      one; none: without)
 
 The record is kept as results/gpu/<card>-<day>.json; commit it, and ./bench gpu-report makes results/GPU.md of all records.
+Exit codes: 0 a record was written or a lease ended (what failed is in it), 1 no stage of a lease passed, 2 wrong usage, 5 no card
+can be used here (a lease with --dry needs none), 70 the program does not build.
 Found by themselves and left out with a word where they are not: compute-sanitizer, ncu (Nsight Compute), nvidia-smi.
 HELP
 }
@@ -41,44 +42,59 @@ fi
 out="$root/results/runs/gpu_evidence/$(date -u +%Y-%m-%dT%H%M%SZ)"
 records="$root/results/gpu"
 only=tests,sanitizer,same,catalogue,scenes,memory,kernels
-bundle="" before=HEAD~1 lease="" dry="" archives="" seconds=540
+bundle="" before=HEAD~1 lease="" dry="" archives="" seconds=540 given=" "
+refuse() { printf 'gpu_evidence: %s\n' "$*" >&2; exit 2; }
 while [ "$#" -gt 0 ]; do
   case "$1" in
     --lease | --dry)
       declare "${1#--}=yes"
+      given+="$1 "
       shift
       ;;
     --out | --records | --only | --bundle | --before | --archives | --seconds)
       [ "$#" -ge 2 ] || { usage >&2; exit 2; }
+      [ -n "$2" ] || [ "$1" = --only ] || refuse "$1 \"\": the value is empty; allowed: what --help says of $1"
       declare "${1#--}=$2"
+      given+="$1 "
       shift 2
       ;;
     -h | --help) usage && exit 0 ;;
     *) usage >&2 && exit 2 ;;
   esac
 done
+groups="tests, sanitizer, same, catalogue, scenes, memory, kernels"
 for group in ${only//,/ } ""; do
   case "$group" in
     tests | sanitizer | same | catalogue | scenes | memory | kernels) ;;
-    "") [ -n "${only//,/}" ] || { usage >&2; exit 2; } ;;
+    "") [ -n "${only//,/}" ] || refuse "--only \"$only\": of $groups" ;;
     *)
-      printf 'gpu_evidence: --only %s: of tests, sanitizer, same, catalogue, scenes, memory, kernels\n' "$group" >&2
-      exit 2
+      refuse "--only $group: of $groups"
       ;;
   esac
 done
-if [[ ! "$seconds" =~ ^[0-9]{2,4}$ ]] || [ "$seconds" -lt 60 ] || [ "$seconds" -gt 3600 ]; then
-  printf 'gpu_evidence: --seconds %s: an integer from 60 to 3600\n' "$seconds" >&2
-  exit 2
+if [[ ! "$seconds" =~ ^[0-9]{1,9}$ ]] || [ "$((10#$seconds))" -lt 60 ] || [ "$((10#$seconds))" -gt 3600 ]; then
+  refuse "--seconds $seconds: an integer from 60 to 3600"
 fi
-if [ -n "$dry$archives" ] && [ -z "$lease" ]; then
-  printf 'gpu_evidence: --dry and --archives belong to --lease\n' >&2
-  exit 2
-fi
-if [ "$here" = "$root" ] && [ -n "$bundle" ]; then
-  printf 'gpu_evidence: --bundle: this is a bundle; one is made in a checkout\n' >&2
-  exit 2
-fi
+seconds="$((10#$seconds))"
+# needs MODE OPTION..., excludes MODE OPTION...: options that mean nothing without a mode, and with it.
+is_given() { [[ "$given" == *" $1 "* ]]; }
+needs() {
+  local option
+  for option in "${@:2}"; do
+    if is_given "$option" && ! is_given "$1"; then refuse "$option means nothing without $1; allowed: $1 and $option together"; fi
+  done
+}
+excludes() {
+  local option
+  for option in "${@:2}"; do
+    if is_given "$option" && is_given "$1"; then refuse "$option means nothing with $1; allowed: one of the two"; fi
+  done
+}
+needs --lease --seconds --archives --dry
+needs --bundle --before
+excludes --lease --bundle --only --records
+excludes --bundle --only --records --out
+if [ "$here" = "$root" ] && [ -n "$bundle" ]; then refuse "--bundle $bundle: this is a bundle; one is made in a checkout"; fi
 bench="${BARRIERBENCH_BENCH:-$bench}"
 tests="${BARRIERBENCH_DEVICE_TESTS:-$tests}"
 
@@ -86,11 +102,20 @@ tests="${BARRIERBENCH_DEVICE_TESTS:-$tests}"
 
 if [ -n "$bundle" ]; then
   . "$here/card/bundle.sh"
+  check_bundle
   make_bundle
   exit 0
 fi
 if [ -d "$root/lib" ]; then export LD_LIBRARY_PATH="$root/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"; fi
 wanted() { [[ ",$only," == *",$1,"* ]]; }
+if [ -z "${BARRIERBENCH_BENCH:-}" ] && [ "$bench" = "$root/bench" ] && [ ! -e "$root/bin" ]; then
+  "$bench" build release >&2 || exit 70
+fi
+no_card() {
+  say "$("$bench" device 2>&1 | tail -n 1)"
+  exit 5
+}
+if [ -n "$lease" ] && [ -z "$dry" ]; then "$bench" device >/dev/null 2>&1 || no_card; fi
 mkdir -p "$out/logs"
 commit="$(cat "$root/commit" 2>/dev/null || git -C "$root" rev-parse HEAD 2>/dev/null || true)"
 if [ -e "$out/commit" ] && [ "$(cat "$out/commit")" != "$commit" ]; then
@@ -102,21 +127,13 @@ touch "$out/parts.tsv"
 
 # ---------------------------------------------------------------- the card
 
-if [ -z "${BARRIERBENCH_BENCH:-}" ] && [ "$bench" = "$root/bench" ] && [ ! -e "$root/bin" ]; then
-  "$bench" build release >&2 || exit 70
-fi
 if [ -n "$lease" ]; then
   . "$here/card/lease.sh"
   archives="${archives:-$out/archives}"
   lease
-  exit 0
+  exit "$?"
 fi
-verdict=0
-"$bench" device --json --measure >"$out/device.json" 2>"$out/logs/device.err" || verdict="$?"
-if [ "$verdict" -ne 0 ]; then
-  say "$("$bench" device 2>&1 | tail -n 1)"
-  exit 5
-fi
+"$bench" device --json --measure >"$out/device.json" 2>"$out/logs/device.err" || no_card
 card_state "$out/card.csv"
 
 # ---------------------------------------------------------------- correctness

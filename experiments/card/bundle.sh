@@ -25,10 +25,31 @@ build_before() {
   printf '%s\n' "$checkout"
 }
 
+# check_bundle: refuses before anything is built what no bundle can be made of; $bundle becomes an absolute name, $before one commit.
+check_bundle() {
+  local name found
+  bundle="$(realpath --canonicalize-missing -- "$bundle")"
+  if [ -e "$bundle" ] && { [ ! -d "$bundle" ] || [ -n "$(find "$bundle" -mindepth 1 -print -quit)" ]; }; then
+    refuse "--bundle $bundle: it is there and is not an empty folder; allowed: a new folder or an empty one"
+  fi
+  for name in xz strip; do
+    command -v "$name" >/dev/null || refuse "--bundle $bundle: the program $name was not found; allowed: a machine that has xz and strip (packages xz-utils and binutils)"
+  done
+  [ "$before" != none ] || return 0
+  if ! found="$(git -C "$root" rev-parse --verify --quiet --end-of-options "$before^{commit}")"; then
+    if [ "$(git -C "$root" rev-parse --is-shallow-repository 2>/dev/null)" = true ]; then
+      refuse "--before $before: this clone is shallow and does not have that commit; allowed: a commit that it has, or --before none"
+    fi
+    refuse "--before $before: this is no commit of the checkout $root; allowed: a commit, or --before none"
+  fi
+  before="$found"
+}
+
 # make_bundle: $bundle and $bundle.tar.xz. Exit codes: 70 a program does not build, 2 the archive is too large to be carried.
 make_bundle() {
   local checkout bytes
   "$bench" build release >&2 || exit 70
+  trap 'rm -rf "$bundle" "$bundle.part"' EXIT  # what is not whole does not stay
   put_program "$root" "$bundle"
   find "$root/build/release/tests" -type f -perm -u+x \( -name 'test_card_*' -o -name test_device -o -name test_formula_log -o -name test_formula_functions \) |
     while read -r program; do strip -o "$bundle/bin/$(basename "$program")" "$program"; done
@@ -45,7 +66,9 @@ make_bundle() {
   cp "$root"/experiments/card/*.sh "$bundle/card/"
   cp "$root"/results/gpu/*.json "$bundle/results/gpu/"
   # The programs are made of the same libraries: one window over all of them leaves a twelfth.
-  tar --create --directory "$(dirname "$bundle")" "$(basename "$bundle")" | xz --threads=1 --lzma2=preset=2,dict=256MiB >"$bundle.tar.xz"
+  tar --create --directory "$(dirname "$bundle")" "$(basename "$bundle")" | xz --threads=1 --lzma2=preset=2,dict=256MiB >"$bundle.part"
+  mv "$bundle.part" "$bundle.tar.xz"
+  trap - EXIT
   bytes="$(stat --format=%s "$bundle.tar.xz")"
   say "$(du -sh "$bundle" | cut -f 1) in $bundle, $((bytes / 1024)) KiB in $bundle.tar.xz"
   if [ "$bytes" -gt "$most_bundle_bytes" ]; then

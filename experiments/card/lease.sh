@@ -1,5 +1,6 @@
 # A card that is lent for ten minutes: eight stages, each with its own time limit, and after each of them an archive of the files that
 # it left. Sourced by experiments/gpu_evidence.sh, which has set root, bench, tests, out, archives, seconds and dry.
+# Times are those of runs whose phases are not synchronised; the file `synchronized` names the runs whose phases are.
 # A stage that fails or is cut leaves what it has, and the next one starts. stages.tsv says of each: name, exit code, seconds, limit.
 
 most_archive_bytes=$((16 * 1024 * 1024))
@@ -24,7 +25,7 @@ stage_tests() {
   device_is_there device
   device_tests
 }
-stage_dense_500k() {  # the first step apart: steps of run.json have their phases
+stage_dense_500k() {  # the first step apart, which warms up
   lease_run dense_500k dense_500k 25 --set /time/steps=6
   if [ -x "$root/before/bench" ]; then
     program="$root/before/bench" lease_run dense_500k.before dense_500k 25 --set /time/steps=6
@@ -41,7 +42,9 @@ stage_contact_82k() {  # the lowest cloth touches the sphere in the second step,
   done
 }
 stage_dense_1m() { lease_run dense_1m dense_1m 50 --set /time/steps=2; }
-stage_kernels() {
+stage_kernels() {  # runs for their phases and launches, each of which is waited for: their sum is more than a timed run takes
+  BARRIERBENCH_SYNCHRONIZE_PHASES=1 lease_run dense_500k.phases dense_500k 20 --set /time/steps=3
+  printf 'dense_500k.phases\n' >"$out/synchronized"
   export BARRIERBENCH_KERNEL_TIMES="$out/kernel_times.json"
   lease_run dense_500k.timed dense_500k 20 --set /time/steps=1
   unset BARRIERBENCH_KERNEL_TIMES
@@ -49,31 +52,31 @@ stage_kernels() {
 stage_counters() {  # the second launch of a kernel is one of the second iteration; caches are as the run leaves them
   local ncu
   ncu="$(tool ncu)" || { without counters "ncu was not found"; return 0; }
-  part counters 90 "$ncu" --csv --print-units base --clock-control none --cache-control none --kernel-name-base demangled \
+  part counters 80 "$ncu" --csv --print-units base --clock-control none --cache-control none --kernel-name-base demangled \
     --kernel-id "::regex:($counted_kernels):2" --metrics "$counters" --launch-count 15 \
     "$program" run "$root/configs/gpu/dense_500k.json" --set '/device="cuda"' --set /time/steps=1 --out "$out/dense_500k.counted" --replace --progress none $(tiny)
 }
-stage_growth() {  # 2, 4 and 8.2 million vertices, up to 184 million contacts; a size that has no room ends it
+stage_growth() {  # 2, 4 and 8.2 million vertices, up to 184 million contacts; a size without memory ends it
   local layers
   for layers in 8 16 32; do
-    lease_run "packed_8m.$layers" packed_8m 170 --set "/scene/layers=$layers"
+    lease_run "packed_8m.$layers" packed_8m 160 --set "/scene/layers=$layers"
     [ -z "$(grep -s '"outcome": "oom"' "$out/packed_8m.$layers/run.json")" ] || break
   done
 }
 stage_sanitizer() {
-  local sanitizer check room part_of program_of
+  local sanitizer check module part_of program_of
   device_is_there device_again
-  room="$(next_room)"
-  [ -n "$room" ] || { without sanitizer "no test for a card was found"; return 0; }
-  printf '%s\n' "$room" >"$out/sanitized_room"
-  program_of="$(test_of "test_card_$room")"
+  module="$(next_module)"
+  [ -n "$module" ] || { without sanitizer "no test for a card was found"; return 0; }
+  printf '%s\n' "$module" >"$out/sanitized_module"
+  program_of="$(test_of "test_card_$module")"
   for check in memcheck racecheck initcheck synccheck; do
     if sanitizer="$(tool compute-sanitizer)"; then
       for part_of in 0 1 2 3; do  # a part that ends has a verdict and counts its kernels, whatever the others do
-        part "${check}_$room.$part_of" 90 env GTEST_TOTAL_SHARDS=4 GTEST_SHARD_INDEX="$part_of" "$sanitizer" --tool "$check" --error-exitcode 9 "$program_of" &
+        part "${check}_$module.$part_of" 90 env GTEST_TOTAL_SHARDS=4 GTEST_SHARD_INDEX="$part_of" "$sanitizer" --tool "$check" --error-exitcode 9 "$program_of" &
       done
     else
-      without "${check}_$room" "compute-sanitizer was not found"
+      without "${check}_$module" "compute-sanitizer was not found"
     fi
   done
   wait
@@ -85,11 +88,16 @@ device_is_there() {
   cp "$out/logs/$1.out" "$out/$1.json"
   card_state "$out/$([ "$1" = device ] && echo card || echo "$1").csv"
 }
-# next_room: the folder of kernels that sanitizers saw in the fewest records, of these the first by name.
-next_room() {
-  local room
-  for room in $(rooms); do
-    printf '%s %s\n' "$(grep -ls "\"memcheck_$room" "$root"/results/gpu/*.json | wc -l)" "$room"
+# next_module: the folder of kernels on which memcheck ended in the fewest records, of these the first by name.
+next_module() {
+  local module record n
+  for module in $(modules); do
+    n=0
+    for record in "$root"/results/gpu/*.json; do
+      [ -e "$record" ] || continue
+      ! grep -qE "\"memcheck_$module(\.[0-9]+)?\":\{\"status\":\"(passed|failed)\"" <<<"$(tr -d ' \n' <"$record")" || n="$((n + 1))"
+    done
+    printf '%s %s\n' "$n" "$module"
   done | sort -k 1n -k 2 | head -n 1 | cut -d ' ' -f 2
 }
 
@@ -112,28 +120,30 @@ archive() {
 
 # stage NUMBER NAME SECONDS: runs stage_NAME until its limit, and makes its archive. Its exit code is that of its first part that failed.
 stage() {
-  local number="$1" name="$2" limit="$3" start="$SECONDS" parts code
+  local number="$1" name="$2" limit="$3" start="$SECONDS" parts code new
   parts="$(wc -l <"$out/parts.tsv")"
   [ "$limit" -le "$((lease_end - SECONDS))" ] || limit="$((lease_end - SECONDS))"
   stage_end="$((SECONDS + limit))"
   say "stage $name, at most $limit s"
   touch "$out/.stage_begin"
   (set +e; "stage_$name") || true
-  code="$(tail -n "+$((parts + 1))" "$out/parts.tsv" | awk -F '\t' '$2 == "failed" || $2 == "timed_out" { print $3; exit }')"
+  new="$(tail -n "+$((parts + 1))" "$out/parts.tsv")"
+  code="$(awk -F '\t' '$2 == "failed" || $2 == "timed_out" { print $3; exit }' <<<"$new")"
+  if [ -z "$code" ] && grep -q "$(printf '\tpassed\t')" <<<"$new"; then n_passed="$((n_passed + 1))"; fi
   printf '%s\t%s\t%s\t%s\n' "$name" "${code:-0}" "$((SECONDS - start))" "$limit" >>"$out/stages.tsv"
   printf '%s\n' "$((SECONDS - began))" >"$out/seconds"
   touch "$out/commit"
+  [ -z "$dry" ] || touch "$out/dry"
   cp "$out/parts.tsv" "$out/parts.copy" && mv "$out/parts.copy" "$out/parts.tsv"
   archive "$number" "$name"
 }
 
-# lease: all stages; their seconds add up to 540, of another --seconds to the same parts of it.
+# lease: all stages, 1 where none of them passed; their seconds add up to 540, of another --seconds to the same parts of it.
 lease() {
   local number=0 name limit
-  program="$bench" began="$SECONDS" lease_end="$((SECONDS + seconds - 8))"  # 8 s: of the last archive
+  program="$bench" n_passed=0 began="$SECONDS" lease_end="$((SECONDS + seconds - 8))"  # 8 s: of the last archive
   mkdir -p "$archives"
   : >"$out/stages.tsv"
-  export BARRIERBENCH_SYNCHRONIZE_PHASES=1
   while read -r name limit; do
     number="$((number + 1))"
     stage "$number" "$name" "$((limit * seconds / 540))" </dev/null
@@ -142,10 +152,11 @@ tests 35
 dense_500k 50
 contact_82k 60
 dense_1m 50
-kernels 20
-counters 90
-growth 175
+kernels 40
+counters 80
+growth 165
 sanitizer 60
 STAGES
   printf '%s\n' "$archives"
+  [ "$n_passed" -gt 0 ] || { say "no stage passed"; return 1; }
 }

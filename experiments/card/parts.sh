@@ -30,17 +30,17 @@ tool() { command -v "$1" 2>/dev/null || { [ -x "/usr/local/cuda/bin/$1" ] && pri
 
 # test_of NAME: the program of its tests; nothing where there is none (test_formula_* with a CUDA before 12.8).
 test_of() { find "$tests" -name "$1" -type f 2>/dev/null | head -n 1; }
-# rooms: the folders of kernels that have a test for a card here, and "runs".
-rooms() { find "$tests" -name 'test_card_*' -type f -perm -u+x 2>/dev/null | sed 's/.*test_card_//' | sort; }
+# modules: the folders of kernels that have a test for a card here, and "runs".
+modules() { find "$tests" -name 'test_card_*' -type f -perm -u+x 2>/dev/null | sed 's/.*test_card_//' | sort; }
 
-# device_tests: every test for a card at once, the programs of the rooms side by side.
+# device_tests: every test for a card at once, the programs of the modules side by side.
 device_tests() {
-  local sample room
+  local sample module
   part device_tests 60 "$(test_of test_device)" &
   for sample in log functions; do
     if [ -n "$(test_of "test_formula_$sample")" ]; then part "formula_$sample" 60 "$(test_of "test_formula_$sample")" & fi
   done
-  for room in $(rooms); do part "card_$room" 240 "$(test_of "test_card_$room")" & done
+  for module in $(modules); do part "card_$module" 240 "$(test_of "test_card_$module")" & done
   wait
 }
 

@@ -17,7 +17,7 @@ struct StartContacts {
 
 /// Counts the rows at x0: all of them where the surface has at most `most_counted` vertices, else those around vertices that are
 /// drawn with a fixed seed, one of each of 128 equal parts of the surface, scaled to all. plan: of the scene.
-/// Cost: one search of the surface where it is small, else 128 passes over the positions.
+/// Cost: one search of the surface where it is small, else 128 passes over its vertices, edges and triangles.
 StartContacts contacts_at_start(const Scene& scene, const ContactPlan& plan, const ContactOptions& options,
                                 std::size_t most_counted = 20000);
 

@@ -54,8 +54,7 @@ exec::ExpectedContacts expected_contacts(const ContactDemand& demand, double con
 /// What contact there is at the start where that is at least one a vertex, else an estimate of what there may be; and in words.
 std::pair<double, std::string> expected_number(const RunConfig& config, const Scene& scene,
                                                const Plan& plan) {
-  const StartContacts start =
-      contacts_at_start(scene, plan.contacts, {config.contact.mollifier, config.contact.ccd_park});
+  const StartContacts start = contacts_at_start(scene, plan.contacts, contact_options(config.contact));
   if (start.a_vertex >= 1) {
     return {std::ceil(start.total), fmt::format("at the start: {:.4g} a vertex, counted at {} vertices",
                                                 start.a_vertex, start.sampled)};
@@ -86,9 +85,10 @@ DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, co
   any.kappa = any.k_s = any.solid_k_s = 1;
   Method method = make_method(config, any);
   DeviceMemory out;
-  out.source = "--contacts";
+  out.source = "the scene has no contact";
   if (plan.term("contact").needed) {
     out.contacts = demand.contacts;
+    out.source = "--contacts";
     if (demand.contacts == 0) std::tie(out.contacts, out.source) = expected_number(config, scene, plan);
     out.bytes_a_row = bytes_a_row(method);
   }

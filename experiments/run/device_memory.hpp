@@ -11,8 +11,9 @@
 
 namespace bb {
 
-/// How many contacts are expected of a scene; 0 contacts: those of the start where they are at least one a vertex, else estimated. What each of them has beside it was measured on eight
-/// layers of cloth with a mesh of half d_hat (results/gpu_model_inputs.json, dense_patch).
+/// How many contacts are expected of a scene; 0 contacts: those of the start where they are at least one a
+/// vertex, else estimated. What each of them has beside it was measured on eight layers of cloth with a mesh of
+/// half d_hat (results/gpu_model_inputs.json, dense_patch).
 struct ContactDemand {
   double contacts = 0;
   double upper_blocks_a_contact = 1.738;

@@ -72,6 +72,18 @@ std::unique_ptr<StiffnessPolicy> make_solid_limit_policy(const StrainLimitConfig
   return make_policy(policy_request(policy, PolicyUse::limit, k_s), PolicyUse::limit);
 }
 
+ContactOptions contact_options(const ContactConfig& contact) {
+  ContactOptions out;
+  out.mollifier = contact.mollifier;
+  out.ccd_park = contact.ccd_park;
+  out.weighting = contact.weighting.value_or(ContactWeighting::none);
+  out.model = contact.model.value_or(ContactModel::all_pairs);
+  out.rest_rule = contact.rest_rule.value_or(RestRule::on);
+  out.step_bound = contact.step_bound.value_or(StepBoundRule::accd);
+  out.bound_gamma = contact.bound_gamma.value_or(default_bound_gamma);
+  return out;
+}
+
 Method make_method(const RunConfig& config, const Calibration& calibration) {
   Method method;
   method.contact = {require_shape(config.formulation.shape), config.formulation.argument};
@@ -85,13 +97,7 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.precision = config.precision;
   method.contact.in_float = method.limit.in_float = values_in_float(config.precision);
   method.hessian_mode = config.contact.hessian_mode;
-  method.contact_options.mollifier = config.contact.mollifier;
-  method.contact_options.ccd_park = config.contact.ccd_park;
-  method.contact_options.weighting = config.contact.weighting.value_or(ContactWeighting::none);
-  method.contact_options.model = config.contact.model.value_or(ContactModel::all_pairs);
-  method.contact_options.rest_rule = config.contact.rest_rule.value_or(RestRule::on);
-  method.contact_options.step_bound = config.contact.step_bound.value_or(StepBoundRule::accd);
-  method.contact_options.bound_gamma = config.contact.bound_gamma.value_or(default_bound_gamma);
+  method.contact_options = contact_options(config.contact);
   method.friction = {config.friction.law, config.friction.mu, config.friction.combine,
                      config.friction.lag_iterations, config.friction.eps_v};
   method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);

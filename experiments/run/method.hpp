@@ -22,6 +22,9 @@ struct Calibration {
 /// Errors: ConfigError when a fixed stiffness is neither given nor calibrated.
 Method make_method(const RunConfig& config, const Calibration& calibration);
 
+/// What contact reads of a config, for a run and for whoever looks at its start.
+ContactOptions contact_options(const ContactConfig& contact);
+
 /// The two policies alone. Errors: as make_method.
 std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
                                                      const Calibration& calibration);

@@ -11,6 +11,7 @@
 #include "core/exec/host_executor.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
+#include "experiments/run/method.hpp"
 
 namespace bb {
 namespace {
@@ -115,7 +116,7 @@ std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& sce
   const audit::AuditLedger& ledger = judge.ledger();
   if (ledger.scene_faults > 0) return judge_audit(scene, mesh, ledger);
   limits.look_up(part, "before the gaps at the start were looked at");
-  ContactSystem contacts(scene, {config.contact.mollifier, config.contact.ccd_park}, plan);
+  ContactSystem contacts(scene, contact_options(config.contact), plan);
   if (const auto overlap = contacts.check_initial(scene.x0)) {
     return Verdict{Outcome::initial_intersection,
                    fmt::format("{} (gap {:.3g} m)", overlap->text, overlap->gap)};

@@ -11,13 +11,13 @@
 
 namespace bb {
 
-/// Why there is no first step; nothing when the start is valid. invalid_scene: two prescribed primitives
-/// cross, at the start or where their given motions take them at the end of a step. initial_intersection: the
-/// first other pair that touches or crosses at the start. timeout: the deadline came first.
+/// Why there is no first step; nothing when the start is valid. `contacts` is of the scene's plan.
+/// invalid_scene: two prescribed primitives cross, at the start or where their given motions take them at the end
+/// of a step. initial_intersection: the first other pair that touches or crosses at the start. timeout: the
+/// deadline came first.
 /// Cost: one audit of the surface, and one of the prescribed surface per step when prescribed bodies move
 /// relative to each other or to an obstacle; of rigid bodies only what comes near another is looked at.
 /// Errors: Interrupted when limits.interrupted becomes true.
-/// contacts: of the scene's plan.
 std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene, const ContactPlan& contacts,
                                      const RunLimits& limits = {});
 

@@ -262,11 +262,11 @@ def test_the_page_has_stages_phases_and_counters_of_a_lease(raw, tmp_path, capsy
                               ("l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum", "85"), ("launch__registers_per_thread", "138"))))
     run = run_json()
     run["steps"] = [{"wall_s": 9.0, "newton_iterations": 4, "time": {"broad_phase_s": 9.0}}, {"wall_s": 1.0, "newton_iterations": 2, "time": {"broad_phase_s": 0.5, "assembly_s": 0.3}}]
-    (raw / "packed_8m.8").mkdir()
+    (raw / "packed_8m.8").mkdir(), (raw / "synchronized").write_text("packed_8m.8\n")
     (raw / "packed_8m.8/run.json").write_text(json.dumps(run))
     text = page(raw, tmp_path, capsys)
     assert "| growth | 75 | 170 | 175 |" in text and "| `bb::exec::RankRows` | 4 | 3 | not measured | 138 | 8.5 | not measured |" in text
-    assert "| phase | packed_8m.8 |" in text and "| broad phase | 250 |" in text and "| assembly | 150 |" in text and "| linear analyze | 0 |" in text
+    assert "| phase | packed_8m.8, synchronised |" in text and "| broad phase | 250 |" in text and "| assembly | 150 |" in text and "| linear analyze | 0 |" in text
     (record,) = (json.loads(path.read_text()) for path in (tmp_path / "records").glob("nvidia*.json"))
     assert record["scenes"]["packed_8m.8"]["first_step_s"] == 9.0 and len(record["scenes"]["packed_8m.8"]["phases_ms"]) == 17
 

@@ -1,5 +1,6 @@
 // The contacts of a scene at its start, counted before a run.
 #include "experiments/run/contact_count.hpp"
+#include "experiments/run/method.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,8 +22,8 @@ RunConfig packed(int layers, int n) {
 
 StartContacts counted(const RunConfig& config, std::size_t most_counted = 20000) {
   const Scene scene = build_scene(config);
-  return contacts_at_start(scene, plan_of(config, scene).contacts,
-                           {config.contact.mollifier, config.contact.ccd_park}, most_counted);
+  return contacts_at_start(scene, plan_of(config, scene).contacts, contact_options(config.contact),
+                           most_counted);
 }
 
 TEST(ContactCount, TheSceneOf184MillionContactsHasMoreThanTwentyAVertex) {
@@ -35,7 +36,7 @@ TEST(ContactCount, TheSceneOf184MillionContactsHasMoreThanTwentyAVertex) {
 TEST(ContactCount, IsThatOfTheRowsOfAWholeSystem) {
   const RunConfig config = packed(4, 12);
   const Scene scene = build_scene(config);
-  ContactSystem contacts(scene, {config.contact.mollifier, config.contact.ccd_park});
+  ContactSystem contacts(scene, contact_options(config.contact));
   contacts.update_candidates(scene.x0, scene.x0);
   ContactTable rows;
   MollifiedTable mollified;

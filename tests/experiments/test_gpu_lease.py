@@ -20,7 +20,10 @@ case "$SPOIL $*" in
   "yes run"*/dense_500k.json*/dense_500k.timed*) echo "a kernel failed" >&2; exit 70 ;;
   "yes run"*/dense_1m.json*) trap '' TERM; while :; do read -t 1 <> <(:); done ;;
   "yes run"*/packed_8m.json*) while [ "$1" != --out ]; do shift; done; mkdir -p "$2"; head -c 20000000 /dev/urandom >"$2/large"; echo kept >"$2/small" ;;
+  "bare run"*) echo "a kernel failed" >&2; exit 70 ;;
+  "none device"*) echo "there is no card" >&2; exit 5 ;;
   *" build "*) ;;
+  *" run"*/dense_500k*) echo "${BARRIERBENCH_SYNCHRONIZE_PHASES:-0} $*" >>"$PROGRAM_CALLS"; exec "$PROGRAM" "$@" ;;
   *" scenes "*) touch "$4" ;;  # a verb that is no verb of the program
   *) exec "$PROGRAM" "$@" ;;
 esac
@@ -46,7 +49,7 @@ def around(tmp_path, program):
     for name in ("test_device", "test_card_contact", "test_card_linear"):
         executable(tmp_path / "tests" / name, TEST)
     executable(tmp_path / "tools/ncu", NCU), executable(tmp_path / "tools/compute-sanitizer", SANITIZER)
-    return {**os.environ, "BARRIERBENCH_BENCH": str(tmp_path / "bench"), "BARRIERBENCH_DEVICE_TESTS": str(tmp_path / "tests"), "PROGRAM": program,
+    return {**os.environ, "BARRIERBENCH_BENCH": str(tmp_path / "bench"), "BARRIERBENCH_DEVICE_TESTS": str(tmp_path / "tests"), "PROGRAM": program, "PROGRAM_CALLS": str(tmp_path / "calls"),
             "BARRIERBENCH_CONFIGS": str(ROOT / "configs"), "PATH": f"{tmp_path / 'tools'}:{os.environ['PATH']}"}
 
 
@@ -80,10 +83,16 @@ def test_the_archives_of_a_lease_make_the_record(around, tmp_path):
     raw = gpu_evidence.unpacked(tmp_path / "raw/archives", tmp_path / "unpacked")
     assert raw == tmp_path / "unpacked"
     (raw / "device.json").write_text(json.dumps({"usable": True, "card": "X100", "copy": {"on_the_card_Bps": 3e12}}))
-    record = gpu_evidence.collect(raw, "", 0)
+    with pytest.raises(gpu_evidence.UserError, match="of a lease without a card"):
+        gpu_evidence.collect(raw, "", 0)
+    record = gpu_evidence.collect(raw, "", 0, dry=True)
+    assert record["synchronized"] == ["dense_500k.phases"]
+    calls = [line.split() for line in (tmp_path / "calls").read_text().splitlines()]
+    runs = {words[words.index("--out") + 1].rsplit("/", 1)[1]: words[0] for words in calls}
+    assert runs == {"dense_500k": "0", "dense_500k.phases": "1", "dense_500k.timed": "0", "dense_500k.counted": "0"}
     assert [stage["name"] for stage in record["stages"]] == STAGES and record["seconds"] > 0
     ran = {name for name, scene in record["scenes"].items() if scene is not None}
-    assert ran == {"dense_500k", "dense_500k.timed", "dense_500k.counted", "dense_1m", "packed_8m.8", "packed_8m.16", "packed_8m.32",
+    assert ran == {"dense_500k", "dense_500k.phases", "dense_500k.timed", "dense_500k.counted", "dense_1m", "packed_8m.8", "packed_8m.16", "packed_8m.32",
                    *(f"drape_82k.{variant}" for variant in ("line_search.escape", "line_search.ignore", "accumulated_toi.report", "accumulated_toi.ignore"))}
     for name in ran:
         phases = record["scenes"][name]["phases_ms"]
@@ -118,15 +127,17 @@ def test_a_stage_that_fails_or_is_cut_does_not_stop_the_others(around, tmp_path)
     assert left_out and all(name.endswith("/large") and name not in names for name in left_out)
 
 
-def test_the_room_that_sanitizers_saw_least_is_next(around, tmp_path):
+def test_the_module_on_which_memcheck_ended_least_is_next(around, tmp_path):
     bundle = tmp_path / "bundle"
     for folder in ("bin", "results/gpu"):
         (bundle / folder).mkdir(parents=True)
     shutil.copy(ROOT / "experiments/gpu_evidence.sh", bundle), shutil.copytree(ROOT / "experiments/card", bundle / "card"), shutil.copytree(ROOT / "configs", bundle / "configs")
     executable(bundle / "bin/barrierbench", "#!/bin/sh\n")
-    (bundle / "results/gpu/x100-2026-01-01.json").write_text(json.dumps({"parts": {"memcheck_contact.0": {"status": "passed"}}}, indent=1))
+    (bundle / "results/gpu/x100-2026-01-01.json").write_text(json.dumps({"parts": {
+        "memcheck_contact.0": {"status": "passed"}, "memcheck_linear": {"status": "left_out"}, "memcheck_linear.1": {"status": "timed_out"},
+        "memcheck_linear_more.0": {"status": "failed"}}}, indent=1))
     assert lease(around, tmp_path, script=bundle / "gpu_evidence.sh").returncode == 0
-    assert (tmp_path / "raw/sanitized_room").read_text() == "linear\n"
+    assert (tmp_path / "raw/sanitized_module").read_text() == "linear\n"
     assert "0 of 4: --tool memcheck" in (tmp_path / "raw/logs/memcheck_linear.0.err").read_text()
 
 
@@ -148,7 +159,59 @@ def test_a_bundle_is_one_archive_that_can_be_carried(around, tmp_path, program):
     assert list(stages) == STAGES and parts["dense_500k"] == parts["dense_500k.before"] == "passed"
 
 
-@pytest.mark.parametrize("words", [("--lease", "--seconds", "59"), ("--lease", "--seconds", "ten"), ("--dry",), ("--archives", "somewhere")])
+def test_a_lease_without_a_card_ends_at_once(around, tmp_path):
+    done = subprocess.run([ROOT / "experiments/gpu_evidence.sh", "--lease", "--out", tmp_path / "raw"], env={**around, "SPOIL": "none"}, capture_output=True, text=True, check=False)
+    assert done.returncode == 5 and "there is no card" in done.stderr and not (tmp_path / "raw").exists()
+
+
+def test_a_lease_of_which_no_stage_passed_says_so(around, tmp_path):
+    shutil.rmtree(tmp_path / "tests")
+    executable(tmp_path / "tools/ncu", "#!/bin/sh\nexit 9\n")
+    done = lease(around, tmp_path, "--seconds", "0090", SPOIL="bare")
+    assert done.returncode == 1 and "no stage passed" in done.stderr and len(list((tmp_path / "raw/archives").iterdir())) == len(STAGES)
+    assert read(tmp_path / "raw")[0]["dense_500k"]["limit_s"] == 50 * 90 // 540
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A clone with one commit of history, of the scripts alone."""
+    origin = tmp_path / "origin"
+    shutil.copytree(ROOT / "experiments/card", origin / "experiments/card"), shutil.copy(ROOT / "experiments/gpu_evidence.sh", origin / "experiments")
+    git = ["git", "-C", origin, "-c", "user.name=a", "-c", "user.email=a@b.c"]
+    subprocess.run(["git", "init", "-q", origin], check=True), subprocess.run([*git, "add", "."], check=True)
+    for message in ("first", "second"):
+        subprocess.run([*git, "commit", "-q", "--allow-empty", "-m", message], check=True)
+    subprocess.run(["git", "clone", "-q", "--depth", "1", f"file://{origin}", tmp_path / "clone"], check=True)
+    return tmp_path
+
+
+@pytest.mark.parametrize(("where", "words", "lacks", "said"), [
+    ("clone", (), "", "--before HEAD~1: this clone is shallow and does not have that commit; allowed: a commit that it has, or --before none"),
+    ("origin", ("--before", "elsewhere"), "", "--before elsewhere: this is no commit of the checkout"),
+    ("clone", ("--before", "none"), "xz", "the program xz was not found"),
+    ("clone", ("--before", "none"), "strip", "the program strip was not found"),
+    ("clone", ("--bundle", "full/"), "", "full: it is there and is not an empty folder; allowed: a new folder or an empty one")])
+def test_a_bundle_that_cannot_be_made_is_refused_before_anything_is_built(checkout, where, words, lacks, said):
+    (checkout / "full").mkdir(), (checkout / "full/kept").write_text("kept"), (checkout / "few").mkdir()
+    for tool in {"bash", "dirname", "readlink", "date", "git", "realpath", "find", "xz", "strip"} - {lacks}:
+        (checkout / "few" / tool).symlink_to(shutil.which(tool))
+    executable(checkout / "bench", f'#!/bin/bash\n: >"{checkout}/built"\nexit 70\n')
+    done = subprocess.run([checkout / where / "experiments/gpu_evidence.sh", "--bundle", "new/", *words], cwd=checkout, capture_output=True, text=True, check=False,
+                          env={"PATH": str(checkout / "few"), "BARRIERBENCH_BENCH": str(checkout / "bench")})
+    assert done.returncode == 2 and said in done.stderr, done.stderr
+    assert not (checkout / "built").exists() and not (checkout / "new").exists() and (checkout / "full/kept").exists()
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (("--before", "none"), "--before means nothing without --bundle"), (("--seconds", "90"), "--seconds means nothing without --lease"),
+    (("--lease", "--only", "tests"), "--only means nothing with --lease"), (("--lease", "--records", "kept"), "--records means nothing with --lease"),
+    (("--lease", "--bundle", "card"), "--bundle means nothing with --lease"), (("--bundle", ""), '--bundle "": the value is empty')])
+def test_options_that_mean_nothing_together_are_refused(tmp_path, words, said):
+    done = subprocess.run([ROOT / "experiments/gpu_evidence.sh", *words], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and f"gpu_evidence: {said}" in done.stderr and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("words", [("--lease", "--seconds", "59"), ("--lease", "--seconds", "0059"), ("--lease", "--seconds", "ten"), ("--dry",), ("--archives", "somewhere")])
 def test_words_that_no_lease_has_are_refused(tmp_path, words):
     done = subprocess.run([ROOT / "experiments/gpu_evidence.sh", "--out", tmp_path / "raw", *words], capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "gpu_evidence: --" in done.stderr and not (tmp_path / "raw").exists()

@@ -48,12 +48,16 @@ struct Ranged {
   int first = 0, n_vertices = 0;
   std::vector<int> vertices;
 
-  explicit Ranged(const Stencils& stencils) : vertices(stencils.vertices.begin(), stencils.vertices.end()) {
+  /// Errors: ConfigError for a vertex that is no row of n_rows.
+  Ranged(const Stencils& stencils, int n_rows)
+      : vertices(stencils.vertices.begin(), stencils.vertices.end()) {
     int least = std::numeric_limits<int>::max(), largest = -1;
     for (const int v : vertices) {
       if (v < 0) continue;
       least = std::min(least, v), largest = std::max(largest, v);
     }
+    if (largest >= n_rows)
+      throw ConfigError("Stencils", "vertex " + std::to_string(largest), "-1 to n_vertices - 1");
     if (largest < 0) return;
     first = least, n_vertices = largest - least + 1;
     for (int& v : vertices) {
@@ -92,7 +96,7 @@ GatherLists::GatherLists(Executor& executor, const Stencils& stencils, const Blo
     throw ConfigError("piece of elements", std::to_string(stencils.size()) + " elements", "2^27");
   }
   heed_stop();
-  const Ranged own(stencils);
+  const Ranged own(stencils, static_cast<int>(rows.row_begin.size()) - 1);
   GatherMap map;
   map.build({stencils.width, own.vertices}, own.n_vertices);
   const std::size_t width = static_cast<std::size_t>(map.width()), size = n_lower_blocks(width);
