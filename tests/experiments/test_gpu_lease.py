@@ -207,11 +207,11 @@ def test_a_bundle_that_cannot_be_made_is_refused_before_anything_is_built(checko
     (("--lease", "--only", "tests"), "--only means nothing with --lease"), (("--lease", "--records", "kept"), "--records means nothing with --lease"),
     (("--lease", "--bundle", "card"), "--bundle means nothing with --lease"), (("--bundle", ""), '--bundle "": the value is empty')])
 def test_options_that_mean_nothing_together_are_refused(tmp_path, words, said):
-    done = subprocess.run([ROOT / "experiments/gpu_evidence.sh", *words], cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = subprocess.run([ROOT / "experiments/gpu_evidence.sh", *words], cwd=tmp_path, env={**os.environ, "BARRIERBENCH_BENCH": "/bin/false"}, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and f"gpu_evidence: {said}" in done.stderr and not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("words", [("--lease", "--seconds", "59"), ("--lease", "--seconds", "0059"), ("--lease", "--seconds", "ten"), ("--dry",), ("--archives", "somewhere")])
 def test_words_that_no_lease_has_are_refused(tmp_path, words):
-    done = subprocess.run([ROOT / "experiments/gpu_evidence.sh", "--out", tmp_path / "raw", *words], capture_output=True, text=True, check=False)
+    done = subprocess.run([ROOT / "experiments/gpu_evidence.sh", "--out", tmp_path / "raw", *words], env={**os.environ, "BARRIERBENCH_BENCH": "/bin/false"}, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "gpu_evidence: --" in done.stderr and not (tmp_path / "raw").exists()
