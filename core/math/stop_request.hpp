@@ -13,4 +13,13 @@ void set_stop_request(StopRequest request);
 /// To be called between the parts of long work, from code that may throw: not inside a parallel loop. Errors: those of the request.
 void heed_stop();
 
+/// While one lives, heed_stop() returns: a step of a run ends before the run does, so that its checkpoint is whole.
+class StopDeferred {
+ public:
+  StopDeferred();
+  ~StopDeferred();
+  StopDeferred(const StopDeferred&) = delete;
+  StopDeferred& operator=(const StopDeferred&) = delete;
+};
+
 }  // namespace bb

@@ -8,6 +8,7 @@
 
 #include "core/base/record/provenance.hpp"
 #include "core/exec/executor.hpp"
+#include "core/math/stop_request.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/keep_record.hpp"
 
@@ -95,6 +96,7 @@ void Pass::stop() {
 }
 
 void Pass::step() {
+  const StopDeferred until_its_end;
   const double start = now_s();
   const StepReport step = simulation_.step(recorder_);
   result_.steps.push_back({now_s() - start, step.time});

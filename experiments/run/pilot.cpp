@@ -66,7 +66,8 @@ RunConfig pilot_config(const RunConfig& config) {
   pilot.step_solver.name = "line_search";
   pilot.step_solver.saddle = SaddleRule::escape;  // loads are those of minima
   pilot.step_solver.retries = 0;                  // its steps are all as long as those that read its loads
-  pilot.time.step_size.reset();
+  pilot.time.step_size.reset(), pilot.time.step_iterations.reset();
+  pilot.time.step_halvings.reset(), pilot.time.step_error.reset();
   pilot.output.checkpoint_every = 0;  // it has no folder
   pilot.passes = {};
   pilot.precision = Precision::full;  // what is compared between precisions has one stiffness

@@ -10,7 +10,9 @@
 #include "core/base/record/phase_times.hpp"
 #include "core/math/stop_request.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/pass.hpp"
 #include "experiments/run/plan.hpp"
+#include "experiments/run/recorder.hpp"
 #include "experiments/run/runner.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -71,6 +73,25 @@ TEST(StartCheck, AStopIsHeardBetweenAllPartsOfWhatComesBeforeTheFirstStep) {
     EXPECT_THROW(all_of_it(), Interrupted) << stop_at;
   }
   set_stop_request(nullptr);
+}
+
+TEST(StartCheck, AStopCutsNoStepInWhoseMiddleItIsHeard) {
+  RunConfig config = given_sheets(1);
+  config.passes = {false, false, true};  // the audit of each state asks for stops
+  const Scene scene = build_scene(config);
+  const Plan plan = plan_of(config, scene);
+  RunRecord record;
+  Recorder recorder(config, scene, record, nullptr);
+  const RunOptions options;
+  Pass pass(config, scene, {}, plan, options, "audit", recorder);
+  set_stop_request([] { throw Interrupted{}; });
+  EXPECT_THROW(heed_stop(), Interrupted);
+  PassResult result;
+  EXPECT_NO_THROW(result = pass.run([](Pass::Moment) {}));
+  EXPECT_THROW(heed_stop(), Interrupted) << "after the steps it is heard again";
+  set_stop_request(nullptr);
+  EXPECT_EQ(result.steps.size(), static_cast<std::size_t>(config.time.steps));
+  EXPECT_GT(record.audit.states, 0) << "nothing was audited";
 }
 
 TEST(StartCheck, GivenSheetsThatPassThroughEachOtherAreNamedWhateverTheirPosition) {
