@@ -100,7 +100,7 @@ Scene tangle(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> vertex(0, 24), size(0, 60);
   Scene scene;
-  scene.x0.resize(3, 25);
+  scene.x0 = scene.rest = Positions::Zero(3, 25);
   for (int i = size(random); i > 0; --i) scene.surface_edges.push_back({vertex(random), vertex(random)});
   for (int i = size(random) / 4; i > 0; --i)
     scene.surface_triangles.push_back({vertex(random), vertex(random), vertex(random)});
