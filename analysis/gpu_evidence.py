@@ -294,7 +294,7 @@ def unpacked(folder: Path, into: Path) -> Path:
     archives = sorted(folder.glob("[1-8]-*.tar.gz"))
     for path in archives:
         try:
-            with tarfile.open(path) as archive:
+            with input_file.opened(path) as file, tarfile.open(fileobj=file) as archive:
                 for member in archive:
                     if not member.isfile() or ".." in Path(member.name).parts or member.name.startswith("/"):
                         raise UserError(

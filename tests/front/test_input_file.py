@@ -16,6 +16,7 @@ READERS = {"open", "read_text", "read_bytes", "load", "loadtxt", "genfromtxt", "
 KNOWN = {
     "input_file.py": {"open", "read_bytes"},
     "judge/arrays.py": {"load"},  # of a file that was opened there
+    "gpu_evidence.py": {"open"},  # an archive, of a file that was opened there
     "gate/matrices.py": {"mmread", "mminfo"}, "engines/launch.py": {"load", "open"},  # of bytes that were read there; a log that is written
     "gate/trend.py": {"open"}, "engines/environment.py": {"open"}, "frames_out/formats.py": {"open"}, "front/test.py": {"open"}, "front/building.py": {"open"},
     "toolkit_meshes.py": {"open"}, "animation.py": {"open"}, "whole_file.py": {"open"},  # written
