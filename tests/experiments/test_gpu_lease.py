@@ -90,7 +90,7 @@ def test_the_archives_of_a_lease_make_the_record(around, tmp_path):
     calls = [line.split() for line in (tmp_path / "calls").read_text().splitlines()]
     runs = {words[words.index("--out") + 1].rsplit("/", 1)[1]: words[0] for words in calls}
     assert runs == {"dense_500k": "0", "dense_500k.phases": "1", "dense_500k.timed": "0", "dense_500k.counted": "0"}
-    assert [stage["name"] for stage in record["stages"]] == STAGES and record["seconds"] > 0
+    assert [stage["name"] for stage in record["stages"]] == STAGES and 0 <= record["seconds"] <= 540  # whole seconds: a dry lease may take none
     ran = {name for name, scene in record["scenes"].items() if scene is not None}
     assert ran == {"dense_500k", "dense_500k.phases", "dense_500k.timed", "dense_500k.counted", "dense_1m", "packed_8m.8", "packed_8m.16", "packed_8m.32",
                    *(f"drape_82k.{variant}" for variant in ("line_search.escape", "line_search.ignore", "accumulated_toi.report", "accumulated_toi.ignore"))}
