@@ -43,7 +43,7 @@ first matrix that the Hessian rule made; *indefinite*: the whole direction of a 
 the first one was not positive definite, or a move along negative curvature; *contact* and *limit*: the
 smaller bound, of ACCD or of the strain limit, held it; *Armijo*: less was taken than the bound allows;
 *noise*: the change of E was below rounding; *failed*: no usable direction. *Regularised* counts all
-iterations with a raised matrix, whatever held them then.
+iterations with a regularised matrix, whatever held them then.
 
 ![iterations by cause, and by Hessian rule](../docs/steps.png)
 """

@@ -14,10 +14,13 @@ inline double distance_rounding(Precision precision, double largest) {
   return values_in_float(precision) ? 64 * value_epsilon(precision) * largest : 0;
 }
 
-/// The largest float that is at most x and the smallest that is at least x, or a neighbour of those.
-BB_HD inline float float_below(double x) {
-  return static_cast<float>(x - (std::abs(x) * 0x1p-23 + 0x1p-140));
+/// More than what the rounding of a number of that size to float takes away. Of a number, or of a vector of them.
+template <class T>
+BB_HD T room_of_rounding(const T& size) {
+  return size * 0x1p-23 + 0x1p-140;
 }
+/// The largest float that is at most x and the smallest that is at least x, or a neighbour of those.
+BB_HD inline float float_below(double x) { return static_cast<float>(x - room_of_rounding(std::abs(x))); }
 BB_HD inline float float_above(double x) { return -float_below(-x); }
 
 }  // namespace bb

@@ -26,7 +26,7 @@ using FourDoubles = VectorOf<double, 4>::type;
 /// float_below() and float_above(), four abreast.
 inline MotionBox::Four floats_below(const FourDoubles& x) {
   const FourDoubles size = x < 0 ? -x : x;
-  return __builtin_convertvector(x - (size * 0x1p-23 + 0x1p-140), MotionBox::Four);
+  return __builtin_convertvector(x - room_of_rounding(size), MotionBox::Four);
 }
 inline MotionBox::Four floats_above(const FourDoubles& x) { return -floats_below(-x); }
 

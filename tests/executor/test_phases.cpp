@@ -47,19 +47,31 @@ class Waiter final : public exec::HostExecutor {
   bool asks_ = false;
 };
 
-/// Launches of a whole Newton iteration, line search and acceptance included, that another phase waited for.
-int launches_of_others(bool synchronize) {
-  const Scene scene = test::touching(test::two_sheets(), 0.01);
+Method executor_method() {
   Method method = test::touching_method();
   test::use_executor_solver(method, 1e-10);
-  const Plan plan = make_plan(scene, method, plan_options(method));
-  auto made = std::make_unique<Waiter>();
+  return method;
+}
+
+/// Two sheets in contact on an executor that counts.
+struct WaitedSystem {
+  Scene scene = test::touching(test::two_sheets(), 0.01);
+  Method method = executor_method();
+  Plan plan = make_plan(scene, method, plan_options(method));
+  std::unique_ptr<Waiter> made = std::make_unique<Waiter>();
   Waiter& waiter = *made;
-  test::ExecutorSystem system(std::move(made), scene, method, plan);
+  test::ExecutorSystem system{std::move(made), scene, method, plan};
+};
+
+/// Launches of a whole Newton iteration, line search and acceptance included, that another phase waited for.
+int launches_of_others(bool synchronize) {
+  WaitedSystem of;
+  Waiter& waiter = of.waiter;
+  auto& system = of.system;
   if (synchronize) dynamic_cast<exec::ExecutorEngine&>(system.potential()).synchronize_phases();
   waiter.clock = &system.clock();
-  system.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
-  system.set_target(scene.x0);
+  system.begin_step(of.scene.x0, {1, of.scene.x0}, 0.01, 1);
+  system.set_target(of.scene.x0);
   system.assemble();
   system.find_direction();
   system.prepare_motion(MotionEnd::free, true);
@@ -81,14 +93,10 @@ TEST(ExecutorPhases, EachWaitsForItsOwnLaunchesWhereThatIsAskedFor) {
 }
 
 TEST(ExecutorPhases, AssemblyIsNotChargedToTheSolve) {
-  const Scene scene = test::touching(test::two_sheets(), 0.01);
-  Method method = test::touching_method();
-  test::use_executor_solver(method, 1e-10);
-  const Plan plan = make_plan(scene, method, plan_options(method));
-  auto made = std::make_unique<Waiter>();
-  Waiter& waiter = *made;
-  test::ExecutorSystem system(std::move(made), scene, method, plan);
-  system.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
+  WaitedSystem of;
+  Waiter& waiter = of.waiter;
+  auto& system = of.system;
+  system.begin_step(of.scene.x0, {1, of.scene.x0}, 0.01, 1);
   system.assemble();
   waiter.clock = &system.clock();
   system.find_direction();

@@ -70,3 +70,40 @@ def test_what_steps_of_chosen_length_cannot_have_is_refused_by_name(program, con
     done = bench(program, "run", config, "--out", tmp_path / "run", *settings(CHOSEN | more))
     refused(done, place, code=2)
     assert allowed in done.stderr and not (tmp_path / "run").exists()
+
+
+QUADRATIC = {"/formulation": {"shape": "quadratic", "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 50}}, "/strain_limit/enabled": False}
+LITERAL = {"/scene": {"name": "drape2d", "variant": "pinned", "protocol": "article_literal", "pairs": "vertex_vertex"}, "/strain_limit/shape": "log", "/time/step_iterations": 1}
+COMES_TO_ITS_END = {  # the barrier is bounded under penalty, and augmented_lagrangian may pass through: neither is asked here
+    "line_search": {}, "al_barrier": {}, "augmented_lagrangian": {}, "penalty": QUADRATIC, "article_literal": LITERAL}
+
+
+def test_every_step_solver_follows_it_or_is_refused_by_name(program, config, tmp_path):
+    listed = {line.split()[0] for line in bench(program, "list", "step_solvers").stdout.splitlines() if line.startswith("  ") and not line.startswith("   ")}
+    assert set(COMES_TO_ITS_END) < listed
+    for name in sorted(listed):
+        more = {key: value for key, value in (CHOSEN | {"/time/step_iterations": 2} | COMES_TO_ITS_END.get(name, {})).items() if not (name == "penalty" and key.endswith("k_s_N_per_m"))}
+        words = settings(more | {"/step_solver/name": name, "/passes/audit": False})
+        done = bench(program, "run", config, "--out", tmp_path / name, *words)
+        if name not in COMES_TO_ITS_END:
+            refused(done, "/time/step_size", name, code=2)
+            continue
+        assert done.returncode == 0, (name, done.stderr)
+        record = record_of(tmp_path / name)
+        dt, steps = record["config"]["time"]["dt_s"], record["steps"]
+        assert record["status"]["outcome"] == "ok", (name, record["status"])
+        assert len(steps) > 12 and steps[-1]["t_s"] == pytest.approx(12 * dt, rel=1e-14), name
+        assert {round(dt / step["dt_s"]) for step in steps} <= {1, 2, 4, 8} and sum(step["contacts"]["total"] for step in steps) > 0, name
+
+
+@pytest.mark.parametrize("more", [
+    *({"/integrator/name": name} for name in ("half_gravity", "bdf2", "newmark")),
+    {"/integrator/name": "quasi_static", "/scene": {"name": "hang"}}, {"/device": "host", "/linear_solver/name": "pcg_resident"}], ids=str)
+def test_every_integrator_and_the_host_executor_follow_it(program, config, tmp_path, more):
+    listed = {line.split()[0] for line in bench(program, "list", "integrators").stdout.splitlines() if line.startswith("  ") and not line.startswith("   ")}
+    assert listed == {"implicit_euler", "half_gravity", "bdf2", "newmark", "quasi_static"}
+    done = bench(program, "run", config, "--out", tmp_path / "run", *settings(CHOSEN | more | {"/time/step_iterations": 2}))
+    assert done.returncode == 0, done.stderr
+    record = record_of(tmp_path / "run")
+    assert record["status"]["outcome"] == "ok" and len(record["steps"]) > 12
+    assert record["steps"][-1]["t_s"] == pytest.approx(12 * record["config"]["time"]["dt_s"], rel=1e-14)

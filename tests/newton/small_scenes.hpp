@@ -98,4 +98,17 @@ inline BodySpec cloth_spec(int n, double height, double d_hat) {
   return spec;
 }
 
+/// A cloth that is thrown against a floor and meets it within the first steps of 10 ms.
+inline Scene thrown_cloth(double d_hat) {
+  SceneBuilder builder("thrown cloth", false, Vec3d(0, 0, -10), "test");
+  BodySpec spec = cloth_spec(4, 0.012, d_hat);
+  spec.material.bending = 1e-4;
+  spec.velocity = Vec3d(0.4, 0.8, -1);
+  builder.add_body(spec);
+  Obstacle plane;
+  plane.name = "floor";
+  builder.add_obstacle(plane);
+  return builder.finish();
+}
+
 }  // namespace bb::test

@@ -15,19 +15,6 @@ namespace {
 
 constexpr double d_hat = 0.01, dt = 0.01;
 
-/// A cloth that is thrown against a floor and meets it within the first steps.
-Scene thrown_cloth() {
-  SceneBuilder builder("thrown cloth", false, Vec3d(0, 0, -10), "test");
-  BodySpec spec = test::cloth_spec(4, 0.012, d_hat);
-  spec.material.bending = 1e-4;
-  spec.velocity = Vec3d(0.4, 0.8, -1);
-  builder.add_body(spec);
-  Obstacle plane;
-  plane.name = "floor";
-  builder.add_obstacle(plane);
-  return builder.finish();
-}
-
 Method with_policy(const std::string& policy, const std::string& solver,
                    const std::string& integrator = "implicit_euler") {
   Method method = test::fixed_method("log", 20, integrator);
@@ -94,7 +81,7 @@ TEST(StepParts, halve_and_come_back_to_the_grid) {
 }
 
 TEST(Retries, an_attempt_that_failed_leaves_nothing_behind) {
-  const Scene scene = thrown_cloth();
+  const Scene scene = test::thrown_cloth(d_hat);
   int retried = 0;
   for (const std::string policy : {"fixed", "ipc_adaptive", "elasticity_inclusive"}) {
     for (const std::string solver : {"cholmod", "lagged_cholesky", "pcg"}) {
@@ -128,7 +115,7 @@ TEST(Retries, an_attempt_that_failed_leaves_nothing_behind) {
 }
 
 TEST(Retries, parts_end_where_the_step_would_have_ended) {
-  const Scene scene = thrown_cloth();
+  const Scene scene = test::thrown_cloth(d_hat);
   for (const std::string integrator : {"implicit_euler", "bdf2", "newmark"}) {
     Method probe = with_policy("fixed", "cholmod", integrator),
            method = with_policy("fixed", "cholmod", integrator);
@@ -163,7 +150,7 @@ TEST(Retries, parts_end_where_the_step_would_have_ended) {
 }
 
 TEST(Retries, end_a_step_that_never_converges_after_the_last_one) {
-  const Scene scene = thrown_cloth();
+  const Scene scene = test::thrown_cloth(d_hat);
   Method method = with_policy("fixed", "cholmod");
   method.step_solver.max_iterations = 1;
   method.step_solver.retries = 3;

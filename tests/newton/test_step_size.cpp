@@ -66,18 +66,6 @@ TEST(StepSize, a_longer_part_waits_for_its_place_on_the_grid) {
   EXPECT_EQ(parts.length(dt), dt);
 }
 
-Scene falling_cloth() {
-  SceneBuilder builder("falling cloth", false, Vec3d(0, 0, -10), "test");
-  BodySpec spec = test::cloth_spec(4, 0.012, d_hat);
-  spec.material.bending = 1e-4;
-  spec.velocity = Vec3d(0.4, 0.8, -1);
-  builder.add_body(spec);
-  Obstacle plane;
-  plane.name = "floor";
-  builder.add_obstacle(plane);
-  return builder.finish();
-}
-
 Method adaptive_method(const std::string& integrator, const std::string& step_solver) {
   Method method = test::fixed_method("log", 20, integrator);
   method.step_solver.name = step_solver;
@@ -86,7 +74,7 @@ Method adaptive_method(const std::string& integrator, const std::string& step_so
 }
 
 TEST(StepSize, a_run_goes_on_from_an_archive_at_any_part_and_stays_on_its_grid) {
-  const Scene scene = falling_cloth();
+  const Scene scene = test::thrown_cloth(d_hat);
   StepObserver nobody;
   for (const std::string integrator : {"implicit_euler", "bdf2", "newmark"}) {
     Method method = adaptive_method(integrator, "line_search"),
@@ -123,7 +111,7 @@ TEST(StepSize, a_run_goes_on_from_an_archive_at_any_part_and_stays_on_its_grid) 
 }
 
 TEST(StepSize, a_step_that_fails_is_tried_again_with_half_its_length) {
-  const Scene scene = falling_cloth();
+  const Scene scene = test::thrown_cloth(d_hat);
   Method method = adaptive_method("implicit_euler", "line_search");
   method.step_solver.max_iterations = 4;
   method.step_size.halvings = 6;

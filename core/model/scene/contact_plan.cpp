@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/math/at.hpp"
+
 namespace bb {
 namespace {
 
@@ -178,8 +180,10 @@ std::vector<std::array<int, 2>> lone_edges(const Scene& scene) {
   for (const auto& t : scene.surface_triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::array<int, 2> side = ascending(t[k], t[(k + 1) % 3]);
-      const auto lower = static_cast<std::size_t>(side[0]);
-      for (std::size_t i = start[lower]; i < start[lower + 1]; ++i) is_side[i] |= edges[i][1] == side[1];
+      const auto lower = edges.begin() + static_cast<std::ptrdiff_t>(start[at(side[0])]),
+                 upper = edges.begin() + static_cast<std::ptrdiff_t>(start[at(side[0]) + 1]);
+      const auto found = std::lower_bound(lower, upper, side);
+      if (found != upper && *found == side) is_side[static_cast<std::size_t>(found - edges.begin())] = 1;
     }
   }
   for (std::size_t i = 0; i < edges.size(); ++i) {
