@@ -10,6 +10,7 @@ from .text_table import markdown
 
 SOLVER = "line_search"
 OWN = "blend"  # the rule that a run has by itself
+EXACT = ", exact friction"  # beside a rule: without the secant of friction
 HEAD = """# Hard time steps
 
 Single time steps of runs that take many iterations for different reasons, each from a state that is kept in
@@ -45,6 +46,9 @@ smaller bound, of ACCD or of the strain limit, held it; *Armijo*: less was taken
 *noise*: the change of E was below rounding; *failed*: no usable direction. *Regularised* counts all
 iterations with a regularised matrix, whatever held them then.
 
+*Exact friction*: without the secant that friction's matrix has after a shortened step (`/friction/hessian`);
+`-`: the state has no friction.
+
 ![iterations by cause, and by Hessian rule](../docs/steps.png)
 """
 
@@ -56,14 +60,19 @@ def taken_states(record: dict) -> list[dict]:
     return out
 
 
-def trial_of(state: dict, hessian: str) -> dict:
+def rule_of(trial: dict) -> str:
+    """Its Hessian in words."""
+    return trial["hessian"] + (EXACT if trial["friction_hessian"] == "exact" else "")
+
+
+def trial_of(state: dict, rule: str) -> dict:
     """The trial of line_search with that Hessian."""
-    return next(t for t in state["trials"] if t["step_solver"] == SOLVER and t["hessian"] == hessian)
+    return next(t for t in state["trials"] if t["step_solver"] == SOLVER and rule_of(t) == rule)
 
 
 def hessians(record: dict) -> list[str]:
     first = record["states"][0]["trials"]
-    return [t["hessian"] for t in first if t["step_solver"] == SOLVER]
+    return [rule_of(t) for t in first if t["step_solver"] == SOLVER]
 
 
 def others(record: dict) -> list[str]:
@@ -78,6 +87,8 @@ def _count(value: int | None) -> str:
 
 def _cell(state: dict, trial: dict) -> str:
     """Iterations, those to the tolerance, and where it ended unless that is A."""
+    if "refused" in trial:
+        return "-"
     if trial["status"] != "converged":
         return f"{trial['iterations']}, {trial['status'].replace('_', ' ')}"
     counts = f"{trial['iterations']} ({_count(trial['iterations_to_tolerance'])})"

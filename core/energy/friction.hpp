@@ -42,11 +42,19 @@ BB_HD inline MotionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const Ve
   return out;
 }
 
-/// A law of core/energy/friction_laws with its eps, m.
+/// A law of core/energy/friction_laws with its eps, m. secant in [0, 1]: the share of f1/y in the place of f2. With the whole of
+/// it the quadratic model of the energy lies nowhere below the energy, since f1/y falls with y under every law (lagged
+/// diffusivity; Vogel and Oman 1996 for total variation): a slide that turns round within the step is modelled as one that
+/// brakes, where the exact matrix has no stiffness along a slide beyond eps.
 template <class Law, class T>
 struct LawWithEps {
   T eps;
-  BB_HD FrictionProfile<T> operator()(T y) const { return Law::template eval<T>(y, eps); }
+  T secant = 0;
+  BB_HD FrictionProfile<T> operator()(T y) const {
+    FrictionProfile<T> out = Law::template eval<T>(y, eps);
+    out.f2 += secant * (out.f1_over_y - out.f2);
+    return out;
+  }
 };
 
 /// friction_terms with the length of the slide and its profile. law(y): FrictionProfile<T>. Host-device.

@@ -18,6 +18,12 @@ void IncrementalPotential::change_step(const StepColumns& step) {
   for (Term* term : terms_) term->change_step(step);
 }
 
+bool IncrementalPotential::take_secant(double share) {
+  bool taken = false;
+  for (Term* term : terms_) taken = term->take_secant(share) || taken;
+  return taken;
+}
+
 bool IncrementalPotential::renew_lag(const Column& x) {
   const bool renewed =
       std::any_of(terms_.begin(), terms_.end(), [&x](Term* term) { return term->renew_lag(x); });

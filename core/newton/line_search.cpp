@@ -10,7 +10,8 @@
 //     vertex by itself, dx of each is cut to what it may go, as long as that descends
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
 //     with a detour round them; where steps crawl, first along a longer dx
-//   6 accept; what converged goes on where terms renew what they lag
+//   6 accept; what converged goes on where terms renew what they lag. A step that was shortened asks for the secant of terms
+//     that have one (secant_rule.hpp)
 
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@
 #include "core/newton/error_estimate.hpp"
 #include "core/newton/iteration.hpp"
 #include "core/newton/line_search.hpp"
+#include "core/newton/secant_rule.hpp"
 #include "core/newton/step_search.hpp"
 
 namespace bb {
@@ -42,12 +44,15 @@ class LineSearch final : public StepSolver {
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
     begin_search(step);
+    double& secants = step.solver.values["secants"] = 0;
     const double tolerance = tolerance_of(system, task.dt);
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);  // 1
       find_direction(system, report, observer);                                // 2
       const bool at_pose = system.view().at_target();
-      const bool small = estimate_error(report) < tolerance && at_pose;  // 3
+      const bool near = estimate_error(report) < tolerance && at_pose,  // 3
+          small = near && secant_.share() == 0;
+      if (secant_.share() > 0) ++secants;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
         fail_step(system, step, *failed, report);
@@ -59,14 +64,15 @@ class LineSearch final : public StepSolver {
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
       if (escaped) continue;
+      secant_.took(search_.shortened(), near, system);
       if (moved && after_motion_ && after_motion_(system)) {
-        begin_anew(iteration);
+        begin_anew(iteration, system);
       } else if (small && is_enough(report, moved, tolerance)) {
         if (!system.renew_lag()) {
           end_in_minimum(step, end, report, task.dt);
           return step;
         }
-        begin_anew(iteration);
+        begin_anew(iteration, system);
       } else if (gives_up(system, task, report, moved, at_pose, step)) {
         return step;
       }
@@ -80,6 +86,7 @@ class LineSearch final : public StepSolver {
     search_.begin_step(step);
     error_.reset();
     crawl_.begin_step();
+    secant_.begin_step();
     collapsed_ = escapes_ = 0;
   }
 
@@ -131,9 +138,10 @@ class LineSearch final : public StepSolver {
   }
 
   // E is another one: its minimum is looked for by what is left of the iterations.
-  void begin_anew(int iteration) {
+  void begin_anew(int iteration, StepSystem& system) {
     collapsed_ = 0;
     crawl_.reset();
+    secant_.reset(system);
     if (iteration + 1 < options_.max_iterations) error_.reset();
   }
 
@@ -192,6 +200,7 @@ class LineSearch final : public StepSolver {
   std::function<bool(StepSystem&)> after_motion_;
   ErrorEstimate error_;
   CrawlWatch crawl_;
+  SecantRule secant_;
   int collapsed_ = 0;  // steps in a row
   int escapes_ = 0;    // of the step
 };
@@ -221,6 +230,8 @@ StepSolverEntry step_solver_line_search() {
        "line_search: iterations in which vertices went each as far as contact let it (/contact/step_bound)",
        OverSteps::sum},
       {"lengthened", "line_search: iterations in which dx was taken more than once, since steps crawled",
+       OverSteps::sum},
+      {"secants", "line_search: iterations with a share of the secant of friction (/friction/hessian)",
        OverSteps::sum}};
   entry.settings.vertex_steps = true;
   entry.make = [](const StepSolverOptions& options) {

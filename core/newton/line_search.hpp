@@ -15,7 +15,7 @@ struct LineSearchRules {
   std::function<bool(StepSystem&)> after_motion = {};
 };
 
-/// options: with `armijo`. Its steps say three counters, `feasibility_trials`, `truncations` and `lengthened`.
+/// options: with `armijo`. Its steps say four counters, `feasibility_trials`, `truncations`, `lengthened` and `secants`.
 std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options, const LineSearchRules& rules);
 
 }  // namespace bb

@@ -24,6 +24,7 @@ class NewtonSystem : public StepSystem {
 
   void begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor) override;
   void restart_step(const Prediction& prediction, double dt) override;
+  bool take_secant(double share) override { return state_.potential->take_secant(share); }
   bool renew_lag() override { return state_.potential->renew_lag(state_.x); }
   void end_step() override;
   void set_target(const Positions& target) override;

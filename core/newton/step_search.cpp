@@ -72,7 +72,7 @@ bool StepSearch::go_far(StepSystem& system, IterationReport& report, double leng
 bool StepSearch::along_direction(StepSystem& system, IterationReport& report, bool energy_test, bool small,
                                  double length) {
   find_bound(system, report);
-  share_ = 1, truncated_ = false, taken_ = 0;
+  share_ = 1, truncated_ = shortened_ = false, taken_ = 0;
   if (length > 1 && energy_test && !small && bound_ == 1 && go_far(system, report, length)) return true;
   if (bounded_ && report.alpha_ccd < 1) {
     if (const auto motion = system.truncate_motion(report))
@@ -145,10 +145,12 @@ bool StepSearch::go_along(StepSystem& system, IterationReport& report, double le
   // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
   double alpha = bound_;
   if (alpha < 1) alpha *= cap_fraction_;
+  const double longest = alpha;
   for (; alpha > least; alpha /= 2) {
     ++report.line_search_trials;
     if (!(energy_test ? decreases(system, report, alpha) : is_feasible(system, report, alpha))) continue;
     taken_ = alpha * share_;
+    shortened_ = energy_test && alpha < longest && !noise_;
     report.alpha = std::min(1.0, taken_);
     system.accept();
     return true;

@@ -29,11 +29,13 @@ class StepSearch {
   bool out_of_saddle(StepSystem& system, EndProof proof, IterationReport& report, double tolerance);
 
   /// Of the step taken last: its bound, in parts of dx; the part of dx that was taken, above 1 of one that was lengthened;
-  /// whether vertices went each as far as contact let it; whether its change of E is noise.
+  /// whether vertices went each as far as contact let it; whether its change of E is noise; whether E, or a trial that was
+  /// infeasible, made it shorter than its bound did.
   double bound() const { return bound_; }
   double taken() const { return taken_; }
   bool truncated() const { return truncated_; }
   bool noise() const { return noise_; }
+  bool shortened() const { return shortened_; }
 
  private:
   void find_bound(StepSystem& system, IterationReport& report);
@@ -52,7 +54,7 @@ class StepSearch {
   double bound_ = 1;
   bool noise_ = false;
   double share_ = 1;  // of the fall that dx promises, in the motion that is tried
-  bool truncated_ = false;
+  bool truncated_ = false, shortened_ = false;
   double taken_ = 0;
   double *feasibility_trials_ = nullptr, *truncations_ = nullptr, *lengthened_ = nullptr;
 };

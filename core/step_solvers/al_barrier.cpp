@@ -34,7 +34,8 @@ class AlBarrier final : public StepSolver {
                           {"al_barrier_pairs", counts.pairs_most},
                           {"al_barrier_force_N", counts.force_N},
                           {"al_barrier_stiffening", counts.stiffening},
-                          {"al_barrier_feasibility_trials", step.solver.values.at("feasibility_trials")}};
+                          {"al_barrier_feasibility_trials", step.solver.values.at("feasibility_trials")},
+                          {"al_barrier_secants", step.solver.values.at("secants")}};
     return step;
   }
 
@@ -92,6 +93,8 @@ StepSolverEntry step_solver_al_barrier() {
       {"al_barrier_feasibility_trials",
        "al_barrier: those of line_search_trials that feasibility alone judged, short of a pose",
        OverSteps::sum},
+      {"al_barrier_secants",
+       "al_barrier: iterations with a share of the secant of friction (/friction/hessian)", OverSteps::sum},
   };
   entry.needs.multipliers = true;
   entry.set_terms = set_barrier_multipliers;

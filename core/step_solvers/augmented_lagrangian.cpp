@@ -31,7 +31,8 @@ class AugmentedLagrangian final : public StepSolver {
     step.solver.values = {{"al_updates", contact ? contact->multiplier_updates() : 0},
                           {"al_violation_m", std::max(0.0, -or_zero(end.gap_min_m))},
                           {"al_penalty_N_per_m", or_zero(end.kappa_max_N_per_m)},
-                          {"al_feasibility_trials", step.solver.values.at("feasibility_trials")}};
+                          {"al_feasibility_trials", step.solver.values.at("feasibility_trials")},
+                          {"al_secants", step.solver.values.at("secants")}};
     return step;
   }
 
@@ -80,6 +81,9 @@ StepSolverEntry step_solver_augmented_lagrangian() {
        OverSteps::largest},
       {"al_feasibility_trials",
        "augmented_lagrangian: those of line_search_trials that energies did not judge, short of a pose",
+       OverSteps::sum},
+      {"al_secants",
+       "augmented_lagrangian: iterations with a share of the secant of friction (/friction/hessian)",
        OverSteps::sum},
   };
   entry.needs.step_bound = false;

@@ -26,7 +26,8 @@ class Penalty final : public StepSolver {
     const auto overlapping = std::count_if(end.contact_loads.begin(), end.contact_loads.end(), within);
     step.solver.values = {{"penalty_overlap_m", overlap},
                           {"penalty_overlaps", static_cast<double>(overlapping)},
-                          {"penalty_feasibility_trials", step.solver.values.at("feasibility_trials")}};
+                          {"penalty_feasibility_trials", step.solver.values.at("feasibility_trials")},
+                          {"penalty_secants", step.solver.values.at("secants")}};
     return step;
   }
 
@@ -48,6 +49,8 @@ StepSolverEntry step_solver_penalty() {
        OverSteps::largest},
       {"penalty_feasibility_trials",
        "penalty: those of line_search_trials that energies did not judge, short of a pose", OverSteps::sum},
+      {"penalty_secants", "penalty: iterations with a share of the secant of friction (/friction/hessian)",
+       OverSteps::sum},
   };
   entry.needs.step_bound = false;
   entry.needs.overlap = true;

@@ -35,6 +35,11 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
     take_step(step);
     find_spins();
   }
+  bool take_secant(double share) override {
+    if (options_.hessian == FrictionHessian::exact) return false;
+    kind_.secant = share;
+    return true;
+  }
   bool renews() override {
     if (++solved_ >= options_.lag_iterations) return false;
     t_lag_ = t_end_;
@@ -65,12 +70,16 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
   }
   void step_begins(const FamilyStep& step) override {
     solved_ = 0;
+    kind_.secant = 0;
     take_step(step);
     t_lag_ = step.t_end - step.dt;
   }
   void rows_changed() override { find_spins(); }
-  std::vector<double> kept() const override { return {t_lag_}; }
-  void adopt_kept(const KnownLag& known) override { t_lag_ = known.kept.at(0); }
+  std::vector<double> kept() const override { return {t_lag_, kind_.secant}; }
+  void adopt_kept(const KnownLag& known) override {
+    t_lag_ = known.kept.at(0);
+    kind_.secant = known.kept.at(1);
+  }
 
   /// Of the rows as they are, in the step as it is.
   void find_spins() {

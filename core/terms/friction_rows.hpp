@@ -13,10 +13,11 @@ struct FrictionRows : LaggedRows {
   const double*
       spin;    // [3, n] m, what the turn of an obstacle takes its surface along by; null: nothing turns
   double eps;  // m
+  double secant = 0;  // of LawWithEps, in the matrix
 
   template <class T = double>
   BB_HD LawWithEps<Law, T> law() const {
-    return {static_cast<T>(eps)};
+    return {static_cast<T>(eps), static_cast<T>(secant)};
   }
   template <class T = double>
   BB_HD Vec<T, 3> slide(const double* x, exec::Index r) const {

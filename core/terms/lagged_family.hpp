@@ -59,6 +59,8 @@ class LaggedFamily {
   }
   /// The same step with another length.
   virtual void change_step(const FamilyStep&) {}
+  /// As Term::take_secant.
+  virtual bool take_secant(double /*share*/) { return false; }
   /// The step has converged: whether rows are taken anew from where it did.
   virtual bool renews() { return false; }
   /// The step has ended at x.

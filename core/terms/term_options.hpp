@@ -17,12 +17,17 @@
 
 namespace bb {
 
+/// exact: the second derivatives. adaptive: a share of the secant (core/energy/friction.hpp) after steps that the line search
+/// shortened.
+enum class FrictionHessian { exact, adaptive };
+
 struct FrictionOptions {
   std::string law = "smoothed_coulomb";  // of core/energy/friction_laws/registry.inc
   double mu = 0;                         // of bodies and obstacles that have none of their own
   CombineRule combine = CombineRule::min;
   int lag_iterations = 1;  // times that a step is solved, with loads of its start and of the ends before
   double eps_v = 1e-3;     // m/s, sliding speed from which the force is whole
+  FrictionHessian hessian = FrictionHessian::adaptive;  // of step solvers with a line search on E
 };
 
 /// Contact without a barrier (core/terms/linear_contact.hpp).

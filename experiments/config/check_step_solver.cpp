@@ -55,6 +55,11 @@ void check_minimum(const RunConfig& config, const StepNeeds& needs, const Compla
     complain("/step_solver/saddle", "\"escape\"",
              "report or ignore: of step solvers only these can leave a saddle: " + solvers_with_minimum());
   }
+  if (config.friction.hessian == FrictionHessian::adaptive && !needs.minimum) {
+    complain("/friction/hessian", "\"adaptive\"",
+             "exact: the step solver " + solver.name +
+                 " has no line search on E, these have one: " + solvers_with_minimum());
+  }
   if (config.friction.lag_iterations > 1 && !needs.minimum) {
     complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
              "1: the step solver " + solver.name +

@@ -45,6 +45,9 @@ inline EnumWords<StepSizeRule> words_of(StepSizeRule) {
   return {{StepSizeRule::fixed, "fixed"}, {StepSizeRule::adaptive, "adaptive"}};
 }
 inline EnumWords<RestRule> words_of(RestRule) { return {{RestRule::on, "on"}, {RestRule::off, "off"}}; }
+inline EnumWords<FrictionHessian> words_of(FrictionHessian) {
+  return {{FrictionHessian::exact, "exact"}, {FrictionHessian::adaptive, "adaptive"}};
+}
 inline EnumWords<CombineRule> words_of(CombineRule) {
   return {{CombineRule::min, "min"}, {CombineRule::max, "max"}, {CombineRule::mean, "mean"}};
 }

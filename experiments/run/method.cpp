@@ -98,8 +98,9 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.contact.in_float = method.limit.in_float = values_in_float(config.precision);
   method.hessian_mode = config.contact.hessian_mode;
   method.contact_options = contact_options(config.contact);
-  method.friction = {config.friction.law, config.friction.mu, config.friction.combine,
-                     config.friction.lag_iterations, config.friction.eps_v};
+  method.friction = {config.friction.law,     config.friction.mu,
+                     config.friction.combine, config.friction.lag_iterations,
+                     config.friction.eps_v,   config.friction.hessian.value_or(FrictionHessian::adaptive)};
   method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);
   method.step_solver = step_solver_options(config);
   method.step_size = step_size_options(config.time);

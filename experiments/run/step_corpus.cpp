@@ -111,12 +111,16 @@ void judge_end(const TakenStep& taken, const Minima& minima, CorpusTrial& out) {
   }
 }
 
-void take_trial(const StepState& state, const std::string& solver, std::optional<StepHessian> hessian,
-                Minima& minima, CorpusTrial& out) {
-  const RunConfig config = with_step_solver(state.config, solver);
-  const StepSolverEntry& entry = step_solvers().require(solver, "/step_solver/name");
+void take_trial(const StepState& state, Minima& minima, CorpusTrial& out) {
+  const auto hessian = out.hessian.empty() ? std::nullopt : std::optional(step_hessian_of(out.hessian));
+  RunConfig config = with_step_solver(state.config, out.step_solver);
+  if (out.exact_friction) config.friction.hessian = FrictionHessian::exact;
+  const StepSolverEntry& entry = step_solvers().require(out.step_solver, "/step_solver/name");
   check_step_solver_forms(config, state.scene);
   const StepSetting setting{config, state.scene, state.calibration, plan_of(config, state.scene)};
+  if (out.exact_friction && !setting.plan.term("friction").needed)
+    throw ConfigError("/friction/mu", "a state without friction",
+                      "one above 0 for another matrix of friction");
   const StepVariant variant{hessian, 1, true};
   const TakenStep taken = take_step(setting, state.start.bytes, variant);
   const bool own_energy = entry.needs.multipliers;  // with multipliers another function is minimised
@@ -151,6 +155,10 @@ std::vector<CorpusTrial> trials_of() {
     out.back().step_solver = reference_solver;
     out.back().hessian = to_string(hessian);
   }
+  CorpusTrial& exact = out.emplace_back();
+  exact.step_solver = reference_solver;
+  exact.hessian = to_string(StepHessian::blend);
+  exact.exact_friction = true;
   for (const StepSolverEntry& entry : step_solvers()) {
     if (entry.name == reference_solver) continue;
     out.emplace_back();
@@ -201,9 +209,8 @@ CorpusState take_state(const StepState& state, const RunOptions& options,
   }
   for (CorpusTrial& trial : out.trials = trials_of()) {
     begin(trial.step_solver + " " + trial.hessian);
-    const auto hessian = trial.hessian.empty() ? std::nullopt : std::optional(step_hessian_of(trial.hessian));
     try {
-      take_trial(state, trial.step_solver, hessian, minima, trial);
+      take_trial(state, minima, trial);
     } catch (const ConfigError& error) {
       trial.refused = refusal_of(error);
     }

@@ -16,8 +16,9 @@ namespace bb {
 /// A state by one step solver and one Hessian.
 struct CorpusTrial {
   std::string step_solver,
-      hessian;          // hessian: of line_search; empty: that of the config, or the solver's own
-  std::string refused;  // why this step solver cannot take the state; empty: it was taken
+      hessian;                  // hessian: of line_search; empty: that of the config, or the solver's own
+  bool exact_friction = false;  // /friction/hessian is exact here, and not as the config says
+  std::string refused;          // why this step solver cannot take the state; empty: it was taken
   StepStatus status = StepStatus::converged;
   bool has_memory = true;  // TakenStep
   /// The minimum that it ended in (minimum_name), A that of the reference; empty where its end is within ten tolerances of none.
@@ -48,7 +49,7 @@ struct CorpusState {
 /// A to Z, then AA, AB ...
 std::string minimum_name(std::size_t place);
 
-/// All trials of a state: line_search with each of all_step_hessians, then every other step solver of the registry with its own
+/// All trials of a state: line_search with each of all_step_hessians and with the exact Hessian of friction, then every other step solver of the registry with its own
 /// Hessian. `tell` hears of each before it begins. Errors: Interrupted.
 CorpusState take_state(const StepState& state, const RunOptions& options,
                        const std::function<void(const std::string&)>& tell);

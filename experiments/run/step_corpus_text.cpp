@@ -15,7 +15,9 @@ json json_of(const CorpusTrial& t) {
   json causes = json::object();
   for (const IterationCause cause : all_iteration_causes)
     causes[std::string(to_string(cause))] = t.causes[static_cast<std::size_t>(cause)];
-  json out = {{"step_solver", t.step_solver}, {"hessian", t.hessian.empty() ? json() : json(t.hessian)}};
+  json out = {{"step_solver", t.step_solver},
+              {"hessian", t.hessian.empty() ? json() : json(t.hessian)},
+              {"friction_hessian", t.exact_friction ? json("exact") : json()}};
   if (!t.refused.empty()) {
     out["refused"] = t.refused;
     return out;
@@ -89,7 +91,7 @@ std::string corpus_table(const CorpusState& state) {
     return fmt::format("{}, step {}: refused: {}\n", state.name, state.step, state.refused);
   std::string out = fmt::format("{}, step {}, {} vertices, {} contacts, {}: {}\n", state.name, state.step,
                                 state.vertices, state.contacts, state.linear_solver, state.hard_for);
-  out += fmt::format("  {:<20} {:<17} {:>10} {:>6} {:>6} {:>8} {:>8} {:>10} {:>3}  {:<18} {}\n",
+  out += fmt::format("  {:<20} {:<21} {:>10} {:>6} {:>6} {:>8} {:>8} {:>10} {:>3}  {:<18} {}\n",
                      "step solver", "hessian", "iterations", "to tol", "solves", "factors", "products",
                      "error", "min", "status", "causes");
   for (const CorpusTrial& t : state.trials) {
@@ -97,13 +99,14 @@ std::string corpus_table(const CorpusState& state) {
       out += fmt::format("  {:<20} refused: {}\n", t.step_solver, t.refused);
       continue;
     }
-    out += fmt::format("  {:<20} {:<17} {:>10} {:>6} {:>6} {:>8} {:>8} {:>10} {:>3}  {:<18} {}\n",
-                       t.step_solver, t.hessian, t.iterations,
-                       t.iterations_to_tolerance ? std::to_string(*t.iterations_to_tolerance) : "-",
-                       t.work.linear_solves, t.work.factorizations + t.work.end_check_factorizations,
-                       t.work.linear_iterations + t.work.end_check_iterations,
-                       t.error_m.finite() ? fmt::format("{:.3g}", t.error_m.value / state.tolerance_m) : "-",
-                       t.minimum.empty() ? "-" : t.minimum, to_string(t.status), causes_text(t));
+    out +=
+        fmt::format("  {:<20} {:<21} {:>10} {:>6} {:>6} {:>8} {:>8} {:>10} {:>3}  {:<18} {}\n", t.step_solver,
+                    t.exact_friction ? t.hessian + ", exact friction" : t.hessian, t.iterations,
+                    t.iterations_to_tolerance ? std::to_string(*t.iterations_to_tolerance) : "-",
+                    t.work.linear_solves, t.work.factorizations + t.work.end_check_factorizations,
+                    t.work.linear_iterations + t.work.end_check_iterations,
+                    t.error_m.finite() ? fmt::format("{:.3g}", t.error_m.value / state.tolerance_m) : "-",
+                    t.minimum.empty() ? "-" : t.minimum, to_string(t.status), causes_text(t));
   }
   return out;
 }

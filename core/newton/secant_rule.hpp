@@ -1,0 +1,35 @@
+// When the matrix has the secant of terms that have one (Term::take_secant), and how much of it.
+#pragma once
+
+#include "core/newton/step_system.hpp"
+
+namespace bb {
+
+/// Friction that slides has no stiffness along its slide, so that a Newton direction turns slides round, far beyond where they
+/// would stick: the line search cuts it to a small part, one contact sticks, and hundreds of such steps follow each other. After
+/// a step that was cut the next matrix has the whole secant, along which no slide is outrun; after each whole step a quarter as
+/// much, and soon none, since the exact matrix is what converges fast.
+class SecantRule {
+ public:
+  /// A step begins: its terms have none.
+  void begin_step() { share_ = 0; }
+  /// E is another one.
+  void reset(StepSystem& system) { set(0, system); }
+  /// After an iteration. shortened: E rose along dx where the bound would have let it go. near: its error is below the
+  /// tolerance, as far as this matrix can say, so that the exact one has to confirm it.
+  void took(bool shortened, bool near, StepSystem& system) {
+    if (shortened && !near)
+      set(1, system);
+    else if (share_ > 0)
+      set(near || share_ < least ? 0 : share_ / 4, system);
+  }
+  /// Of the secant in the matrix of the next iteration, in [0, 1].
+  double share() const { return share_; }
+
+ private:
+  static constexpr double least = 0.2;
+  void set(double share, StepSystem& system) { share_ = system.take_secant(share) ? share : 0; }
+  double share_ = 0;
+};
+
+}  // namespace bb
