@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <random>
 
 #include "core/energy/friction.hpp"
 #include "core/energy/friction_law.hpp"
+#include "core/energy/friction_list.hpp"
 #include "tests/energy/energy_cases.hpp"
 
 namespace bb::test::friction_test {
@@ -97,6 +99,56 @@ TEST(FrictionLaws, AreC1AtEpsAndReachTheWholeForceThere) {
     ++judged;
   }
   EXPECT_GE(judged, 2U);
+}
+
+double energy_of(const FrictionLaw<double>& law, const Vec3d& slide) {
+  return strength * law.eval(slide.norm(), eps).f0;
+}
+/// The energy of the slide u + v less that of the quadratic model in u, whose matrix has that share of the secant.
+template <class Law>
+double above_model(const FrictionLaw<double>& law, const Vec3d& u, const Vec3d& v, double share) {
+  const auto at = friction_of_slide<double>(u, normal, strength, LawWithEps<Law, double>{eps, share});
+  return energy_of(law, u + v) - at.energy - at.grad.dot(v) - v.dot(at.hess * v) / 2;
+}
+
+struct SecantCounts {
+  int outrun = 0, held = 0;
+};
+template <class Law>
+void judge_secant(const FrictionLaw<double>& law, SecantCounts& counts) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> direction(-1, 1), size(-2, 2);
+  const auto slide = [&] {
+    const Vec3d any(direction(random), direction(random), direction(random));
+    return Vec3d(slide_of<double>(any, normal).normalized() * (eps * std::pow(10, size(random))));
+  };
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3d u = slide(), v = slide();
+    EXPECT_LE(above_model<Law>(law, u, v, 1), 1e-12 * energy_of(law, u + v)) << law.name;
+    counts.held += above_model<Law>(law, u, v, 1) < -1e-6 * energy_of(law, u);
+    counts.outrun += above_model<Law>(law, u, v, 0) > 0.1 * energy_of(law, u);
+    const LawWithEps<Law, double> exact{eps}, half{eps, 0.5}, whole{eps, 1};
+    const double y = u.norm();
+    EXPECT_EQ(exact(y).f2, law.eval(y, eps).f2);
+    EXPECT_EQ(whole(y).f1_over_y, exact(y).f1_over_y);
+    EXPECT_NEAR(half(y).f2, (exact(y).f2 + exact(y).f1_over_y) / 2, 1e-15 * exact(y).f1_over_y);
+  }
+}
+
+// No slide outruns the model with the secant; many outrun that of the second derivatives.
+TEST(FrictionLaws, LieNowhereAboveTheModelWithTheirSecant) {
+  std::size_t judged = 0;
+#define ENTRY(id, doc)                                                                       \
+  {                                                                                          \
+    SecantCounts counts;                                                                     \
+    judge_secant<friction_laws::id>(friction_laws_in<double>().require(#id, "law"), counts); \
+    EXPECT_GT(counts.outrun, 100) << #id;                                                    \
+    EXPECT_GT(counts.held, 1000) << #id;                                                     \
+    ++judged;                                                                                \
+  }
+#include "core/energy/friction_laws/registry.inc"
+#undef ENTRY
+  EXPECT_EQ(judged, friction_law_names().size());
 }
 
 // Without a direction the matrix is the same in all of the tangent plane, and grows out of that of small slides.

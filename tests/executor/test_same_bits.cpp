@@ -98,7 +98,7 @@ std::vector<MethodCase> method_cases() {
 
 /// What was compared.
 struct Counts {
-  std::size_t contacts = 0, loads = 0, mollified = 0, friction = 0, renewed = 0;
+  std::size_t contacts = 0, loads = 0, mollified = 0, friction = 0, renewed = 0, secants = 0;
   std::size_t shared = 0;         // rows whose closest feature a row before it has
   std::size_t started = 0;        // states after the start of a policy that starts itself
   std::size_t kappa_changes = 0;  // iterates with another kappa than the one before
@@ -229,6 +229,15 @@ class Compared : public Both {
     EXPECT_EQ(there.renew_lag(), renewed);
     counts.renewed += renewed;
     for (StepSystem* system : systems()) system->assemble();
+  }
+  /// Friction has a share of its secant from here on, where there is friction.
+  void take_secant(Counts& counts) {
+    const HessianLevel first({StepHessian::blend});
+    const Eigen::MatrixXd exact = matrix(cpu, first);
+    const bool taken = cpu.take_secant(0.25);
+    EXPECT_EQ(there.take_secant(0.25), taken);
+    for (StepSystem* system : systems()) system->assemble();
+    counts.secants += taken && matrix(cpu, first) != exact;
   }
   /// The step goes on with another length.
   void restart() {
@@ -362,6 +371,8 @@ void go_through_steps(Compared& both, const Positions& dx, Counts& counts, int& 
   both.expect_shown(counts);
   both.renew_lag(counts);
   both.expect_same_state(counts);
+  both.take_secant(counts);
+  both.expect_same_state(counts), both.expect_same_matrix();
   both.expect_shown(counts);
   both.next_step(0, 0.4);
   both.expect_same_state(counts);
@@ -383,6 +394,7 @@ TEST(SameBits, OfBothEnginesAtEqualStates) {
     EXPECT_GT(counts.loads, 50U) << one.name;
     EXPECT_GT(counts.friction, 4U) << one.name;
     EXPECT_GE(counts.renewed, 2U) << one.name;
+    EXPECT_GE(counts.secants, 2U) << one.name;
     EXPECT_GE(counts.started, 6U) << one.name;
     mollified += counts.mollified, shared += counts.shared;
   }

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from test_cli import bench, refused
 
+from analysis import step_corpus_page as page
+
 ROOT = Path(__file__).resolve().parents[2]
 SLOPE = ROOT / "configs/scenes/friction_slope.json"
 G, ANGLE = 9.81, math.atan(0.5)
@@ -115,6 +117,23 @@ def test_a_published_method_refuses_friction_that_its_file_does_not_set(program,
 def test_another_step_solver_does_not_repeat_the_lag(program, tmp_path):
     words = ["--set", "/step_solver/name=accumulated_toi", "--set", "/friction/lag_iterations=2"]
     refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), "/friction/lag_iterations")
+
+
+def test_another_step_solver_has_no_secant(program, tmp_path):
+    words = ["--set", "/step_solver/name=accumulated_toi", "--set", "/friction/hessian=adaptive"]
+    refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), "/friction/hessian", "line_search, penalty")
+    refused(bench(program, "run", SLOPE, "--out", tmp_path, "--set", "/friction/hessian=secant"), "/friction/hessian", "exact, adaptive")
+
+
+def test_the_secant_takes_fewer_iterations_to_the_same_minimum(program, tmp_path):
+    """A soft heavy body on a membrane: its contacts turn round within the step."""
+    words = ["--only", "trampoline_deepest", "--progress", "none", "--out", tmp_path / "steps.json"]
+    done = bench(program, "steps", "--corpus", ROOT / "results/steps", *words)
+    assert done.returncode == 0, done.stderr
+    (state,) = json.loads((tmp_path / "steps.json").read_text())["states"]
+    adaptive, exact = (page.trial_of(state, rule) for rule in ("blend", "blend" + page.EXACT))
+    assert adaptive["minimum"] == exact["minimum"] == "A"
+    assert 5 < adaptive["iterations_to_tolerance"] < exact["iterations_to_tolerance"] / 2
 
 
 def test_a_step_whose_iterations_end_with_a_lag_is_not_converged(program, tmp_path):

@@ -37,6 +37,7 @@ struct ScriptedState {
   Precision precision = Precision::full;
   Positions x = one_point(0, 0, 1);
   std::vector<std::uint8_t> fixed = {0, 0, 0};
+  bool has_secant = false;  // take_secant() has a term that takes it
 };
 
 /// Runs through its iterations; the last one is repeated.
@@ -49,9 +50,14 @@ class ScriptedSystem final : public StepSystem, public StepView {
   std::vector<double> feasible_asked;  // those of which feasibility alone was
   std::vector<double> aimed;           // lengths of escapes
   std::vector<double> scaled;          // factors on the direction
+  std::vector<double> secants;         // the share of the secant that each iteration was assembled with
   int accepted = 0, checks = 0;
 
   void begin_step(const Positions&, const Prediction&, double, double) override { place_ = -1; }
+  bool take_secant(double share) override {
+    secant_ = share;
+    return state_.has_secant;
+  }
   void restart_step(const Prediction&, double) override {}
   void end_step() override {}
   void set_target(const Positions&) override {}
@@ -60,6 +66,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   void keep_solver(Archive&) override {}
   void drop_caches() override {}
   void assemble() override {
+    secants.push_back(secant_);
     if (place_ + 1 < static_cast<int>(script_.size())) ++place_;
     escaping_ = detouring_ = false;
     length_ = 1;
@@ -145,7 +152,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   ScriptedState state_;
   int place_ = -1;
   bool escaping_ = false, detouring_ = false;
-  double length_ = 1;
+  double length_ = 1, secant_ = 0;
 };
 
 /// A step of line_search on a script: what it reports of the step and of every iteration. Tolerance 1e-3 m.
