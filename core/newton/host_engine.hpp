@@ -35,6 +35,7 @@ class HostEngine final : public IncrementalPotential {
   void adopt(const KnownStep& known);
   void adopt(const HostEngine& other);
 
+  void leave_secants(const Column& x, const Column& g) override;
   bool pattern_changed() const override { return pattern_changed_; }
   void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
   void fill_exact(const Column& x, const Column& force) override;

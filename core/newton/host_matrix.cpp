@@ -31,6 +31,12 @@ void HostEngine::linearise_term(Slot& slot, const Column& x, const Column& g) {
   slot.clamped = false;
 }
 
+void HostEngine::leave_secants(const Column& x, const Column& g) {
+  for (Slot& slot : slots_) {
+    if (slot.term->take_secant(0)) linearise_term(slot, x, g);
+  }
+}
+
 bool HostEngine::set_changing_families() {
   std::vector<Stencils> families;
   for (const auto& term : terms_) {

@@ -50,8 +50,7 @@ class LineSearch final : public StepSolver {
       IterationReport report = begin_iteration(system, task.step, iteration);  // 1
       find_direction(system, report, observer);                                // 2
       const bool at_pose = system.view().at_target();
-      const bool near = estimate_error(report) < tolerance && at_pose,  // 3
-          small = near && secant_.share() == 0;
+      const bool small = estimate_error(report) < tolerance && at_pose;  // 3
       if (secant_.share() > 0) ++secants;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
@@ -64,7 +63,7 @@ class LineSearch final : public StepSolver {
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
       if (escaped) continue;
-      secant_.took(search_.shortened(), near, system);
+      secant_.took(search_.shortened(), system);
       if (moved && after_motion_ && after_motion_(system)) {
         begin_anew(iteration, system);
       } else if (small && is_enough(report, moved, tolerance)) {

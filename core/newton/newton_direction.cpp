@@ -152,8 +152,18 @@ EndCheck NewtonSystem::check_hessian() {
   return out;
 }
 
+bool NewtonSystem::take_secant(double share) {
+  const bool taken = state_.potential->take_secant(share);
+  has_secant_ = taken && share > 0;
+  return taken;
+}
+
 EndCheck NewtonSystem::check_end() {
   const WholePhase timer(clock(), Phase::end_check);
+  if (has_secant_) {  // it is stiffer than E: what was solved with it proves nothing
+    state_.potential->leave_secants(state_.x, state_.g);
+    has_secant_ = factored_ = false;
+  }
   EndCheck out = check_hessian();
   look_for_cusps(out);
   return out;

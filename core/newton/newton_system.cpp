@@ -53,7 +53,7 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   state_.x.upload(numbers_of(x_n));
   state_.x_tilde.upload(numbers_of(prediction.x_tilde));
   view_.forget();
-  state_.pins_seen = state_.direction_seen = false;
+  state_.pins_seen = state_.direction_seen = has_secant_ = false;
   dt_ = dt;
   c_ = prediction.c;
   t_end_ = prediction.t_end;

@@ -24,7 +24,7 @@ class NewtonSystem : public StepSystem {
 
   void begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor) override;
   void restart_step(const Prediction& prediction, double dt) override;
-  bool take_secant(double share) override { return state_.potential->take_secant(share); }
+  bool take_secant(double share) override;
   bool renew_lag() override { return state_.potential->renew_lag(state_.x); }
   void end_step() override;
   void set_target(const Positions& target) override;
@@ -95,6 +95,7 @@ class NewtonSystem : public StepSystem {
   const ExactHessians exact_hessians_;
   bool factored_ = false;        // the last solve made a factor of the matrix that it solved
   bool served_at_once_ = false;  // the first matrix of the last solve did: the next may be nearer to exact
+  bool has_secant_ = false;      // a share of it is in the matrices of this iterate
   double dt_ = 0, c_ = 1, load_factor_ = 1, t_end_ = 0;
   bool at_start_ = false;
   Positions target_;

@@ -15,13 +15,12 @@ class SecantRule {
   void begin_step() { share_ = 0; }
   /// E is another one.
   void reset(StepSystem& system) { set(0, system); }
-  /// After an iteration. shortened: E rose along dx where the bound would have let it go. near: its error is below the
-  /// tolerance, as far as this matrix can say, so that the exact one has to confirm it.
-  void took(bool shortened, bool near, StepSystem& system) {
-    if (shortened && !near)
+  /// After an iteration. shortened: E rose along dx where the bound would have let it go.
+  void took(bool shortened, StepSystem& system) {
+    if (shortened)
       set(1, system);
     else if (share_ > 0)
-      set(near || share_ < least ? 0 : share_ / 4, system);
+      set(share_ < least ? 0 : share_ / 4, system);
   }
   /// Of the secant in the matrix of the next iteration, in [0, 1].
   double share() const { return share_; }

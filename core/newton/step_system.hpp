@@ -58,7 +58,7 @@ class StepSystem {
   /// The same step and iterate with another prediction and length (accumulated_toi).
   virtual void restart_step(const Prediction& prediction, double dt) = 0;
   /// From the next assemble() of the step on terms have that share, in [0, 1], of their secant in the matrix (Term::take_secant);
-  /// whether one has one.
+  /// whether one has one. check_end() is of the exact matrix, and those of the iterate are from then on.
   virtual bool take_secant(double /*share*/) { return false; }
   /// The step has converged: whether terms take what they lag from this iterate (friction), so that it has to go on.
   virtual bool renew_lag() { return false; }

@@ -17,7 +17,6 @@ ScriptedIteration shortened() {
   out.change = [](double alpha) -> Change { return EnergyChange{alpha > 0.5 ? 1 : -alpha, 1e-3}; };
   return out;
 }
-ScriptedIteration small() { return {.dx = ScriptedStep::tolerance / 100, .slope = -1e-6}; }
 
 ScriptedStep taken(const std::vector<ScriptedIteration>& script, int n, bool has_secant = true) {
   return ScriptedStep(script, SaddleRule::escape, 0.1, n, {.has_secant = has_secant});
@@ -40,10 +39,7 @@ TEST(SecantDecisions, IterationsWithAShareOfItAreCounted) {
 }
 
 TEST(SecantDecisions, WithoutATermThatHasOneNothingIsAskedAgain) {
-  const ScriptedStep step = taken({shortened(), whole()}, 4, false);
-  EXPECT_EQ(step.report.solver.values.at("secants"), 0);
-  EXPECT_EQ(taken({shortened(), small()}, 9, false).report.newton_iterations,
-            taken({whole(), small()}, 9, false).report.newton_iterations);
+  EXPECT_EQ(taken({shortened(), whole()}, 4, false).report.solver.values.at("secants"), 0);
 }
 
 TEST(SecantDecisions, AStepThatABoundOrNoiseCutWasNotShortened) {
@@ -57,15 +53,83 @@ TEST(SecantDecisions, AStepThatABoundOrNoiseCutWasNotShortened) {
   EXPECT_EQ(shares({noisy, whole()}, 2), (Shares{0, 0}));
 }
 
-/// A direction of the secant matrix that is short proves no end: the exact matrix is asked first.
-TEST(SecantDecisions, NoStepEndsWithIt) {
-  const ScriptedStep step = taken({shortened(), small()}, 9);
-  ASSERT_EQ(step.report.status, StepStatus::converged);
-  ASSERT_GE(step.system.secants.size(), 3U);
-  EXPECT_EQ(step.system.secants[1], 1);
-  EXPECT_EQ(step.system.secants[2], 0) << "a small direction asks for the exact matrix at once";
-  EXPECT_EQ(step.system.secants.back(), 0);
-  EXPECT_EQ(step.system.checks, 1);
+/// A particle that slides on a floor under its weight, ahead of where it began.
+struct Sliding {
+  Method method;
+  Scene scene = test::particle_over_plane(1, 0.5 * d_hat, d_hat);
+  NewtonSystem system;
+
+  Sliding() : method(rubbing()), system(scene, method) {
+    system.begin_step(scene.x0, {1, Positions(scene.x0 + test::one_point(5e-3, 0, -1e-4))}, 0.01, 1);
+    system.assemble();
+    system.set_target(scene.x0);
+    EXPECT_EQ(system.find_direction().linear.status, LinearStatus::ok);
+    system.prepare_motion(MotionEnd::free, false);
+    EXPECT_TRUE(system.try_motion(1).has_value());
+    system.accept();
+  }
+  /// Along the slide at the iterate, N/m, of the matrix that is solved.
+  double stiffness() {
+    system.assemble();
+    system.set_direction(test::one_point(1, 0, 0));
+    return system.diagnosis().solved().matrix.coeff(0, 0);
+  }
+
+  static constexpr double d_hat = 0.01;
+  static Method rubbing() {
+    Method out = test::fixed_method("cubic", 1e5);
+    out.friction.mu = 0.5;
+    return out;
+  }
+};
+
+/// A factor of the matrix with the secant is no proof of the end: the exact one is asked, and is what is left.
+TEST(SecantDecisions, TheProofOfTheEndIsOfTheExactMatrix) {
+  Sliding sliding;
+  NewtonSystem& system = sliding.system;
+  const auto check = [&](double share) {
+    EXPECT_TRUE(system.take_secant(share));
+    system.assemble();
+    EXPECT_EQ(system.find_direction().linear.status, LinearStatus::ok);
+    return system.check_end();
+  };
+  EXPECT_EQ(check(0).factorizations, 0) << "the factor of the solve is the proof";
+  const EndCheck end = check(1);
+  EXPECT_EQ(end.proof, EndProof::factor);
+  EXPECT_EQ(end.factorizations, 1);
+}
+
+TEST(SecantDecisions, TheWholeOfItIsTheForceOverTheSlide) {
+  Sliding sliding;
+  NewtonSystem& system = sliding.system;
+  const double slide = system.view().x()(0, 0) - sliding.scene.x0(0, 0);
+  ASSERT_GT(slide, 100 * sliding.method.friction.eps_v * 0.01)
+      << "beyond the slide from which the force is whole";
+  const double exact = sliding.stiffness();
+  const Positions with_exact = system.view().gradient();
+  ASSERT_TRUE(system.take_secant(1));
+  const double whole = sliding.stiffness();
+  EXPECT_EQ(system.view().gradient(), with_exact) << "forces are those of E";
+  ASSERT_TRUE(system.take_secant(0.25));
+  EXPECT_NEAR(sliding.stiffness() - exact, (whole - exact) / 4, 1e-9 * whole);
+  system.take_secant(0);
+  EXPECT_EQ(sliding.stiffness(), exact);
+  // inertia apart, the gradient along the slide is the force of friction
+  const double inertia =
+      system.view().energy(TermGroup::load) > 0 ? (system.view().x()(0, 0) - 5e-3) / 1e-4 : 0;
+  const double force = with_exact(0, 0) - inertia;
+  ASSERT_GT(force, 0.1);
+  EXPECT_NEAR(whole - exact, force / slide, 1e-6 * force / slide);
+}
+
+/// exact: no term has a secant.
+TEST(SecantDecisions, FrictionThatIsToBeExactHasNone) {
+  Scene scene = test::particle_over_plane(1, 0.005, 0.01);
+  Method method = Sliding::rubbing();
+  method.friction.hessian = FrictionHessian::exact;
+  NewtonSystem system(scene, method);
+  system.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
+  EXPECT_FALSE(system.take_secant(1));
 }
 
 }  // namespace
