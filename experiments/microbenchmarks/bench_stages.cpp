@@ -10,9 +10,7 @@
 #include "core/contact/motion_box.hpp"
 #include "core/contact/surface.hpp"
 #include "core/contact/tree_box.hpp"
-#include "core/linear/block_pattern.hpp"
 #include "core/linear/block_system.hpp"
-#include "core/math/lower_blocks.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 
