@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "core/contact/box_gap.hpp"
@@ -188,16 +189,33 @@ double Bvh::looseness() const {
 
 namespace {
 
-/// Writes the pairs of `first` in the order of their second members, which are all different. Every second
-/// counts those below it: for the lengths that occur faster than any sort that branches.
-void put_sorted(int first, std::span<const int> seconds, IndexPair* out) {
-  constexpr std::size_t countable = 512;
+/// Writes the pairs of `first` in the order of their second members, which are not negative: by one digit after another, the last one
+/// first. `room` is scratch.
+void put_by_digits(int first, std::span<const int> seconds, std::vector<int>& room, IndexPair* out) {
+  constexpr int digit_bits = 6, largest_digit = (1 << digit_bits) - 1;
   const std::size_t n = seconds.size();
-  if (n > countable) {
-    for (std::size_t i = 0; i < n; ++i) out[i] = {first, seconds[i]};
-    std::sort(out, out + n);
-    return;
+  int unlike = 0;  // bits that are not the same in all
+  for (const int second : seconds) unlike |= second ^ seconds[0];
+  room.resize(2 * n);
+  const int* from = seconds.data();
+  int *to = room.data(), *next = to + n;
+  for (int shift = 0; shift < 31 && (unlike >> shift) != 0; shift += digit_bits) {
+    std::uint32_t place[largest_digit + 2] =
+        {};  // of the digit before, then where the next number of a digit goes
+    for (std::size_t i = 0; i < n; ++i) ++place[at(from[i] >> shift & largest_digit) + 1];
+    for (std::size_t digit = 1; digit <= largest_digit; ++digit) place[digit] += place[digit - 1];
+    for (std::size_t i = 0; i < n; ++i) to[place[at(from[i] >> shift & largest_digit)]++] = from[i];
+    from = to;
+    std::swap(to, next);
   }
+  for (std::size_t i = 0; i < n; ++i) out[i] = {first, from[i]};
+}
+
+/// The same; the second members are all different. Every second of a short list counts those below it: faster than any sort that branches.
+void put_sorted(int first, std::span<const int> seconds, std::vector<int>& room, IndexPair* out) {
+  constexpr std::size_t countable = 64;
+  const std::size_t n = seconds.size();
+  if (n > countable) return put_by_digits(first, seconds, room, out);
   for (std::size_t begin = 0; begin < n; begin += width) {
     EightInts eight{}, rank{};
     const std::size_t m = std::min<std::size_t>(width, n - begin);
@@ -214,10 +232,11 @@ void PairFinder::gather(const Bvh& a, std::vector<IndexPair>& pairs) {
   pairs.resize(begin_.back());
   for_each_chunk(a.size(), [&](std::size_t k, std::size_t begin, std::size_t end) {
     std::span<const int> seconds = parts_[k].seconds.all();
+    std::vector<int> room;
     for (std::size_t place = begin; place < end; ++place) {
       const int first = a.primitive(place);
       const std::size_t n = begin_[at(first) + 1] - begin_[at(first)];
-      put_sorted(first, seconds.first(n), pairs.data() + begin_[at(first)]);
+      put_sorted(first, seconds.first(n), room, pairs.data() + begin_[at(first)]);
       seconds = seconds.subspan(n);
     }
   });

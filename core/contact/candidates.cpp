@@ -32,6 +32,20 @@ Vec3d common_motion(const Primitives<1>& points, const PositionsView& x0, const 
   }
   return out;
 }
+
+/// Vertex 0 of contact_pair<K>(), and that with which its second primitive begins.
+template <PairKind K>
+std::array<int, 2> first_vertices(const Surface& s, IndexPair pair) {
+  const auto begin = [](const auto& primitives, int i) {
+    return primitives.vertices[static_cast<std::size_t>(i)][0];
+  };
+  if constexpr (K == PairKind::point_point)
+    return {begin(s.points, pair.first), begin(s.points, pair.second)};
+  if constexpr (K == PairKind::point_edge) return {begin(s.points, pair.first), begin(s.edges, pair.second)};
+  if constexpr (K == PairKind::point_triangle)
+    return {begin(s.points, pair.first), begin(s.triangles, pair.second)};
+  if constexpr (K == PairKind::edge_edge) return {begin(s.edges, pair.first), begin(s.edges, pair.second)};
+}
 }  // namespace
 
 BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles,
@@ -140,11 +154,11 @@ void BroadPhase::find(const Bvh& a, const Bvh& b, const PositionsView& x0, const
       [&](IndexPair p) {
         p.second = second_of(p.second);
         if (!may_pair(p)) return false;
+        const auto [v, w] = first_vertices<K>(surface_, p);
+        if (chosen_ && surface_.kind_of(v, w) == CollisionKind::off) return false;
+        if (!surface_.ruled_at_rest(v, w)) return true;
         const ContactPair<K> pair = contact_pair<K>(surface_, p);
-        if (chosen_ && surface_.kind_of(pair.vertex[0], pair.vertex[pair_split(K)]) == CollisionKind::off)
-          return false;
-        return !surface_.ruled_at_rest(pair.vertex[0], pair.vertex[pair_split(K)]) ||
-               !apart_by_rest_rule<K>(pair.law, bb::gather(surface_.rest, pair.vertex),
+        return !apart_by_rest_rule<K>(pair.law, bb::gather(surface_.rest, pair.vertex),
                                       bb::gather(x0, pair.vertex), bb::gather(x1, pair.vertex), eps,
                                       pace_ == Pace::common);
       },

@@ -12,7 +12,7 @@
 namespace bb {
 
 /// Points of the primitive at time t are within lo + t slowest and hi + t fastest, its contact reach
-/// included. The fourth lane holds nothing: lo above hi.
+/// included. The fourth lane holds nothing, in numbers that no quotient is slow with, as it is with subnormal ones.
 struct alignas(64) MotionBox {
   using Four = VectorOf<float, 4>::type;
   Four lo, hi;            // m
@@ -51,8 +51,8 @@ MotionBox motion_box(const Corners& corners, double reach, const PositionsView& 
   }
   MotionBox box{detail::floats_below(lo - reach), detail::floats_above(hi + reach),
                 detail::floats_below(slowest), detail::floats_above(fastest)};
-  box.lo[3] = 1;
-  box.hi[3] = 2;
+  box.lo[3] = box.slowest[3] = 1;
+  box.hi[3] = box.fastest[3] = 2;
   return box;
 }
 

@@ -8,7 +8,7 @@
 namespace bb {
 
 /// psi = mu/2 ((|F_u|-1)^2 + (|F_v|-1)^2) + lambda/2 (F_u.F_v)^2. Projections take the whole 2R x 2R
-/// Hessian. Host-device: yes. Total; a column of length 0 (where the energy has a cusp)
+/// Hessian. Host-device: yes. Lanes: yes. Total; a column of length 0 (where the energy has a cusp)
 /// counts as if 1/|F_k| were 0. Source: Baraff, Witkin 1998; Kim 2020 (A Finite Element
 /// Formulation of Baraff-Witkin Cloth).
 struct BaraffWitkin {
@@ -37,7 +37,7 @@ struct BaraffWitkin {
     for (int k = 0; k < 2; ++k) {
       const Vec<T, R> a = f.col(k), b = f.col(1 - k);
       const T length = a.norm();
-      const T inverse = length > T(0) ? T(1) / length : T(0);
+      const T inverse = select(length > T(0), T(1) / length, T(0));
       const Vec<T, R> direction = inverse * a;
       const T transverse = lame_mu * (T(1) - inverse);
       out.pk1.col(k) = lame_mu * (length - T(1)) * direction + lame_lambda * shear * b;

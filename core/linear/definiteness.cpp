@@ -41,10 +41,8 @@ Definiteness definiteness_of(const LinearReport& report) {
   return out;
 }
 
-namespace {
-
-Definiteness examine_rows(const SymmetricProduct& product, const Preconditioner& preconditioner,
-                          int max_iterations) {
+Definiteness examine_by_gradients(const SymmetricProduct& product, const Preconditioner& preconditioner,
+                                  int max_iterations) {
   ConjugateGradients gradients;
   LinearReport report;
   VecXd x;
@@ -60,13 +58,11 @@ Definiteness examine_rows(const SymmetricProduct& product, const Preconditioner&
   return out;
 }
 
-}  // namespace
-
 Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
                                   int max_iterations) {
   SymmetricProduct product;
   product.update(a);
-  return examine_rows(product, preconditioner, max_iterations);
+  return examine_by_gradients(product, preconditioner, max_iterations);
 }
 
 Definiteness examine_preconditioned(const ReducedSystem& a, const NearMatrix& near,
@@ -76,7 +72,7 @@ Definiteness examine_preconditioned(const ReducedSystem& a, const NearMatrix& ne
   rows.update(other);
   if (preconditioner.setup(other, rows) != LinearStatus::ok) return {};
   rows.update(a);
-  return examine_rows(rows, preconditioner, max_iterations);
+  return examine_by_gradients(rows, preconditioner, max_iterations);
 }
 
 }  // namespace bb

@@ -39,6 +39,8 @@ Definiteness definiteness_of(const LinearReport& report);
 
 /// By conjugate gradients on a seeded right-hand side b, until the residual is 1e-6 |b|. A direction that is found is
 /// improved by Lanczos, at most 40 products. preconditioner: set up from a positive definite matrix.
+Definiteness examine_by_gradients(const SymmetricProduct& a, const Preconditioner& preconditioner,
+                                  int max_iterations);
 Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
                                   int max_iterations);
 

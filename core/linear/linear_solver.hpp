@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -79,6 +80,9 @@ class LinearSolver {
   /// the preconditioner. What solve() keeps from earlier matrices may change. Cost: a factorisation, two more and
   /// some solves where there is none; or a solve to 1e-6.
   virtual Definiteness examine(const ReducedSystem& a, const NearMatrix& near);
+  /// The same of the matrix that the last solve() was given, by what that solve has set up. Nothing where it set up nothing that serves, or a
+  /// call of examine() came between. Cost: a solve to 1e-6 without its set-up.
+  virtual std::optional<Definiteness> examine_solved() { return std::nullopt; }
 
  protected:
   RightSide right_side() const { return of_; }  // of the solve that runs

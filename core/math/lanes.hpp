@@ -3,10 +3,12 @@
 // (EIGEN_DONT_VECTORIZE), so that a lane has the numbers of the scalar code; abs() here keeps the sign of a zero.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 #include "core/math/scale.hpp"
@@ -95,6 +97,12 @@ Lanes<T, W> select(const LaneMask<T, W>& mask, const Lanes<T, W>& yes, const Lan
 }
 template <class T, int W>
 bool any(const LaneMask<T, W>& mask) {
+#if defined(__AVX__)
+  if constexpr (sizeof(mask.bits) == 32) {
+    const auto words = std::bit_cast<typename VectorOf<long long, 4>::type>(mask.bits);
+    return __builtin_ia32_ptestz256(words, words) == 0;
+  }
+#endif
   constexpr std::size_t n = sizeof(mask.bits) / sizeof(std::uint64_t);
   std::uint64_t words[n], out = 0;
   std::memcpy(words, &mask.bits, sizeof(words));
@@ -116,12 +124,15 @@ Lanes<T, W> abs(const Lanes<T, W>& a) {
   return select(a < Lanes<T, W>(T(0)), -a, a);
 }
 
-/// Lane by lane, as for a scalar.
+/// Lane by lane, as for a scalar. Without a call a lane: the bits of infinity are those that hold an exponent.
 template <class T, int W>
 Lanes<T, W> power_of_two_below(const Lanes<T, W>& a) {
-  Lanes<T, W> out;
-  for (int lane = 0; lane < W; ++lane) out.v[lane] = power_of_two_below(a[lane]);
-  return out;
+  using Real = Lanes<T, W>;
+  using Bits = typename LaneMask<T, W>::Bits;
+  const Real infinity(std::numeric_limits<T>::infinity()), least(least_scale<T>);
+  const Bits exponent = std::bit_cast<Bits>(a.v) & std::bit_cast<Bits>(infinity.v);
+  const Real power(std::bit_cast<typename Real::Vector>(exponent));
+  return select(a > Real(T(0)), select(power > least, power, least), Real(T(1)));
 }
 
 }  // namespace bb

@@ -9,16 +9,20 @@
 
 namespace bb {
 
-/// The power of two in (m/2, m] for a finite m > 0, 1 for 0; never so small that its
-/// inverse overflows. Host-device.
+/// The smallest scale factor: the inverse of a smaller one might overflow.
+template <class T>
+inline constexpr T least_scale = 8 * std::numeric_limits<T>::min();
+
+/// The power of two in (m/2, m] for a finite m > 0, 1 for 0; at least least_scale. Host-device.
 template <class T>
 BB_HD inline T power_of_two_below(T m) {
   using std::frexp, std::ldexp;
   if (!(m > 0)) return T(1);
   int exponent = 0;
   frexp(m, &exponent);
-  constexpr int least = std::numeric_limits<T>::min_exponent + 2;
-  return ldexp(T(1), exponent > least ? exponent - 1 : least);
+  constexpr typename ScalarOf<T>::type least = least_scale<typename ScalarOf<T>::type>;
+  const T power = ldexp(T(1), exponent - 1);
+  return power > T(least) ? power : T(least);
 }
 
 /// The power of two in (m/2, m], m the largest |A_ij|; 1 for the zero matrix. Keeps squares of entries of A /

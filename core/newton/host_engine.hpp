@@ -102,7 +102,9 @@ class HostEngine final : public IncrementalPotential {
   Positions part_;
   BlockSystem::Values elastic_, full_;           // H where the plan needs it; all terms
   const BlockSystem::Values* filled_ = nullptr;  // the matrix that was filled last
-  ReducedSystem examined_;                       // the matrix that examine() asks about
+  bool full_is_exact_ = false,
+       exact_is_solved_ = false;  // nothing in it is clamped or shifted; it was solved last
+  ReducedSystem examined_;        // the matrix that examine() asks about
   EnergySums sums_;
   std::size_t nnz_ = 0;
   std::vector<double> hess_buffer_;

@@ -1,5 +1,6 @@
 // Gradient and matrix of the terms on the host, summed in the order that docs/design.md fixes, and the linear solve.
 #include <algorithm>
+#include <optional>
 
 #include "core/newton/host_engine.hpp"
 
@@ -117,6 +118,8 @@ void HostEngine::fill_matrix(const Column&, const HessianLevel& level, const Col
   });
   blocks_->take_values(full_);
   filled_ = &full_;
+  full_is_exact_ = level.exact();
+  exact_is_solved_ = false;
 }
 
 void HostEngine::sum_exact() {
@@ -137,6 +140,8 @@ double HostEngine::add_tikhonov(double relative, double absolute) {
   blocks_->take_values(full_);  // back to where sums are made
   if (shift > 0) blocks_->add_diagonal(std::vector<double>(scene_.mass.size(), shift));
   blocks_->take_values(full_);
+  full_is_exact_ = full_is_exact_ && shift == 0;
+  exact_is_solved_ = false;
   return shift;
 }
 
@@ -160,20 +165,26 @@ void HostEngine::solve(const Column& b, RightSide of, Column& step, SolveReport&
   clock().move(Phase::linear_solve, Phase::linear_analyze, linear.analyze_s);
   clock().move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
   report.add_attempt(linear);
+  exact_is_solved_ = full_is_exact_;
   step.fill_zero();
   if (linear.status == LinearStatus::ok) blocks_->expand_vector(solution_, points(step));
 }
 
-// The preconditioner is that of a matrix that was solved, or of the clamped one where that was exact.
+// Where the exact matrix was solved, what that has set up proves the end. Ways out of a saddle are found with one preconditioner alone, so that
+// they are the same after every solve: that of a matrix that was solved, or of the clamped one where that was exact.
 Definiteness HostEngine::examine(const Column&, const HessianLevel& near, const Column&, Column&, Column&,
                                  Column& direction) {
+  std::optional<Definiteness> solved;
+  if (exact_is_solved_) solved = solver_->examine_solved();
+  if (solved && solved->verdict == Definiteness::Verdict::positive) return *solved;
   sum_exact();
   examined_ = blocks_->reduce(blocks_->values());
-  const Definiteness found = solver_->examine(examined_, [this, &near]() -> const ReducedSystem& {
+  Definiteness found = solver_->examine(examined_, [this, &near]() -> const ReducedSystem& {
     if (!near.exact()) return blocks_->reduce(full_);
     sum_clamped(TermSet::all());
     return blocks_->reduce(blocks_->values());
   });
+  if (solved) found.iterations += solved->iterations;
   if (found.verdict != Definiteness::Verdict::negative) return found;
   direction.fill_zero();
   blocks_->expand_vector(found.direction, points(direction));

@@ -71,6 +71,26 @@ TEST_P(BvhSizes, FindsWhatTheDoubleLoopFinds) {
 INSTANTIATE_TEST_SUITE_P(, BvhSizes,
                          testing::Values(0, 1, 2, 4, 5, 8, 9, 31, 33, 63, 64, 65, 257, 511, 512, 513, 2000));
 
+/// However many there are of one first member: short and long lists are sorted in two ways.
+TEST(Bvh, PairsOfOneAreSortedWhateverTheirNumber) {
+  std::vector<TreeBox> one(1);
+  one[0].add(Vec3d(-9, -9, -9)), one[0].add(Vec3d(9, 9, 9));
+  const std::vector<std::uint8_t> free_one(1, 1);
+  Bvh of_one;
+  of_one.update(one, free_one);
+  PairFinder finder;
+  for (const int n : {1, 9, 60, 75, 76, 200, 700, 5000}) {
+    const auto boxes = random_boxes(n, 0.1, 5);
+    const auto free = random_flags(n, 6);
+    Bvh tree;
+    tree.update(boxes, free);
+    std::vector<IndexPair> pairs;
+    finder.find(of_one, tree, keep, pairs);
+    EXPECT_EQ(pairs, brute_force(one, free_one, boxes, free, false)) << n;
+    EXPECT_GE(pairs.size(), static_cast<std::size_t>(6 * n / 7));
+  }
+}
+
 TEST(Bvh, SamePairsForAnyNumberOfThreads) {
   const auto boxes = random_boxes(3000, 0.1, 5);
   const std::vector<std::uint8_t> free(boxes.size(), 1);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -43,6 +44,17 @@ TEST(MotionBox, LanesRoundAsOneNumberDoes) {
     }
   }
   EXPECT_GT(below, 60000) << "hardly a number was rounded";
+}
+
+// Of what lies and moves nowhere the fourth lane would be a quotient of subnormal numbers, which takes as long as twenty others.
+TEST(MotionBox, TheLaneThatHoldsNothingIsOfNormalNumbers) {
+  const Positions x0 = Positions::Random(3, 6), x1 = Positions::Random(3, 6);
+  const MotionBox a = motion_box(std::array{0, 1, 2}, 0.01, x0, x1);
+  const MotionBox b = motion_box(std::array{3, 4, 5}, 0.01, x0, x1);
+  EXPECT_TRUE(std::isnormal(a.lo[3] - b.hi[3]));
+  EXPECT_TRUE(std::isnormal(b.lo[3] - a.hi[3]));
+  EXPECT_TRUE(std::isnormal(a.slowest[3] - b.fastest[3]));
+  EXPECT_TRUE(std::isnormal(b.slowest[3] - a.fastest[3]));
 }
 
 }  // namespace bb::motion_box_test

@@ -113,6 +113,24 @@ TEST(Hinge, SomeStateIsIndefinite) {
   EXPECT_GT((exact.hess - psd.hess).norm(), 0.01);
 }
 
+/// However little: so whoever clamps hinges has to clamp all that are not at rest.
+TEST(Hinge, EveryStateOffItsRestAngleIsIndefinite) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const double size : {1e-6, 1e-4, 1e-2, 0.1, 0.3}) {
+    for (int k = 0; k < 200; ++k) {
+      Vec<double, 12> x = hinge_state(0);
+      for (double& coordinate : x) coordinate += size * unit(random);
+      const Mat<double, 12, 12> hess =
+          hinge_terms<double>(Points<double, 4>(x).x, Projection::none, stiffness, 0.0).hess;
+      Vec<double, 12> values;
+      Mat<double, 12, 12> vectors;
+      sym_eigen<double, 12>(hess, values, vectors);
+      EXPECT_LT(values[0], -1e-11 * values[11]) << size;
+    }
+  }
+}
+
 TEST(Hinge, DeviationIsTheShortWayRound) {
   EXPECT_NEAR(hinge_deviation(-3.1, 3.0), 2 * pi - 6.1, 1e-15);
   EXPECT_NEAR(hinge_deviation(3.1, -3.0), 6.1 - 2 * pi, 1e-15);

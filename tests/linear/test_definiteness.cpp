@@ -76,6 +76,29 @@ TEST_P(DefinitenessOf, a_small_negative_eigenvalue_is_seen) {
   }
 }
 
+/// What a solve has set up answers for its own matrix alone, and only conjugate gradients have set up anything.
+TEST(DefinitenessOfWhatWasSolved, is_that_of_its_spectrum) {
+  LinearOptions options;
+  options.name = "pcg";
+  const auto solver = make_linear_solver(options);
+  EXPECT_FALSE(solver->examine_solved()) << "nothing was solved";
+  for (const double smallest : {1e-3, -1e-3}) {
+    Eigen::VectorXd spectrum = Eigen::VectorXd::LinSpaced(30, 1, 100);
+    spectrum[0] = smallest;
+    const ReducedSystem a = from_dense(with_spectrum(spectrum, 3));
+    VecXd x, b = VecXd::Ones(30);
+    solver->solve(a, b, x);
+    const std::optional<Definiteness> found = solver->examine_solved();
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->verdict, smallest < 0 ? Verdict::negative : Verdict::positive);
+    EXPECT_GT(found->iterations, 1);
+    solver->examine(a, [&a]() -> const ReducedSystem& { return a; });
+    EXPECT_FALSE(solver->examine_solved()) << "what is set up is of an examination";
+    solver->solve(a, VecXd::Zero(30), x);
+    EXPECT_FALSE(solver->examine_solved()) << "nothing is set up for a right-hand side of zeros";
+  }
+}
+
 TEST_P(DefinitenessOf, what_is_no_number_is_unknown) {
   Eigen::MatrixXd full = Eigen::MatrixXd::Identity(6, 6);
   full(2, 2) = std::nan("");

@@ -45,6 +45,34 @@ TEST(Lanes, PowersOfTwoAreExactAndHaveAnInverse) {
   EXPECT_TRUE(std::isfinite(1 / p[3]));
 }
 
+template <class T>
+void expect_powers_of_two_of_a_number() {
+  constexpr int n_lanes = 32 / sizeof(T);
+  using Limits = std::numeric_limits<T>;
+  int n = 0;
+  for (int exponent = Limits::min_exponent - Limits::digits; exponent <= Limits::max_exponent; ++exponent) {
+    Lanes<T, n_lanes> of;
+    for (int lane = 0; lane < n_lanes; ++lane)
+      of.v[lane] = std::ldexp(1 - static_cast<T>(lane + 1) * Limits::epsilon() / 2, exponent);
+    of.v[1] = std::ldexp(T(0.5), exponent);  // a power of two itself
+    const Lanes<T, n_lanes> found = power_of_two_below(of);
+    for (int lane = 0; lane < n_lanes; ++lane) {
+      const T m = of[lane], power = found[lane];
+      ASSERT_EQ(power, power_of_two_below(m)) << m;
+      ASSERT_TRUE((power <= m && m / 2 < power) || power == least_scale<T> || m == 0) << m;
+      n += power > least_scale<T>;
+    }
+  }
+  EXPECT_GT(n, 200 * n_lanes);
+  const Lanes<T, n_lanes> none = power_of_two_below(Lanes<T, n_lanes>(Limits::quiet_NaN()));
+  EXPECT_EQ(none[0], power_of_two_below(Limits::quiet_NaN()));
+}
+
+TEST(Lanes, PowersOfTwoAreThoseOfANumberAtEverySize) {
+  expect_powers_of_two_of_a_number<double>();
+  expect_powers_of_two_of_a_number<float>();
+}
+
 Matrix random_symmetric(std::mt19937& rng) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   Matrix a;

@@ -164,6 +164,34 @@ TEST(NewtonSystem, a_shift_ends_with_its_matrix) {
   EXPECT_EQ(proven(0).factorizations, 0);
 }
 
+/// Of conjugate gradients: what has solved the exact matrix proves the end, so that nothing is clamped for it.
+TEST(NewtonSystem, the_end_of_an_exact_solve_is_proven_without_clamped_elements) {
+  const Scene scene = test::particle_over_plane(0.2, 0.5 * d_hat, d_hat);
+  Method method = test::fixed_method("quadratic", 7);
+  method.linear.name = "pcg";
+  method.hessian_mode = HessianMode::projected_full;
+  for (const HessianChoice& choice : hessian_choices()) method.step_hessian[choice.name] = StepHessian::blend;
+  AtRest rest(scene, std::move(method), scene.x0);
+  Positions dx;
+  const auto clamped_numbers = [&] {
+    std::size_t n = 0;
+    for (const auto& term : rest.system.diagnosis().terms()) {
+      for (const TermFamily& family : term->families()) n += family.clamped.hess.size();
+    }
+    return n;
+  };
+  for (const double shift : {0.0, 0.5}) {
+    rest.system.assemble();
+    if (shift > 0) rest.system.add_tikhonov(0, shift);
+    EXPECT_EQ(test::solve(rest.system, scene.x0, dx).linear.status, LinearStatus::ok);
+    const EndCheck end = rest.system.check_end();
+    EXPECT_EQ(end.proof, EndProof::lanczos);
+    EXPECT_GT(end.iterations, 0);
+    EXPECT_EQ(clamped_numbers() > 0, shift > 0)
+        << "the matrix with a shift is another one than that in question";
+  }
+}
+
 TEST(NewtonSystem, without_the_limit_a_stage_has_only_elasticity_and_inertia) {
   const Scene scene = limited_triangle();
   Method method = test::fixed_method("cubic", 1);

@@ -11,6 +11,7 @@
 #include "core/energy/families/element_kernels.hpp"
 #include "core/energy/families/limit_values.hpp"
 #include "core/energy/families/rest_kernels.hpp"
+#include "core/energy/membrane_lanes.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/energy/strain_stiffness.hpp"
 #include "core/linear/executor/sub_matrix.hpp"
@@ -99,12 +100,38 @@ BB_HD void measure_stretch(const LimitColumns<N>& limit, const double* x, exec::
     limit.gap[k * limit.n + e] = stretch_gap(svd.sigma[k], limit.template band<T>(e));
   }
 }
+/// How many elements are decomposed abreast on a host.
+template <int R, int N>
+constexpr int stretch_lanes = R == 3 && N == 2 ? membrane_lanes : 1;
+
+/// measure_stretch() of the elements first to first + membrane_lanes - 1, with its bits. Host only.
+template <class T>
+void measure_stretches(const LimitColumns<2>& limit, const double* x, exec::Index first) {
+  TrianglesAbreast<T> triangles;
+  for (int lane = 0; lane < membrane_lanes; ++lane) {
+    Vec<T, 3> p[3];
+    limit.points(x, first + lane, p);
+    triangles.set(lane, p, limit.rest.template at<T>(first + lane, limit.n));
+  }
+  T sigma[2][membrane_lanes];
+  stretches_abreast(triangles, sigma);
+  for (int lane = 0; lane < membrane_lanes; ++lane) {
+    for (int k = 0; k < 2; ++k) {
+      const exec::Index e = first + lane, i = k * limit.n + e;
+      limit.sigma[i] = sigma[k][lane];
+      limit.gap[i] = stretch_gap(sigma[k][lane], limit.template band<T>(e));
+    }
+  }
+}
+
 template <int R, int N, class T = double>
 struct MeasureStretch {
   static constexpr exec::Index grain = elements_of_a_thread;
   LimitColumns<N> limit;
   const double* x;
   BB_HD void operator()(exec::Index e) const { measure_stretch<R, T>(limit, x, e); }
+  static constexpr int lanes = stretch_lanes<R, N>;
+  void abreast(exec::Index first) const requires(lanes > 1) { measure_stretches<T>(limit, x, first); }
 };
 
 /// Barrier terms of an element at its measured pseudo-gaps; infinite at or beyond the limit.
@@ -187,7 +214,15 @@ struct MeasureLimit {
   }
   static constexpr int lanes = LimitShape<N, S>::lanes;
   void abreast(exec::Index first) const requires(lanes > 1) {
-    for (int lane = 0; lane < lanes; ++lane) measure_stretch<R, double>(shape.limit, at.x, first + lane);
+    constexpr int step = stretch_lanes<R, N>;
+    static_assert(lanes % step == 0);
+    for (int lane = 0; lane < lanes; lane += step) {
+      if constexpr (step > 1) {
+        measure_stretches<double>(shape.limit, at.x, first + lane);
+      } else {
+        measure_stretch<R, double>(shape.limit, at.x, first + lane);
+      }
+    }
     shape.abreast(first);
     for (int lane = 0; lane < lanes; ++lane) finish_measure(shape.limit, at, first + lane);
   }
@@ -277,6 +312,34 @@ struct StretchBound {
     const T bound = strain_step_bound<R, T>(limit.rest.template at<T>(e, limit.n), p, step,
                                             limit.template band<T>(e), most, static_cast<T>(park));
     if (bound < most) exec::atomic_min(smallest, exec::ordered_bits(bound));
+  }
+  /// Most elements are within at the end of the motion, and ask no more.
+  static constexpr int lanes = stretch_lanes<R, N>;
+  void abreast(exec::Index first) const requires(lanes > 1) {
+    if (before && *before == ~exec::Key{0}) return;
+    const T most = static_cast<T>(before ? exec::from_ordered_bits(*before) : alpha);
+    if (are_within(first, most)) return;
+    for (int lane = 0; lane < lanes; ++lane) (*this)(first + lane);
+  }
+
+ private:
+  bool are_within(exec::Index first, T most) const requires(lanes > 1) {
+    TrianglesAbreast<T> triangles;
+    for (int lane = 0; lane < lanes; ++lane) {
+      Vec<T, 3> p[N + 1], step[N + 1];
+      limit.points(x, first + lane, p);
+      limit.points(dx, first + lane, step);
+      for (int i = 0; i <= N; ++i) p[i] = p[i] + most * step[i];
+      triangles.set(lane, p, limit.rest.template at<T>(first + lane, limit.n));
+    }
+    T sigma[2][lanes];
+    stretches_abreast(triangles, sigma);
+    bool within = true;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const StrainBand<T> band = limit.template band<T>(first + lane);
+      within = within && strain_gap(sigma[0][lane], band) > static_cast<T>(park) * band.width;
+    }
+    return within;
   }
 };
 

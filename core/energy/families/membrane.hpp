@@ -76,20 +76,18 @@ struct Membrane : ElementVertices<3> {
                                          static_cast<T>(lame_lambda[e]));
   }
 };
-/// Models without lanes (membrane_lanes.hpp) are taken one by one.
+/// In space four are taken abreast (membrane_lanes.hpp).
 template <class Model>
-struct SpaceMembrane : Membrane<Model, 3> {};
-template <>
-struct SpaceMembrane<membrane::corotational> : Membrane<membrane::corotational, 3> {
+struct SpaceMembrane : Membrane<Model, 3> {
   static constexpr int lanes = membrane_lanes;
   template <class T>
   void terms_abreast(const double* x, exec::Index first, Projection projection,
                      TermsAbreast<T, lanes, 3>& out) const {
-    corotational_terms_abreast(triangles<T>(x, first), projection, out);
+    membrane_terms_abreast<Model>(triangles<T>(x, first), projection, out);
   }
   template <class T>
   void values_abreast(const double* x, exec::Index first, T (&energy)[lanes]) const {
-    corotational_values_abreast(triangles<T>(x, first), energy);
+    membrane_values_abreast<Model>(triangles<T>(x, first), energy);
   }
 
  private:
@@ -99,8 +97,9 @@ struct SpaceMembrane<membrane::corotational> : Membrane<membrane::corotational, 
     for (int lane = 0; lane < lanes; ++lane) {
       const exec::Index e = first + lane;
       Vec<T, 3> p[3];
-      points(x, e, p);
-      out.set(lane, p, rest.at<T>(e, n), static_cast<T>(lame_mu[e]), static_cast<T>(lame_lambda[e]));
+      this->points(x, e, p);
+      out.set(lane, p, this->rest.template at<T>(e, this->n), static_cast<T>(this->lame_mu[e]),
+              static_cast<T>(this->lame_lambda[e]));
     }
     return out;
   }

@@ -22,7 +22,12 @@ class Pcg final : public LinearSolver {
   void keep(Archive& archive) override { preconditioner_->keep(archive); }
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
   Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {
+    set_up_ = false;
     return examine_preconditioned(a, near, *preconditioner_, max_iterations_, product_);
+  }
+  std::optional<Definiteness> examine_solved() override {
+    if (!set_up_) return std::nullopt;
+    return examine_by_gradients(product_, *preconditioner_, max_iterations_);
   }
 
  private:
@@ -30,6 +35,7 @@ class Pcg final : public LinearSolver {
   int max_iterations_;
   std::unique_ptr<Preconditioner> preconditioner_;
   SymmetricProduct product_;
+  bool set_up_ = false;  // product_ and preconditioner_ are those of the last solve
   ConjugateGradients cg_;
 };
 
@@ -37,6 +43,7 @@ LinearReport Pcg::solve_checked(const ReducedSystem& system, const VecXd& b, Vec
   LinearReport report;
   report.iterative = true;
   const Stopwatch stopwatch;
+  set_up_ = false;
   product_.update(system);
   const double b_norm = cg_.norm(b);
   if (!std::isfinite(b_norm) || !product_.all_finite()) {
@@ -51,6 +58,7 @@ LinearReport Pcg::solve_checked(const ReducedSystem& system, const VecXd& b, Vec
   if (b_norm == 0) return report;
   report.residual_true = report.residual_recurrence = 1;
   if (report.status != LinearStatus::ok) return report;
+  set_up_ = true;
 
   report.tolerance = forcing_.tolerance(b_norm, right_side());
   report.status = cg_.solve(product_, *preconditioner_, b, report.tolerance, max_iterations_, x, report);
