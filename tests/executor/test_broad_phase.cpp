@@ -155,9 +155,11 @@ exec::MotionFrame frame_of(const Surface& s, const Positions& x0, const Position
   const auto n = static_cast<long long>(s.points.size());
   for (int c = 0; c < 3; ++c) {
     std::vector<double> way;
-    for (const auto& v : s.points.vertices) way.push_back(x1(c, v[0]) - x0(c, v[0]));
-    for (int k = 0; k < n_sampled(n); ++k)
-      at_start[c].push_back(x0(c, s.points.vertices[static_cast<std::size_t>(sampled(k, n))][0]));
+    for (int k = 0; k < n_sampled(n); ++k) {
+      const int v = s.points.vertices[static_cast<std::size_t>(sampled(k, n))][0];
+      at_start[c].push_back(x0(c, v));
+      way.push_back(x1(c, v) - x0(c, v));
+    }
     std::sort(at_start[c].begin(), at_start[c].end());
     std::sort(way.begin(), way.end());
     out.moved[c] = way[way.size() / 2];

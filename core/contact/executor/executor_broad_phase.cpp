@@ -52,15 +52,8 @@ ExecutorBroadPhase::ExecutorBroadPhase(Executor& executor, const ExecutorSurface
 void ExecutorBroadPhase::find_frame(const PositionsView& x0, const PositionsView& x1) {
   const PrimitiveView<1> points = surface_.view().points;
   if (points.n == 0) return frame_.fill_zero();
-  Key* displacement = nullptr;
-  if (x0.data() != x1.data()) {
-    displacement = trees_.keys(3 * points.n);
-    executor_.each(3 * points.n,
-                   DisplacementKeys{points.vertex, points.n, x0.data(), x1.data(), displacement});
-    for (int c = 0; c < 3; ++c) executor_.sort(displacement + c * points.n, nullptr, points.n, 64);
-  }
   executor_.blocks(
-      1, FindFrame{points.vertex, points.n, x0.data(), displacement, surface_.element_size(), frame_.data()});
+      1, FindFrame{points.vertex, points.n, x0.data(), x1.data(), surface_.element_size(), frame_.data()});
 }
 
 void ExecutorBroadPhase::fit(const PositionsView& x0, const PositionsView& x1) {

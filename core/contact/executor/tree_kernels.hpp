@@ -18,52 +18,68 @@ BB_HD inline double from_sortable_bits(Key bits) {
   return from_ordered_bits((bits & sign) != 0 ? bits & ~sign : ~bits);
 }
 
-/// key[c n + i]: coordinate c of the displacement of surface point i of n.
-struct DisplacementKeys {
-  const int* vertex;
-  Index n;
-  const double *x0, *x1;
-  Key* key;
-  BB_HD void operator()(Index item) const {
-    const Index c = item / n, i = item - c * n, at = 3 * static_cast<Index>(vertex[i]) + c;
-    key[item] = sortable_bits(x1[at] - x0[at]);
-  }
-};
-
-/// One block: the frame of sampled points at the start, and what is shared of the motion along every axis: the median of n
-/// displacements; nothing where one is no number.
+/// One block: the frame of sampled points at the start, and what is shared of the motion along every axis: the median of
+/// their displacements; nothing where one is no number. An axis is a thread of a warp of its own.
 struct FindFrame {
-  static constexpr int width = most_sampled;
+  static constexpr int width = most_sampled, warp = 32;
   static_assert(width == 128);
   struct Shared {
-    Key sample[3][width];
+    Key sample[6][width];  // coordinates at the start, then displacements
+    LargestGaps gaps[3];
+    AxisFrame axis[3];
   };
   const int* vertex;
   Index n;
-  const double* x0;
-  const Key* displacement;  // [3 n] sorted along each axis; null: a state
-  double size;              // Surface::element_size
+  const double *x0, *x1;  // equal: a state
+  double size;            // Surface::element_size
   MotionFrame* frame;
 
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index) const {
-    const int n_all = n_sampled(n);
+    const int n_all = n_sampled(n), n_lists = x0 == x1 ? 3 : 6;
     block.threads([&](int t) {
-      for (int item = t; item < 3 * width; item += block_threads) {
-        const int c = item / width, k = item % width;
-        Key key = ~Key{0};  // what is no number, and what is not there, comes last
-        if (k < n_all) {
-          const double x = x0[3 * static_cast<Index>(vertex[sampled(k, n)]) + c];
-          if (x - x == 0) key = sortable_bits(x);
-        }
-        shared.sample[c][k] = key;
+      for (int item = t; item < n_lists * width; item += block_threads) {
+        shared.sample[item / width][item % width] = sample(item / width, item % width, n_all);
       }
     });
-    // Bitonic: the same pairs whatever the numbers are. Source: Batcher 1968.
+    sort(block, shared, n_lists);
+    block.threads([&](int t) {
+      const int c = t / warp;
+      if (t % warp != 0 || c >= 6) return;
+      if (c < 3) {
+        shared.gaps[c] = largest_gaps(At{shared.sample[c]}, n_finite(shared.sample[c], n_all));
+      } else {
+        frame->moved[c - 3] = c < n_lists ? shared_motion(shared.sample[c], n_all) : 0;
+      }
+    });
+    block.threads([&](int t) {
+      const int c = t / warp;
+      if (t % warp != 0 || c >= 3) return;
+      shared.axis[c] = axis_frame(At{shared.sample[c]}, n_finite(shared.sample[c], n_all), shared.gaps[c],
+                                  widest(shared.gaps, size));
+    });
+    block.once([&] { frame->folded = joined(shared.axis); });
+  }
+
+ private:
+  struct At {
+    const Key* sorted;
+    BB_HD double operator()(int i) const { return from_sortable_bits(sorted[i]); }
+  };
+  /// What is no number, and what is not there, comes last.
+  BB_HD Key sample(int list, int k, int n_all) const {
+    if (k >= n_all) return ~Key{0};
+    const Index at = 3 * static_cast<Index>(vertex[sampled(k, n)]) + list % 3;
+    const double x = list < 3 ? x0[at] : x1[at] - x0[at];
+    return x - x == 0 ? sortable_bits(x) : ~Key{0};
+  }
+  /// Bitonic: the same pairs whatever the numbers are. Source: Batcher 1968.
+  template <class Block>
+  BB_HD static void sort(Block& block, Shared& shared, int n_lists) {
     for (int run = 2; run <= width; run *= 2) {
       for (int apart = run / 2; apart > 0; apart /= 2) {
         block.threads([&](int t) {
-          for (int item = t; item < 3 * width / 2; item += block_threads) {
+          for (int item = t; item < n_lists * width / 2; item += block_threads) {
             Key* const of = shared.sample[item / (width / 2)];
             const int pair = item % (width / 2), low = 2 * apart * (pair / apart) + pair % apart;
             put_in_order(of[low], of[low + apart], (low & run) == 0);
@@ -71,33 +87,18 @@ struct FindFrame {
         });
       }
     }
-    block.threads([&](int t) {
-      if (t == 0) fold(shared, n_all);
-      if (t >= 1 && t <= 3) frame->moved[t - 1] = shared_motion(t - 1);
-    });
   }
-
- private:
   BB_HD static void put_in_order(Key& a, Key& b, bool ascending) {
     const Key low = b < a ? b : a, high = b < a ? a : b;
     a = ascending ? low : high;
     b = ascending ? high : low;
   }
-  BB_HD void fold(const Shared& shared, int n_all) const {
-    const Shared* const all = &shared;
-    const auto coordinate = [all](int c, int i) { return from_sortable_bits(all->sample[c][i]); };
-    const auto count = [all, n_all](int c) {
-      int n_finite = n_all;
-      while (n_finite > 0 && all->sample[c][n_finite - 1] == ~Key{0}) --n_finite;
-      return n_finite;
-    };
-    frame->folded = folded_frame(coordinate, count, size);
+  BB_HD static int n_finite(const Key* sorted, int n_all) {
+    while (n_all > 0 && sorted[n_all - 1] == ~Key{0}) --n_all;
+    return n_all;
   }
-  BB_HD double shared_motion(int c) const {
-    if (!displacement) return 0;
-    const Key* const sorted = displacement + c * n;
-    const double first = from_sortable_bits(sorted[0]), last = from_sortable_bits(sorted[n - 1]);
-    return first - first == 0 && last - last == 0 ? from_sortable_bits(sorted[n / 2]) : 0;
+  BB_HD static double shared_motion(const Key* sorted, int n_all) {
+    return n_finite(sorted, n_all) == n_all ? median_of(At{sorted}, n_all) : 0;
   }
 };
 
