@@ -171,12 +171,25 @@ struct MortonKeys {
   }
 };
 
-/// The nodes of a tree to be built.
+/// The groups of a tree to be built.
 struct TreePlaces {
-  TreeNode* node;
-  Index begin[max_tree_levels + 1];
+  TreeGroup* group;
+  Index begin[max_tree_levels];
+  Index n;
   int top;
-  BB_HD Index size(int level) const { return level > top ? 0 : begin[level + 1] - begin[level]; }
+  BB_HD Index size(int level) const {
+    return level > top ? 0 : (n + (Index{1} << 2 * level) - 1) >> 2 * level;
+  }
+  /// Node i of a level; with the last one its siblings that are not there, which meet nothing and widen no box.
+  BB_HD void put(int level, Index i, const TreeNode& node) const {
+    TreeGroup& to = group[begin[level] + i / tree_width];
+    int k = static_cast<int>(i % tree_width);
+    to.put(k, node);
+    if (i + 1 < size(level)) return;
+    const FloatBox none = empty_box();
+    TreeNode absent{{none.lo[0], none.lo[1], none.lo[2]}, {none.hi[0], none.hi[1], none.hi[2]}, 0, 0};
+    while (++k < tree_width) to.put(k, absent);
+  }
 };
 
 /// Four levels of all trees: from the 256 nodes of a level that a block takes all that they are below of. From level 0 the
@@ -203,7 +216,7 @@ struct TreeLevels {
     if (from == 0) {
       block.threads([&](int t) {
         const Index place = b * block_threads + t;
-        if (place < to.size(0)) to.node[place] = leaf(k, primitive[of.begin[k] + place]);
+        if (place < to.size(0)) to.put(0, place, leaf(k, primitive[of.begin[k] + place]));
       });
     }
     int width = block_threads;
@@ -211,7 +224,7 @@ struct TreeLevels {
       width /= tree_width;
       block.threads([&](int t) {
         const Index i = b * width + t;
-        if (t < width && i < to.size(level)) to.node[to.begin[level] + i] = parent(to, level, i);
+        if (t < width && i < to.size(level)) to.put(level, i, parent(to.group[to.begin[level - 1] + i]));
       });
     }
   }
@@ -226,24 +239,18 @@ struct TreeLevels {
     out.tag = 2 * static_cast<std::uint32_t>(i) + (free ? 1 : 0);
     return out;
   }
-  /// Node i of a level. A number that is none is never less and never more.
-  BB_HD static TreeNode parent(const TreePlaces& to, int level, Index i) {
+  /// The node above a group. A number that is none is never less and never more.
+  BB_HD static TreeNode parent(const TreeGroup& children) {
     FloatBox box = empty_box();
-    TreeNode out;
-    out.reach = 0;
-    out.tag = 0;
-    const Index n = to.size(level - 1), begin = tree_width * i,
-                end = begin + tree_width < n ? begin + tree_width : n;
-    for (Index child = begin; child < end; ++child) {
-      const TreeNode at = to.node[to.begin[level - 1] + child];
+    std::uint32_t free = 0;
+    for (int child = 0; child < tree_width; ++child) {
       for (int c = 0; c < 3; ++c) {
-        box.lo[c] = at.lo[c] < box.lo[c] ? at.lo[c] : box.lo[c];
-        box.hi[c] = at.hi[c] > box.hi[c] ? at.hi[c] : box.hi[c];
+        box.lo[c] = children.lo[c][child] < box.lo[c] ? children.lo[c][child] : box.lo[c];
+        box.hi[c] = children.hi[c][child] > box.hi[c] ? children.hi[c][child] : box.hi[c];
       }
-      out.tag |= at.free();
+      free |= children.tag[child] & 1;
     }
-    for (int c = 0; c < 3; ++c) out.lo[c] = box.lo[c], out.hi[c] = box.hi[c];
-    return out;
+    return {{box.lo[0], box.lo[1], box.lo[2]}, {box.hi[0], box.hi[1], box.hi[2]}, 0, free};
   }
 };
 
