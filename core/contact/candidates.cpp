@@ -15,24 +15,6 @@
 namespace bb {
 
 namespace {
-/// Median of x1 - x0 over all points, a coordinate at a time: the frame in which the boxes are shortest. 0
-/// where that is not finite. `moved`: a buffer.
-Vec3d common_motion(const Primitives<1>& points, const PositionsView& x0, const PositionsView& x1,
-                    std::vector<double>& moved) {
-  Vec3d out = Vec3d::Zero();
-  if (points.size() == 0) return out;
-  moved.resize(points.size());
-  const auto middle = moved.begin() + static_cast<std::ptrdiff_t>(moved.size() / 2);
-  for (int c = 0; c < 3; ++c) {
-    std::transform(points.vertices.begin(), points.vertices.end(), moved.begin(),
-                   [&](const std::array<int, 1>& v) { return x1(c, v[0]) - x0(c, v[0]); });
-    if (!std::all_of(moved.begin(), moved.end(), [](double m) { return std::isfinite(m); })) continue;
-    std::nth_element(moved.begin(), middle, moved.end());
-    out[c] = *middle;
-  }
-  return out;
-}
-
 /// Vertex 0 of contact_pair<K>(), and that with which its second primitive begins.
 template <PairKind K>
 std::array<int, 2> first_vertices(const Surface& s, IndexPair pair) {
@@ -64,18 +46,22 @@ BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<doubl
     lone_free_.push_back(surface.edges.free[static_cast<std::size_t>(e)]);
 }
 
-/// Sampled coordinates at the start, sorted; those that are no numbers are left out.
-FoldedFrame BroadPhase::folded(const PositionsView& x0) {
+/// of(vertex) of the sampled points, sorted, into sample_; those that are no numbers are left out.
+template <class Number>
+std::vector<double>& BroadPhase::sample(int c, const Number& of) {
   const auto n = static_cast<long long>(surface_.points.size());
-  for (int c = 0; c < 3; ++c) {
-    std::vector<double>& sample = sample_[c];
-    sample.clear();
-    for (int k = 0; k < n_sampled(n); ++k) {
-      const double x = x0(c, surface_.points.vertices[static_cast<std::size_t>(sampled(k, n))][0]);
-      if (std::isfinite(x)) sample.push_back(x);
-    }
-    std::sort(sample.begin(), sample.end());
+  std::vector<double>& out = sample_[c];
+  out.clear();
+  for (int k = 0; k < n_sampled(n); ++k) {
+    const double x = of(surface_.points.vertices[static_cast<std::size_t>(sampled(k, n))][0]);
+    if (std::isfinite(x)) out.push_back(x);
   }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+FoldedFrame BroadPhase::folded(const PositionsView& x0) {
+  for (int c = 0; c < 3; ++c) sample(c, [&](int v) { return x0(c, v); });
   // a float state far away is rounded by more than what is left of the empty stretch before it
   constexpr double never = std::numeric_limits<double>::infinity();
   return folded_frame([this](int c, int i) { return sample_[c][static_cast<std::size_t>(i)]; },
@@ -83,10 +69,17 @@ FoldedFrame BroadPhase::folded(const PositionsView& x0) {
                       values_in_float(precision_) ? never : surface_.element_size);
 }
 
+/// The frame in which the boxes are shortest: without what the sampled points share of the motion; all of it where one of
+/// their displacements is no number.
 BroadPhase::Frame BroadPhase::frame(const PositionsView& x0, const PositionsView& x1) {
   Frame out{folded(x0), Vec3d::Zero()};
-  if (x0.data() != x1.data() && pace_ == Pace::common)
-    out.moved = common_motion(surface_.points, x0, x1, moved_);
+  if (x0.data() == x1.data() || pace_ == Pace::own || surface_.points.size() == 0) return out;
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<double>& moved = sample(c, [&](int v) { return x1(c, v) - x0(c, v); });
+    const int n = static_cast<int>(moved.size());
+    if (n < n_sampled(static_cast<long long>(surface_.points.size()))) continue;
+    out.moved[c] = median_of([&moved](int i) { return moved[static_cast<std::size_t>(i)]; }, n);
+  }
   return out;
 }
 

@@ -64,6 +64,8 @@ class BroadPhase {
     Vec3d moved;
   };
   Frame frame(const PositionsView& x0, const PositionsView& x1);
+  template <class Number>
+  std::vector<double>& sample(int c, const Number& of);
   FoldedFrame folded(const PositionsView& x0);
   double state_rounding(const PositionsView& x0, const PositionsView& x1) const;
   void fit_vertices(const PositionsView& x0, const PositionsView& x1, const Frame& frame);
@@ -85,7 +87,7 @@ class BroadPhase {
   std::vector<std::uint8_t> lone_free_;
   PairFinder finder_;
   std::vector<TreeBox> vertices_;                       // of all vertices on the motion
-  std::vector<double> moved_, sample_[3];               // buffers of frame
+  std::vector<double> sample_[3];                       // buffers of frame
   std::vector<std::vector<IndexPair>> near_obstacles_;  // of each chunk
   const ContactPlan plan_;
   const bool chosen_, tests_states_;  // of the collisions of the surface

@@ -54,36 +54,39 @@ BB_HD constexpr long long sampled(int k, long long n) {
       (static_cast<unsigned long long>(step) * static_cast<unsigned long long>(n)) >> 32);
 }
 
-namespace detail {
-
 /// The largest gaps of n sorted coordinates, largest first, the earlier of two equal ones first.
 struct LargestGaps {
-  double size[most_stretches - 1];  // m
-  int after[most_stretches - 1];    // the coordinate before the gap
-  int n = 0;
-  double rest = 0;  // all other gaps together, m
-
-  template <class Sorted>
-  BB_HD LargestGaps(const Sorted& x, int n_coordinates) {
-    const int most = n_coordinates / 16 < most_stretches - 1 ? n_coordinates / 16 : most_stretches - 1;
-    for (int i = 0; i + 1 < n_coordinates; ++i) {
-      double gap = x(i + 1) - x(i);
-      int behind = i;
-      for (int k = 0; k < n; ++k) {
-        if (!(gap > size[k])) continue;
-        const double smaller = size[k];
-        const int its = after[k];
-        size[k] = gap, after[k] = behind;
-        gap = smaller, behind = its;
-      }
-      if (n < most) {
-        size[n] = gap, after[n++] = behind;
-      } else {
-        rest += gap;
-      }
-    }
-  }
+  static constexpr int most = most_stretches - 1;
+  double size[most];  // m
+  int after[most];    // the coordinate before the gap
+  int n;
+  double rest;  // all other gaps together, m
 };
+
+/// Loops of a fixed length: what they read and write stays in registers on a device.
+template <class Sorted>
+BB_HD LargestGaps largest_gaps(const Sorted& x, int n_coordinates) {
+  constexpr int most = LargestGaps::most;
+  const int wanted = n_coordinates / 16 < most ? n_coordinates / 16 : most;
+  LargestGaps out{};
+  for (int k = 0; k < most; ++k) out.size[k] = -1;  // less than any gap
+  for (int i = 0; i + 1 < n_coordinates; ++i) {
+    double gap = x(i + 1) - x(i);
+    int behind = i;
+    for (int k = 0; k < most; ++k) {
+      if (k >= wanted || !(gap > out.size[k])) continue;
+      const double smaller = out.size[k];
+      const int its = out.after[k];
+      out.size[k] = gap, out.after[k] = behind;
+      gap = smaller, behind = its;
+    }
+    if (gap >= 0) out.rest += gap;
+  }
+  out.n = wanted;
+  return out;
+}
+
+namespace detail {
 
 /// Gaps that are more than 1000 `widths` become one.
 template <class Sorted>
@@ -111,31 +114,60 @@ BB_HD FoldedAxis fold(const Sorted& x, int n, const LargestGaps& gaps, double wi
 
 }  // namespace detail
 
+/// What is shared of a motion along an axis: the median of the displacements of the sampled points. displacement(i): of n
+/// finite and sorted ones, m.
+template <class Sorted>
+BB_HD double median_of(const Sorted& displacement, int n) {
+  return displacement(n / 2);
+}
+
+/// An axis, and where most of the points are along it, m, places.
+struct AxisFrame {
+  FoldedAxis axis;
+  double middle = 0, spread = 0;
+};
+template <class Sorted>
+BB_HD AxisFrame axis_frame(const Sorted& x, int n, const LargestGaps& gaps, double width) {
+  AxisFrame out;
+  out.axis = detail::fold(x, n, gaps, width);
+  if (n == 0) return out;
+  const double lo = out.axis(x(n / 8)), hi = out.axis(x(n - 1 - n / 8));
+  out.middle = lo + (hi - lo) / 2;
+  out.spread = hi - lo;
+  return out;
+}
+
+/// What no gap that is taken for empty may be small against, m: the largest of `size` and of what the largest gaps of each
+/// axis leave.
+BB_HD inline double widest(const LargestGaps (&gaps)[3], double size) {
+  double width = size;
+  for (const LargestGaps& of : gaps) width = of.rest > width ? of.rest : width;
+  return width;
+}
+BB_HD inline FoldedFrame joined(const AxisFrame (&axes)[3]) {
+  FoldedFrame out;
+  double spread = 0;
+  for (int c = 0; c < 3; ++c) {
+    out.axis[c] = axes[c].axis;
+    spread = axes[c].spread > spread ? axes[c].spread : spread;
+  }
+  out.grid_width = 3 * spread;
+  for (int c = 0; c < 3; ++c) out.grid_lo[c] = axes[c].middle - out.grid_width / 2;
+  return out;
+}
+
 /// The frame of a scene. x(c, i): coordinate i of n_of(c) finite ones along axis c, sorted, m. size: what no gap that is
 /// taken for empty may be small against, m; bodies that are folded together stay farther apart than that.
 /// The median is put near 0.   Errors: none.   Cost: O(n).
 template <class Coordinate, class Count>
 BB_HD FoldedFrame folded_frame(const Coordinate& x, const Count& n_of, double size) {
-  FoldedFrame out;
-  double width = size;
   const auto sorted = [&](int c) { return [&x, c](int i) { return x(c, i); }; };
-  for (int c = 0; c < 3; ++c) {
-    const detail::LargestGaps gaps(sorted(c), n_of(c));
-    width = gaps.rest > width ? gaps.rest : width;
-  }
-  double middle[3] = {0, 0, 0}, spread = 0;
-  for (int c = 0; c < 3; ++c) {
-    const int n = n_of(c);
-    const detail::LargestGaps gaps(sorted(c), n);
-    out.axis[c] = detail::fold(sorted(c), n, gaps, width);
-    if (n == 0) continue;
-    const double lo = out.axis[c](x(c, n / 8)), hi = out.axis[c](x(c, n - 1 - n / 8));
-    middle[c] = lo + (hi - lo) / 2;
-    spread = hi - lo > spread ? hi - lo : spread;
-  }
-  out.grid_width = 3 * spread;
-  for (int c = 0; c < 3; ++c) out.grid_lo[c] = middle[c] - out.grid_width / 2;
-  return out;
+  LargestGaps gaps[3];
+  for (int c = 0; c < 3; ++c) gaps[c] = largest_gaps(sorted(c), n_of(c));
+  const double width = widest(gaps, size);
+  AxisFrame axes[3];
+  for (int c = 0; c < 3; ++c) axes[c] = axis_frame(sorted(c), n_of(c), gaps[c], width);
+  return joined(axes);
 }
 
 }  // namespace bb

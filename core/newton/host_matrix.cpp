@@ -34,7 +34,9 @@ void HostEngine::linearise_term(Slot& slot, const Column& x, const Column& g) {
 
 void HostEngine::leave_secants(const Column& x, const Column& g) {
   for (Slot& slot : slots_) {
-    if (slot.term->take_secant(0)) linearise_term(slot, x, g);
+    if (!slot.term->take_secant(0)) continue;
+    linearise_term(slot, x, g);
+    exact_is_solved_ = false;
   }
 }
 

@@ -5,7 +5,7 @@
 
 most_archive_bytes=$((16 * 1024 * 1024))
 # The kernels whose hardware counters are read, those that took the longest at 0.5 and 2 million contacts.
-counted_kernels='CountCandidates|FillCandidates|RankRows|FillRows|KeepPairs|SlidingHessians|EvaluateShape|GatherBlocks|GatherStreamed|MirrorRow|FindFrame|MortonKeys|MultiplyDot|UpdateBlockJacobi|StepDirection'
+counted_kernels='WalkTrees|KeepCandidates|RankRows|FillRows|KeepPairs|SlidingHessians|EvaluateShape|GatherBlocks|GatherStreamed|MirrorBlock|FindFrame|MortonKeys|MultiplyDot|UpdateBlockJacobi|StepDirection'
 counters='gpu__time_duration.sum,dram__bytes.sum,lts__t_sectors.sum,l1tex__t_requests_pipe_lsu_mem_global_op_ld.sum,l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum,l1tex__t_bytes_pipe_lsu_mem_local_op_ld.sum,l1tex__t_bytes_pipe_lsu_mem_local_op_st.sum,sm__warps_active.avg.pct_of_peak_sustained_active,launch__registers_per_thread'
 
 # tiny NAME: what makes a scene small enough for a lease without a card.

@@ -61,7 +61,7 @@ TEST(ExecutorBroadPhase, FindsWhatTheCpuPathFindsInSoups) {
 std::vector<double> parents_of(const exec::TreeView& tree) {
   std::vector<double> out;
   for (Index i = 0; i < tree.size(1); ++i) {
-    const exec::TreeNode& node = tree.node[tree.begin[1] + i];
+    const exec::TreeNode node = tree.node(1, i);
     double sq = 0;
     for (int c = 0; c < 3; ++c) sq += std::pow(static_cast<double>(node.hi[c] - node.lo[c]), 2);
     out.push_back(std::sqrt(sq));
@@ -155,9 +155,11 @@ exec::MotionFrame frame_of(const Surface& s, const Positions& x0, const Position
   const auto n = static_cast<long long>(s.points.size());
   for (int c = 0; c < 3; ++c) {
     std::vector<double> way;
-    for (const auto& v : s.points.vertices) way.push_back(x1(c, v[0]) - x0(c, v[0]));
-    for (int k = 0; k < n_sampled(n); ++k)
-      at_start[c].push_back(x0(c, s.points.vertices[static_cast<std::size_t>(sampled(k, n))][0]));
+    for (int k = 0; k < n_sampled(n); ++k) {
+      const int v = s.points.vertices[static_cast<std::size_t>(sampled(k, n))][0];
+      at_start[c].push_back(x0(c, v));
+      way.push_back(x1(c, v) - x0(c, v));
+    }
     std::sort(at_start[c].begin(), at_start[c].end());
     std::sort(way.begin(), way.end());
     out.moved[c] = way[way.size() / 2];
@@ -320,7 +322,7 @@ TEST(ExecutorBroadPhase, CountsBeforeAnyListIsThere) {
   const Scene scene = soup_scene(2, 100);
   test::TestedExecutor executor;
   ExecutorMotion motion(executor, scene, scene.x0, moved(scene, 0.3, 1));
-  const auto counts = motion.broad_phase.count(motion.x0, motion.x1);
+  const auto counts = motion.broad_phase.count(motion.x0, motion.x1, motion.candidates);
   EXPECT_EQ(motion.candidates.edge_edge.size(), 0);
   EXPECT_GT(counts.edge_edge, 1000);
   executor.limit_memory(executor.memory().bytes() + counts.bytes() / 2);

@@ -18,6 +18,7 @@ struct Settings {
   int major = 9, minor = 0;
   std::size_t memory = std::size_t{1} << 32;  // bytes of the card
   std::size_t local_bytes = 0;  // of a thread of every kernel; the card holds two processors of 1024 threads
+  int registers = 0;            // of every kernel
   int refuse_launch = -1;       // the launch of this number fails at once
   cudaError_t refuse_code = cudaErrorLaunchOutOfResources;  // with this
   int break_launch = -1;                                    // this one runs into an illegal address
@@ -31,9 +32,10 @@ struct Counts {
   int graphs = 0;    // instantiated
   int replays = 0;
   int waits = 0;
-  int libraries = 0;       // of device code, loaded and not unloaded
-  std::size_t in_use = 0;  // device memory
-  std::string fault;       // what a kernel did wrong, in the words of the PTX machine
+  unsigned blocks = 0, threads = 0;  // of the last launch
+  int libraries = 0;                 // of device code, loaded and not unloaded
+  std::size_t in_use = 0;            // device memory
+  std::string fault;                 // what a kernel did wrong, in the words of the PTX machine
 };
 
 Settings& settings();

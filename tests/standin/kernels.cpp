@@ -91,6 +91,7 @@ cudaError_t launch(const void* stub, dim3 grid, dim3 block, void** arguments, st
   for (std::size_t i = 0; i < kernel->params.size(); ++i) {
     memcpy(out.parameters.data() + kernel->params[i].offset, arguments[i], kernel->params[i].bytes);
   }
+  standin::counts().blocks = grid.x, standin::counts().threads = block.x;
   return standin::enqueue(stream, [out = std::move(out)] { return run(out); });
 }
 

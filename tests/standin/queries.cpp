@@ -30,6 +30,7 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp* card, int) {
 cudaError_t cudaFuncGetAttributes(cudaFuncAttributes* of, const void*) {
   *of = {};
   of->localSizeBytes = settings().local_bytes;
+  of->numRegs = settings().registers;
   return result(cudaSuccess);
 }
 cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {

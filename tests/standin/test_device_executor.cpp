@@ -6,10 +6,14 @@
 
 #include <random>
 
+#include "core/exec/cuda/block_size.hpp"
 #include "core/exec/cuda/device.hpp"
 #include "core/exec/cuda/kernel_table.hpp"
 #include "core/exec/host_executor.hpp"
 #include "tests/standin/device_kernels.hpp"
+#ifdef BB_STANDIN
+#include "tests/standin/cudart.hpp"
+#endif
 
 namespace bb::device_kernels {
 void add_to(cuda::KernelTable& table);
@@ -73,6 +77,16 @@ TEST_F(OnDevice, KernelsGetTheirArguments) {
   }
 }
 
+TEST(BlockSize, HasAsManyWarpsAsRegistersAllow) {
+  static_assert(cuda::resident_warps(256, 138) == 8 && cuda::resident_warps(64, 138) == 14);
+  for (const int registers : {0, 32, 40, 64, 80, 128, 208, 255}) {
+    EXPECT_EQ(cuda::threads_of_block(registers), 256) << registers;
+  }
+  for (const int registers : {90, 129, 138, 160, 168}) {
+    EXPECT_EQ(cuda::threads_of_block(registers), 64) << registers;
+  }
+}
+
 std::vector<double> block_sums(Executor& executor, Index blocks) {
   Buffer<double> in(executor, "in"), out(executor, "out", 2 * blocks);
   in.upload(numbers(256 * static_cast<std::size_t>(blocks)));
@@ -85,6 +99,23 @@ TEST_F(OnDevice, BlocksAndTilesSumInTheSameTree) {
   ASSERT_GT(sums[0], 256);
   EXPECT_EQ(block_sums(*device, 20), sums);
 }
+
+#ifdef BB_STANDIN
+TEST_F(OnDevice, KernelsOfManyRegistersRunInSmallBlocks) {
+  const Results here = many_arguments(host, 1000);
+  EXPECT_EQ(many_arguments(*device, 1000), here);
+  EXPECT_EQ(standin::counts().threads, 256u);
+  standin::settings().registers = 138;
+  cuda::DeviceExecutor small_blocks(1000);
+  EXPECT_EQ(many_arguments(small_blocks, 1000), here);
+  EXPECT_EQ(standin::counts().threads, 64u);
+  EXPECT_EQ(standin::counts().blocks, 16u);
+  EXPECT_EQ(block_sums(small_blocks, 3), block_sums(host, 3));
+  EXPECT_EQ(standin::counts().threads,
+            256u);  // the threads of a block share memory: they are as many as the kernel says
+  standin::settings().registers = 0;
+}
+#endif
 
 TEST_F(OnDevice, GraphsRunWhatWasCaptured) {
   Buffer<double> x(*device, "x");

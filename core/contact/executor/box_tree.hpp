@@ -11,31 +11,25 @@ class BoxTrees {
  public:
   BoxTrees(Executor& executor)
       : executor_(executor),
-        key_(executor, "tree Morton codes"),
         order_(executor, "tree order"),
-        node_{{executor, "tree of points"},
-              {executor, "tree of edges"},
-              {executor, "tree of triangles"},
-              {executor, "tree of lone edges"}} {}
-  /// of.begin is set here.
-  void fit(TreeSources of);
+        group_{{executor, "tree of points"},
+               {executor, "tree of edges"},
+               {executor, "tree of triangles"},
+               {executor, "tree of lone edges"}} {}
+  /// of.begin is set here. codes: room for size() of them, until fit() returns.
+  void fit(TreeSources of, Key* codes);
+  static Index size(const TreeSources& of) { return of.points.n + of.edges.n + of.triangles.n + of.lone.n; }
   void free() {
-    key_.free(), order_.free();
-    for (auto& node : node_) node.free();
-  }
-  /// Room for keys, until fit().
-  Key* keys(Index n) {
-    if (key_.size() < n) key_.resize(n);
-    return key_.data();
+    order_.free();
+    for (auto& groups : group_) groups.free();
   }
   /// Of the last fit.
   TreeView view(int tree) const;
 
  private:
   Executor& executor_;
-  Buffer<Key> key_;
   Buffer<std::uint32_t> order_;
-  Buffer<TreeNode> node_[n_trees];
+  Buffer<TreeGroup> group_[n_trees];
   TreePlaces place_[n_trees]{};
 };
 

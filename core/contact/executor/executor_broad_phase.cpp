@@ -1,9 +1,7 @@
 #include "core/contact/executor/executor_broad_phase.hpp"
 
-#include <algorithm>
+#include <array>
 #include <bit>
-
-#include "core/exec/sums/compaction.hpp"
 
 namespace bb::exec {
 
@@ -27,6 +25,16 @@ Primitives<2> lone_primitives(const Surface& surface, const ContactPlan& plan) {
   return out;
 }
 
+std::array<Buffer<Key>*, n_candidate_lists> lists_of(ExecutorCandidates& c) {
+  return {&c.point_point, &c.point_edge,    &c.point_triangle,   &c.edge_edge,
+          &c.obstacle,    &c.obstacle_edge, &c.obstacle_triangle};
+}
+std::array<Index, n_candidate_lists> numbers_of(const CandidateCounts& c) {
+  return {c.point_point, c.point_edge,    c.point_triangle,   c.edge_edge,
+          c.obstacle,    c.obstacle_edge, c.obstacle_triangle};
+}
+Index room_of(const Buffer<Key>& list) { return static_cast<Index>(list.bytes() / sizeof(Key)); }
+
 }  // namespace
 
 ExecutorBroadPhase::ExecutorBroadPhase(Executor& executor, const ExecutorSurface& on_executor,
@@ -41,8 +49,11 @@ ExecutorBroadPhase::ExecutorBroadPhase(Executor& executor, const ExecutorSurface
       lone_(executor, "lone edges", lone_primitives(surface, plan)),
       edge_of_(executor, "numbers of lone edges"),
       places_(executor, "places of candidates"),
-      held_(executor, "held candidates"),
-      total_(executor) {
+      held_(executor, "held pairs"),
+      n_held_(executor, "held pairs"),
+      next_(executor, "held pairs"),
+      total_(executor),
+      unfinished_(executor) {
   if (plan.point_point) upload_rows(connected_, surface.connected_pairs());
   if (plan.point_edge) upload_rows(opposite_, surface.opposite_corners());
   if (lone_.free.size() > 0) edge_of_.upload(surface.lone_edges);
@@ -52,18 +63,13 @@ ExecutorBroadPhase::ExecutorBroadPhase(Executor& executor, const ExecutorSurface
 void ExecutorBroadPhase::find_frame(const PositionsView& x0, const PositionsView& x1) {
   const PrimitiveView<1> points = surface_.view().points;
   if (points.n == 0) return frame_.fill_zero();
-  Key* displacement = nullptr;
-  if (x0.data() != x1.data()) {
-    displacement = trees_.keys(3 * points.n);
-    executor_.each(3 * points.n,
-                   DisplacementKeys{points.vertex, points.n, x0.data(), x1.data(), displacement});
-    for (int c = 0; c < 3; ++c) executor_.sort(displacement + c * points.n, nullptr, points.n, 64);
-  }
   executor_.blocks(
-      1, FindFrame{points.vertex, points.n, x0.data(), displacement, surface_.element_size(), frame_.data()});
+      1, FindFrame{points.vertex, points.n, x0.data(), x1.data(), surface_.element_size(), frame_.data()});
 }
 
 void ExecutorBroadPhase::fit(const PositionsView& x0, const PositionsView& x1) {
+  x0_ = x0.data();
+  x1_ = x1.data();
   if (!plan_.broad_phase.needed) return;
   find_frame(x0, x1);
   const SurfaceView s = surface_.view();
@@ -72,7 +78,10 @@ void ExecutorBroadPhase::fit(const PositionsView& x0, const PositionsView& x1) {
   if (!(plan_.point_point || plan_.point_edge || plan_.point_triangle)) of.points.n = 0;
   if (!((plan_.point_edge && !lone) || plan_.edge_edge)) of.edges.n = 0;
   if (!plan_.point_triangle) of.triangles.n = 0;
-  trees_.fit(of);
+  // nothing is held until the trees stand, and a leaf's places are longer than its code
+  constexpr Index numbers_of_a_code = sizeof(Key) / sizeof(std::uint32_t);
+  held_.resize(numbers_of_a_code * BoxTrees::size(of));
+  trees_.fit(of, reinterpret_cast<Key*>(held_.data()));
 }
 
 template <PairKind K>
@@ -84,12 +93,12 @@ PairSearch ExecutorBroadPhase::search() const {
           : K == PairKind::point_triangle ? triangles
           : lone                          ? trees_.view(3)
                                           : edges,
+          {lone ? edge_of_.data() : nullptr, one_tree<K>},
           surface_.view(),
           {connected_.data(), connected_.size() / 2},
           {opposite_.data(), opposite_.size() / 3},
           x0_,
-          x1_,
-          lone ? edge_of_.data() : nullptr};
+          x1_};
 }
 
 CandidateSource ExecutorBroadPhase::source() const {
@@ -97,7 +106,7 @@ CandidateSource ExecutorBroadPhase::source() const {
                       search<PairKind::point_triangle>(), search<PairKind::edge_edge>(),
                       plan_.obstacles.needed};
   const auto only = [](bool needed, PairSearch& s) {
-    if (!needed) s.first.top = s.second.top = -1;
+    if (!needed) s.first.n = s.second.n = 0;
   };
   only(plan_.point_point, out.point_point);
   only(plan_.point_edge, out.point_edge);
@@ -106,68 +115,121 @@ CandidateSource ExecutorBroadPhase::source() const {
   return out;
 }
 
-Askers ExecutorBroadPhase::askers() const {
-  const CandidateSource from = source();
+Askers ExecutorBroadPhase::askers(const CandidateSource& from, int round) const {
   const SurfaceView s = surface_.view();
-  Askers out{{from.point_point, from.point_edge, from.point_triangle, from.edge_edge}, x0_, x1_, {}};
+  Askers out{{}, round, 0, s.n_obstacles};
   const Index obstacle_items[] = {s.points.n, s.edges.n, s.triangles.n};
+  const PairSearch* const search[] = {&from.point_point, &from.point_edge, &from.point_triangle,
+                                      &from.edge_edge};
   for (int k = 0; k < n_candidate_lists; ++k) {
     Index n = 0;
     if (k >= first_obstacle_list) {
       n = from.obstacles ? obstacle_items[k - first_obstacle_list] : 0;
-    } else if (out.search[k].first.top >= 0 && out.search[k].second.top >= 0) {
-      n = out.search[k].first.size(0);
+    } else if (search[k]->second.n > 0) {
+      n = search[k]->first.n;
     }
     out.begin[k + 1] = out.begin[k] + n;
   }
+  out.each = places_each_ > 0 ? places_each_ : places_of_an_item(out.leaves());
   return out;
 }
 
-CandidateCounts ExecutorBroadPhase::count(const PositionsView& x0, const PositionsView& x1) {
-  static_assert(sizeof(CandidateCounts) == n_candidate_lists * sizeof(Index), "one number a list");
-  x0_ = x0.data();
-  x1_ = x1.data();
-  fit(x0, x1);
-  const Askers from = askers();
-  const Index n = from.begin[n_candidate_lists];
-  places_.resize(n + 1), held_.resize(pairs_held * from.begin[first_obstacle_list]);
-  executor_.each(n, CountCandidates{from, places_.data(), held_.data()});
-  scan_counts(executor_, places_.data(), n);
-  CandidateTotals totals{places_.data(), {}, reinterpret_cast<Index*>(total_.to_write())};
-  std::copy(std::begin(from.begin), std::end(from.begin), totals.begin);
-  executor_.each(n_candidate_lists, totals);
+HeldPairs ExecutorBroadPhase::held() { return {held_.data(), n_held_.data(), next_.data()}; }
+
+/// The lists get room for what was counted last; `next`: before the next count, which may find more. @return whether what they
+/// hold is still there
+bool ExecutorBroadPhase::size_lists(ExecutorCandidates& out, bool next) const {
+  const auto list = lists_of(out);
+  const auto count = numbers_of(counts_);
+  bool kept = true;
+  for (std::size_t k = 0; k < n_candidate_lists; ++k) {
+    const bool room = room_ || k >= first_obstacle_list;
+    kept = kept && count[k] <= room_of(*list[k]);
+    room ? list[k]->grow(count[k]) : list[k]->resize(count[k] + (next ? count[k] / 32 : 0));
+  }
+  return kept;
+}
+
+/// Puts the candidates that a round has found into the lists, as far as these have room.
+void ExecutorBroadPhase::put(const CandidateSource& from, const Askers& askers, ExecutorCandidates& out) {
+  const PairSearch* const search[] = {&from.point_point, &from.point_edge, &from.point_triangle,
+                                      &from.edge_edge};
+  FillCandidates fill{{askers, held()}, places_.places(), askers.round > 0 ? totals() : nullptr, {}};
+  const auto list = lists_of(out);
+  for (std::size_t k = 0; k < n_candidate_lists; ++k) {
+    fill.to[k].list = list[k]->data();
+    fill.to[k].room = room_of(*list[k]);
+    if (k < first_obstacle_list) fill.to[k].first = search[k]->first, fill.to[k].leaves = search[k]->leaves;
+  }
+  executor_.each(askers.items(), fill);
+}
+
+/// One round: walks, rules, places, lists, counts.
+void ExecutorBroadPhase::look(const CandidateSource& from, const Askers& askers, ExecutorCandidates& out) {
+  const auto walk = [](const PairSearch& s) { return WalkTrees::Walk{s.first, s.second, s.leaves}; };
+  unfinished_.fill(0);
+  executor_.each(askers.leaves(), WalkTrees{askers,
+                                            {walk(from.point_point), walk(from.point_edge),
+                                             walk(from.point_triangle), walk(from.edge_edge)},
+                                            held(),
+                                            unfinished_.to_write()});
+  executor_.each(askers.places(),
+                 KeepCandidates{askers,
+                                {from.point_point, from.point_edge, from.point_triangle, from.edge_edge},
+                                x0_,
+                                x1_,
+                                held()});
+  places_.rank_by(askers.items(), HeldCandidates{askers, held()});
+  put(from, askers, out);
+  executor_.each(n_candidate_lists,
+                 CandidateTotals{askers, places_.places(), places_.sum_on_executor(), totals()});
+}
+
+void ExecutorBroadPhase::search(ExecutorCandidates& out) {
+  const CandidateSource from = source();
+  const Askers first = askers(from, 0);
+  held_.resize(first.places()), n_held_.resize(first.leaves()), next_.resize(first.leaves());
+  rounds_ = 0;
+  for (bool on = true; on;) {
+    const Askers asked = askers(from, rounds_++);
+    look(from, asked, out);
+    const bool more = from.obstacles && asked.n_obstacles > rounds_ * asked.each;
+    on = !executor_.counts_only() && (unfinished_.get() != 0 || more);
+  }
   if (!executor_.counts_only()) counts_ = total_.get();
+}
+
+CandidateCounts ExecutorBroadPhase::count(const PositionsView& x0, const PositionsView& x1,
+                                          ExecutorCandidates& out, std::size_t most) {
+  static_assert(sizeof(CandidateCounts) == n_candidate_lists * sizeof(Index), "one number a list");
+  fit(x0, x1);
+  if (counts_.bytes() <= most) size_lists(out, true);
+  search(out);
   return counts_;
 }
 
 void ExecutorBroadPhase::fill(ExecutorCandidates& out) {
-  Buffer<Key>* const list[] = {&out.point_point, &out.point_edge,    &out.point_triangle,   &out.edge_edge,
-                               &out.obstacle,    &out.obstacle_edge, &out.obstacle_triangle};
-  const Index count[] = {counts_.point_point,      counts_.point_edge, counts_.point_triangle,
-                         counts_.edge_edge,        counts_.obstacle,   counts_.obstacle_edge,
-                         counts_.obstacle_triangle};
-  FillCandidates to{askers(), places_.data(), held_.data(), {}};
-  for (int k = 0; k < n_candidate_lists; ++k) {
-    const bool room = room_ || k >= first_obstacle_list;
-    room ? list[k]->grow(count[k]) : list[k]->resize(count[k]);
-    to.list[k] = list[k]->data();
+  if (!size_lists(out, false)) {
+    const CandidateSource from = source();
+    rounds_ == 1 ? put(from, askers(from, 0), out) : search(out);
   }
-  if (counts_.total() == 0) return;
-  executor_.each(to.askers.begin[n_candidate_lists], to);
+  const Askers items = askers(source(), 0);
+  const auto list = lists_of(out);
   for (int k = 0; k < first_obstacle_list; ++k) {  // leaves are in the order of their tree
-    if (count[k] == 0) continue;
-    const auto bits = std::bit_width(static_cast<Key>(to.askers.size(k) - 1));
-    executor_.sort(list[k]->data(), nullptr, count[k], 32 + static_cast<int>(bits));
+    Buffer<Key>& pairs = *list[static_cast<std::size_t>(k)];
+    if (pairs.size() == 0) continue;
+    const auto bits = std::bit_width(static_cast<Key>(items.size(k) - 1));
+    executor_.sort(pairs.data(), nullptr, pairs.size(), 32 + static_cast<int>(bits));
   }
 }
 
 void ExecutorBroadPhase::free() {
   trees_.free();
-  places_.free(), held_.free();
+  places_.free(), held_.free(), n_held_.free(), next_.free();
 }
 
 void ExecutorBroadPhase::update(const PositionsView& x0, const PositionsView& x1, ExecutorCandidates& out) {
-  count(x0, x1);
+  count(x0, x1, out);
   fill(out);
 }
 

@@ -63,7 +63,7 @@ void ExecutorStepBound::ask_rest(Index begin) {
 
 template <PairKind K>
 void ExecutorStepBound::ask_tree(const PairSearch& search) {
-  const Index n = search.first.top < 0 || search.second.top < 0 ? 0 : search.first.size(0);
+  const Index n = search.second.n > 0 ? search.first.n : 0;
   in_batches(n, [&](Index at) { return AskInTree<K>{query_, search, at}; });
 }
 

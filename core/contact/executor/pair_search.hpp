@@ -29,15 +29,32 @@ struct SortedRows {
   }
 };
 
+BB_HD inline Key pair_of(Index first, Index second) {
+  return static_cast<Key>(first) << 32 | static_cast<Key>(second);
+}
+BB_HD inline Index first_of(Key pair) { return static_cast<Index>(pair >> 32); }
+BB_HD inline Index second_of(Key pair) { return static_cast<Index>(pair & 0xffffffff); }
+
+/// Which pair of the surface a leaf and one that it meets are.
+struct LeafPairs {
+  const int* second;  // what the primitives of the second tree are in the surface; null: themselves
+  bool one_tree;      // first and second are of the same tree
+  BB_HD Key pair(Index own, Index found) const {
+    const Index other = second ? second[found] : found;
+    return one_tree && other < own ? pair_of(other, own) : pair_of(own, other);
+  }
+  /// Where the leaf at a place begins to look: within one tree behind itself, so that each pair comes once.
+  BB_HD Index begin(Index place) const { return one_tree ? place + 1 : 0; }
+};
+
 /// Trees of the first and the second primitives of a kind of pair, and what never pairs.
 struct PairSearch {
   TreeView first, second;
+  LeafPairs leaves;
   SurfaceView surface;
   SortedRows<2> connected;  // planar, of two vertices: mesh edges
   SortedRows<3> opposite;   // planar, of a vertex and an edge: edge and third corner of a triangle
   const double *x0, *x1;    // the motion
-  const int*
-      edge_of;  // in space, of a vertex and an edge: of the leaves of `second` in the edges of the surface; or null
 };
 
 template <PairKind K>
@@ -75,26 +92,22 @@ BB_HD bool apart_by_rest_rule(const PairSearch& s, Index i, Index j) {
                                    value_epsilon(Precision::full));
 }
 
-/// Calls f(first, second) for the candidates of kind K that the leaf at a place of the first tree has: within one tree
-/// those with the leaves behind it, first < second, so that each pair comes once.
+/// Whether a pair whose boxes meet is a candidate.
+template <PairKind K>
+BB_HD bool is_candidate(const PairSearch& s, Key pair) {
+  const Index i = first_of(pair), j = second_of(pair);
+  return may_pair<K>(s, i, j) && !apart_by_rest_rule<K>(s, i, j);
+}
+/// Calls f(first, second) for the candidates of kind K that the leaf at a place of the first tree has.
 template <PairKind K, class F>
 BB_HD void for_each_pair(const PairSearch& s, Index place, const F& f) {
-  const TreeNode asking = s.first.node[place];
-  const Index own = asking.primitive();
-  for_each_overlap(s.second, asking, one_tree<K> ? place + 1 : 0, [&](const TreeNode& leaf) {
-    const Index other =
-        K == PairKind::point_edge && s.edge_of != nullptr ? s.edge_of[leaf.primitive()] : leaf.primitive();
-    const bool swapped = one_tree<K> && other < own;
-    const Index i = swapped ? other : own, j = swapped ? own : other;
-    if (may_pair<K>(s, i, j) && !apart_by_rest_rule<K>(s, i, j)) f(i, j);
+  const TreeNode asking = s.first.leaf(place);
+  for_each_overlap(s.second, asking, s.leaves.begin(place), [&](Index found) {
+    const Key pair = s.leaves.pair(asking.primitive(), found);
+    if (is_candidate<K>(s, pair)) f(first_of(pair), second_of(pair));
+    return true;
   });
 }
-
-BB_HD inline Key pair_of(Index first, Index second) {
-  return static_cast<Key>(first) << 32 | static_cast<Key>(second);
-}
-BB_HD inline Index first_of(Key pair) { return static_cast<Index>(pair >> 32); }
-BB_HD inline Index second_of(Key pair) { return static_cast<Index>(pair & 0xffffffff); }
 
 /// Whether primitive i with N vertices may come within its contact distance of obstacle o on x0 -> x1.
 template <int N>

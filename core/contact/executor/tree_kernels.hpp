@@ -18,52 +18,68 @@ BB_HD inline double from_sortable_bits(Key bits) {
   return from_ordered_bits((bits & sign) != 0 ? bits & ~sign : ~bits);
 }
 
-/// key[c n + i]: coordinate c of the displacement of surface point i of n.
-struct DisplacementKeys {
-  const int* vertex;
-  Index n;
-  const double *x0, *x1;
-  Key* key;
-  BB_HD void operator()(Index item) const {
-    const Index c = item / n, i = item - c * n, at = 3 * static_cast<Index>(vertex[i]) + c;
-    key[item] = sortable_bits(x1[at] - x0[at]);
-  }
-};
-
-/// One block: the frame of sampled points at the start, and what is shared of the motion along every axis: the median of n
-/// displacements; nothing where one is no number.
+/// One block: the frame of sampled points at the start, and what is shared of the motion along every axis: the median of
+/// their displacements; nothing where one is no number. An axis is a thread of a warp of its own.
 struct FindFrame {
-  static constexpr int width = most_sampled;
+  static constexpr int width = most_sampled, warp = 32;
   static_assert(width == 128);
   struct Shared {
-    Key sample[3][width];
+    Key sample[6][width];  // coordinates at the start, then displacements
+    LargestGaps gaps[3];
+    AxisFrame axis[3];
   };
   const int* vertex;
   Index n;
-  const double* x0;
-  const Key* displacement;  // [3 n] sorted along each axis; null: a state
-  double size;              // Surface::element_size
+  const double *x0, *x1;  // equal: a state
+  double size;            // Surface::element_size
   MotionFrame* frame;
 
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index) const {
-    const int n_all = n_sampled(n);
+    const int n_all = n_sampled(n), n_lists = x0 == x1 ? 3 : 6;
     block.threads([&](int t) {
-      for (int item = t; item < 3 * width; item += block_threads) {
-        const int c = item / width, k = item % width;
-        Key key = ~Key{0};  // what is no number, and what is not there, comes last
-        if (k < n_all) {
-          const double x = x0[3 * static_cast<Index>(vertex[sampled(k, n)]) + c];
-          if (x - x == 0) key = sortable_bits(x);
-        }
-        shared.sample[c][k] = key;
+      for (int item = t; item < n_lists * width; item += block_threads) {
+        shared.sample[item / width][item % width] = sample(item / width, item % width, n_all);
       }
     });
-    // Bitonic: the same pairs whatever the numbers are. Source: Batcher 1968.
+    sort(block, shared, n_lists);
+    block.threads([&](int t) {
+      const int c = t / warp;
+      if (t % warp != 0 || c >= 6) return;
+      if (c < 3) {
+        shared.gaps[c] = largest_gaps(At{shared.sample[c]}, n_finite(shared.sample[c], n_all));
+      } else {
+        frame->moved[c - 3] = c < n_lists ? shared_motion(shared.sample[c], n_all) : 0;
+      }
+    });
+    block.threads([&](int t) {
+      const int c = t / warp;
+      if (t % warp != 0 || c >= 3) return;
+      shared.axis[c] = axis_frame(At{shared.sample[c]}, n_finite(shared.sample[c], n_all), shared.gaps[c],
+                                  widest(shared.gaps, size));
+    });
+    block.once([&] { frame->folded = joined(shared.axis); });
+  }
+
+ private:
+  struct At {
+    const Key* sorted;
+    BB_HD double operator()(int i) const { return from_sortable_bits(sorted[i]); }
+  };
+  /// What is no number, and what is not there, comes last.
+  BB_HD Key sample(int list, int k, int n_all) const {
+    if (k >= n_all) return ~Key{0};
+    const Index at = 3 * static_cast<Index>(vertex[sampled(k, n)]) + list % 3;
+    const double x = list < 3 ? x0[at] : x1[at] - x0[at];
+    return x - x == 0 ? sortable_bits(x) : ~Key{0};
+  }
+  /// Bitonic: the same pairs whatever the numbers are. Source: Batcher 1968.
+  template <class Block>
+  BB_HD static void sort(Block& block, Shared& shared, int n_lists) {
     for (int run = 2; run <= width; run *= 2) {
       for (int apart = run / 2; apart > 0; apart /= 2) {
         block.threads([&](int t) {
-          for (int item = t; item < 3 * width / 2; item += block_threads) {
+          for (int item = t; item < n_lists * width / 2; item += block_threads) {
             Key* const of = shared.sample[item / (width / 2)];
             const int pair = item % (width / 2), low = 2 * apart * (pair / apart) + pair % apart;
             put_in_order(of[low], of[low + apart], (low & run) == 0);
@@ -71,33 +87,18 @@ struct FindFrame {
         });
       }
     }
-    block.threads([&](int t) {
-      if (t == 0) fold(shared, n_all);
-      if (t >= 1 && t <= 3) frame->moved[t - 1] = shared_motion(t - 1);
-    });
   }
-
- private:
   BB_HD static void put_in_order(Key& a, Key& b, bool ascending) {
     const Key low = b < a ? b : a, high = b < a ? a : b;
     a = ascending ? low : high;
     b = ascending ? high : low;
   }
-  BB_HD void fold(const Shared& shared, int n_all) const {
-    const Shared* const all = &shared;
-    const auto coordinate = [all](int c, int i) { return from_sortable_bits(all->sample[c][i]); };
-    const auto count = [all, n_all](int c) {
-      int n_finite = n_all;
-      while (n_finite > 0 && all->sample[c][n_finite - 1] == ~Key{0}) --n_finite;
-      return n_finite;
-    };
-    frame->folded = folded_frame(coordinate, count, size);
+  BB_HD static int n_finite(const Key* sorted, int n_all) {
+    while (n_all > 0 && sorted[n_all - 1] == ~Key{0}) --n_all;
+    return n_all;
   }
-  BB_HD double shared_motion(int c) const {
-    if (!displacement) return 0;
-    const Key* const sorted = displacement + c * n;
-    const double first = from_sortable_bits(sorted[0]), last = from_sortable_bits(sorted[n - 1]);
-    return first - first == 0 && last - last == 0 ? from_sortable_bits(sorted[n / 2]) : 0;
+  BB_HD static double shared_motion(const Key* sorted, int n_all) {
+    return n_finite(sorted, n_all) == n_all ? median_of(At{sorted}, n_all) : 0;
   }
 };
 
@@ -170,12 +171,25 @@ struct MortonKeys {
   }
 };
 
-/// The nodes of a tree to be built.
+/// The groups of a tree to be built.
 struct TreePlaces {
-  TreeNode* node;
-  Index begin[max_tree_levels + 1];
+  TreeGroup* group;
+  Index begin[max_tree_levels];
+  Index n;
   int top;
-  BB_HD Index size(int level) const { return level > top ? 0 : begin[level + 1] - begin[level]; }
+  BB_HD Index size(int level) const {
+    return level > top ? 0 : (n + (Index{1} << 2 * level) - 1) >> 2 * level;
+  }
+  /// Node i of a level; with the last one its siblings that are not there, which meet nothing and widen no box.
+  BB_HD void put(int level, Index i, const TreeNode& node) const {
+    TreeGroup& to = group[begin[level] + i / tree_width];
+    int k = static_cast<int>(i % tree_width);
+    to.put(k, node);
+    if (i + 1 < size(level)) return;
+    const FloatBox none = empty_box();
+    TreeNode absent{{none.lo[0], none.lo[1], none.lo[2]}, {none.hi[0], none.hi[1], none.hi[2]}, 0, 0};
+    while (++k < tree_width) to.put(k, absent);
+  }
 };
 
 /// Four levels of all trees: from the 256 nodes of a level that a block takes all that they are below of. From level 0 the
@@ -202,7 +216,7 @@ struct TreeLevels {
     if (from == 0) {
       block.threads([&](int t) {
         const Index place = b * block_threads + t;
-        if (place < to.size(0)) to.node[place] = leaf(k, primitive[of.begin[k] + place]);
+        if (place < to.size(0)) to.put(0, place, leaf(k, primitive[of.begin[k] + place]));
       });
     }
     int width = block_threads;
@@ -210,7 +224,7 @@ struct TreeLevels {
       width /= tree_width;
       block.threads([&](int t) {
         const Index i = b * width + t;
-        if (t < width && i < to.size(level)) to.node[to.begin[level] + i] = parent(to, level, i);
+        if (t < width && i < to.size(level)) to.put(level, i, parent(to.group[to.begin[level - 1] + i]));
       });
     }
   }
@@ -225,24 +239,18 @@ struct TreeLevels {
     out.tag = 2 * static_cast<std::uint32_t>(i) + (free ? 1 : 0);
     return out;
   }
-  /// Node i of a level. A number that is none is never less and never more.
-  BB_HD static TreeNode parent(const TreePlaces& to, int level, Index i) {
+  /// The node above a group. A number that is none is never less and never more.
+  BB_HD static TreeNode parent(const TreeGroup& children) {
     FloatBox box = empty_box();
-    TreeNode out;
-    out.reach = 0;
-    out.tag = 0;
-    const Index n = to.size(level - 1), begin = tree_width * i,
-                end = begin + tree_width < n ? begin + tree_width : n;
-    for (Index child = begin; child < end; ++child) {
-      const TreeNode at = to.node[to.begin[level - 1] + child];
+    std::uint32_t free = 0;
+    for (int child = 0; child < tree_width; ++child) {
       for (int c = 0; c < 3; ++c) {
-        box.lo[c] = at.lo[c] < box.lo[c] ? at.lo[c] : box.lo[c];
-        box.hi[c] = at.hi[c] > box.hi[c] ? at.hi[c] : box.hi[c];
+        box.lo[c] = children.lo[c][child] < box.lo[c] ? children.lo[c][child] : box.lo[c];
+        box.hi[c] = children.hi[c][child] > box.hi[c] ? children.hi[c][child] : box.hi[c];
       }
-      out.tag |= at.free();
+      free |= children.tag[child] & 1;
     }
-    for (int c = 0; c < 3; ++c) out.lo[c] = box.lo[c], out.hi[c] = box.hi[c];
-    return out;
+    return {{box.lo[0], box.lo[1], box.lo[2]}, {box.hi[0], box.hi[1], box.hi[2]}, 0, free};
   }
 };
 

@@ -73,10 +73,10 @@ struct DeviceBlock {
   }
 };
 
-/// f(i) for i in [0, n): a thread an item.
+/// f(i) for i in [0, n): a thread an item, in blocks of block_threads or fewer (block_size.hpp).
 template <class F>
 __global__ void __launch_bounds__(block_threads) run_each(Index n, const __grid_constant__ F f) {
-  const Index i = static_cast<Index>(blockIdx.x) * block_threads + static_cast<Index>(threadIdx.x);
+  const Index i = static_cast<Index>(blockIdx.x) * blockDim.x + static_cast<Index>(threadIdx.x);
   if (i < n) f(i);
 }
 

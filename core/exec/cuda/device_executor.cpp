@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/exec/cuda/block_size.hpp"
 #include "core/exec/cuda/device.hpp"
 #include "core/exec/cuda/kernel_table.hpp"
 #include "core/exec/cuda/loaded_code.hpp"
@@ -27,12 +28,18 @@ KernelTable& kernel_table() {
 
 namespace {
 
-/// Bytes of the card that a kernel's local memory takes; 0 where it cannot be asked.
-std::size_t local_memory_of(const DeviceKernel& kernel) {
+/// All 0 where it cannot be asked.
+cudaFuncAttributes attributes_of(const DeviceKernel& kernel) {
   cudaFuncAttributes of{};
+  if (cudaFuncGetAttributes(&of, kernel.function) == cudaSuccess) return of;
+  cudaGetLastError();  // the launch tells what is wrong
+  return {};
+}
+
+/// Bytes of the card that a kernel's local memory takes; 0 where it cannot be asked.
+std::size_t local_memory_of(const cudaFuncAttributes& of) {
   int processors = 0, threads = 0;
-  if (cudaFuncGetAttributes(&of, kernel.function) != cudaSuccess ||
-      cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0) != cudaSuccess ||
+  if (cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0) != cudaSuccess ||
       cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, 0) != cudaSuccess) {
     cudaGetLastError();  // the launch tells what is wrong
     return 0;
@@ -45,7 +52,7 @@ std::size_t local_memory_of(const DeviceKernel& kernel) {
 std::size_t local_memory_of_kernels() {
   std::size_t most = 0;
   kernel_table().for_each(
-      [&](const DeviceKernel& kernel) { most = std::max(most, local_memory_of(kernel)); });
+      [&](const DeviceKernel& kernel) { most = std::max(most, local_memory_of(attributes_of(kernel))); });
   return most;
 }
 
@@ -119,9 +126,9 @@ const DeviceKernel& DeviceExecutor::device_kernel(const exec::KernelInfo& kernel
 
 void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void* f) {
   const DeviceKernel& found = device_kernel(kernel);
-  count_local_memory(found);
+  const int threads = threads_of(found, kernel);
   const auto call = [&] {
-    const int code = cuda::launch(found, f, n, stream_);
+    const int code = cuda::launch(found, f, n, threads, stream_);
     if (code == cudaSuccess) return;
     if (code == cudaErrorMemoryAllocation) refuse_local_memory(kernel);
     check(code, kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));
@@ -139,16 +146,19 @@ void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void*
   remember(kernel);
 }
 
-// From its first launch on the driver keeps the local memory of the kernel that needs the most, for as many threads as the
-// card holds at a time.
-void DeviceExecutor::count_local_memory(const DeviceKernel& kernel) {
-  if (counted_.contains(&kernel)) return;
-  const std::size_t bytes = local_memory_of(kernel);
+/// Threads of a block of a kernel. Code that was loaded counts in blocks of block_threads. From its first launch on the
+/// driver keeps the local memory of the kernel that needs the most, for as many threads as the card holds at a time.
+int DeviceExecutor::threads_of(const DeviceKernel& found, const exec::KernelInfo& kernel) {
+  const auto known = threads_.find(&found);
+  if (known != threads_.end()) return known->second;
+  const cudaFuncAttributes of = attributes_of(found);
+  const std::size_t bytes = local_memory_of(of);
   if (bytes > local_bytes_) {
     count_memory(local_memory, bytes - local_bytes_);
     local_bytes_ = bytes;
   }
-  counted_.insert(&kernel);
+  const bool fixed = found.blocks || kernel.code;
+  return threads_[&found] = fixed ? exec::block_threads : threads_of_block(of.numRegs);
 }
 
 void DeviceExecutor::refuse_local_memory(const exec::KernelInfo& kernel) const {

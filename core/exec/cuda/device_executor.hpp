@@ -4,7 +4,7 @@
 #include <deque>
 #include <functional>
 #include <map>
-#include <unordered_set>
+#include <unordered_map>
 
 #include "core/exec/buffer.hpp"
 #include "core/exec/cuda/library.hpp"
@@ -63,7 +63,7 @@ class DeviceExecutor : public exec::Executor {
   void timed(const exec::KernelInfo& kernel, const std::function<void()>& call);
   void remember(const exec::KernelInfo& kernel);
   const DeviceKernel& device_kernel(const exec::KernelInfo& kernel);
-  void count_local_memory(const DeviceKernel& kernel);
+  int threads_of(const DeviceKernel& found, const exec::KernelInfo& kernel);
   [[noreturn]] void refuse_local_memory(const exec::KernelInfo& kernel) const;
 
   CUstream_st* stream_ = nullptr;
@@ -73,8 +73,9 @@ class DeviceExecutor : public exec::Executor {
   std::deque<const exec::KernelInfo*> unfinished_;  // the last ones since the last synchronisation
   std::map<std::string, KernelTime> times_;
   std::map<const DeviceCode*, std::shared_ptr<const DeviceKernel>> loaded_;
-  std::unordered_set<const DeviceKernel*> counted_;  // kernels whose local memory is
-  std::size_t local_bytes_ = 0;                      // of the one that needs the most
+  std::unordered_map<const DeviceKernel*, int>
+      threads_;                  // of a block; of kernels whose local memory is counted
+  std::size_t local_bytes_ = 0;  // of the one that needs the most
   exec::Index scan_part_;
   exec::Buffer<exec::Key> other_keys_;
   exec::Buffer<std::uint32_t> other_values_;

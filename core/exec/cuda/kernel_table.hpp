@@ -17,8 +17,8 @@ struct DeviceKernel {
   bool blocks;           // run_blocks, else run_each
 };
 
-/// Puts n items, or n blocks, of the functor at f on a stream. @return a cudaError_t; 0 is success
-int launch(const DeviceKernel& kernel, const void* f, exec::Index n, CUstream_st* stream);
+/// Puts n items, or n blocks, of the functor at f on a stream. threads: of a block. @return a cudaError_t; 0 is success
+int launch(const DeviceKernel& kernel, const void* f, exec::Index n, int threads, CUstream_st* stream);
 
 class KernelTable {
  public:

@@ -42,7 +42,8 @@ std::string run_self_test() {
   if (done("cudaMalloc", cudaMalloc(&test.out, sizeof got)) &&
       done("cudaMalloc", cudaMalloc(&test.least, sizeof least)) &&
       done("cudaMemcpy", cudaMemcpy(test.least, &least, sizeof least, cudaMemcpyHostToDevice)) &&
-      done("the kernel of the self-test", launch(each_kernel<SelfTest>(), &test, n, nullptr)) &&
+      done("the kernel of the self-test",
+           launch(each_kernel<SelfTest>(), &test, n, exec::block_threads, nullptr)) &&
       done("the kernel of the self-test", cudaDeviceSynchronize()) &&
       done("cudaMemcpy", cudaMemcpy(got, test.out, sizeof got, cudaMemcpyDeviceToHost))) {
     done("cudaMemcpy", cudaMemcpy(&least, test.least, sizeof least, cudaMemcpyDeviceToHost));

@@ -8,12 +8,6 @@
 
 namespace bb::exec {
 
-/// From counts [n] to places [n + 1], whose last is the sum. For counts of any size; 8 B an item.
-inline void scan_counts(Executor& executor, Index* count, Index n) {
-  executor.fill_bytes(count + n, 0, sizeof(Index));
-  executor.exclusive_scan(count, n + 1);
-}
-
 /// 2 B an item, 3 where counts are stored; keeps its buffers.
 class Compaction {
  public:

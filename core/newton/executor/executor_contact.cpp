@@ -60,9 +60,8 @@ void ExecutorContact::take_trial() {
 void ExecutorContact::prepare(const Motion& motion, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::broad_phase);
   if (frugal()) assembly_.free_matrix();
-  const std::size_t lists =
-      broad_phase_.count(motion.x0, motion.x1).bytes();  // takes memory, so before what is left is asked
-  listed_ = lists <= list_budget();
+  const std::size_t lists = count_candidates(motion.x0, motion.x1, list_budget());
+  listed_ = lists <= list_budget();  // asked again: counting took memory
   in_trees_ = !listed_;
   if (listed_) {
     fill_lists();
@@ -76,9 +75,15 @@ std::size_t ExecutorContact::list_budget() const {
   return std::min(list_budget_, executor_.memory().left() / 2 + candidates_.bytes() / 2);
 }
 
+// Bytes of the lists; those that are there already are filled on the way, and may take `most`.
+std::size_t ExecutorContact::count_candidates(const PositionsView& x0, const PositionsView& x1,
+                                              std::size_t most) {
+  broad_phase_.keep_room(!frugal());
+  return broad_phase_.count(x0, x1, candidates_, most).bytes();
+}
+
 // Of what was counted last.
 void ExecutorContact::fill_lists() {
-  broad_phase_.keep_room(!frugal());
   broad_phase_.fill(candidates_);
   if (!frugal()) return;
   broad_phase_.free();
@@ -90,7 +95,7 @@ void ExecutorContact::look_for_rows(const PositionsView& x) {
   lend_columns();
   if (!listed_) {
     in_trees_ = false;
-    broad_phase_.count(x, x);
+    count_candidates(x, x, 0);
     fill_lists();
   }
   finder_.look(x, candidates_);
@@ -198,7 +203,7 @@ std::optional<StartSums> ExecutorContact::start_sums(const PositionsView& x, con
 void ExecutorContact::look_along(const Motion& motion, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::step_bound);
   if (listed_) return step_bound_.look(candidates_, motion.x0, motion.x1);
-  if (!in_trees_) broad_phase_.count(motion.x0, motion.x1);  // a state was looked at since
+  if (!in_trees_) broad_phase_.fit(motion.x0, motion.x1);  // a state was looked at since
   in_trees_ = true;
 }
 

@@ -88,6 +88,7 @@ class ExecutorContact final : public ContactSteps<ExecutorTerm> {
   static constexpr std::size_t default_list_budget = std::size_t{8} << 30;
   bool frugal() const { return rows_.size() >= frugal_from_; }
   std::size_t list_budget() const;
+  std::size_t count_candidates(const PositionsView& x0, const PositionsView& x1, std::size_t most);
   void fill_lists();
   void look_for_rows(const PositionsView& x);
   void find_rows(const PositionsView& x);

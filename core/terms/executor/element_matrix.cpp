@@ -1,5 +1,6 @@
 #include "core/terms/executor/element_matrix.hpp"
 
+#include "core/math/at.hpp"
 #include "core/math/lower_blocks.hpp"
 
 namespace bb::exec {
@@ -10,6 +11,8 @@ ElementMatrix::ElementMatrix(Executor& executor, int n_vertices, Index piece)
       piece_(piece),
       row_begin_(executor, "element matrix rows"),
       column_(executor, "element matrix columns"),
+      mirror_to_(executor, "mirrored blocks"),
+      mirror_from_(executor, "mirrored blocks"),
       value_(executor, "element matrix values"),
       local_(executor, "local terms of elements") {}
 
@@ -29,6 +32,7 @@ void ElementMatrix::finish() {
   const BlockRows rows = block_rows(static_cast<int>(n_vertices_), stencils);
   row_begin_.upload(rows.row_begin);
   column_.upload(rows.column);
+  list_mirrored(rows);
   value_.resize(value_count(n_blocks()));
   for (std::size_t i = 0; i < families_.size(); ++i) {
     Family& of = families_[i];
@@ -43,8 +47,21 @@ void ElementMatrix::finish() {
   for (Family& of : families_) of.vertices = {};
 }
 
+void ElementMatrix::list_mirrored(const BlockRows& rows) {
+  std::vector<std::uint32_t> to, from;
+  to.reserve(rows.column.size() / 2), from.reserve(rows.column.size() / 2);
+  for (Index row = 0; row < n_vertices_; ++row) {
+    for (Index above = rows.row_begin[at(row + 1)] - 1; rows.column[at(above)] > row; --above) {
+      to.push_back(static_cast<std::uint32_t>(above));
+      from.push_back(static_cast<std::uint32_t>(find_block(rows.row_begin.data(), rows.column.data(),
+                                                           rows.column[at(above)], static_cast<int>(row))));
+    }
+  }
+  mirror_to_.upload(to), mirror_from_.upload(from);
+}
+
 void ElementMatrix::mirror() {
-  executor_.each(n_vertices_, MirrorRow{row_begin_.data(), column_.data(), value_.data()});
+  executor_.each(mirror_to_.size(), MirrorBlock{mirror_to_.data(), mirror_from_.data(), value_.data()});
 }
 
 }  // namespace bb::exec

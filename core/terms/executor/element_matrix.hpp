@@ -66,11 +66,15 @@ class ElementMatrix {
     }
   }
 
+  /// Which block above the diagonal is the transpose of which one below: it stays, so no kernel searches for it.
+  void list_mirrored(const BlockRows& rows);
+
   Executor& executor_;
   Index n_vertices_, piece_;
   std::vector<Family> families_;
   Buffer<Index> row_begin_;
   Buffer<int> column_;
+  Buffer<std::uint32_t> mirror_to_, mirror_from_;
   Buffer<double> value_;
   Buffer<double> local_;  // gradients or Hessians of a piece
 };

@@ -57,15 +57,14 @@ struct GatherBlocks {
   }
 };
 
-/// The upper triangle from the lower one; item: a block row.
-struct MirrorRow {
-  const Index* row_begin;  // [n + 1]
-  const int* column;
+/// The upper triangle from the lower one; item: a block above the diagonal.
+struct MirrorBlock {
+  const std::uint32_t *to, *from;  // that block, and the one that it is the transpose of
   double* value;
-  BB_HD void operator()(Index row) const {
-    for (Index to = row_begin[row + 1] - 1; to >= row_begin[row] && column[to] > row; --to) {
-      const Index from = find_block(row_begin, column, column[to], static_cast<int>(row));
-      for (int c = 0; c < 9; ++c) value[value_index(to, c)] = value[value_index(from, 3 * (c % 3) + c / 3)];
+  BB_HD void operator()(Index i) const {
+    const Index above = to[i], below = from[i];
+    for (int c = 0; c < 9; ++c) {
+      value[value_index(above, c)] = value[value_index(below, 3 * (c % 3) + c / 3)];
     }
   }
 };
