@@ -36,7 +36,7 @@ void HostEngine::leave_secants(const Column& x, const Column& g) {
   for (Slot& slot : slots_) {
     if (!slot.term->take_secant(0)) continue;
     linearise_term(slot, x, g);
-    exact_is_solved_ = false;
+    full_is_exact_ = exact_is_solved_ = false;
   }
 }
 
