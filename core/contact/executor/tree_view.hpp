@@ -27,17 +27,17 @@ struct TreeNode {
 };
 
 /// Four siblings side by side, number by number: 128 bytes, which a walk reads at once and tests without a branch.
-struct alignas(16) TreeGroup {
-  float lo[3][tree_width], hi[3][tree_width], reach[tree_width];
-  std::uint32_t tag[tree_width];
+struct TreeGroup {
+  OfSiblings<float> lo[3], hi[3], reach;
+  OfSiblings<std::uint32_t> tag;
 
   BB_HD TreeNode node(int k) const {
     return {{lo[0][k], lo[1][k], lo[2][k]}, {hi[0][k], hi[1][k], hi[2][k]}, reach[k], tag[k]};
   }
   BB_HD void put(int k, const TreeNode& node) {
-    for (int c = 0; c < 3; ++c) lo[c][k] = node.lo[c], hi[c][k] = node.hi[c];
-    reach[k] = node.reach;
-    tag[k] = node.tag;
+    for (int c = 0; c < 3; ++c) lo[c].set(k, node.lo[c]), hi[c].set(k, node.hi[c]);
+    reach.set(k, node.reach);
+    tag.set(k, node.tag);
   }
   /// Bit k where sibling k may meet a box: one of the two is free, and they overlap. Clear where a number is none.
   BB_HD unsigned meeting(const TreeNode& a) const { return overlapping(lo, hi, tag, a.lo, a.hi, a.tag); }
