@@ -26,6 +26,7 @@ const ReducedSystem& Diagnosis::clamped(TermSet set) {
 }
 
 const ReducedSystem& Diagnosis::exact() {
+  if (state_.secant) potential_.leave_secants(state_.x, state_.g);
   potential_.sum_exact();
   return potential_.blocks_->reduce(potential_.blocks_->values());
 }
@@ -52,7 +53,7 @@ const VecXd& Diagnosis::rhs() {
   return rhs_;
 }
 
-bool Diagnosis::solved_is_exact() const { return state_.level.exact(); }
+bool Diagnosis::solved_is_exact() const { return state_.level.exact() && !state_.secant; }
 bool Diagnosis::solved_is_clamped() const { return state_.level.all_clamped() && state_.shift == 0; }
 
 void Diagnosis::report_overload(StepNumbers& out) {

@@ -39,7 +39,8 @@ class IncrementalPotential {
   void change_step(const StepColumns& step);
   /// As Term::take_secant, of all terms; whether one of them has a secant.
   bool take_secant(double share);
-  /// Matrices of the linearised iterate x that are filled from here on have none.
+  /// The terms give their secants up in the middle of the linearised iterate x: matrices that are filled from here on have none.
+  /// g: N, the gradient there. A matrix engine that keeps Hessians of an iterate makes these terms' anew.
   virtual void leave_secants(const Column& /*x*/, const Column& /*g*/) { take_secant(0); }
   /// The step has converged at x: whether terms take what they lag from there, so that it has to go on. One term at a time: what
   /// friction takes from contact, and how often, does not depend on how often contact was renewed.

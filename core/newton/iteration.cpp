@@ -208,6 +208,7 @@ void measure_end(StepSystem& system, StepReport& step) {
     step.contact_overload = step.limit_overload = Number::missing("kappa_unsettled");
     return;  // what a kappa that moves can carry is no number
   }
+  system.take_secant(0);
   system.assemble();  // the rows that were accepted last and their gradients, of one state
   system.set_target(system.view().x());
   const bool solved = system.find_direction().linear.status == LinearStatus::ok;

@@ -63,18 +63,18 @@ class LineSearch final : public StepSolver {
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
       if (escaped) continue;
-      secant_.took(search_.shortened(), system);
       if (moved && after_motion_ && after_motion_(system)) {
-        begin_anew(iteration, system);
+        begin_anew(iteration);
       } else if (small && is_enough(report, moved, tolerance)) {
         if (!system.renew_lag()) {
           end_in_minimum(step, end, report, task.dt);
           return step;
         }
-        begin_anew(iteration, system);
+        begin_anew(iteration);
       } else if (gives_up(system, task, report, moved, at_pose, step)) {
         return step;
       }
+      secant_.took(search_.shortened(), system);
     }
     end_at_cap(step);
     return step;
@@ -97,6 +97,7 @@ class LineSearch final : public StepSolver {
     ++escapes_;
     error_.took(0);
     crawl_.reset();
+    secant_.reset(system);
     return true;
   }
 
@@ -137,10 +138,9 @@ class LineSearch final : public StepSolver {
   }
 
   // E is another one: its minimum is looked for by what is left of the iterations.
-  void begin_anew(int iteration, StepSystem& system) {
+  void begin_anew(int iteration) {
     collapsed_ = 0;
     crawl_.reset();
-    secant_.reset(system);
     if (iteration + 1 < options_.max_iterations) error_.reset();
   }
 

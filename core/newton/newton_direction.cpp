@@ -9,6 +9,7 @@
 namespace bb {
 
 void NewtonSystem::assemble() {
+  state_.secant = state_.secant_asked;
   state_.potential->linearise(state_.x, state_.g);
   view_.forget_gradient();
   state_.direction_seen = false;
@@ -154,15 +155,15 @@ EndCheck NewtonSystem::check_hessian() {
 
 bool NewtonSystem::take_secant(double share) {
   const bool taken = state_.potential->take_secant(share);
-  has_secant_ = taken && share > 0;
+  state_.secant_asked = taken && share > 0;
   return taken;
 }
 
 EndCheck NewtonSystem::check_end() {
   const WholePhase timer(clock(), Phase::end_check);
-  if (has_secant_) {  // it is stiffer than E: what was solved with it proves nothing
+  if (state_.secant) {  // it is stiffer than E: what was solved with it proves nothing
     state_.potential->leave_secants(state_.x, state_.g);
-    has_secant_ = factored_ = false;
+    state_.secant = state_.secant_asked = factored_ = false;
   }
   EndCheck out = check_hessian();
   look_for_cusps(out);

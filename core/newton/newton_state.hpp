@@ -39,6 +39,8 @@ struct NewtonState {
   Column aside;      // a direction of negative curvature at the iterate, or dx before its detour
   Column body_size;  // [n] m
   double shift = 0;  // N/m, what add_tikhonov added
+  // A share of the secant of terms is asked of the next iterate; is in the matrices of this one.
+  bool secant_asked = false, secant = false;
   // What vectors found last is of x, of the trial.
   bool pins_seen = false, trial_pins_seen = false;
   // What vectors found last is of dx: its sizes, and with them g . dx.

@@ -53,7 +53,7 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   state_.x.upload(numbers_of(x_n));
   state_.x_tilde.upload(numbers_of(prediction.x_tilde));
   view_.forget();
-  state_.pins_seen = state_.direction_seen = has_secant_ = false;
+  state_.pins_seen = state_.direction_seen = state_.secant_asked = false;
   dt_ = dt;
   c_ = prediction.c;
   t_end_ = prediction.t_end;
@@ -151,12 +151,13 @@ void NewtonSystem::go_to(const Positions& x) {
 }
 
 // What is frozen for a step is frozen at its start: that state is assembled first.
-void NewtonSystem::mirror(const Positions& target, const HessianLevel& level, const Positions& x) {
+void NewtonSystem::mirror(const Positions& target, const NewtonState& of, const Positions& x) {
   if (x != view_.x()) {
     assemble();
     go_to(x);
   }
-  state_.level = level;
+  state_.level = of.level;
+  state_.secant_asked = of.secant;  // its share came with the rows of the terms
   assemble();
   set_target(target);
   set_right_hand_side();
@@ -166,7 +167,7 @@ void NewtonSystem::adopt(const StepFrame& frame, NewtonSystem& other) {
   begin_step(frame.x_n, {frame.c, frame.x_tilde, frame.t_end}, frame.dt, frame.load_factor);
   dynamic_cast<HostEngine&>(potential()).adopt(dynamic_cast<const HostEngine&>(other.potential()));
   const Positions x = other.view_.x();
-  mirror(x, other.state_.level, x);
+  mirror(x, other.state_, x);
 }
 
 bool NewtonSystem::is_on_host() const {
@@ -182,7 +183,7 @@ NewtonSystem& NewtonSystem::on_host() {
   host_->keep(again);
   host_->begin_step(copy_of(state_.x_n), {c_, copy_of(state_.x_tilde), t_end_}, dt_, load_factor_);
   dynamic_cast<HostEngine&>(host_->potential()).adopt(state_.potential->known_step());
-  host_->mirror(target_, state_.level, view_.x());
+  host_->mirror(target_, state_, view_.x());
   host_->set_direction(copy_of(state_.dx));
   return *host_;
 }

@@ -77,7 +77,7 @@ class NewtonSystem : public StepSystem {
  private:
   NewtonSystem(const Scene& scene, Method& method, const Plan& plan, const MakePotential& make);
   StepColumns step_columns() const;
-  void mirror(const Positions& target, const HessianLevel& level, const Positions& x);
+  void mirror(const Positions& target, const NewtonState& of, const Positions& x);
   double largest_force();
   void fill_matrix();
   bool set_right_hand_side();
@@ -95,7 +95,6 @@ class NewtonSystem : public StepSystem {
   const ExactHessians exact_hessians_;
   bool factored_ = false;        // the last solve made a factor of the matrix that it solved
   bool served_at_once_ = false;  // the first matrix of the last solve did: the next may be nearer to exact
-  bool has_secant_ = false;      // a share of it is in the matrices of this iterate
   double dt_ = 0, c_ = 1, load_factor_ = 1, t_end_ = 0;
   bool at_start_ = false;
   Positions target_;

@@ -13,9 +13,10 @@ class SecantRule {
  public:
   /// A step begins: its terms have none.
   void begin_step() { share_ = 0; }
-  /// E is another one.
+  /// From the next iteration on there is none.
   void reset(StepSystem& system) { set(0, system); }
-  /// After an iteration. shortened: E rose along dx where the bound would have let it go.
+  /// After an iteration that another one follows. shortened: E rose along dx, or a trial was infeasible, where the bound would
+  /// have let it go.
   void took(bool shortened, StepSystem& system) {
     if (shortened)
       set(1, system);

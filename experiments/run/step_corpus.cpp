@@ -33,6 +33,7 @@ RunConfig with_step_solver(const RunConfig& config, const std::string& name) {
   document["step_solver"].erase("saddle");
   document.erase("hessian");
   document["contact"].erase("hessian_mode");
+  document["friction"].erase("hessian");
   for (const Tightened& each : tightened) {
     if (name == each.solver) document["step_solver"][each.parameter] = each.value;
   }

@@ -59,8 +59,10 @@ struct Sliding {
   Scene scene = test::particle_over_plane(1, 0.5 * d_hat, d_hat);
   NewtonSystem system;
 
-  Sliding() : method(rubbing()), system(scene, method) {
-    system.begin_step(scene.x0, {1, Positions(scene.x0 + test::one_point(5e-3, 0, -1e-4))}, 0.01, 1);
+  /// c: of the inertia, 0 without.
+  explicit Sliding(double c = 1, const char* solver = "cholmod")
+      : method(rubbing(solver)), system(scene, method) {
+    system.begin_step(scene.x0, {c, Positions(scene.x0 + test::one_point(5e-3, 0, -1e-4))}, 0.01, 1);
     system.go_to(scene.x0 + test::one_point(4e-3, 0, -1e-4));
     system.set_target(scene.x0);
   }
@@ -72,30 +74,45 @@ struct Sliding {
   }
 
   static constexpr double d_hat = 0.01;
-  static Method rubbing() {
+  static Method rubbing(const char* solver = "cholmod") {
     Method out = test::fixed_method("cubic", 1e5);
     out.friction.mu = 0.5;
-    out.linear.name = "cholmod";
+    out.linear.name = solver;
     out.hessian_mode = HessianMode::projected_full;
     for (const HessianChoice& term : hessian_choices()) out.step_hessian[term.name] = StepHessian::blend;
     return out;
   }
 };
 
-/// A factor of the matrix with the secant is no proof of the end: the exact one is asked, and is what is left.
+/// Without inertia nothing but the secant holds a particle that slides: the matrix that is solved with it is positive definite,
+/// that of E is not, and E is what the end is asked of.
 TEST(SecantDecisions, TheProofOfTheEndIsOfTheExactMatrix) {
+  for (const char* solver : {"cholmod", "pcg"}) {
+    SCOPED_TRACE(solver);
+    Sliding sliding(0, solver);
+    NewtonSystem& system = sliding.system;
+    ASSERT_TRUE(system.take_secant(1));
+    const double whole = sliding.stiffness();
+    ASSERT_GT(whole, 1);
+    EXPECT_FALSE(system.diagnosis().solved_is_exact());
+    EXPECT_EQ(system.find_direction().linear.status, LinearStatus::ok);
+    const EndCheck end = system.check_end();
+    EXPECT_NE(end.proof, EndProof::factor);
+    EXPECT_NE(end.proof, EndProof::lanczos);
+    EXPECT_EQ(system.diagnosis().exact().lower.coeff(0, 0), 0) << "that of E is what is left";
+  }
+}
+
+/// A matrix that is written as exact is that of E, whatever was solved.
+TEST(SecantDecisions, TheExactMatrixOfADiagnosisIsThatOfE) {
   Sliding sliding;
   NewtonSystem& system = sliding.system;
-  const auto check = [&](double share) {
-    EXPECT_TRUE(system.take_secant(share));
-    system.assemble();
-    EXPECT_EQ(system.find_direction().linear.status, LinearStatus::ok);
-    return system.check_end();
-  };
-  EXPECT_EQ(check(0).factorizations, 0) << "the factor of the solve is the proof";
-  const EndCheck end = check(1);
-  EXPECT_EQ(end.proof, EndProof::factor);
-  EXPECT_EQ(end.factorizations, 1);
+  const double exact = sliding.stiffness();
+  EXPECT_TRUE(system.diagnosis().solved_is_exact());
+  ASSERT_TRUE(system.take_secant(1));
+  EXPECT_GT(sliding.stiffness(), 1.01 * exact);
+  EXPECT_FALSE(system.diagnosis().solved_is_exact());
+  EXPECT_EQ(system.diagnosis().exact().lower.coeff(0, 0), exact);
 }
 
 TEST(SecantDecisions, TheWholeOfItIsTheForceOverTheSlide) {

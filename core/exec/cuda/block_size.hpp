@@ -4,7 +4,7 @@
 namespace bb::cuda {
 
 /// Warps that the registers of a processor hold in blocks of so many threads: 65,536, of which a warp gets them by 256, and 64
-/// warps at most. Those are the numbers of compute capability 8.0 to 10.0.
+/// warps at most. Those are the numbers of compute capability 8.0, 9.0 and 10.0.
 constexpr int resident_warps(int threads, int registers) {
   const int warps = threads / 32, a_block = warps * ((32 * registers + 255) / 256 * 256);
   const int held = a_block > 0 ? 65536 / a_block * warps : 64;
