@@ -70,7 +70,7 @@ BB_HD inline unsigned to_visit(const TreeView& tree, int level, Index group, con
   const Index before = (from >> 2 * level) - tree_width * group;  // siblings that end before `from`
   if (before > 0) out &= ~0u << (before < tree_width ? before : Index{tree_width});
   // A box of all numbers meets those of siblings that are not there, too.
-  const Index there = (((tree.n - 1) >> 2 * level) + 1) - tree_width * group;
+  const Index there = tree.size(level) - tree_width * group;
   if (there < tree_width) out &= (1u << there) - 1;
   if (level > 0) return out;
   for (int k = 0; k < tree_width; ++k) {
