@@ -39,14 +39,16 @@ def _by_cause(axis, states: list[dict]) -> None:
 def _by_rule(axis, states: list[dict], rules: list[str]) -> None:
     """Hollow where the trial did not converge."""
     for k, rule in enumerate(rules):
-        colour = f"C{k}"
+        colour, label = f"C{k}", rule
         for place, state in enumerate(states):
             trial = trial_of(state, rule)
+            if "refused" in trial:
+                continue
             face = colour if trial["status"] == "converged" else "none"
-            label = rule if place == 0 else None
             axis.plot(
                 trial["iterations"], place, MARKS[k % len(MARKS)], color=colour, mfc=face, ms=4, label=label
             )
+            label = None
     axis.set(xscale="log", xlabel="iterations by Hessian rule (hollow: not converged)")
     _key(axis, *axis.get_legend_handles_labels())
 
