@@ -55,7 +55,7 @@ def test_penalty_counts_how_deep_contacts_are(program, tmp_path):
     soft = ["--set", "/formulation/stiffness_policy/kappa_N_per_m=2000"]
     record = run(program, config, tmp_path / "out", "penalty", "--set", "/time/dt_s=0.001", "--set", "/time/steps=8", *soft)
     solver = record["summary"]["solver"]
-    assert set(solver) == {"penalty_overlap_m", "penalty_overlaps", "penalty_feasibility_trials"}
+    assert set(solver) == {"penalty_overlap_m", "penalty_overlaps", "penalty_feasibility_trials", "penalty_secants"}
     assert 0 < solver["penalty_overlap_m"] < 0.03 and solver["penalty_overlaps"] >= 1
     assert solver["penalty_overlap_m"] == max(step["solver"]["penalty_overlap_m"] for step in record["steps"])
     assert record["summary"]["gap_min_m"] == pytest.approx(-solver["penalty_overlap_m"])

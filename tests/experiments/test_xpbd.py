@@ -37,7 +37,7 @@ def test_a_chain_sags_as_newton_has_it_and_the_record_says_who_counted_what(prog
 
 def test_trials_short_of_a_pose_are_counted_and_compare_no_energies(program, tmp_path):
     record = run(program, tmp_path, "--set", "/passes/diagnose=true")
-    assert set(record["summary"]["solver"]) == {"feasibility_trials", "truncations", "lengthened"} and record["summary"]["solver"]["truncations"] == 0
+    assert set(record["summary"]["solver"]) == {"feasibility_trials", "truncations", "lengthened", "secants"} and record["summary"]["solver"]["truncations"] == 0
     assert record["summary"]["solver"]["feasibility_trials"] == sum(s["solver"]["feasibility_trials"] for s in record["steps"]) > 0
     rows = [json.loads(line) for line in (tmp_path / "trace.jsonl").read_text().splitlines()]
     unknown = [row for row in rows if row["energy_change_J"] is None]
