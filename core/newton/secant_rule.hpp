@@ -6,9 +6,9 @@
 namespace bb {
 
 /// Friction that slides has no stiffness along its slide, so that a Newton direction turns slides round, far beyond where they
-/// would stick: the line search cuts it to a small part, one contact sticks, and hundreds of such steps follow each other. After
-/// a step that was cut the next matrix has the whole secant, along which no slide is outrun; after each whole step a quarter as
-/// much, and soon none, since the exact matrix is what converges fast.
+/// would stick: the line search cuts it to a small part, one contact sticks, and tens of such steps follow each other. After a
+/// step that was cut the next matrix has the whole secant, whose quadratic model lies nowhere below the energy of friction; after
+/// whole steps it has a quarter, a sixteenth and none, since the exact matrix is what converges fast.
 class SecantRule {
  public:
   /// A step begins: its terms have none.

@@ -112,7 +112,7 @@ double above_model(const FrictionLaw<double>& law, const Vec3d& u, const Vec3d& 
 }
 
 struct SecantCounts {
-  int outrun = 0, held = 0;
+  int above = 0, below = 0;
 };
 template <class Law>
 void judge_secant(const FrictionLaw<double>& law, SecantCounts& counts) {
@@ -125,8 +125,8 @@ void judge_secant(const FrictionLaw<double>& law, SecantCounts& counts) {
   for (int k = 0; k < 2000; ++k) {
     const Vec3d u = slide(), v = slide();
     EXPECT_LE(above_model<Law>(law, u, v, 1), 1e-12 * energy_of(law, u + v)) << law.name;
-    counts.held += above_model<Law>(law, u, v, 1) < -1e-6 * energy_of(law, u);
-    counts.outrun += above_model<Law>(law, u, v, 0) > 0.1 * energy_of(law, u);
+    counts.below += above_model<Law>(law, u, v, 1) < -1e-6 * energy_of(law, u);
+    counts.above += above_model<Law>(law, u, v, 0) > 0.1 * energy_of(law, u);
     const LawWithEps<Law, double> exact{eps}, half{eps, 0.5}, whole{eps, 1};
     const double y = u.norm();
     EXPECT_EQ(exact(y).f2, law.eval(y, eps).f2);
@@ -135,15 +135,15 @@ void judge_secant(const FrictionLaw<double>& law, SecantCounts& counts) {
   }
 }
 
-// No slide outruns the model with the secant; many outrun that of the second derivatives.
+// No slide has an energy above the model with the secant; many have one above that of the second derivatives.
 TEST(FrictionLaws, LieNowhereAboveTheModelWithTheirSecant) {
   std::size_t judged = 0;
 #define ENTRY(id, doc)                                                                       \
   {                                                                                          \
     SecantCounts counts;                                                                     \
     judge_secant<friction_laws::id>(friction_laws_in<double>().require(#id, "law"), counts); \
-    EXPECT_GT(counts.outrun, 50) << #id;                                                     \
-    EXPECT_GT(counts.held, 1000) << #id;                                                     \
+    EXPECT_GT(counts.above, 50) << #id;                                                      \
+    EXPECT_GT(counts.below, 1000) << #id;                                                    \
     ++judged;                                                                                \
   }
 #include "core/energy/friction_laws/registry.inc"

@@ -239,7 +239,7 @@ struct TreeLevels {
     out.tag = 2 * static_cast<std::uint32_t>(i) + (free ? 1 : 0);
     return out;
   }
-  /// The node above a group. A number that is none is never less and never more.
+  /// The node above a group. NaN is never less and never more.
   BB_HD static TreeNode parent(const TreeGroup& children) {
     FloatBox box = empty_box();
     std::uint32_t free = 0;
