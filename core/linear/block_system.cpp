@@ -133,11 +133,11 @@ void BlockSystem::add_diagonal(std::span<const double> per_vertex) {
   }
 }
 
-void BlockSystem::add_elements(std::size_t family, std::span<const double> hess) {
+void BlockSystem::add_elements(std::size_t family, const LocalHessians& hess) {
   family_of(data_->elements, data_->elements.size(), family).add_hessians(hess, data_->values);
 }
 
-void BlockSystem::add_contacts(std::size_t family, std::span<const double> hess) {
+void BlockSystem::add_contacts(std::size_t family, const LocalHessians& hess) {
   family_of(data_->contacts, data_->n_contact_families, family).add_hessians(hess, data_->values);
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/linear/local_hessians.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
@@ -64,9 +65,8 @@ class BlockSystem {
   using Values = std::vector<double>;
   void clear();
   void add_diagonal(std::span<const double> per_vertex);  // value * I3
-  void add_elements(std::size_t family,
-                    std::span<const double> hess);  // [size * 9w(w + 1)/2] lower blocks
-  void add_contacts(std::size_t family, std::span<const double> hess);
+  void add_elements(std::size_t family, const LocalHessians& hess);
+  void add_contacts(std::size_t family, const LocalHessians& hess);
   const Values& values() const;
   /// Hands the sum over without a copy: `out` gets the values, whose place takes the old content of `out` until
   /// the next clear().

@@ -9,6 +9,7 @@
 
 #include "core/linear/block_pattern.hpp"
 #include "core/linear/block_system.hpp"
+#include "core/linear/local_hessians.hpp"
 
 namespace bb {
 
@@ -38,10 +39,10 @@ class GatherMap {
   }
   int width() const { return width_; }
   Stencils stencils() const { return {width_, vertices_}; }
-  /// values [9 x blocks] += local Hessians, their lower blocks [size * 9 width (width + 1)/2]. A target adds its
-  /// contributions to what it has in the order of the elements: kernels add in the same order, to the same bits.
-  /// Cost: one read of `hess`, one read and write of the targets, 4 bytes of index a contribution.
-  void add_hessians(std::span<const double> hess, std::vector<double>& values) const;
+  /// values [9 x blocks] += local Hessians. A target adds its contributions to what it has in the order of the elements: kernels
+  /// add in the same order, to the same bits. Cost: one read of `hess`, one read and write of the targets, 4 bytes of index a
+  /// contribution.
+  void add_hessians(const LocalHessians& hess, std::vector<double>& values) const;
   /// g [3 x n] += local gradients [size * 3 width].
   void add_gradients(std::span<const double> grad, PositionsSpan g) const;
 
@@ -50,8 +51,8 @@ class GatherMap {
   void sort_contributions(int n_vertices);
   void write_targets(int n_vertices);
   void build_gradient_map(int n_vertices);
-  template <bool Ahead>
-  void add_targets(const double* hess, double* values) const;
+  template <class Blocks, bool Ahead>
+  void add_targets(const LocalHessians& hess, double* values) const;
 
   int width_ = 0;
   std::vector<int> vertices_;                // copy of the stencils

@@ -13,13 +13,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double first_t = 0.125;            // then 1/4, 1/2, 1
 constexpr double smallest_threshold = 1e-3;  // of the largest force; below it every element is clamped
 
-void blend(const std::vector<double>& exact, const std::vector<double>& clamped, double t,
-           std::vector<double>& out) {
-  out.resize(exact.size());
-  parallel_items(exact.size(), 16 * block_items,
-                 [&](std::size_t i) { out[i] = exact[i] + t * (clamped[i] - exact[i]); });
-}
-
 /// Clamped elements where a vertex has a force of at least the threshold, exact ones elsewhere.
 void choose(const TermFamily& family, std::span<const double> force, double threshold,
             std::vector<double>& out) {
@@ -76,8 +69,8 @@ bool needs_clamped(StepHessian choice, const HessianLevel& level) {
   return (choice == StepHessian::blend || choice == StepHessian::exact_or_clamped) && level.t() > 0;
 }
 
-std::span<const double> hessian_at(const TermFamily& family, StepHessian choice, const HessianLevel& level,
-                                   std::span<const double> force, std::vector<double>& buffer) {
+LocalHessians hessian_at(const TermFamily& family, StepHessian choice, const HessianLevel& level,
+                         std::span<const double> force, std::vector<double>& buffer) {
   if (!needs_clamped(choice, level)) return family.local.hess;
   if (choice == StepHessian::progressive) {
     if (level.threshold() == 0) return family.clamped.hess;
@@ -85,8 +78,7 @@ std::span<const double> hessian_at(const TermFamily& family, StepHessian choice,
     return buffer;
   }
   if (choice == StepHessian::exact_or_clamped || level.t() == 1) return family.clamped.hess;
-  blend(family.local.hess, family.clamped.hess, level.t(), buffer);
-  return buffer;
+  return {family.local.hess, family.clamped.hess, level.t()};
 }
 
 }  // namespace bb

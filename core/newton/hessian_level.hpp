@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/linear/local_hessians.hpp"
 #include "core/terms/host_term.hpp"
 #include "core/terms/step_hessian.hpp"
 
@@ -40,10 +41,10 @@ class HessianLevel {
   double t_, threshold_;
 };
 
-/// The lower blocks of all elements of a family at a level; `buffer` is used where no stored column serves.
+/// The local Hessians of a family at a level; `buffer` is used where no stored column serves.
 /// force: [n_vertices] N, read by progressive. Requires family.clamped wherever the level is above exact.
-std::span<const double> hessian_at(const TermFamily& family, StepHessian choice, const HessianLevel& level,
-                                   std::span<const double> force, std::vector<double>& buffer);
+LocalHessians hessian_at(const TermFamily& family, StepHessian choice, const HessianLevel& level,
+                         std::span<const double> force, std::vector<double>& buffer);
 /// Whether hessian_at needs family.clamped.
 bool needs_clamped(StepHessian choice, const HessianLevel& level);
 

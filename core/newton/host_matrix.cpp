@@ -94,7 +94,7 @@ void HostEngine::sum_matrices(TermSet set, const HessianOf& hessian_of) {
     for (const TermFamily& family : slot.term->families()) {
       const std::size_t number = index++;
       if (family.local.hess.empty()) continue;
-      const std::span<const double> hess = hessian_of(slot, family);
+      const LocalHessians hess = hessian_of(slot, family);
       slot.term->fixed_stencils() ? blocks_->add_elements(number, hess) : blocks_->add_contacts(number, hess);
     }
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
 #include <random>
 
 #include "core/linear/gather_map.hpp"
@@ -78,6 +79,30 @@ TEST_P(GatherMapTest, AddsInTheOrderOfTheElements) {
     map.add_hessians(hess, values);
     EXPECT_EQ(values, expected) << threads << " threads";
   }
+}
+
+TEST_P(GatherMapTest, AddsWhatIsBetweenTwoHessians) {
+  const Case& c = GetParam();
+  const std::vector<int> vertices = random_stencils(c);
+  GatherMap map;
+  map.build({c.width, vertices}, c.n_vertices);
+  BlockPattern pattern;
+  unite(diagonal_pattern(c.n_vertices), map.column_start(), map.rows(), pattern);
+  map.place(pattern);
+  std::vector<double> exact(map.n_elements() * n_lower_numbers(at(c.width))), clamped(exact.size()),
+      between(exact.size());
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    exact[i] = std::sin(static_cast<double>(i)), clamped[i] = std::cos(3.0 * static_cast<double>(i));
+    between[i] = exact[i] + 0.125 * (clamped[i] - exact[i]);
+  }
+  const std::vector<double> zero(9 * pattern.row.size());
+  std::vector<double> expected = zero, found = zero, alone = zero;
+  map.add_hessians(between, expected);
+  map.add_hessians({exact, clamped, 0.125}, found);
+  map.add_hessians(exact, alone);
+  EXPECT_EQ(found, expected);
+  EXPECT_NE(alone, expected);
+  EXPECT_THROW(map.add_hessians({exact, std::span(clamped).first(9), 0.125}, found), ConfigError);
 }
 
 // The last two on either side of the size from which the Hessians are prefetched, 8 MiB: 11650 elements of width 4.
