@@ -71,6 +71,8 @@ class LineSearch final : public StepSolver {
           return step;
         }
         begin_anew(iteration);
+      } else if (turns_to_secant(system, moved)) {
+        continue;
       } else if (gives_up(system, task, report, moved, at_pose, step)) {
         return step;
       }
@@ -170,6 +172,11 @@ class LineSearch final : public StepSolver {
   // The step, dt s long, ends in the minimum of E.
   void end_in_minimum(StepReport& step, const EndCheck& end, const IterationReport& last, double dt) const {
     end_converged(step, end, last.error_estimate_m.value + left_of(last), options_.tol_velocity * dt);
+  }
+
+  // Whether E falls nowhere along a direction that is free to be taken, and the next direction is of another matrix.
+  bool turns_to_secant(StepSystem& system, bool moved) {
+    return !moved && search_.bound() >= collapsed_step && secant_.took(true, system);
   }
 
   // Whether the step ends short of it, which it then says: E falls nowhere along a direction that is free to be taken, or

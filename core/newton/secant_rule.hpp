@@ -16,12 +16,14 @@ class SecantRule {
   /// From the next iteration on there is none.
   void reset(StepSystem& system) { set(0, system); }
   /// After an iteration that another one follows. shortened: E rose along dx, or a trial was infeasible, where the bound would
-  /// have let it go.
-  void took(bool shortened, StepSystem& system) {
+  /// have let it go. Returns whether the next matrix has more of the secant than this one.
+  bool took(bool shortened, StepSystem& system) {
+    const double before = share_;
     if (shortened)
       set(1, system);
     else if (share_ > 0)
       set(share_ < least ? 0 : share_ / 4, system);
+    return share_ > before;
   }
   /// Of the secant in the matrix of the next iteration, in [0, 1].
   double share() const { return share_; }

@@ -8,6 +8,7 @@ import pytest
 from test_cli import bench, refused
 
 from analysis import step_corpus_page as page
+from analysis.catalogue.scenes import main as catalogue
 
 ROOT = Path(__file__).resolve().parents[2]
 SLOPE = ROOT / "configs/scenes/friction_slope.json"
@@ -134,6 +135,21 @@ def test_the_secant_takes_fewer_iterations_to_the_same_minimum(program, tmp_path
     adaptive, exact = (page.trial_of(state, rule) for rule in ("blend", "blend" + page.EXACT))
     assert adaptive["minimum"] == exact["minimum"] == "A"
     assert 5 < adaptive["iterations_to_tolerance"] < exact["iterations_to_tolerance"] / 2
+
+
+@pytest.mark.parametrize("solver", ["line_search", "penalty", "augmented_lagrangian", "al_barrier"])
+def test_every_step_solver_that_has_the_secant_takes_it_and_counts_it(program, tmp_path, solver):
+    """Cards that fall on each other, by a barrier that every one of these solvers can have."""
+    file = tmp_path / "cards.json"
+    assert catalogue(["cards", "--write", str(file)]) == 0
+    words = ["--set", "/formulation=cubic", "--set", f"/step_solver/name={solver}", "--step-limit", "16", "--progress", "none"]
+    taken = {}
+    for rule in ("adaptive", "exact"):
+        done = bench(program, "run", file, *words, "--set", f"/friction/hessian={rule}", "--out", tmp_path / rule)
+        record = json.loads((tmp_path / rule / "run.json").read_text())
+        assert record["summary"]["steps"] == 16 and max(step["contacts"]["total"] for step in record["steps"]) > 10, done.stderr
+        (taken[rule],) = (value for name, value in record["summary"]["solver"].items() if name.endswith("secants"))
+    assert taken["adaptive"] > 0 == taken["exact"]
 
 
 def test_a_step_whose_iterations_end_with_a_lag_is_not_converged(program, tmp_path):

@@ -33,6 +33,20 @@ TEST(SecantDecisions, AStepThatWasShortenedAsksForAllOfItAndWholeOnesForEverLess
   EXPECT_EQ(shares({shortened(), whole(), shortened(), whole()}, 5), (Shares{0, 1, 0.25, 1, 0.25}));
 }
 
+TEST(SecantDecisions, AStepAlongWhichERisesIsAskedForItOnceBeforeItFails) {
+  ScriptedIteration rising = whole();
+  rising.change = [](double) -> Change { return EnergyChange{1, 1e-3}; };
+  const ScriptedStep turned = taken({rising, whole()}, 4);
+  EXPECT_EQ(turned.system.secants, (Shares{0, 1, 0.25, 0.0625}));
+  EXPECT_EQ(turned.report.status, StepStatus::iteration_cap);
+  const ScriptedStep twice = taken({whole(), rising, rising}, 5),
+                     without = taken({whole(), rising}, 5, false);
+  EXPECT_EQ(twice.system.secants, (Shares{0, 0, 1}));
+  EXPECT_EQ(twice.report.status, StepStatus::line_search_failed);
+  EXPECT_EQ(without.system.secants, (Shares{0, 0}));
+  EXPECT_EQ(without.report.status, StepStatus::line_search_failed);
+}
+
 TEST(SecantDecisions, IterationsWithAShareOfItAreCounted) {
   EXPECT_EQ(taken({whole(), shortened(), whole()}, 7).report.solver.values.at("secants"), 3);
   EXPECT_EQ(taken({whole()}, 3).report.solver.values.at("secants"), 0);
