@@ -1,5 +1,5 @@
-"""docs/engines.png: error against seconds of every engine, a panel a scene; crosses where surfaces cross,
-bars from the least to the most of jittered starts.
+"""The figure of a record: error against seconds of every engine, a panel a scene; crosses where surfaces
+cross, bars from the least to the most of jittered starts.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""results/ENGINES.md of a record of ./bench engine compare."""
+"""The page of a record of ./bench engine compare."""
 
 from __future__ import annotations
 
 from ..text_table import markdown
-from .compare import OURS
+from .compare import NAME, OURS
 from .level import equal
 from .scatter import depth_of, number
 from .starts_page import of_scene, of_variant, rules
@@ -122,14 +122,15 @@ def text_of(record: dict) -> str:
     lines = [
         "# Engines of others",
         "",
-        "Made by `./bench engine compare`; [docs/engines.md](../docs/engines.md) says what is compared.",
+        f"Made by `{record.get('command', './bench engine compare')}`;"
+        " [docs/engines.md](../docs/engines.md) says what is compared.",
         "Error: distance of vertices from our refined reference, root mean square over vertices and frames,"
         " in widths of the scene. Depth: the largest in an obstacle or a closed body. Gained: the most of"
         " kinetic energy and that of gravity above the start; end: what is left of it. Seconds are those of"
         " steps, without start and compilation, on one machine that did other things too.",
         "",
         *rules(record),
-        "![Error against seconds](../docs/engines.png)",
+        f"![Error against seconds](../docs/{record['spec'].get('name', NAME)}.png)",
         "",
         "## What was promised, and what was seen",
         "",

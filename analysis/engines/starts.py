@@ -121,7 +121,9 @@ def with_starts(study: Study, record: dict, n: int, only: list[str] = ()) -> dic
         raise UserError("--starts: the spec has no `starts` with a jitter_m")
     check_only(study, only)
     fitted, few = record["material_left"], study.spec["starts"].get("few", n)
-    scenes = [one for one in record["scenes"] if one["scene"] in study.scenes]
+    left = {one["name"] for one in study.spec["scenes"] if not one.get("starts", True)}
+    known = [one for one in record["scenes"] if one["scene"] in study.scenes]
+    scenes = [one for one in known if one["scene"] not in left]
     out: dict[str, list[dict]] = {one["scene"]: [] for one in scenes}
     for last in (False, True):
         for k in range(1, n + 1):
@@ -133,12 +135,11 @@ def with_starts(study: Study, record: dict, n: int, only: list[str] = ()) -> dic
                     out[one["scene"]].append(
                         {"start": k, "reference": _short(made["reference"]), "rows": rows}
                     )
-    scenes = [
-        {
-            **one,
-            "starts": _merged(one, out[one["scene"]]) if only else out[one["scene"]],
-            "references_apart": _references_apart(study, one["scene"], n),
-        }
-        for one in scenes
-    ]
+
+    def started(one: dict) -> dict:
+        made = out[one["scene"]]
+        apart = _references_apart(study, one["scene"], n)
+        return {**one, "starts": _merged(one, made) if only else made, "references_apart": apart}
+
+    scenes = [one if one["scene"] in left else started(one) for one in known]
     return {**record, "spec": study.spec, "scenes": scenes}

@@ -1,4 +1,4 @@
-"""What results/ENGINES.md says of jittered starts; nothing where a record has none."""
+"""What the page of a record says of jittered starts; nothing where a record has none."""
 
 from __future__ import annotations
 

@@ -25,8 +25,9 @@ compiles its kernels then: minutes); instant when it is there.
 NAME run SCENE --out DIR: one scene, a config or a file of ./bench neutral, and what ./bench judge says of it;
 exit 0: clean, 1: not, 3: it did not run (outcome and log are said), 2: bad input.
 compare [SPEC]: all scenes of configs/engines/compare.json under us and all engines: results/engines.json,
-results/ENGINES.md, docs/engines.png; what was run is kept and not run again. compare --starts N adds N
-jittered starts to what is there: the scatter of errors, depths and crossings."""
+results/ENGINES.md, docs/engines.png, or those of the `name` of the spec; what was run is kept and not run
+again. compare --starts N adds N jittered starts to what is there: the scatter of errors, depths and
+crossings."""
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
@@ -53,7 +54,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
         type=int,
         default=0,
         metavar="N",
-        help="compare: the scenes of results/engines.json again from N jittered starts; materials and seconds"
+        help="compare: the scenes of the spec's record again from N jittered starts; materials and seconds"
         " stay those of the record (default 0: the start of each scene alone)",
     )
     parser.add_argument(
@@ -128,14 +129,15 @@ def _run(card: Card, path: Path, options: argparse.Namespace) -> int:
 
 
 def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
-    from .compare import compared, read_study
+    from .compare import NAME, compared, read_study
     from .figure import paint
     from .report import text_of
     from .starts import earlier, with_kept_starts, with_starts
 
     say = lambda line: print(f"engine: {line}", file=sys.stderr, flush=True)  # noqa: E731
     study = read_study(spec, options.runs, options.scene, say)
-    kept = ROOT / "results/engines.json"
+    name = study.spec.get("name", NAME)
+    kept = ROOT / f"results/{name}.json"
     if options.starts < 0:
         raise UserError(f"--starts: found {options.starts}; allowed: from 0")
     if options.only and not options.starts:
@@ -154,9 +156,9 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
         print(page)
         return OK
     write_whole(kept, text)
-    write_whole(ROOT / "results/ENGINES.md", page)
-    paint(record, ROOT / "docs/engines.png")
-    print("results/engines.json\nresults/ENGINES.md\ndocs/engines.png")
+    write_whole(ROOT / f"results/{name.upper()}.md", page)
+    paint(record, ROOT / f"docs/{name}.png")
+    print(f"results/{name}.json\nresults/{name.upper()}.md\ndocs/{name}.png")
     return OK
 
 

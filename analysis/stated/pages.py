@@ -133,6 +133,7 @@ READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
     "results/CATALOGUE.md": (catalogue,),
     "results/WORK_PRECISION.md": (work_precision,),
     "results/ENGINES.md": (engines,),
+    "results/ENGINES_SIZE.md": (engines,),
     "docs/results.md": (_verdicts, gap_map),
     "docs/engines.md": (engines_in_words,),
     "docs/verbs.md": (mentions,),

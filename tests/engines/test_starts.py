@@ -57,6 +57,23 @@ def test_starts_are_jittered_alike_for_all_and_their_scatter_is_said(program, he
     assert "jittered" not in text_of(record)
 
 
+def test_a_scene_without_starts_stays_as_it_is_and_a_spec_names_its_files(program, here, tmp_path):
+    study, _ = small_study(tmp_path, {"jitter_m": 1e-4})
+    first = study.spec["scenes"][0]
+    study.spec["scenes"].append({**first, "name": "large", "starts": False})
+    study.scenes["large"] = study.scenes["hang"]
+    study.spec["name"] = "mine"
+    record = compare.compared(study)
+    found = starts.with_starts(study, record, 2) | {"command": "./bench engine compare mine.json", "command_of_starts": "this"}
+    small, large = found["scenes"]
+    assert len(small["starts"]) == 2 and large == record["scenes"][1]
+    page = text_of(found)
+    assert "Made by `./bench engine compare mine.json`" in page and "(../docs/mine.png)" in page and page.count("From 2 jittered starts") == 1
+    path = tmp_path / "spec.json"
+    path.write_text(json.dumps(study.spec))
+    assert set(compare.read_study(path, tmp_path, [], str).scenes) == {"hang", "large"}
+
+
 def test_a_record_of_the_same_spec_keeps_its_starts(tmp_path):
     kept = {"schema": compare.RECORD, "spec": {"a": 1}, "command_of_starts": "this", "scenes": [{"scene": "hang", "rows": [1], "starts": [2]}, {"scene": "gone", "starts": [3]}]}
     path, new = tmp_path / "engines.json", {"schema": compare.RECORD, "spec": {"a": 1}, "scenes": [{"scene": "hang", "rows": [4]}, {"scene": "new", "rows": [5]}]}
