@@ -10,7 +10,7 @@ import pytest
 
 from analysis.captions import Facts
 from analysis.errors import UserError
-from analysis.figures import heat_map, newton_condition, phase_times, preconditioned, profiles, rebuild, scaling, sources, step_lengths, success_frontier, trend
+from analysis.figures import heat_map, newton_condition, phase_times, preconditioned, profiles, rebuild, scaling, sources, step_front, step_lengths, success_frontier, trend
 from analysis.figures.drawing import Drawing
 from analysis.figures.kinds import KINDS
 from analysis.figures.spec import FOLDER, chosen, known, read_spec
@@ -121,17 +121,17 @@ def test_a_folder_that_cannot_be_written_is_said_before_anything_is_run(tmp_path
 
 
 EMPTY_RUNS = pd.DataFrame(columns=["run", "series", "group", "formulation", "outcome", "valid", "newton_iterations", "linear_solves", "line_search_trials", "solve_s", "steps", "linear_solver",
-                                   "linear_iterations", "scene_free_dofs", "comparability_verdict"])
+                                   "linear_iterations", "scene_free_dofs", "comparability_verdict", "dt_s", "time_linear_factor_s", "time_linear_solve_s"])
 EMPTY = SweepRecords("none", Records(EMPTY_RUNS, *[pd.DataFrame()] * 3), Path("nowhere"))
 FAILED_RUN = {"run": "a", "series": "strip log", "group": "g", "formulation": "log", "outcome": "nan", "valid": False, "newton_iterations": 1, "linear_solves": 1, "line_search_trials": 1, "solve_s": 1.0,
-              "steps": 1, "linear_solver": "pcg", "linear_iterations": 1, "scene_free_dofs": 9, "comparability_verdict": "not_valid"}
+              "steps": 1, "linear_solver": "pcg", "linear_iterations": 1, "scene_free_dofs": 9, "comparability_verdict": "not_valid", "dt_s": 0.1, "time_linear_factor_s": 0.1, "time_linear_solve_s": 0.1}
 FAILED = SweepRecords("none", Records(pd.DataFrame([FAILED_RUN]), *[pd.DataFrame()] * 3), Path("nowhere"))
 
 
 @pytest.mark.parametrize("subject", [EMPTY, FAILED])
 @pytest.mark.parametrize(("draw", "options"), [
     (profiles.performance_profile, profiles.OPTIONS), (profiles.data_profile, profiles.OPTIONS), (heat_map.figure, heat_map.OPTIONS), (success_frontier.figure, heat_map.OPTIONS),
-    (newton_condition.figure, {}), (preconditioned.figure, {}), (step_lengths.figure, {}), (phase_times.figure, phase_times.OPTIONS), (scaling.figure, {})])
+    (newton_condition.figure, {}), (preconditioned.figure, {}), (step_lengths.figure, {}), (phase_times.figure, phase_times.OPTIONS), (scaling.figure, {}), (step_front.figure, {})])
 def test_a_figure_without_a_subject_is_refused(tmp_path, subject, draw, options):
     with pytest.raises(UserError, match="figure mine: nothing to draw: "):
         draw(subject, Drawing("mine", "Title", tmp_path / "mine", 7.0, options))

@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm
 from analysis import pgfplots
 from analysis.captions import Facts
 from analysis.figures import (eigenvalues, friction_slope, gap_ridge, heat_map, newton_condition, one_step, phase_times, preconditioned, profiles, resolution, scaling,
-                              slopes, success_frontier, trend)
+                              slopes, step_front, success_frontier, trend)
 from analysis.records import load
 from synthetic import write_set
 
@@ -221,10 +221,11 @@ def test_no_phase_of_a_record_is_left_out():
 
 def test_failed_runs_have_no_number_of_scaling_and_stay_in_the_table():
     runs = pd.DataFrame({"formulation": ["log", "log"], "linear_solver": ["pcg", "pcg"], "scene_free_dofs": [10, 20], "outcome": ["ok", "timeout"],
-                         "newton_iterations": [4, 4], "linear_solves": [5, 5], "solve_s": [0.02, 0.02], "linear_iterations": [50, 50], "steps": [2, 2]})
+                         "newton_iterations": [4, 4], "linear_solves": [5, 5], "solve_s": [0.02, 0.02], "linear_iterations": [50, 50], "steps": [2, 2],
+                         "time_linear_factor_s": [0.004, 0.004], "time_linear_solve_s": [0.008, None]})
     found = scaling.table(runs)
 
-    assert list(found.loc[0, ["ms_an_iteration", "pcg_a_solve", "newton_a_step"]]) == [5, 10, 2]
+    assert list(found.loc[0, ["ms_an_iteration", "ms_outside", "pcg_a_solve", "newton_a_step"]]) == pytest.approx([5, 2, 10, 2])
     assert found.loc[1, ["ms_an_iteration", "pcg_a_solve", "newton_a_step"]].isna().all()
     assert list(found["outcome"]) == ["ok", "timeout"]
 
@@ -249,3 +250,16 @@ def test_a_caption_says_n_statistic_reference_and_slice():
     assert Facts("3 runs", "mean", "none", "strip").sentence() == "N: 3 runs. Statistic: mean. Reference: none. Slice: strip."
     with pytest.raises(ValueError, match="a caption without reference"):
         Facts("3 runs", "mean", " ", "strip")
+
+
+def test_errors_over_the_time_step_are_those_against_the_own_finest_step(monkeypatch):
+    ends = {"log 10": np.full((4, 3), 0.5), "log 5": np.full((4, 3), 0.2), "log 1": np.zeros((4, 3)), "cubic 10": np.full((4, 3), 7.0), "cubic 1": None}
+    monkeypatch.setattr(step_front, "end", ends.get)
+    rows = []
+    for name in ends:
+        formulation, ms = name.split()
+        outcome = "newton_stall" if name == "cubic 1" else "ok"
+        rows.append((pd.Series({"formulation": formulation, "outcome": outcome, "dt_s": int(ms) / 1e3, "newton_iterations": 3, "solve_s": 1.0, "scene_extent_m": 2.0}), name))
+    found = step_front.table(rows)
+    assert list(found["error"])[:2] == pytest.approx([math.sqrt(3) * 0.5 / 2, math.sqrt(3) * 0.2 / 2])
+    assert found["error"].isna().tolist() == [False, False, True, True, True]  # the reference, and two without one
