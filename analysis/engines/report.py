@@ -119,8 +119,9 @@ def _seen(record: dict) -> list[str]:
 
 
 def text_of(record: dict) -> str:
+    name = record["spec"].get("name", NAME)
     lines = [
-        "# Engines of others",
+        "# Engines of others" + (f": {name.removeprefix('engines_')}" if name != NAME else ""),
         "",
         f"Made by `{record.get('command', './bench engine compare')}`;"
         " [docs/engines.md](../docs/engines.md) says what is compared.",
@@ -130,7 +131,7 @@ def text_of(record: dict) -> str:
         " steps, without start and compilation, on one machine that did other things too.",
         "",
         *rules(record),
-        f"![Error against seconds](../docs/{record['spec'].get('name', NAME)}.png)",
+        f"![Error against seconds](../docs/{name}.png)",
         "",
         "## What was promised, and what was seen",
         "",

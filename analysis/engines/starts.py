@@ -30,14 +30,28 @@ OF_ROW = (
 KEPT = ("starts", "references_apart")  # of a scene, beside its own runs
 
 
+def without_starts(spec: dict) -> list[str]:
+    """Names of the scenes that jittered starts leave out."""
+    return [one["name"] for one in spec["scenes"] if not one.get("starts", True)]
+
+
 def _short(row: dict) -> dict:
     return {key: row[key] for key in OF_ROW if row.get(key) not in (None, "")}
+
+
+def own_starts(spec: dict) -> dict:
+    """What runs of own starts depend on: a spec without what it says of jittered ones."""
+    scenes = [{key: value for key, value in one.items() if key != "starts"} for one in spec.get("scenes", [])]
+    return {key: value for key, value in spec.items() if key != "starts"} | {"scenes": scenes}
 
 
 def with_kept_starts(record: dict, path: Path) -> dict:
     """The record of new runs with the jittered starts of the one at `path`, where both are of one spec."""
     kept = read_object(path) if path.is_file() else {}
-    if kept.get("schema") != RECORD or kept.get("spec") != record["spec"] or "command_of_starts" not in kept:
+    if kept.get("schema") != RECORD or "command_of_starts" not in kept:
+        return record
+    own, jittered = own_starts(kept["spec"]) == own_starts(record["spec"]), kept["spec"].get("starts")
+    if not own or jittered != record["spec"].get("starts"):
         return record
     known = {one["scene"]: {key: one[key] for key in KEPT if key in one} for one in kept["scenes"]}
     scenes = [one | known.get(one["scene"], {}) for one in record["scenes"]]
@@ -50,8 +64,7 @@ def earlier(path: Path, study: Study) -> dict:
     if not path.is_file():
         raise UserError(f"{path} is not there: {again}")
     record = read_object(path)
-    same = lambda spec: {key: value for key, value in spec.items() if key != "starts"}  # noqa: E731
-    if record.get("schema") != RECORD or same(record["spec"]) != same(study.spec):
+    if record.get("schema") != RECORD or own_starts(record["spec"]) != own_starts(study.spec):
         raise UserError(f"{path} is of another spec: {again}")
     return record
 
@@ -121,9 +134,12 @@ def with_starts(study: Study, record: dict, n: int, only: list[str] = ()) -> dic
         raise UserError("--starts: the spec has no `starts` with a jitter_m")
     check_only(study, only)
     fitted, few = record["material_left"], study.spec["starts"].get("few", n)
-    left = {one["name"] for one in study.spec["scenes"] if not one.get("starts", True)}
+    left = without_starts(study.spec)
     known = [one for one in record["scenes"] if one["scene"] in study.scenes]
     scenes = [one for one in known if one["scene"] not in left]
+    if not scenes:
+        found = ", ".join(study.scenes)
+        raise UserError(f"--starts: found {found}; allowed: a scene whose `starts` is not false in the spec")
     out: dict[str, list[dict]] = {one["scene"]: [] for one in scenes}
     for last in (False, True):
         for k in range(1, n + 1):

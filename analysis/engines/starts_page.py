@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..text_table import markdown
 from .scatter import number, ranged, scatter
+from .starts import without_starts
 
 HEAD = [
     "engine", "dt, ms", "ended ok", "error, %", "depth, mm", "cross in a frame", "in an obstacle",
@@ -28,6 +29,8 @@ def rules(record: dict) -> list[str]:
             why.append(f"end more than {rule['few_above_error']:g} widths from the reference")
         made = f"made from {rule['few']} starts alone" if rule["few"] else "not made again"
         text += f" Runs that from the own start {' or '.join(why)} were {made}."
+    if left := without_starts(record["spec"]):
+        text += f" Of their own start alone are {', '.join(left)}."
     return [text, ""]
 
 

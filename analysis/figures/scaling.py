@@ -23,11 +23,10 @@ PANELS = (  # solver, column of table(), label
 )
 SOLVE = ("time_linear_factor_s", "time_linear_solve_s")  # with the set-up of a preconditioner
 SHOWN = (
-    "What a run takes against its unknowns, logarithmic: milliseconds a Newton iteration with a direct solver"
-    " and with conjugate gradients with block Jacobi, their iterations a solve, Newton iterations a step, and"
-    " milliseconds a Newton iteration outside the solve and the set-up of its preconditioner."
-    " The exponents are least squares over all sizes of a line: time grows as unknowns to that power. Crosses"
-    " at the upper edge: runs that failed. Times are of one machine, one thread."
+    "What a run takes against its unknowns, logarithmic, a panel each: {panels}. PCG is with the"
+    " preconditioner of the runs; outside the solve: without its set-up either. The exponents are least"
+    " squares over all sizes of a line: a number grows as unknowns to that power. Crosses at the upper edge:"
+    " runs that failed. Times are of one machine, one thread."
 )
 
 
@@ -36,7 +35,7 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
     good = runs["outcome"] == "ok"
     iterations, solves = runs["newton_iterations"].where(good), runs["linear_solves"].where(good)
     seconds = pd.to_numeric(runs["solve_s"])
-    outside = seconds - sum(pd.to_numeric(runs[column]).fillna(0) for column in SOLVE)
+    outside = seconds - sum(pd.to_numeric(runs[column]) for column in SOLVE)
     return pd.DataFrame(
         {
             "formulation": runs["formulation"],
@@ -89,4 +88,5 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
         common(runs, {"scene": "scene", "scene_free_dofs": "unknowns", "steps": "steps", "dt_s": "dt (s)"}),
     )
     both = pd.concat([numbers, pd.DataFrame(rows)], ignore_index=True)
-    return drawing.save(fig, both, SHOWN, facts, runs)
+    said = SHOWN.format(panels=", ".join(label for _, _, label in shown))
+    return drawing.save(fig, both, said, facts, runs)

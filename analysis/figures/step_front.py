@@ -10,7 +10,8 @@ import pandas as pd
 
 from .. import style
 from ..captions import Facts
-from ..frames import frame_of
+from ..errors import UserError
+from ..frames import frame_of, frame_paths, points_of_bodies, read_scene
 from ..run import Run
 from . import slopes
 from .drawing import Drawing, common, formulations, outcomes
@@ -18,26 +19,37 @@ from .subjects import SweepRecords
 
 SHOWN = (
     "Distance of vertices at the end of the run from the same formulation at the smallest time step, root"
-    " mean square over vertices, over the size of the scene, against what the run took; each line goes over"
-    " the time step, which is written beside its points (ms). The smallest step is the reference and is not"
-    " drawn. Left: Newton iterations. Right: seconds of one thread. Runs that failed are not drawn."
+    " mean square over vertices, over the size of the scene, against the Newton iterations of the run; each"
+    " line goes over the time step, which is written beside its points (ms). The smallest step is the"
+    " reference and is not drawn."
 )
-COST = (("newton_iterations", "Newton iterations"), ("solve_s", "seconds"))
+
+
+COLUMNS = ("formulation", "outcome", "dt_s", "newton_iterations", "solve_s")
 
 
 def end(run: Run) -> np.ndarray:
-    """[n, 3] m, after the last step. Errors: UserError where its frame is not kept."""
-    return frame_of(run.record, run.folder, run.record["summary"]["steps"] - 1).vertices
+    """[n, 3] m, vertices of bodies after the last step. Errors: UserError where its frame is not kept."""
+    last = run.record["summary"]["steps"] - 1
+    if last not in frame_paths(run.record, run.folder):
+        raise UserError(
+            f"{run.folder}: no frame of step {last} is kept; allowed: /output/frames_every from 1"
+        )
+    vertices = frame_of(run.record, run.folder, last).vertices
+    return points_of_bodies(read_scene(run.record, run.folder), vertices)
 
 
 def table(runs: list[tuple[pd.Series, Run]]) -> pd.DataFrame:
     """A row a run: formulation, outcome, dt_s, newton_iterations, solve_s, and error, which is nan of runs
-    that failed, of the reference, and where a formulation has none. Errors: UserError where no frame is kept.
+    that failed, of the reference, and where a formulation has none. Errors: UserError where no frame is kept,
+    or two runs are of one formulation and time step.
     """
     rows = [row for row, _ in runs]
-    found = pd.DataFrame(
-        [{key: row[key] for key in ("formulation", "outcome", "dt_s", *dict(COST))} for row in rows]
-    )
+    found = pd.DataFrame([{key: row[key] for key in COLUMNS} for row in rows])
+    twice = found[found.duplicated(["formulation", "dt_s"])]
+    if len(twice):
+        name, dt = twice.iloc[0][["formulation", "dt_s"]]
+        raise UserError(f"found two runs of {name} at {dt:g} s; allowed: one a formulation and time step")
     finest, good = found["dt_s"].min(), found["outcome"] == "ok"
     references = {
         found["formulation"][k]: end(runs[k][1]) for k in found.index[good & (found["dt_s"] == finest)]
@@ -52,15 +64,25 @@ def table(runs: list[tuple[pd.Series, Run]]) -> pd.DataFrame:
     return found.assign(error=errors)
 
 
-def draw(axis, found: pd.DataFrame, cost: str) -> None:
+def draw(axis, found: pd.DataFrame) -> None:
     for row, name in enumerate(formulations(found)):
-        mine = found[(found["formulation"] == name) & (found["error"] > 0)].sort_values("dt_s")
-        slopes.draw(axis, mine[cost], mine["error"], name, (), row)
+        mine = found[found["formulation"] == name].sort_values("dt_s")
+        slopes.draw(axis, mine["newton_iterations"], mine["error"], name, (), row)
         for _, one in mine.iterrows():
-            at, label = (one[cost], one["error"]), f"{1e3 * one['dt_s']:g}"
+            at, label = (one["newton_iterations"], one["error"]), f"{1e3 * one['dt_s']:g}"
             axis.annotate(label, at, (2, 2), textcoords="offset points", fontsize=5)
-    axis.set(xscale="log", yscale="log")
+    axis.set(xscale="log", yscale="log", xlabel="Newton iterations", ylabel="error / size")
     style.keep_span(axis)
+
+
+def left_out(found: pd.DataFrame) -> str:
+    """What is not drawn beside the references, for the caption."""
+    drawn = found[found["error"] > 0]
+    coarse = found[(found["dt_s"] > found["dt_s"].min()) & ~found.index.isin(drawn.index)]
+    names = [
+        f"{one['formulation']} at {1e3 * one['dt_s']:g} ms ({one['outcome']})" for _, one in coarse.iterrows()
+    ]
+    return f" Not drawn, since the run or its reference failed: {', '.join(names)}." if names else ""
 
 
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
@@ -70,17 +92,13 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     found = table([(row, subject.run(row)) for _, row in runs.iterrows()])
     if not (found["error"] > 0).any():
         raise drawing.nothing(f"no run beside one at the smallest time step ({outcomes(runs)})")
-    fig, axes = plt.subplots(1, 2, figsize=(drawing.width_in, 2.8), layout="constrained", sharey=True)
-    for axis, (column, label) in zip(axes, COST):
-        draw(axis, found, column)
-        axis.set_xlabel(label)
-    axes[0].set_ylabel("error / size")
-    style.letter_panels(axes)
-    style.legend_below(fig, axes[0])
+    fig, axis = plt.subplots(figsize=(drawing.width_in, 2.8), layout="constrained")
+    draw(axis, found[found["error"] > 0])
+    style.legend_below(fig, axis)
     facts = Facts(
         f"1 repetition of {outcomes(runs)}; {found['dt_s'].nunique()} time steps",
         "root mean square over vertices",
         f"each formulation at a time step of {1e3 * found['dt_s'].min():.4g} ms",
         common(runs, {"scene": "scene", "scene_free_dofs": "unknowns", "d_hat_m": "d_hat (m)"}),
     )
-    return drawing.save(fig, found, SHOWN, facts, runs)
+    return drawing.save(fig, found, SHOWN + left_out(found), facts, runs)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator
+from pathlib import Path
 
 from ..errors import UserError
 from .statement import Statement, cells_of, section, tables
@@ -156,8 +157,10 @@ ENDS = ("ended ok", "crossing in a frame", "in an obstacle", "passing between fr
 
 
 def engines(text: str, page: str) -> Iterator[Statement]:
-    """How the runs of each engine ended: of its own start, and of jittered ones."""
-    engine, variant = "", ""
+    """How the runs of each engine ended: of its own start, and of jittered ones. Those of a study of another
+    name are other runs.
+    """
+    engine, variant, study = "", "", "" if page == "results/ENGINES.md" else f"{Path(page).stem}, "
     for line in section(text, "What was promised, and what was seen").splitlines():
         if found := re.match(r"- \*\*(\S+) \S+\*\* promises", line):
             engine = found[1]
@@ -169,9 +172,9 @@ def engines(text: str, page: str) -> Iterator[Statement]:
             starts = "own start" if own else "jittered starts"
             ok, runs, *others = numbers.groups()
             for quantity, number in zip(("runs", *ENDS), (runs, ok, *others)):
-                yield Statement(f"{page}, {SAID}", f"{engine} {variant}: {quantity}", starts, number)
+                yield Statement(f"{page}, {SAID}", f"{study}{engine} {variant}: {quantity}", starts, number)
     ends = _ends_of_tables(text)
-    for starts in ("own start", "jittered starts"):
+    for starts in () if study else ("own start", "jittered starts"):
         mujoco = sum(
             n for (label, *of), n in ends.items() if label.startswith("mujoco ") and of == [starts, "runs"]
         )
@@ -183,7 +186,7 @@ def engines(text: str, page: str) -> Iterator[Statement]:
         )
     for (label, starts, quantity), number in ends.items():
         if not label.startswith("barrierbench"):  # nothing is promised of ours
-            yield Statement(f"{page}, {SHOWN}", f"{label}: {quantity}", starts, str(number))
+            yield Statement(f"{page}, {SHOWN}", f"{study}{label}: {quantity}", starts, str(number))
 
 
 def _ends_of_tables(text: str) -> Counter:

@@ -45,7 +45,8 @@ Block load_block(const double* from) { return {load_four(from), load_four(from +
 /// Of local Hessians that stand alone.
 struct AloneBlocks {
   const double* from;
-  explicit AloneBlocks(const LocalHessians& hess) : from(hess.from.data()) {}
+  explicit AloneBlocks(std::span<const double> hess) : from(hess.data()) {}
+  explicit AloneBlocks(const LocalHessians& hess) : AloneBlocks(hess.from) {}
   Block at(std::size_t offset) const { return load_block(from + offset); }
   void prefetch(std::size_t offset) const {
     __builtin_prefetch(from + offset);
@@ -225,9 +226,8 @@ void GatherMap::place(const BlockPattern& pattern) {
 
 void GatherMap::add_hessians(const LocalHessians& hess, std::vector<double>& values) const {
   const bool blended = !hess.to.empty();
-  for (const std::span<const double> numbers : {hess.from, blended ? hess.to : hess.from}) {
-    if (numbers.size() == n_elements() * n_lower_numbers(at(width_))) continue;
-    throw ConfigError("local Hessians", std::to_string(numbers.size()) + " numbers",
+  if (hess.from.size() != n_elements() * n_lower_numbers(at(width_))) {
+    throw ConfigError("local Hessians", std::to_string(hess.from.size()) + " numbers",
                       "size * 9 width (width + 1)/2");
   }
   const bool ahead = hess.from.size_bytes() + hess.to.size_bytes() >= prefetched_bytes;

@@ -11,7 +11,7 @@
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
 //     with a detour round them; where steps crawl, first along a longer dx
 //   6 accept; what converged goes on where terms renew what they lag. A step that was shortened asks for the secant of terms
-//     that have one (secant_rule.hpp)
+//     that have one (secant_rule.hpp), and so does one along which E falls nowhere, before the step fails
 
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ class LineSearch final : public StepSolver {
           return step;
         }
         begin_anew(iteration);
-      } else if (turns_to_secant(system, moved)) {
+      } else if (turn_to_secant(system, moved, at_pose, iteration + 1 == options_.max_iterations)) {
         continue;
       } else if (gives_up(system, task, report, moved, at_pose, step)) {
         return step;
@@ -174,16 +174,21 @@ class LineSearch final : public StepSolver {
     end_converged(step, end, last.error_estimate_m.value + left_of(last), options_.tol_velocity * dt);
   }
 
-  // Whether E falls nowhere along a direction that is free to be taken, and the next direction is of another matrix.
-  bool turns_to_secant(StepSystem& system, bool moved) {
-    return !moved && search_.bound() >= collapsed_step && secant_.took(true, system);
+  // Whether no part of a direction that is free to be taken was: E falls nowhere along it, or no trial is feasible.
+  bool falls_nowhere(bool moved) const { return !moved && search_.bound() >= collapsed_step; }
+
+  // Before a step fails by that, the whole secant is asked for. Returns whether another iteration follows, whose matrix has
+  // more of it than this one. last: none can follow.
+  bool turn_to_secant(StepSystem& system, bool moved, bool at_pose, bool last) {
+    if (!at_pose || last || !falls_nowhere(moved)) return false;
+    return secant_.took(true, system);
   }
 
   // Whether the step ends short of it, which it then says: E falls nowhere along a direction that is free to be taken, or
   // next to nothing was taken of collapse_iterations directions in a row.
   bool gives_up(const StepSystem& system, const StepTask& task, const IterationReport& last, bool moved,
                 bool at_pose, StepReport& step) {
-    if (!moved && search_.bound() >= collapsed_step) {
+    if (falls_nowhere(moved)) {
       step.status = StepStatus::line_search_failed;
       return true;
     }

@@ -15,8 +15,8 @@ class SecantRule {
   void begin_step() { share_ = 0; }
   /// From the next iteration on there is none.
   void reset(StepSystem& system) { set(0, system); }
-  /// After an iteration that another one follows. shortened: E rose along dx, or a trial was infeasible, where the bound would
-  /// have let it go. Returns whether the next matrix has more of the secant than this one.
+  /// After an iteration. shortened: E rose along dx, or a trial was infeasible, where the bound would have let it go. Returns
+  /// whether the matrix of the next iteration, if one follows, has more of the secant than that of this one.
   bool took(bool shortened, StepSystem& system) {
     const double before = share_;
     if (shortened)

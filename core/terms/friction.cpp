@@ -38,7 +38,7 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
   bool take_secant(double share) override {
     if (options_.hessian == FrictionHessian::exact) return false;
     kind_.secant = share;
-    return true;
+    return Base::size() > 0;
   }
   bool renews() override {
     if (++solved_ >= options_.lag_iterations) return false;

@@ -63,7 +63,8 @@ class Term {
   /// The same step and iterate with another prediction and length.
   virtual void change_step(const StepColumns&) {}
   /// From the next linearisation of the step on its Hessian has that share, in [0, 1], of a secant: a matrix with which the
-  /// quadratic model of the term lies nowhere below its energy. A step begins without. False where the term has none.
+  /// quadratic model of the term lies nowhere below its energy. A step begins without. False where the term has none, or nothing now
+  /// that it would be of.
   virtual bool take_secant(double /*share*/) { return false; }
   /// The step has converged at the iterate x: what was taken from its start is taken from there, and the step goes on, if true.
   virtual bool renew_lag(const PositionsView& /*x*/) { return false; }

@@ -1,5 +1,6 @@
 """`bench engine compare --starts`: jittered starts are the same for all, what is dear is left out, scatter is counted and drawn."""
 
+import dataclasses
 import json
 
 import numpy as np
@@ -62,16 +63,32 @@ def test_a_scene_without_starts_stays_as_it_is_and_a_spec_names_its_files(progra
     first = study.spec["scenes"][0]
     study.spec["scenes"].append({**first, "name": "large", "starts": False})
     study.scenes["large"] = study.scenes["hang"]
-    study.spec["name"] = "mine"
+    study.spec["name"] = "engines_mine"
     record = compare.compared(study)
     found = starts.with_starts(study, record, 2) | {"command": "./bench engine compare mine.json", "command_of_starts": "this"}
     small, large = found["scenes"]
     assert len(small["starts"]) == 2 and large == record["scenes"][1]
     page = text_of(found)
-    assert "Made by `./bench engine compare mine.json`" in page and "(../docs/mine.png)" in page and page.count("From 2 jittered starts") == 1
-    path = tmp_path / "spec.json"
-    path.write_text(json.dumps(study.spec))
-    assert set(compare.read_study(path, tmp_path, [], str).scenes) == {"hang", "large"}
+    assert "Made by `./bench engine compare mine.json`" in page and "(../docs/engines_mine.png)" in page and page.count("From 2 jittered starts") == 1
+    assert "Of their own start alone are large." in page
+    with pytest.raises(UserError, match="--starts: found large; allowed: a scene whose `starts` is not false"):
+        starts.with_starts(dataclasses.replace(study, scenes={"large": study.scenes["large"]}), record, 2)
+
+
+def test_files_have_the_name_of_the_spec(program, here, tmp_path, monkeypatch, capsys):
+    spec = small_study(tmp_path, None)[0].spec | {"engines": [{"engine": "template", "variant": "plain", "levels": [{"dt_s": 0.001}]}]}
+    for folder in ("results", "docs"):
+        (tmp_path / folder).mkdir()
+    monkeypatch.setattr(verb, "ROOT", tmp_path)
+    path = tmp_path / "named.json"
+    path.write_text(json.dumps(spec | {"name": "catalogue"}))
+    with pytest.raises(UserError, match="found 'catalogue'; engines, or engines_ and a name of a-z, 0-9 and _ is needed"):
+        verb._compare(path, verb.parse(["compare", str(path), "--runs", str(tmp_path / "runs")]), ["compare"])
+    path.write_text(json.dumps(spec | {"name": "engines_mine"}))
+    assert verb._compare(path, verb.parse(["compare", str(path), "--runs", str(tmp_path / "runs")]), ["compare"]) == 0
+    made = capsys.readouterr().out.split()
+    assert made == ["results/engines_mine.json", "results/ENGINES_MINE.md", "docs/engines_mine.png"] and all((tmp_path / name).is_file() for name in made)
+    assert (tmp_path / made[1]).read_text().startswith("# Engines of others: mine\n")
 
 
 def test_a_record_of_the_same_spec_keeps_its_starts(tmp_path):

@@ -10,6 +10,7 @@ from matplotlib.colors import LogNorm
 
 from analysis import pgfplots
 from analysis.captions import Facts
+from analysis.errors import UserError
 from analysis.figures import (eigenvalues, friction_slope, gap_ridge, heat_map, newton_condition, one_step, phase_times, preconditioned, profiles, resolution, scaling,
                               slopes, step_front, success_frontier, trend)
 from analysis.records import load
@@ -226,7 +227,7 @@ def test_failed_runs_have_no_number_of_scaling_and_stay_in_the_table():
     found = scaling.table(runs)
 
     assert list(found.loc[0, ["ms_an_iteration", "ms_outside", "pcg_a_solve", "newton_a_step"]]) == pytest.approx([5, 2, 10, 2])
-    assert found.loc[1, ["ms_an_iteration", "pcg_a_solve", "newton_a_step"]].isna().all()
+    assert found.loc[1, ["ms_an_iteration", "ms_outside", "pcg_a_solve", "newton_a_step"]].isna().all()
     assert list(found["outcome"]) == ["ok", "timeout"]
 
 
@@ -263,3 +264,6 @@ def test_errors_over_the_time_step_are_those_against_the_own_finest_step(monkeyp
     found = step_front.table(rows)
     assert list(found["error"])[:2] == pytest.approx([math.sqrt(3) * 0.5 / 2, math.sqrt(3) * 0.2 / 2])
     assert found["error"].isna().tolist() == [False, False, True, True, True]  # the reference, and two without one
+    assert step_front.left_out(found) == " Not drawn, since the run or its reference failed: cubic at 10 ms (ok)."
+    with pytest.raises(UserError, match="two runs of log at 0.01 s"):
+        step_front.table([*rows, rows[0]])

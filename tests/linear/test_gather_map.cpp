@@ -102,7 +102,7 @@ TEST_P(GatherMapTest, AddsWhatIsBetweenTwoHessians) {
   map.add_hessians(exact, alone);
   EXPECT_EQ(found, expected);
   EXPECT_NE(alone, expected);
-  EXPECT_THROW(map.add_hessians({exact, std::span(clamped).first(9), 0.125}, found), ConfigError);
+  EXPECT_THROW(map.add_hessians({exact, std::span(clamped).first(9), 0.125}, found), std::logic_error);
 }
 
 // The last two on either side of the size from which the Hessians are prefetched, 8 MiB: 11650 elements of width 4.

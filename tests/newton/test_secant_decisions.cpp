@@ -33,18 +33,39 @@ TEST(SecantDecisions, AStepThatWasShortenedAsksForAllOfItAndWholeOnesForEverLess
   EXPECT_EQ(shares({shortened(), whole(), shortened(), whole()}, 5), (Shares{0, 1, 0.25, 1, 0.25}));
 }
 
-TEST(SecantDecisions, AStepAlongWhichERisesIsAskedForItOnceBeforeItFails) {
-  ScriptedIteration rising = whole();
-  rising.change = [](double) -> Change { return EnergyChange{1, 1e-3}; };
-  const ScriptedStep turned = taken({rising, whole()}, 4);
+/// E rises along all of dx.
+ScriptedIteration rising() {
+  ScriptedIteration out = whole();
+  out.change = [](double) -> Change { return EnergyChange{1, 1e-3}; };
+  return out;
+}
+
+TEST(SecantDecisions, AStepAlongWhichERisesIsAskedForItBeforeItFails) {
+  const ScriptedStep turned = taken({rising(), whole()}, 4);
   EXPECT_EQ(turned.system.secants, (Shares{0, 1, 0.25, 0.0625}));
   EXPECT_EQ(turned.report.status, StepStatus::iteration_cap);
-  const ScriptedStep twice = taken({whole(), rising, rising}, 5),
-                     without = taken({whole(), rising}, 5, false);
+  const ScriptedStep from_a_share = taken({shortened(), whole(), rising(), whole()}, 5);
+  EXPECT_EQ(from_a_share.system.secants, (Shares{0, 1, 0.25, 1, 0.25}));
+  const ScriptedStep twice = taken({whole(), rising()}, 5), without = taken({whole(), rising()}, 5, false);
   EXPECT_EQ(twice.system.secants, (Shares{0, 0, 1}));
   EXPECT_EQ(twice.report.status, StepStatus::line_search_failed);
   EXPECT_EQ(without.system.secants, (Shares{0, 0}));
   EXPECT_EQ(without.report.status, StepStatus::line_search_failed);
+}
+
+TEST(SecantDecisions, OfTheLastIterationAndOfAStepThatContactHoldsItIsNotAsked) {
+  const ScriptedStep last = taken({whole(), rising()}, 2);
+  EXPECT_EQ(last.system.secants, (Shares{0, 0}));
+  EXPECT_EQ(last.report.status, StepStatus::line_search_failed);
+  ScriptedIteration held = rising();
+  held.bound = 1e-9;
+  EXPECT_EQ(shares({held}, 4), (Shares{0, 0, 0, 0}));
+  ScriptedIteration short_of_its_pose = whole();
+  short_of_its_pose.at_target = false;
+  short_of_its_pose.change = [](double) -> Change { return std::nullopt; };
+  const ScriptedStep infeasible = taken({short_of_its_pose}, 4);
+  EXPECT_EQ(infeasible.system.secants, (Shares{0}));
+  EXPECT_EQ(infeasible.report.status, StepStatus::line_search_failed);
 }
 
 TEST(SecantDecisions, IterationsWithAShareOfItAreCounted) {
