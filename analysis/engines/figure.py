@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..style import WIDE_IN, plt
+from ..ticks import make_readable
 from ..whole_file import write_figure
 from .level import lines
 from .scatter import crosses, of_rows, scatter
@@ -83,6 +84,7 @@ def paint(record: dict, path: Path) -> None:
             xlabel="seconds of steps",
             ylabel="error, % of width",
         )
+    make_readable(axes.flat[: len(scenes)])
     for axis in axes.flat[len(scenes) :]:
         axis.axis("off")
     _key(axes.flat[len(scenes)], looks, any(one.get("starts") for one in scenes))

@@ -330,7 +330,8 @@ TEST_F(BlockSystemTest, BadInputIsAConfigError) {
   const std::vector<int> outside = {0, kN};
   EXPECT_THROW(s.set_elements({Stencils{2, outside}}), ConfigError);
   set_elements(s);
-  EXPECT_THROW(s.add_elements(0, std::vector<double>(3)), ConfigError);
+  const std::vector<double> three(3);
+  EXPECT_THROW(s.add_elements(0, three), ConfigError);
   EXPECT_THROW(s.add_elements(3, triangles.hess), ConfigError);
   EXPECT_THROW(s.add_contacts(0, contacts.hess), ConfigError);
 }
