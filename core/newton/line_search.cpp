@@ -44,14 +44,13 @@ class LineSearch final : public StepSolver {
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
     begin_search(step);
-    double& secants = step.solver.values["secants"] = 0;
     const double tolerance = tolerance_of(system, task.dt);
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);  // 1
       find_direction(system, report, observer);                                // 2
       const bool at_pose = system.view().at_target();
       const bool small = estimate_error(report) < tolerance && at_pose;  // 3
-      if (secant_.share() > 0) ++secants;
+      if (secant_.share() > 0) ++*secants_;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
         fail_step(system, step, *failed, report);
@@ -88,6 +87,7 @@ class LineSearch final : public StepSolver {
     error_.reset();
     crawl_.begin_step();
     secant_.begin_step();
+    secants_ = &(step.solver.values["secants"] = 0);
     collapsed_ = escapes_ = 0;
   }
 
@@ -212,8 +212,9 @@ class LineSearch final : public StepSolver {
   ErrorEstimate error_;
   CrawlWatch crawl_;
   SecantRule secant_;
-  int collapsed_ = 0;  // steps in a row
-  int escapes_ = 0;    // of the step
+  double* secants_ = nullptr;  // iterations of the step with a share of the secant
+  int collapsed_ = 0;          // steps in a row
+  int escapes_ = 0;            // of the step
 };
 
 }  // namespace
