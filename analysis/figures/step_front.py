@@ -23,8 +23,6 @@ SHOWN = (
     " line goes over the time step, which is written beside its points (ms). The smallest step is the"
     " reference and is not drawn."
 )
-
-
 COLUMNS = ("formulation", "outcome", "dt_s", "newton_iterations", "solve_s")
 
 

@@ -219,7 +219,7 @@ class Compared : public Both {
     counts.contacts += expected.contacts.total();
     counts.loads += expected.contact_loads.size();
   }
-  /// At given vertices an executor's rows have no force.
+  /// At prescribed vertices an executor's rows have no force.
   void expect_same_gradient(NewtonSystem& other, Counts& counts) {
     const Positions expected = cpu.view().gradient(), found = other.view().gradient();
     const ContactState& rows = contact_state(cpu.diagnosis().terms());
