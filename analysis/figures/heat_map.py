@@ -27,6 +27,7 @@ WORDS = tuple(fields.schema("run")["$defs"]["Status"]["properties"]["outcome"]["
 LETTERS = {
     "ok": "o",
     "invalid_scene": "V",
+    "given_parts_cross": "G",
     "initial_intersection": "X",
     "pin_infeasible": "F",
     "kernel_failed": "K",

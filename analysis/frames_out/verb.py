@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -83,24 +84,31 @@ def with_finer(run: Run, times: int, name: str | None, smooth: bool) -> list[Bin
     return parts
 
 
-def export(run: Run, parts: list[Binding], kind: str, out: Path) -> str:
-    """Writes the folder `out`, beside it first, then in its place; returns what is in it. Errors: UserError
-    where it exists.
+def in_new_folder(out: Path, fill: Callable[[Path], None]) -> None:
+    """A folder beside `out`, which `fill` fills and which then takes its place. Errors: UserError where it
+    exists; those of fill leave nothing.
     """
     if out.exists() or out.is_symlink():
         raise UserError(f"{out}: there already; allowed: a folder that is not there yet")
-    sequences = [s for s in (bodies(run, parts), obstacles(run)) if s is not None]
     out.parent.mkdir(parents=True, exist_ok=True)
     part = out.with_name(f"{out.name}.tmp.{os.getpid()}")
     try:
         part.mkdir()
-        write(sequences, kind, part)
+        fill(part)
         part.rename(out)
     except OSError as error:
         error.filename = str(error.filename or out).replace(str(part), str(out))
         raise
     finally:
         shutil.rmtree(part, ignore_errors=True)
+
+
+def export(run: Run, parts: list[Binding], kind: str, out: Path) -> str:
+    """Writes the folder `out`, beside it first, then in its place; returns what is in it. Errors: UserError
+    where it exists.
+    """
+    sequences = [s for s in (bodies(run, parts), obstacles(run)) if s is not None]
+    in_new_folder(out, lambda folder: write(sequences, kind, folder))
     mesh = sequences[0].mesh
     return (
         f"{out}: {len(run.steps)} frames ({kind}) of {len(mesh.of_points)} points, {len(mesh.triangles)}"
@@ -108,14 +116,14 @@ def export(run: Run, parts: list[Binding], kind: str, out: Path) -> str:
     )
 
 
-def _positive(text: str) -> float:
+def positive(text: str) -> float:
     value = float(text)
     if not 0 < value < float("inf"):
         raise ValueError(text)
     return value
 
 
-_positive.__name__ = "length above 0 (m)"
+positive.__name__ = "length above 0 (m)"
 
 
 def _times(text: str) -> int:
@@ -161,7 +169,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--reach",
-        type=_positive,
+        type=positive,
         metavar="M",
         help="largest distance (m) of a vertex of --render-mesh from the surface (default:"
         f" {REACH:g} of the diagonal of the body's box)",

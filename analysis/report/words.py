@@ -5,6 +5,7 @@ from __future__ import annotations
 # Words of core/base/record/outcome.hpp; a test holds the keys to the schema.
 OUTCOMES = {
     "invalid_scene": "the scene cannot be run: its pilot could not be matched; there is no first step",
+    "given_parts_cross": "parts that the scene itself moves or fixes cross each other, which no solver decides",
     "initial_intersection": "surfaces cross each other before the first step; there is no first step",
     "penetration": "the audit found a surface in or through another",
     "nan": "an energy, a gradient or a position is no finite number",

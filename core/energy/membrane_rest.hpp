@@ -1,5 +1,4 @@
-// Rest triangles that shrink over time and creep: the F of an element is that of its given triangle over a factor, times the inverse of
-// a plastic part.
+// Rest triangles that creep: the F of an element is that of its given triangle times the inverse of a plastic part.
 #pragma once
 
 #include "core/energy/creep.hpp"
@@ -8,15 +7,12 @@
 
 namespace bb {
 
-/// @param factor  on rest lengths, > 0   @param plastic_inv  column-major, or null: none. Host-device: yes.
+/// @param plastic_inv  column-major. Host-device: yes.
 template <class T>
-BB_HD TriangleRest<T> placed_rest(const TriangleRest<T>& given, T factor, const T* plastic_inv) {
-  TriangleRest<T> rest = given;
-  rest.dm_inv /= factor;
-  rest.area *= factor * factor;
-  if (!plastic_inv) return rest;
+BB_HD TriangleRest<T> placed_rest(const TriangleRest<T>& given, const T* plastic_inv) {
   Mat<T, 2, 2> plastic;
   for (int k = 0; k < 4; ++k) plastic.data()[k] = plastic_inv[k];
+  TriangleRest<T> rest = given;
   const Mat<T, 2, 2> crept = rest.dm_inv * plastic;
   rest.dm_inv = crept;
   return rest;

@@ -28,6 +28,14 @@ BB_HD T angle_between(const Vec<T, 3>& a, const Vec<T, 3>& b) {
   return atan2(a.cross(b).norm(), a.dot(b));
 }
 
+/// Rest angles below are those of a straight rod whose coordinates are rounded.
+constexpr double least_rest_angle = 1e-6;  // rad
+/// The angle at rest of two segments a, b (m) of a rod, rad.
+inline double rod_rest_angle(const Vec3d& a, const Vec3d& b) {
+  const double angle = angle_between(a, b);
+  return angle < least_rest_angle ? 0 : angle;
+}
+
 /// A unit vector at right angles to the unit vector n.
 template <class T>
 BB_HD Vec<T, 3> any_normal_to(const Vec<T, 3>& n) {

@@ -73,7 +73,7 @@ void require_on_host(const StepSystem& system, std::string_view solver) {
 
 void require_unmoved(const Scene& scene, std::string_view solver) {
   const std::string why = "the step solver is " + std::string(solver);
-  for (const RigidMotion& motion : scene.motions) {
+  for (const PrescribedMotion& motion : scene.motions) {
     if (!motion.is_static())
       throw ConfigError("/scene", "prescribed vertices or obstacles that move", "none: " + why);
   }

@@ -17,16 +17,22 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/terminal.hpp"
+#include "experiments/config/enum_words.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/artifacts.hpp"
 #include "experiments/run/device_memory.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
+#include "experiments/run/prescribed_crossings.hpp"
 #include "experiments/run/start_check.hpp"
 
 namespace bb::cli {
 namespace {
+
+struct CheckVerb : RunVerb {
+  bool film = false;
+};
 
 constexpr std::size_t most_bodies = 20;
 
@@ -123,13 +129,43 @@ void print_contacts(const DeviceMemory& memory) {
                 4);
 }
 
-int check(const RunVerb& verb) {
+constexpr std::size_t most_crossings = 20;
+
+/// The films of a scene, and where along all of them prescribed parts cross. Errors: ConfigError where they do.
+void check_films(const std::string& file, const RunConfig& config, const Scene& scene) {
+  std::size_t n = 0;
+  for (const PrescribedMotion& motion : scene.motions) {
+    if (!motion.film) continue;
+    ++n;
+    const Film& film = *motion.film;
+    const auto body = static_cast<std::size_t>(scene.body[static_cast<std::size_t>(motion.first_vertex)]);
+    show("  film of {}: {} frames of {} vertices, {:.6g} to {:.6g} s, {}\n", scene.bodies[body].name,
+         film.n_frames(), film.n_vertices(), film.times().front(), film.times().back(),
+         word_of(motion.film_source.between));
+  }
+  if (n == 0)
+    throw ConfigError(file + "#/scene", "no film", "a body or pins whose motion has one, for --film");
+  const int steps = steps_of_motions(scene, config.time.dt);
+  const auto found = prescribed_crossings(config, scene, steps, most_crossings, {&interrupted()});
+  std::vector<Violation> violations;
+  for (const PrescribedCrossing& one : found) {
+    violations.push_back({file + "#/scene",
+                          fmt::format("{}, from {:.6g} to {:.6g} s", one.pair, one.t0, one.t1),
+                          "prescribed parts that do not cross each other"});
+  }
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+  show("  no prescribed part crosses another in {} steps of {:g} s, to the end of the last motion\n", steps,
+       config.time.dt);
+}
+
+int check(const CheckVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
   const Plan plan = plan_of(config, scene);
   if (!verb.out.empty()) write_start(scene, verb.out);
   check_device_forms(config, scene);
   check_step_solver_forms(config, scene);
+  if (verb.film) check_films(verb.config, config, scene);
   if (const auto failure = start_failure(config, scene, plan.contacts, {&interrupted()})) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
@@ -142,12 +178,16 @@ int check(const RunVerb& verb) {
 }  // namespace
 
 Action verb::check(CLI::App& app) {
-  const auto verb = std::make_shared<RunVerb>();
+  const auto verb = std::make_shared<CheckVerb>();
   config_arguments(app, *verb);
   app.add_option(
       "--start-frame", verb->out,
       "write the start as DIR/frames/start.ply and scene.json, also where something crosses; ./bench "
       "render CONFIG draws it");
+  app.add_flag(
+      "--film", verb->film,
+      "say what films the scene has, and follow all of them, to their ends: every time and pair at which "
+      "prescribed parts cross, not the first alone");
   return [verb](const CommonOptions&) { return cli::check(*verb); };
 }
 

@@ -16,6 +16,7 @@
 #include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/terminal.hpp"
+#include "experiments/config/film_generators.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/config/presets.hpp"
@@ -75,6 +76,15 @@ void print_generators() {
   }
 }
 
+void print_films() {
+  show("films (/scene/bodies/N/motion/film/generator, /scene/bodies/N/rest_film/generator; below each: {})\n",
+       parameter_columns);
+  for (const FilmGenerator& generator : film_generators()) {
+    print_wrapped(fmt::format("  {:<22} {}", generator.name, generator.doc), doc_column);
+    print_parameters(generator.parameters);
+  }
+}
+
 void print_parts() {
   show("parts (/scene/bodies/N/material; below each: {})\n", parameter_columns);
   for (const PartEntry& entry : part_entries()) {
@@ -128,6 +138,7 @@ const std::vector<Section>& sections() {
        }},
       {"scenes", print_scenes},
       {"generators", print_generators},
+      {"films", print_films},
       {"parts", print_parts},
       {"linear_solvers", [] { print_entries("linear_solvers", linear_solvers()); }},
       {"preconditioners", [] { print_entries("preconditioners", preconditioners()); }},

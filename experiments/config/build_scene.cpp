@@ -15,6 +15,7 @@
 #include "core/model/bodies/scene_checks.hpp"
 #include "core/model/mesh/bounds.hpp"
 #include "core/model/mesh/read_mesh.hpp"
+#include "experiments/config/films.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
@@ -95,6 +96,27 @@ void take_rest_shape(const BodyConfig& body, const std::string& where, BodySpec&
   spec.start = std::exchange(spec.mesh.vertices, std::move(rest.vertices));
 }
 
+/// The films of the motions and of the rest shape of a body, whose mesh is not placed yet.
+void take_films(const BodyConfig& body, const std::string& where, BodySpec& spec) {
+  const auto place = [&body](Positions& x) { apply(body.transform, x); };
+  const auto film = [&](const FilmSource& source, const std::string& at) {
+    return make_film(source, spec.mesh, place, where + at);
+  };
+  spec.motion.film = film(spec.motion.film_source, "/motion/film");
+  for (std::size_t p = 0; p < spec.pins.size(); ++p) {
+    PrescribedMotion& motion = spec.pins[p].motion;
+    motion.film = film(motion.film_source, fmt::format("/pins/{}/motion/film", p));
+  }
+  spec.rest_film = film(body.rest_film, "/rest_film");
+}
+
+/// The rest shape is that of the film at the time 0, and where the body was is where it starts.
+void take_rest_of_film(BodySpec& spec) {
+  if (!spec.rest_film || spec.rest_film->n_vertices() != spec.mesh.n_vertices()) return;
+  spec.start = spec.mesh.vertices;
+  spec.rest_film->at(0, spec.mesh.vertices);
+}
+
 Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>& limit) {
   SceneBuilder builder("bodies", config.scene.planar, config.scene.gravity, config.source + "#/scene");
   builder.set_planar_pairs(config.scene.pairs);
@@ -108,7 +130,9 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     MeshFile made = make_mesh(body.mesh, where + "/mesh");
     spec.mesh = std::move(made.mesh);
     take_pinned_objects(made.objects, body.mesh, where, spec.pins);
+    take_films(body, where, spec);
     apply(body.transform, spec.mesh.vertices);
+    take_rest_of_film(spec);
     if (body.rest_mesh.given()) {
       take_rest_shape(body, where + "/rest_mesh", spec);
     }
@@ -135,7 +159,7 @@ void translate(const Vec3d& by, Scene& scene) {
     obstacle.point += by;
     obstacle.motion.translate(by);
   }
-  for (RigidMotion& motion : scene.motions) motion.translate(by);
+  for (PrescribedMotion& motion : scene.motions) motion.translate(by);
 }
 
 /// Uniform in [-1, 1) from the top 53 bits, the same on every platform.

@@ -39,11 +39,21 @@ void absolute_mesh_path(json& body, const char* key, const std::string& folder) 
   mesh["file"] = path;
 }
 
+void absolute_film_path(json& motion, const std::string& folder) {
+  if (motion.is_object()) absolute_mesh_path(motion, "film", folder);
+}
+
 void absolute_mesh_paths(json& document, const std::string& folder) {
   const json::json_pointer bodies("/scene/bodies");
   if (!document.is_object() || !document.contains(bodies) || !document[bodies].is_array()) return;
   for (json& body : document[bodies]) {
-    for (const char* key : {"mesh", "rest_mesh"}) absolute_mesh_path(body, key, folder);
+    for (const char* key : {"mesh", "rest_mesh", "rest_film"}) absolute_mesh_path(body, key, folder);
+    if (!body.is_object()) continue;
+    if (body.contains("motion")) absolute_film_path(body["motion"], folder);
+    if (!body.contains("pins") || !body["pins"].is_array()) continue;
+    for (json& pin : body["pins"]) {
+      if (pin.is_object() && pin.contains("motion")) absolute_film_path(pin["motion"], folder);
+    }
   }
 }
 

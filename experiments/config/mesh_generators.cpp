@@ -43,6 +43,14 @@ MeshGenerators closed_meshes() {
          return cylinder_mesh(integer(p, "n_around"), integer(p, "n_along"), number(p, "radius_m"),
                               number(p, "length_m"), boolean(p, "closed"));
        }},
+      {"torso",
+       "closed trunk of a body about z, from hips to neck",
+       {{"n_around", count(3, 20000), 40, "quads around"},
+        {"n_along", count(1, 20000), 49, "quads along"},
+        {"height_m", positive("m"), 0.9, "height; the widths follow"}},
+       [](const ParameterMap& p) {
+         return torso_mesh(integer(p, "n_around"), integer(p, "n_along"), number(p, "height_m"));
+       }},
       {"cone",
        "closed cone, tip at the origin, base below; rings close at the tip",
        {{"n_around", count(3, 20000), 16, "vertices of a ring"},

@@ -9,6 +9,7 @@
 #include "core/base/input/read_file.hpp"
 #include "core/base/record/provenance.hpp"
 #include "core/model/bodies/part.hpp"
+#include "experiments/config/films.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/sections.hpp"
@@ -86,11 +87,17 @@ void check_step(const MotionStep& motion, const std::string& pointer, const Read
   }
 }
 
-void check_motion(const RigidMotion& motion, const std::string& pointer, const Reader& reader) {
+void check_motion(const PrescribedMotion& motion, const std::string& pointer, const Reader& reader) {
   check_step(motion, pointer, reader);
   for (std::size_t i = 0; i < motion.then.size(); ++i) {
     check_step(motion.then[i], fmt::format("{}/then/{}", pointer, i), reader);
   }
+}
+
+void read_motion(const json& object, const std::string& pointer, const Reader& reader,
+                 PrescribedMotion& motion) {
+  check_motion(motion, pointer, reader);
+  read_film(child(object, "film"), pointer + "/film", reader, motion.film_source);
 }
 
 void settle_material(const json& object, const std::string& pointer, const Reader& reader, Material& m) {
@@ -141,17 +148,21 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
              reader);
   read_mesh(child(object, "mesh"), pointer + "/mesh", reader, body.mesh);
   read_mesh(child(object, "rest_mesh"), pointer + "/rest_mesh", reader, body.rest_mesh);
+  read_film(child(object, "rest_film"), pointer + "/rest_film", reader, body.rest_film);
+  if (body.rest_film.given() && body.rest_mesh.given()) {
+    reader.complain(pointer + "/rest_film", "a rest film beside rest_mesh", "one of both");
+  }
   settle_material(child(object, "material"), pointer + "/material", reader, spec.material);
-  check_motion(spec.motion, pointer + "/motion", reader);
+  read_motion(child(object, "motion"), pointer + "/motion", reader, spec.motion);
   check_times(spec.pressure_keys, pointer + "/pressure_schedule", reader);
   if (spec.pressure != 0 && !spec.pressure_keys.empty()) {
     reader.complain(pointer + "/pressure_Pa", "a pressure beside pressure_schedule", "one of both");
   }
   check_times(spec.material.shrink_keys, pointer + "/material/shrink_schedule", reader);
   for (std::size_t p = 0; p < spec.pins.size(); ++p) {
-    const PinSpec& pin = spec.pins[p];
+    PinSpec& pin = spec.pins[p];
     const std::string where = fmt::format("{}/pins/{}", pointer, p);
-    check_motion(pin.motion, where + "/motion", reader);
+    read_motion(child(given(object, "pins", p), "motion"), where + "/motion", reader, pin.motion);
     check_box(pin, where + "/box_m", reader);
     check_times(pin.pull_factors, where + "/pull_factors", reader);
     check_span(pin, where, reader);
@@ -170,6 +181,9 @@ void check_obstacle(const json& object, const std::string& pointer, const Reader
     reader.missing(pointer + "/radius_m", "a number > 0 (m)");
   }
   check_motion(obstacle.motion, pointer + "/motion", reader);
+  if (child(object, "motion").contains("film")) {
+    reader.complain(pointer + "/motion/film", "a film of an obstacle", "one of a rigid body, or of pins");
+  }
 }
 
 void check_names(const SceneConfig& scene, const Reader& reader) {

@@ -56,11 +56,20 @@ struct MeshSource {
 struct BodyConfig {
   MeshSource mesh;
   MeshSource rest_mesh;  // whose vertices are the rest shape; none: those of mesh
+  FilmSource rest_film;  // the same over time; none: they stay
   TransformConfig transform;
   BodySpec spec;                // without mesh and d_hat
   std::optional<double> d_hat;  // m; absent: formulation.d_hat
   bool limited = true;          // subject to strain_limit
 };
+
+/// The films of a body, of its motion, of the motions of its pins and of its rest shape, given or not.
+template <class Body>
+auto films_of(Body& body) {
+  std::vector<decltype(&body.rest_film)> out{&body.rest_film, &body.spec.motion.film_source};
+  for (auto& pin : body.spec.pins) out.push_back(&pin.motion.film_source);
+  return out;
+}
 
 struct SceneConfig {
   std::string name;                             // registered scene, or "bodies"

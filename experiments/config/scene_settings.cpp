@@ -3,6 +3,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "experiments/config/films.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/sections.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
@@ -32,9 +33,21 @@ void add_meshes(Settings<BodyConfig>& out) {
                "Mesh of the same elements whose vertices are the rest shape; `mesh` is where the body "
                "starts. Left out: `mesh` is both."},
               nullptr, [](const BodyConfig& body) { return mesh_json(body.rest_mesh); });
+  out.add_row(
+      {"rest_film", film_rule(), no_default,
+       "The rest shape over time, of all elements of the body; mass is that of its place at the time 0. Left "
+       "out: it stays."},
+      nullptr, [](const BodyConfig& body) { return film_json(body.rest_film); });
 }
 
-/// Of a MotionStep, and of the first operation of a RigidMotion.
+void add_film(Settings<PrescribedMotion>& out) {
+  out.add_row(
+      {"film", film_rule(), no_default,
+       "Positions of all vertices of the body over time, before the operations. Left out: where they start."},
+      nullptr, [](const PrescribedMotion& motion) { return film_json(motion.film_source); });
+}
+
+/// Of a MotionStep, and of the first operation of a PrescribedMotion.
 template <class S>
 void add_motion_rows(Settings<S>& out) {
   const auto row = [&out](auto member, const char* name, Rule rule, const char* doc) {
@@ -56,7 +69,7 @@ void add_motion_rows(Settings<S>& out) {
   out.nest_all(
       "keyframes", "Where the motion is at given times, linear between them; instead of rates and scale.",
       // resolved configs have an empty list in the operations of `then`
-      std::is_same_v<S, RigidMotion> ? 1 : 0, 10000, settings_of<Keyframe>(),
+      std::is_same_v<S, PrescribedMotion> ? 1 : 0, 10000, settings_of<Keyframe>(),
       [](auto& s) -> auto& { return s.keyframes; });
 }
 
@@ -238,8 +251,8 @@ json scene_json(const SceneConfig& scene) {
 
 std::vector<std::string> keys_of_others(BodyKind kind) {
   if (kind == BodyKind::rigid)
-    return {"rest_mesh", "material",    "velocity_m_per_s", "pins",
-            "limited",   "pressure_Pa", "pressure_schedule"};
+    return {"rest_mesh", "rest_film", "material",    "velocity_m_per_s",
+            "pins",      "limited",   "pressure_Pa", "pressure_schedule"};
   return {"motion"};
 }
 std::vector<std::string> keys_of_others(ObstacleKind kind) {

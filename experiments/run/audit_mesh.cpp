@@ -21,12 +21,12 @@ audit::AuditObstacle to_audit(const Obstacle& obstacle) {
 }
 
 // Of each motion: the first that is the same, or -1 where a step turns it too far.
-std::vector<int> rigid_bodies(const std::vector<RigidMotion>& motions, double dt) {
+std::vector<int> rigid_bodies(const std::vector<PrescribedMotion>& motions, double dt) {
   constexpr double quarter_turn = 1.5707963267948966;
   std::vector<int> out;
-  for (const RigidMotion& motion : motions) {
+  for (const PrescribedMotion& motion : motions) {
     const auto same = std::find_if(motions.begin(), motions.end(),
-                                   [&motion](const RigidMotion& m) { return same_motion(m, motion); });
+                                   [&motion](const PrescribedMotion& m) { return same_motion(m, motion); });
     const bool keeps_shape = !motion.changes_size() && motion.most_turning() * dt <= quarter_turn;
     out.push_back(keeps_shape || motion.is_static() ? static_cast<int>(same - motions.begin()) : -1);
   }

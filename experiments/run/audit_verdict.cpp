@@ -84,7 +84,7 @@ Verdict judge_audit(const Scene& scene, const audit::AuditMesh& mesh, const audi
     std::string text = fmt::format("{}, and both are prescribed: {}",
                                    describe(scene, mesh, *ledger.first_fault), when(ledger.first_fault_step));
     if (ledger.penetrated()) text += "; " + penetration(scene, mesh, ledger);
-    return {Outcome::invalid_scene, text};
+    return {Outcome::given_parts_cross, text};
   }
   if (ledger.penetrated()) return {Outcome::penetration, penetration(scene, mesh, ledger)};
   return {Outcome::unproven, unproven(ledger)};

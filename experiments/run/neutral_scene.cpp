@@ -98,8 +98,8 @@ struct BodyNumbers {
 
 void add_membranes(const Scene& scene, BodyNumbers& numbers) {
   for (const MembranePart& part : scene.membranes) {
-    const bool plain = part.model != "baraff_witkin" && part.shrink.empty() &&
-                       part.shrink_keys.list.empty() && part.creep.empty();
+    const bool plain = part.model != "baraff_witkin" && part.shrink.empty() && part.creep.empty() &&
+                       scene.rest_motions.empty();
     if (!plain)
       refuse(scene, "a membrane of " + part.model + " that is anisotropic, shrinks or creeps",
              "an isotropic elastic membrane");

@@ -230,6 +230,9 @@ RunRecord identified(const RunConfig& config, const RunOptions& options) {
     for (const MeshSource* mesh : {&body.mesh, &body.rest_mesh}) {
       if (!mesh->file.empty()) record.scene.mesh_sha256[mesh->file] = mesh->sha256;
     }
+    for (const FilmSource* film : films_of(body)) {
+      for (const HashedFile& file : film->files) record.scene.mesh_sha256[file.path] = file.sha256;
+    }
   }
   record.provenance = collect_provenance(options.argv, thread_count(config));
   record.provenance.plugins = name_from(options.folder, with_formulas(config, options.plugins));

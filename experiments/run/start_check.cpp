@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <set>
 #include <string>
 
 #include "core/audit/audit.hpp"
@@ -12,69 +10,21 @@
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
 #include "experiments/run/method.hpp"
+#include "experiments/run/prescribed_crossings.hpp"
 
 namespace bb {
 namespace {
 
 constexpr const char* part = "start check";
 
-// The primitives without a free vertex.
-audit::AuditMesh prescribed_part(const audit::AuditMesh& mesh) {
-  audit::AuditMesh out = mesh;
-  Eigen::Index n_edges = 0, n_triangles = 0;
-  out.opposite.clear();
-  for (Eigen::Index e = 0; e < mesh.edges.cols(); ++e) {
-    if (!mesh.all_prescribed(mesh.edges.col(e))) continue;
-    out.edges.col(n_edges++) = mesh.edges.col(e);
-    if (!mesh.opposite.empty()) out.opposite.push_back(mesh.opposite[static_cast<std::size_t>(e)]);
-  }
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    if (mesh.all_prescribed(mesh.triangles.col(t))) out.triangles.col(n_triangles++) = mesh.triangles.col(t);
-  }
-  out.edges.conservativeResize(2, n_edges);
-  out.triangles.conservativeResize(3, n_triangles);
-  out.points.clear();
-  for (int v = 0; v < static_cast<int>(mesh.prescribed.size()); ++v) {
-    const bool of_obstacle = std::any_of(mesh.obstacles.begin(), mesh.obstacles.end(),
-                                         [v](const audit::AuditObstacle& o) { return o.vertex == v; });
-    if (mesh.is_prescribed(v) && !of_obstacle) out.points.push_back(v);
-  }
-  return out;
-}
-
-// Prescribed vertices that move relative to each other, or to an obstacle, may cross.
-bool prescribed_may_cross(const Scene& scene) {
-  std::set<int> motions;
-  bool driven = false;
-  for (const Pin& pin : scene.pins) {
-    motions.insert(pin.motion);
-    driven = driven || !scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
-  }
-  return driven && (motions.size() > 1 || !scene.obstacles.empty());
-}
-
-// The given motions, step by step, as a run would follow them: straight from pose to pose.
 std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene& scene,
                                            const RunLimits& limits) {
-  if (!prescribed_may_cross(scene)) return std::nullopt;
-  const audit::AuditMesh mesh = prescribed_part(make_audit_mesh(scene, config.time.dt));
-  if (mesh.points.empty()) return std::nullopt;  // no more than obstacles are given
-  audit::Audit judge(mesh);
-  const double tolerance = audit_tolerance(scene, config.contact.ccd_park);
-  double last_end = 0;  // from then on every motion has ended
-  for (const RigidMotion& motion : scene.motions) {
-    last_end = std::max(last_end, motion.last_change());
-  }
-  Positions x0 = scene.x0, x1 = x0;
-  for (int step = 0; step < config.time.steps && step * config.time.dt < last_end; ++step) {
-    limits.look_up(part, fmt::format("in the given motions, at step {} of {}", step, config.time.steps));
-    for (const Pin& pin : scene.pins) x1.col(pin.vertex) = pin_pose(scene, pin, (step + 1) * config.time.dt);
-    judge.check_motion(x0, x1, step, tolerance);
-    judge.check_state(x1, step);
-    if (judge.ledger().scene_faults > 0) return judge_audit(scene, mesh, judge.ledger());
-    x0 = x1;
-  }
-  return std::nullopt;
+  const auto found = prescribed_crossings(config, scene, config.time.steps, 1, limits);
+  if (found.empty()) return std::nullopt;
+  const PrescribedCrossing& first = found.front();
+  return Verdict{Outcome::given_parts_cross,
+                 fmt::format("{}, and both are prescribed: in step {}, from {:.6g} to {:.6g} s", first.pair,
+                             first.step, first.t0, first.t1)};
 }
 
 // The energy of a limit is infinite at and beyond it.

@@ -7,7 +7,7 @@ namespace bb::test {
 
 /// Every obstacle moves with `velocity` (m/s): its vertices, behind all others, are those that SceneBuilder would make.
 inline Scene with_moving_obstacles(Scene scene, const Vec3d& velocity = Vec3d::UnitX()) {
-  RigidMotion motion;
+  PrescribedMotion motion;
   motion.velocity = velocity;
   scene.motions.push_back(motion);
   for (Obstacle& o : scene.obstacles) {

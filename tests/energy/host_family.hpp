@@ -56,6 +56,13 @@ inline HostFamily::Make membranes_of(const MembranePart& part, const Positions& 
   return
       [&part, rest, planar](const FamilyPlace& place) { return membrane_family(place, part, rest, planar); };
 }
+/// A scene of a body at rest there, whose rest lengths follow these factors.
+inline Scene scaled_rest(const Positions& rest, std::vector<ShrinkKey> factors) {
+  Scene scene;
+  scene.rest = rest;
+  scene.rest_motions = {{0, static_cast<int>(rest.cols()), nullptr, std::move(factors)}};
+  return scene;
+}
 /// Springs of stiffness k (N/m) that rest at x. The edges outlive what is made.
 inline HostFamily::Make springs_of(const std::vector<std::array<int, 2>>& edges, const Positions& x,
                                    const std::vector<double>& k) {

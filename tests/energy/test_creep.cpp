@@ -242,8 +242,10 @@ TEST(Membranes, KeepAPlasticPartOfTheRestShapeThatTheyShrinkTo) {
 
 TEST(Membranes, ShrinkOverTimeFromWhatTheyWereGiven) {
   MembranePart part = membrane(Vec3d::UnitX());
-  part.shrink_keys.append(1, {{0, 1}, {1, 0.8}});
-  HostFamily family(membranes_of(part, triangle()));
+  const Scene scene = scaled_rest(triangle(), {{0, 1}, {1, 0.8}});
+  HostFamily family([&](const FamilyPlace& place) {
+    return membrane_family(place, part, scene.rest, false, MovingRest(scene));
+  });
   EXPECT_LT(family.values(triangle())[0], 1e-28);
   for (const double t : {0.5, 0.25, 0.5}) {
     FamilyStep step;

@@ -12,13 +12,8 @@ namespace {
 
 constexpr double at_half = 0.5;  // s, when the factor of halving() is 1/2
 
-/// A factor on all n elements: 1 at the start, 1/2 at half a second.
-ShrinkSchedule halving(std::size_t n) {
-  ShrinkSchedule out;
-  out.lists = {{{0, 1}, {at_half, 0.5}}};
-  out.list.assign(n, 0);
-  return out;
-}
+/// A factor: 1 at the start, 1/2 at half a second.
+Scene halving(const Positions& rest) { return scaled_rest(rest, {{0, 1}, {at_half, 0.5}}); }
 
 /// Elements whose rest shapes have half the size creep in a state of half the size as the whole ones in the whole state; both bits
 /// are the same, since the factor is a power of two. Energies go with the square of the size.
@@ -56,10 +51,11 @@ TEST(FamilyStates, ClothSpringsShrinkAndCreepAtOnce) {
   part.tension.assign(n, 3), part.tension_growing.assign(n, 2), part.compression.assign(n, 1);
   part.compression_growing.assign(n, 0.5), part.exponent.assign(n, 4);
   part.yield.assign(n, 0.02), part.creep.assign(n, 5);
-  ClothSpringPart shrunk = part;
-  shrunk.shrink_keys = halving(n);
-  expect_creeps_as_the_whole([&](const FamilyPlace& place) { return cloth_spring_family(place, part); },
-                             [&](const FamilyPlace& place) { return cloth_spring_family(place, shrunk); },
+  const Scene shrunk = halving(strip.rest);
+  const auto half = [&](const FamilyPlace& place) {
+    return cloth_spring_family(place, part, MovingRest(shrunk));
+  };
+  expect_creeps_as_the_whole([&](const FamilyPlace& place) { return cloth_spring_family(place, part); }, half,
                              strip.deformed);
 }
 
@@ -73,16 +69,18 @@ TEST(FamilyStates, MembranesShrinkAndCreepAtOnce) {
   for (const auto& model : membrane_models<double>()) {
     SCOPED_TRACE(model.name);
     part.model = model.name;
-    MembranePart shrunk = part;
-    shrunk.shrink_keys = halving(n);
+    const Scene shrunk = halving(strip.rest);
+    const auto half = [&](const FamilyPlace& place) {
+      return membrane_family(place, part, shrunk.rest, false, MovingRest(shrunk));
+    };
     const Positions x = 1.2 * strip.deformed;
-    expect_creeps_as_the_whole(membranes_of(part, strip.rest), membranes_of(shrunk, strip.rest), x);
+    expect_creeps_as_the_whole(membranes_of(part, strip.rest), half, x);
   }
 }
 
 TEST(FamilyStates, ColumnsOfClothSpringsHaveOneNumberAnElement) {
   const std::vector<double> one = {1};
-  const ClothSpringPart good = {{{0, 1}}, one, {}, one, one, one, one, one, one, one};
+  const ClothSpringPart good = {{{0, 1}}, one, one, one, one, one, one, one, one};
   const auto made = [](const ClothSpringPart& part) {
     return HostFamily([&](const FamilyPlace& place) { return cloth_spring_family(place, part); }).size();
   };

@@ -49,7 +49,7 @@ TEST(AuditMesh, EdgesAreComputedFromTheTriangles) {
 TEST(AuditMesh, GivenVerticesOfOneMotionAreOneRigidBody) {
   Scene scene = drape2d("point_edge");
   scene.pins = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}};
-  scene.motions.assign(5, RigidMotion{});
+  scene.motions.assign(5, PrescribedMotion{});
   scene.motions[1].velocity = scene.motions[2].velocity = Vec3d(1, 0, 0);
   scene.motions[3].angular_velocity = 1;
   const audit::AuditMesh mesh = make_audit_mesh(scene, 0.01);
@@ -113,7 +113,7 @@ TEST(AuditVerdict, SaysWhatTheContactModelAllows) {
   ledger.scene_faults = 1;
   ledger.first_fault = audit::PairName{audit::PairKind::edge_edge_2d, 0, 41};
   const Verdict fault = judge_audit(scene, mesh, ledger);
-  EXPECT_EQ(fault.outcome, Outcome::invalid_scene);
+  EXPECT_EQ(fault.outcome, Outcome::given_parts_cross);
   EXPECT_NE(fault.detail.find("sheet0["), std::string::npos) << fault.detail;
   EXPECT_NE(fault.detail.find("sheet1["), std::string::npos) << fault.detail;
   ledger.first_fault = audit::PairName{audit::PairKind::vertex_edge_2d, 0, 41, false};

@@ -36,8 +36,19 @@ struct Case {
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = {
       {"a block that comes to rest", Outcome::ok, "converged", "ok", {}, [] { return run(resting_block); }},
-      {"prescribed bodies that cross",
+      {"an element that begins beyond its strain limit",
        Outcome::invalid_scene,
+       nullptr,
+       nullptr,
+       {"stretched by 0.25", "cloth"},
+       [] {
+         return run(
+             grids(R"({"translate_m": [0, 0, 0.05]})"),
+             {R"(/scene/bodies/0/rest_mesh={"generator": "grid", "n_x": 3, "n_y": 3, "size_x_m": 0.8, "size_y_m": 0.8})",
+              "/strain_limit/limit=0.1"});
+       }},
+      {"prescribed bodies that cross",
+       Outcome::given_parts_cross,
        nullptr,
        nullptr,
        {"cloth[", "other["},

@@ -62,7 +62,7 @@ def test_one_that_is_driven_into_a_pin_is_refused_before_the_first_step(program,
     config["scene"]["bodies"][0]["pins"] = [{"indices": [14]}]
     config["time"]["steps"] = 20
     record = run(program, tmp_path, config)
-    assert record["status"]["outcome"] == "invalid_scene"
+    assert record["status"]["outcome"] == "given_parts_cross"
     for word in ("cloth[14]", "ball", "both are prescribed: in step"):
         assert word in record["status"]["detail"]
     assert record["steps"] == []

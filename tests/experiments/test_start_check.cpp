@@ -98,7 +98,7 @@ TEST(StartCheck, GivenSheetsThatPassThroughEachOtherAreNamedWhateverTheirPositio
   for (const double up : {0.0, 0.03, 0.1, -0.24}) {
     const auto found = failure(given_sheets(up));
     ASSERT_TRUE(found) << up;
-    EXPECT_EQ(found->outcome, Outcome::invalid_scene) << up;
+    EXPECT_EQ(found->outcome, Outcome::given_parts_cross) << up;
     for (const char* word : {"a[", "b[", "crosses", "prescribed"}) {
       EXPECT_NE(found->detail.find(word), std::string::npos) << found->detail;
     }
@@ -123,7 +123,7 @@ TEST(StartCheck, GivenMotionsAreFollowedAsFarAsTheRunGoes) {
   EXPECT_FALSE(failure(config_of(driven_ball(1), 14)));
   const auto found = failure(config_of(driven_ball(1), 40));
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->outcome, Outcome::invalid_scene);
+  EXPECT_EQ(found->outcome, Outcome::given_parts_cross);
   EXPECT_NE(found->detail.find("ball["), std::string::npos) << found->detail;
   EXPECT_NE(found->detail.find("sheet["), std::string::npos) << found->detail;
 }
@@ -143,7 +143,7 @@ TEST(StartCheck, AGivenBodyThatIsDrivenIntoAnObstacleIsRefused) {
   constexpr const char* floor = R"([{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}])";
   const auto found = driven(-1, floor);
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->outcome, Outcome::invalid_scene);
+  EXPECT_EQ(found->outcome, Outcome::given_parts_cross);
   EXPECT_NE(found->detail.find("ball["), std::string::npos) << found->detail;
   EXPECT_NE(found->detail.find("floor"), std::string::npos) << found->detail;
   EXPECT_FALSE(driven(1, floor)) << "it rises";

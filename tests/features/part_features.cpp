@@ -122,7 +122,26 @@ std::vector<Feature> part_features() {
   const auto of_membrane = [](const json& more) {
     return [more](const Method& method) { return membrane(method, more); };
   };
+  /// Half as long again along y and x at the end of the film.
+  const auto grows = [](const std::function<json(const Method&)>& config) {
+    return [config](const Method& method) {
+      json out = config(method);
+      out["scene"]["bodies"][0]["rest_film"] = {{"generator", "grow"},
+                                                {"factor_x", 1.1},
+                                                {"factor_y", 1.2},
+                                                {"period_s", 0.4},
+                                                {"duration_s", 0.2}};
+      return out;
+    };
+  };
   const json shrinks = {{{"time_s", 0.0}, {"factor", 1.0}}, {{"time_s", 0.2}, {"factor", 0.9}}};
+  const auto shrinking = [](const std::function<json(const Method&)>& config, const json& keys) {
+    return [config, keys](const Method& method) {
+      json out = config(method);
+      out["scene"]["bodies"][0]["material"]["shrink_schedule"] = keys;
+      return out;
+    };
+  };
   return {as_line_search("springs", {"springs"}, springs),
           as_line_search("springs of cloth", {"cloth_springs"}, cloth_springs),
           as_line_search("membrane", {"membrane"}, of_membrane(json::object())),
@@ -130,6 +149,13 @@ std::vector<Feature> part_features() {
           as_line_search("rods", {"rods"}, rod),
           as_line_search("solids", {"tetrahedra"}, solid),
           as_line_search("shrink schedule", {}, of_membrane({{"shrink_schedule", shrinks}})),
+          as_line_search("rest film of a membrane", {}, grows(of_membrane({{"bending_J", 1e-3}}))),
+          as_line_search("rest film of springs", {}, grows(springs)),
+          as_line_search("rest film of springs of cloth", {}, grows(cloth_springs)),
+          as_line_search("rest film of rods", {}, grows(rod)),
+          as_line_search("rest film of solids", {}, grows(solid)),
+          as_line_search("shrink schedule of rods", {}, shrinking(rod, shrinks)),
+          as_line_search("shrink schedule of solids", {}, shrinking(solid, shrinks)),
           as_line_search("creep", {}, of_membrane({{"membrane_creep_per_s", 20.0}})),
           {"strain limit",
            "no stretch reaches the limit",

@@ -38,6 +38,35 @@ json driven(const Method& method) {
   return config;
 }
 
+/// Turned by half a radian about the z axis, by a film.
+json filmed(const Method& method) {
+  json config = pinned(method,
+                       {{"indices", {0, 1}},
+                        {"motion",
+                         {{"film",
+                           {{"generator", "twist"},
+                            {"turn_rad_per_m", 0.5},
+                            {"from_m", -1},
+                            {"period_s", 0.12},
+                            {"n_frames", 61},
+                            {"duration_s", 0.06}}}}}},
+                       60);
+  if (method.still())
+    config["scene"]["bodies"][0]["pins"].push_back({{"indices", {2, 3}}, {"pull_N_per_m", 25}});
+  return config;
+}
+
+std::string is_in_the_last_frame(const Method&, const Track& run) {
+  for (const int v : {0, 1}) {
+    const Vec3d x = run.x[0].col(v), c(std::cos(0.5), std::sin(0.5), 0);
+    const Vec3d there(c[0] * x[0] - c[1] * x[1], c[1] * x[0] + c[0] * x[1], x[2]);
+    if ((there - x).norm() < 0.01) return "the film does not move";
+    const double off = (run.end().col(v) - there).norm();
+    if (off > 1e-9) return fmt::format("vertex {} is {:.3g} m off its place", v, off);
+  }
+  return {};
+}
+
 json released(const Method& method) {
   json config = pinned(method, {{"all", true}, {"release_s", 0.03}}, 80);
   config["scene"]["bodies"].push_back(plate("free", 1));
@@ -84,6 +113,7 @@ std::vector<Feature> prescribed_features() {
            [](const Method&, const Track& run) {
              return is_where_it_belongs(run, Vec3d(0, 0, 0.5 * run.t_end()));
            }},
+          {"pin on a film", "vertices are in the last frame", {}, false, filmed, is_in_the_last_frame},
           {"pin that lets go",
            "the plate falls by g t^2/2 from then on",
            {"inertia", "external_force"},

@@ -173,7 +173,7 @@ TEST(MovingObstacles, that_spin_take_along_what_lies_on_them) {
     o.point = kind == ObstacleKind::plane ? Vec3d(0, radius, 0) : Vec3d(0, 0, -radius);
     o.axis = kind == ObstacleKind::plane ? Vec3d::UnitZ() : Vec3d::UnitY();
     scene = test::with_moving_obstacles(std::move(scene), Vec3d::Zero());
-    RigidMotion& motion = scene.motions.back();
+    PrescribedMotion& motion = scene.motions.back();
     motion.axis = scene.obstacles[0].axis;
     motion.center = scene.obstacles[0].point;
     motion.angular_velocity = 3 / radius;
@@ -197,19 +197,19 @@ TEST(MovingObstacles, that_spin_take_along_what_lies_on_them) {
 /// way: friction sees the turn of all of them.
 TEST(MovingObstacles, take_along_the_same_whichever_way_their_turn_is_said) {
   constexpr double mass = 0.2, radius = 2, height = 0.5 * d_hat;
-  RigidMotion by_rate;
+  PrescribedMotion by_rate;
   by_rate.axis = Vec3d::UnitY();
   by_rate.center = Vec3d(0, 0, -radius);
   by_rate.angular_velocity = 0.3 / radius;
-  RigidMotion by_keyframes = by_rate;
+  PrescribedMotion by_keyframes = by_rate;
   by_keyframes.angular_velocity = 0;
   by_keyframes.keyframes = {{0, Vec3d::Zero(), 0, 1}, {2, Vec3d::Zero(), 2 * 0.3 / radius, 1}};
-  RigidMotion in_two = by_rate;
+  PrescribedMotion in_two = by_rate;
   in_two.angular_velocity = 0.5 / radius;
   in_two.then = {static_cast<const MotionStep&>(by_rate)};
   in_two.then[0].angular_velocity = -0.2 / radius;
   std::vector<Vec3d> velocities;
-  for (const RigidMotion& motion : {by_rate, by_keyframes, in_two}) {
+  for (const PrescribedMotion& motion : {by_rate, by_keyframes, in_two}) {
     Scene scene = test::particle_over_plane(mass, height, d_hat);
     scene.obstacles[0].kind = ObstacleKind::sphere;
     scene.obstacles[0].radius = radius;

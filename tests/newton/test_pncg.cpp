@@ -324,7 +324,7 @@ TEST(Pncg, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(Pncg, RefusesWhatIsDriven) {
   Scene scene = test::particle_over_plane(0.2, 1, d_hat);
-  RigidMotion motion;
+  PrescribedMotion motion;
   motion.velocity = Vec3d(0, 0, 1);
   ASSERT_FALSE(motion.is_static());
   scene.motions.push_back(motion);

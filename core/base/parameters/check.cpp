@@ -185,6 +185,7 @@ ParameterValue to_value(const Rule& rule, const json& value) {
     case Kind::vector:
     case Kind::direction:
     case Kind::integers:
+    case Kind::numbers:
       return value.get<std::vector<double>>();
     default:
       return value.get<std::string>();

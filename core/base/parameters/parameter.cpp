@@ -67,6 +67,8 @@ std::string kind_text(const Rule& rule) {
       return "an array" + size_text(rule, "elements") + ", each once and " + one_of(rule);
     case Kind::integers:
       return "an array of integers" + range_text(rule);
+    case Kind::numbers:
+      return "an array of numbers" + range_text(rule);
     case Kind::texts:
       return "an array of one or more strings, none of them empty";
     case Kind::vector:

@@ -29,6 +29,7 @@ enum class Kind {
   word,       // one of the words
   words,      // a list of words, each once
   integers,   // a list
+  numbers,    // a list
   texts,      // a list of texts that are not empty
   vector,     // three numbers
   direction,  // three numbers, not all 0

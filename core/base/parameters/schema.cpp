@@ -64,6 +64,8 @@ Json rule_schema(const Rule& rule) {
       return out;
     case Kind::integers:
       return array_of(Kind::integer, rule, 0);
+    case Kind::numbers:
+      return array_of(Kind::number, rule, 0);
     case Kind::texts:
       return array_of(Kind::text, rule, 0);
     case Kind::vector:

@@ -11,7 +11,8 @@ namespace bb {
 /// Ranked, most specific first: when several hold, the first in this order is the outcome. But a run that time or memory
 /// cut off is not over: oom, kernel_failed and timeout stay what they are.
 enum class Outcome {
-  invalid_scene,         // no first step
+  invalid_scene,      // no first step
+  given_parts_cross,  // prescribed primitives cross each other, which no solver decides; most often no first step
   initial_intersection,  // no first step
   penetration,           // the audit found a crossing or a violation
   nan,                   // a non-finite energy, gradient or state
@@ -29,10 +30,11 @@ enum class Outcome {
   ok
 };
 template <>
-inline constexpr int n_words<Outcome> = 16;
+inline constexpr int n_words<Outcome> = 17;
 
 constexpr std::string_view to_string(Outcome outcome) {
   constexpr std::array<std::string_view, n_words<Outcome>> words = {"invalid_scene",
+                                                                    "given_parts_cross",
                                                                     "initial_intersection",
                                                                     "penetration",
                                                                     "nan",

@@ -1,4 +1,4 @@
-// Springs of cloth, and rest lengths that shrink and creep.
+// Springs of cloth, and rest lengths that creep.
 #pragma once
 
 #include "core/energy/cloth_spring.hpp"
@@ -34,27 +34,16 @@ struct ClothSprings : ElementVertices<2> {
   }
 };
 
-/// Rest lengths as they are given, and what a time makes of them.
-struct GivenLengths {
-  const double* given;   // [n] m
-  const int* list;       // [n] into factor, -1: none; or null
-  const double* factor;  // of the time, 1
-  BB_HD double shrink(exec::Index e) const { return list && list[e] >= 0 ? factor[list[e]] : 1; }
-};
-
 struct PlaceClothSprings {
-  GivenLengths lengths;
-  const double* ratio;  // [n] 1
+  const double *given, *ratio;  // [n] m, 1
   double* rest_length;
-  BB_HD void operator()(exec::Index e) const {
-    rest_length[e] = lengths.shrink(e) * (ratio[e] * lengths.given[e]);
-  }
+  BB_HD void operator()(exec::Index e) const { rest_length[e] = ratio[e] * given[e]; }
 };
 
 /// ratio [n] becomes what it is after a step of dt (s) that ended at x.
 struct FlowClothSprings {
   ClothSprings elements;
-  GivenLengths lengths;
+  const double* given;          // [n] m
   const double *yield, *creep;  // [n] 1, 1/s
   const double* x;
   double dt;
@@ -62,8 +51,8 @@ struct FlowClothSprings {
   BB_HD void operator()(exec::Index e) const {
     Vec3d p[2];
     elements.points(x, e, p);
-    ratio[e] = crept_ratio<double>(p, elements.rest_length[e], lengths.shrink(e) * lengths.given[e], yield[e],
-                                   kept_after(creep[e], dt), ratio[e]);
+    ratio[e] = crept_ratio<double>(p, elements.rest_length[e], given[e], yield[e], kept_after(creep[e], dt),
+                                   ratio[e]);
   }
 };
 

@@ -1,4 +1,4 @@
-// Elements as columns of an executor's memory: vertices, rest shapes, and factors on these that a time gives.
+// Elements as columns of an executor's memory: vertices and rest shapes.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,6 @@
 #include "core/energy/families/rest_kernels.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/exec/buffer.hpp"
-#include "core/model/scene/motion.hpp"
-#include "core/model/scene/parts/shrink_key.hpp"
 
 namespace bb {
 
@@ -55,6 +53,10 @@ struct RestShapes {
 
   RestShapes(exec::Executor& executor, const std::string& name, std::span<const Rest> rests)
       : numbers(executor, name) {
+    set(rests);
+  }
+  /// As many as there are.
+  void set(std::span<const Rest> rests) {
     const std::size_t n = rests.size();
     std::vector<double> columns((n_inverse + 1) * n);
     for (std::size_t e = 0; e < n; ++e) {
@@ -70,33 +72,6 @@ struct RestShapes {
 
   static constexpr std::size_t n_inverse = Columns::n_inverse;
   exec::Buffer<double> numbers;  // [n_inverse + 1, n]
-};
-
-/// Factors on rest lengths that a time gives, as kernels read them.
-class ShrinkFactors {
- public:
-  /// n: elements.
-  ShrinkFactors(exec::Executor& executor, const std::string& name, const ShrinkSchedule& schedule,
-                std::size_t n)
-      : lists_(schedule.lists), list_(executor, name), factor_(executor, "factors of shrinkage") {
-    std::vector<int> list = schedule.list;
-    if (!list.empty()) list.resize(n, -1);
-    list_.upload(list);
-  }
-  void set_time(double t) {
-    std::vector<double> factor;
-    for (const auto& keys : lists_) factor.push_back(value_at(keys, t));
-    factor_.upload(factor);
-  }
-  bool any() const { return list_.size() > 0; }
-  /// [n] into factor(), -1: none; null where no element has one.
-  const int* list() const { return any() ? list_.data() : nullptr; }
-  const double* factor() const { return factor_.data(); }
-
- private:
-  const std::vector<std::vector<ShrinkKey>> lists_;
-  exec::Buffer<int> list_;
-  exec::Buffer<double> factor_;
 };
 
 }  // namespace bb

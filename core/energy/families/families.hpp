@@ -1,10 +1,10 @@
-// What makes the families of elements of a scene. Their columns outlive them. Errors of all: ConfigError for a column of another
+// What makes the families of elements of a scene. Their columns outlive them. rest: what moves their rest shapes from step to step. Errors of all: ConfigError for a column of another
 // length; OutOfMemory.
 #pragma once
 
 #include "core/energy/families/element_family.hpp"
 #include "core/math/types.hpp"
-#include "core/model/scene/scene.hpp"
+#include "core/model/scene/moving_rest.hpp"
 
 namespace bb {
 
@@ -13,7 +13,7 @@ using MadeFamily = std::unique_ptr<ElementFamily>;
 /// @param x_rest  [3 x n_vertices] m   @param planar  F is 2 x 2 in the x-y plane, z has no terms
 /// Errors: ConfigError for an unknown model, triangles without area, or a warp direction that is normal to one.
 MadeFamily membrane_family(const FamilyPlace& place, const MembranePart& part, const PositionsView& x_rest,
-                           bool planar);
+                           bool planar, MovingRest rest = {});
 
 /// Names of the buffers of a family of springs.
 struct SpringNames {
@@ -23,7 +23,7 @@ struct SpringNames {
 /// stiffness [n] N/m, rest_length [n] m.
 MadeFamily spring_family(const FamilyPlace& place, const SpringNames& names,
                          std::span<const std::array<int, 2>> pairs, std::span<const double> stiffness,
-                         std::vector<double> rest_length);
+                         std::vector<double> rest_length, MovingRest rest = {});
 /// Distances [n] (m) of pairs of vertices at x.
 std::vector<double> lengths_of(std::span<const std::array<int, 2>> pairs, const PositionsView& x);
 
@@ -37,10 +37,11 @@ MadeFamily pull_family(const FamilyPlace& place, const Scene& scene);
 MadeFamily air_drag_family(const FamilyPlace& place, const Scene& scene);
 MadeFamily inflation_family(const FamilyPlace& place, const Scene& scene);
 
-MadeFamily cloth_spring_family(const FamilyPlace& place, const ClothSpringPart& part);
-MadeFamily hinge_family(const FamilyPlace& place, const HingePart& part);
-MadeFamily rod_family(const FamilyPlace& place, const RodPart& part);
+MadeFamily cloth_spring_family(const FamilyPlace& place, const ClothSpringPart& part, MovingRest rest = {});
+MadeFamily hinge_family(const FamilyPlace& place, const HingePart& part, MovingRest rest = {});
+MadeFamily rod_family(const FamilyPlace& place, const RodPart& part, MovingRest rest = {});
 /// Errors: ConfigError for an unknown model, or a rest tetrahedron whose volume is not positive.
-MadeFamily tetrahedron_family(const FamilyPlace& place, const SolidPart& part, const PositionsView& x_rest);
+MadeFamily tetrahedron_family(const FamilyPlace& place, const SolidPart& part, const PositionsView& x_rest,
+                              MovingRest rest = {});
 
 }  // namespace bb

@@ -69,17 +69,26 @@ struct GrowingHinges : ElementVertices<4> {
 };
 struct StiffeningHinges : HingeElements<GrowingHinges> {};
 
-/// rest_angle [n] becomes what it is after a step of dt (s) that ended at x.
+/// Rest angles [n] whose rest shape moves: those that creep, and by how much the ones that are given differ from those of the start.
+struct PlaceHinges {
+  const double *crept, *moved;
+  double* rest_angle;
+  BB_HD void operator()(exec::Index e) const { rest_angle[e] = crept[e] + moved[e]; }
+};
+
+/// crept [n] becomes what it is after a step of dt (s) that ended at x.
 struct FlowHinges {
   ElementVertices<4> elements;
   const double *yield, *creep;  // [n] rad, 1/s
+  const double* moved;          // [n] rad; or null: nothing
   const double* x;
   double dt;
-  double* rest_angle;
+  double* crept;
   BB_HD void operator()(exec::Index e) const {
     Vec3d p[4];
     elements.points(x, e, p);
-    rest_angle[e] = crept_rest_angle<double>(p, rest_angle[e], yield[e], kept_after(creep[e], dt));
+    const double by = moved ? moved[e] : 0;
+    crept[e] = crept_rest_angle<double>(p, crept[e] + by, yield[e], kept_after(creep[e], dt)) - by;
   }
 };
 

@@ -1,4 +1,4 @@
-// Membranes: the columns of their triangles, one family a model in use; rest shapes that shrink over time and creep.
+// Membranes: the columns of their triangles, one family a model in use; rest shapes that move and creep.
 #include "core/energy/families/membrane.hpp"
 
 #include "core/energy/element_loop.hpp"
@@ -31,25 +31,28 @@ class MembraneFamily final : public FamilyOf<Elements> {
 
  public:
   MembraneFamily(const FamilyPlace& place, const MembranePart& part,
-                 std::span<const TriangleRest<double>> rests)
+                 std::span<const TriangleRest<double>> rests, bool planar, MovingRest rest)
       : Base(place, "membrane vertices", std::span(part.triangles)),
-        shapes_(place.executor, "membrane rest shapes", rests),
+        part_(part),
+        planar_(planar),
+        rest_(std::move(rest)),
+        given_(place.executor, "membrane rest shapes", rests),
         lame_(place.executor, "membrane Lame parameters"),
-        given_(place.executor, "membrane given shapes"),
+        crept_(place.executor, "membrane crept shapes"),
         creep_(place.executor, "membrane creep"),
-        shrink_(place.executor, "membrane shrinkage", part.shrink_keys, rests.size()),
         plastic_inv_(place.executor, "membrane plastic parts"),
         creeps_(!part.creep.empty()) {
     upload_pair(part.lame_mu, part.lame_lambda, lame_);
-    elements_.rest = shapes_.rest();
+    elements_.rest = given_.rest();
     elements_.lame_mu = lame_.data();
     elements_.lame_lambda = lame_.data() + elements_.n;
-    if (creeps_ || shrink_.any()) given_.copy_from(shapes_.numbers);
     if (creeps_) {
       upload_pair(part.yield, part.creep, creep_);
       std::vector<double> none;
       for (std::size_t e = 0; e < rests.size(); ++e) none.insert(none.end(), {1, 0, 0, 1});
       plastic_inv_.set(none);
+      crept_.copy_from(given_.numbers);
+      elements_.rest = {crept_.data(), crept_.data() + 4 * elements_.n};
     }
     place_shapes(0);
   }
@@ -70,34 +73,38 @@ class MembraneFamily final : public FamilyOf<Elements> {
 
  private:
   void place_shapes(double t) {
-    if (given_.size() == 0) return;
-    shrink_.set_time(t);
-    place_.executor.each(elements_.n, PlaceTriangles{given_.data(), shrink_.list(), shrink_.factor(),
-                                                     creeps_ ? plastic_inv_.data() : nullptr, elements_.n,
-                                                     shapes_.numbers.data()});
+    if (rest_.moves()) given_.set(given_rests(part_, rest_.at(t), planar_));
+    if (!creeps_) return;
+    place_.executor.each(
+        elements_.n, PlaceTriangles{given_.numbers.data(), plastic_inv_.data(), elements_.n, crept_.data()});
   }
 
-  RestShapes<TriangleRest<double>> shapes_;
+  const MembranePart& part_;
+  const bool planar_;
+  MovingRest rest_;
+  RestShapes<TriangleRest<double>> given_;
   exec::Buffer<double> lame_;
-  exec::Buffer<double> given_;  // [5, n] rest shapes before any change; empty: they stay
+  exec::Buffer<double> crept_;  // [5, n] rest shapes with their plastic parts; empty: those that are given
   exec::Buffer<double> creep_;  // [2, n] yield, rate
-  ShrinkFactors shrink_;
-  RestMemory plastic_inv_;  // [4 n] inverses of plastic parts, triangle by triangle
+  RestMemory plastic_inv_;      // [4 n] inverses of plastic parts, triangle by triangle
   bool creeps_;
 };
 
 template <class Model>
 MadeFamily of_model(const FamilyPlace& place, const MembranePart& part, const PositionsView& x_rest,
-                    bool planar) {
+                    bool planar, MovingRest rest) {
   const std::vector<TriangleRest<double>> rests = given_rests(part, x_rest, planar);
-  if (planar) return std::make_unique<MembraneFamily<PlanarMembrane<Model>>>(place, part, rests);
-  return std::make_unique<MembraneFamily<SpaceMembrane<Model>>>(place, part, rests);
+  if (planar) {
+    return std::make_unique<MembraneFamily<PlanarMembrane<Model>>>(place, part, rests, planar,
+                                                                   std::move(rest));
+  }
+  return std::make_unique<MembraneFamily<SpaceMembrane<Model>>>(place, part, rests, planar, std::move(rest));
 }
 
 }  // namespace
 
 MadeFamily membrane_family(const FamilyPlace& place, const MembranePart& part, const PositionsView& x_rest,
-                           bool planar) {
+                           bool planar, MovingRest rest) {
   const std::size_t n = part.triangles.size();
   check_column("membrane/lame_mu", n, part.lame_mu, false);
   check_column("membrane/lame_lambda", n, part.lame_lambda, false);
@@ -111,7 +118,7 @@ MadeFamily membrane_family(const FamilyPlace& place, const MembranePart& part, c
   }
   const std::string_view model = membrane_models<double>().require(part.model, "membrane/model").name;
 #define ENTRY(id, ...) \
-  if (model == #id) return of_model<membrane::id>(place, part, x_rest, planar);
+  if (model == #id) return of_model<membrane::id>(place, part, x_rest, planar, std::move(rest));
 #include "core/energy/registry.inc"
 #undef ENTRY
   return nullptr;  // require() has thrown

@@ -1,4 +1,4 @@
-// Triangles of a membrane model, whose rest shapes may shrink over time and creep.
+// Triangles of a membrane model, whose rest shapes may creep.
 #pragma once
 
 #include <cmath>
@@ -12,19 +12,15 @@
 
 namespace bb {
 
-/// Rest shapes [5, n] that change with time: those that are given [5, n], a factor on their lengths, a plastic part.
+/// Rest shapes [5, n] that creep: those that are given [5, n], with a plastic part.
 struct PlaceTriangles {
   const double* given;
-  const int* list;            // [n] into factor, -1: none; or null
-  const double* factor;       // of the time, 1
-  const double* plastic_inv;  // [4 n] triangle by triangle; or null
+  const double* plastic_inv;  // [4 n] triangle by triangle
   exec::Index n;
   double* rest;
   BB_HD void operator()(exec::Index e) const {
-    const double by = list && list[e] >= 0 ? factor[list[e]] : 1;
-    const TriangleRest<double> from = RestColumns{given, given + 4 * n}.at(e, n);
     const TriangleRest<double> to =
-        placed_rest<double>(from, by, plastic_inv ? plastic_inv + 4 * e : nullptr);
+        placed_rest<double>(RestColumns{given, given + 4 * n}.at(e, n), plastic_inv + 4 * e);
     for (int k = 0; k < 4; ++k) rest[k * n + e] = to.dm_inv.data()[k];
     rest[4 * n + e] = to.area;
   }

@@ -48,10 +48,10 @@ class PullFamily final : public QuadraticFamily {
     const auto n = static_cast<std::size_t>(size());
     std::size_t e = 0;
     for (const Pull& pull : scene_.pulls) {
-      const RigidMotion& motion = scene_.motions[static_cast<std::size_t>(pull.motion)];
+      const PrescribedMotion& motion = scene_.motions[static_cast<std::size_t>(pull.motion)];
       const double stiffness = stiffness_of(pull, step);
       for (const int v : pull.vertices) {
-        const Vec3d to = motion(scene_.x0.col(v), step.t_end);
+        const Vec3d to = motion.pose(v, scene_.x0.col(v), step.t_end);
         for (std::size_t c = 0; c < 3; ++c) {
           at_[c * n + e] = to[static_cast<Eigen::Index>(c)];
           stiffness_[4 * c * n + e] = stiffness;

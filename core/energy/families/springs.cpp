@@ -1,4 +1,4 @@
-// Springs: their columns, and l - l0 = 0 as constraints.
+// Springs: their columns, rest lengths that move, and l - l0 = 0 as constraints.
 #include "core/energy/families/springs.hpp"
 
 #include <optional>
@@ -6,6 +6,7 @@
 #include "core/energy/element_loop.hpp"
 #include "core/energy/families/families.hpp"
 #include "core/energy/families/family_of.hpp"
+#include "core/energy/families/rest_lengths.hpp"
 
 namespace bb {
 namespace {
@@ -42,22 +43,25 @@ class SpringConstraints final : public ConstraintBatch {
 class SpringFamily final : public FamilyOf<Springs> {
  public:
   SpringFamily(const FamilyPlace& place, const SpringNames& names, std::span<const std::array<int, 2>> pairs,
-               std::span<const double> stiffness, std::vector<double> rest_length)
+               std::span<const double> stiffness, std::vector<double> rest_length, MovingRest rest)
       : FamilyOf(place, names.vertices, pairs),
         stiffness_(place.executor, names.stiffness),
         rest_length_(place.executor, names.rest_length),
-        lengths_(std::move(rest_length)),
-        constraints_(vertices(), lengths_, stiffness) {
+        lengths_(pairs, std::move(rest_length), std::move(rest)),
+        constraints_(vertices(), lengths_.now(), stiffness) {
     stiffness_.upload(stiffness);
-    rest_length_.upload(lengths_);
+    rest_length_.upload(lengths_.now());
     elements_.stiffness = stiffness_.data();
     elements_.rest_length = rest_length_.data();
+  }
+  void change_step(const FamilyStep& step) override {
+    if (lengths_.move(step.t_end)) rest_length_.upload(lengths_.now());
   }
   const ConstraintBatch* constraints() const override { return &constraints_; }
 
  private:
   exec::Buffer<double> stiffness_, rest_length_;
-  std::vector<double> lengths_;
+  RestLengths lengths_;
   SpringConstraints constraints_;
 };
 
@@ -71,10 +75,11 @@ std::vector<double> lengths_of(std::span<const std::array<int, 2>> pairs, const 
 
 MadeFamily spring_family(const FamilyPlace& place, const SpringNames& names,
                          std::span<const std::array<int, 2>> pairs, std::span<const double> stiffness,
-                         std::vector<double> rest_length) {
+                         std::vector<double> rest_length, MovingRest rest) {
   check_column("spring/stiffness", pairs.size(), stiffness, false);
   check_column("spring/rest_length", pairs.size(), rest_length, false);
-  return std::make_unique<SpringFamily>(place, names, pairs, stiffness, std::move(rest_length));
+  return std::make_unique<SpringFamily>(place, names, pairs, stiffness, std::move(rest_length),
+                                        std::move(rest));
 }
 
 MadeFamily stitch_family(const FamilyPlace& place, const Stitches& stitches) {

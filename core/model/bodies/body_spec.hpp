@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ struct PinSpec {
   std::optional<std::array<Vec3d, 2>> box;  // closed box (min, max) in start positions, m
   bool top_row = false;                     // vertices with the largest start y (planar) or z, exactly
   bool all = false;
-  RigidMotion motion;                 // static by default
+  PrescribedMotion motion;            // static by default
   std::optional<double> pull;         // N/m, of springs from free vertices to there; absent: they are there
   std::vector<PullKey> pull_factors;  // of it; empty: 1
   HoldSpan span;                      // in which it holds or pulls
@@ -58,11 +59,13 @@ enum class BodyKind { deformable, rigid };  // rigid: every vertex prescribed, n
 struct BodySpec {
   std::string name;
   BodyKind kind = BodyKind::deformable;
-  TriangleMesh mesh;                       // rest shape, m
-  std::optional<Positions> start;          // start positions where they differ from the rest shape, m
-  Material material;                       // deformable only
+  TriangleMesh mesh;               // rest shape, m
+  std::optional<Positions> start;  // start positions where they differ from the rest shape, m
+  std::shared_ptr<const Film>
+      rest_film;      // deformable only; of the rest shape over time: mesh is its place at the time 0
+  Material material;  // deformable only
   Vec3d velocity = Vec3d::Zero();          // m/s, free vertices
-  RigidMotion motion;                      // rigid only
+  PrescribedMotion motion;                 // rigid only
   std::vector<PinSpec> pins;               // deformable only
   double d_hat = 0;                        // m, > 0
   double offset = 0;                       // m, >= 0

@@ -71,6 +71,10 @@ void SceneBuilder::add_body(const BodySpec& spec) {
   if (spec.kind == BodyKind::deformable) {
     append_masses(spec, first);
     append_elements(spec, first);
+    if (spec.rest_film || !spec.material.shrink_keys.empty()) {
+      scene_.rest_motions.push_back(
+          {first, spec.mesh.n_vertices(), spec.rest_film, spec.material.shrink_keys});
+    }
   }
   append_surface(spec, first);
 }
@@ -103,11 +107,12 @@ void SceneBuilder::append_vertices(const BodySpec& spec, const Positions& start)
   groups_.push_back(spec.collision_group);
 }
 
-int SceneBuilder::motion_index(const RigidMotion& motion) {
+int SceneBuilder::motion_index(PrescribedMotion motion, int first_vertex) {
+  motion.first_vertex = first_vertex;
   for (std::size_t i = 0; i < scene_.motions.size(); ++i) {
     if (same_motion(scene_.motions[i], motion)) return static_cast<int>(i);
   }
-  scene_.motions.push_back(motion);
+  scene_.motions.push_back(std::move(motion));
   return static_cast<int>(scene_.motions.size()) - 1;
 }
 
@@ -127,13 +132,14 @@ void SceneBuilder::pin_vertex(const std::string& body, const Pin& pin) {
   if (pin.span.always()) held_[v] = pin_of_[v];
   scene_.pins.push_back(pin);
   if (pin.span.hold > 0) return;  // it starts free
-  scene_.v0.col(pin.vertex) =
-      scene_.motions[static_cast<std::size_t>(pin.motion)].start_velocity(scene_.x0.col(pin.vertex));
+  const PrescribedMotion& motion = scene_.motions[static_cast<std::size_t>(pin.motion)];
+  if (motion.film) scene_.x0.col(pin.vertex) = pin_pose(scene_, pin, 0);  // to the last digit
+  scene_.v0.col(pin.vertex) = motion.start_velocity(pin.vertex, scene_.x0.col(pin.vertex));
 }
 
 void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int first) {
   if (spec.kind == BodyKind::rigid) {
-    const int motion = motion_index(spec.motion);
+    const int motion = motion_index(spec.motion, first);
     for (int v = 0; v < spec.mesh.n_vertices(); ++v) pin_vertex(spec.name, {first + v, motion});
     return;
   }
@@ -144,7 +150,7 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
                "at least one vertex");
       continue;
     }
-    const int motion = motion_index(spec.pins[p].motion);
+    const int motion = motion_index(spec.pins[p].motion, first);
     Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors, spec.pins[p].span};
     for (const int v : selected) {
       if (v >= spec.mesh.n_vertices()) {
@@ -249,7 +255,7 @@ void SceneBuilder::append_obstacle_vertices() {
     scene_.offset.push_back(0);
     pin_of_.push_back(-1);
     held_.push_back(-1);
-    pin_vertex(obstacle.name, {obstacle.vertex, motion_index(obstacle.motion)});
+    pin_vertex(obstacle.name, {obstacle.vertex, motion_index(obstacle.motion, obstacle.vertex)});
   }
 }
 

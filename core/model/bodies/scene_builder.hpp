@@ -51,7 +51,8 @@ class SceneBuilder {
   void append_pins(const BodySpec& spec, const Positions& start, int first);
   void pin_vertex(const std::string& body, const Pin& pin);
   void check_pulls(const std::string& body);
-  int motion_index(const RigidMotion& motion);
+  /// first_vertex: of the body that it moves.
+  int motion_index(PrescribedMotion motion, int first_vertex);
   void append_masses(const BodySpec& spec, int first);
   void append_elements(const BodySpec& spec, int first);
   void append_surface(const BodySpec& spec, int first);

@@ -7,16 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "core/model/bodies/film_checks.hpp"
 #include "core/model/bodies/part.hpp"
 #include "core/model/mesh/bounds.hpp"
 #include "core/model/mesh/topology.hpp"
 
 namespace bb {
 namespace {
-
-std::string allowed_coordinates() {
-  return fmt::format("finite coordinates between -{0:g} and {0:g} m", max_coordinate);
-}
 
 /// Keys of a part that the mesh has nothing for; returns whether there are any. What switches elements off may stand, and
 /// what follows from another key is not said of it too.
@@ -139,7 +136,8 @@ void check_in_plane(const Complaints& report, const std::string& what, const Mot
   }
 }
 
-void check_motion(const Complaints& report, const std::string& what, const RigidMotion& motion, bool planar) {
+void check_motion(const Complaints& report, const std::string& what, const PrescribedMotion& motion,
+                  bool planar) {
   motion.for_each_step([&](const MotionStep& step) {
     check_step(report, what, step);
     if (planar) check_in_plane(report, what, step);
@@ -147,7 +145,7 @@ void check_motion(const Complaints& report, const std::string& what, const Rigid
 }
 
 /// Of what is where its motion says: it begins where it is.
-void check_given_motion(const Complaints& report, const std::string& what, const RigidMotion& motion,
+void check_given_motion(const Complaints& report, const std::string& what, const PrescribedMotion& motion,
                         bool planar) {
   check_motion(report, what, motion, planar);
   motion.for_each_step([&](const MotionStep& step) {
@@ -170,6 +168,8 @@ void check_pull(const Complaints& report, const PinSpec& pin) {
 /// An obstacle keeps its size, its normal and its axis.
 void check_obstacle_motion(const Complaints& report, const Obstacle& obstacle, bool planar) {
   check_given_motion(report, "/motion", obstacle.motion, planar);
+  if (obstacle.motion.film)
+    return report("/motion/film", "a film of an obstacle", "one of a rigid body, or of pins");
   if (obstacle.motion.changes_size()) report("/motion", "a scale", "1: obstacles keep their size");
   obstacle.motion.for_each_step([&](const MotionStep& step) {
     const bool turns = step.most_turning() > 0;
@@ -237,10 +237,13 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
   if (planar && spec.velocity[2] != 0) report("/velocity", "a z component", "0: the scene is planar");
   if (spec.kind == BodyKind::rigid) {
     check_given_motion(report, "/motion", spec.motion, planar);
+    check_film(report, "/motion", spec.motion, spec, planar, true);
   } else {
     check_material(report, spec, planar);
+    check_rest_film(report, spec, planar);
     for (const PinSpec& pin : spec.pins) {
       (pin.pull ? check_motion : check_given_motion)(report, "/pins/motion", pin.motion, planar);
+      check_film(report, "/pins/motion", pin.motion, spec, planar, !pin.pull && !(pin.span.hold > 0));
       check_pull(report, pin);
     }
   }

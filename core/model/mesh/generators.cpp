@@ -126,6 +126,32 @@ TriangleMesh cylinder_mesh(int n_around, int n_along, double radius, double leng
   return mesh;
 }
 
+namespace {
+
+/// Half a width of a trunk at a share of its height, in heights: hips, waist, chest, shoulders and neck, joined without a kink.
+double half_width(double share) {
+  constexpr std::array<std::array<double, 2>, 6> widths = {
+      {{0, 0.15}, {0.2, 0.19}, {0.5, 0.135}, {0.76, 0.18}, {0.88, 0.165}, {1, 0.06}}};
+  std::size_t k = 1;
+  while (k + 1 < widths.size() && share > widths[k][0]) ++k;
+  const auto& [from, below] = widths[k - 1];
+  const auto& [to, above] = widths[k];
+  const double f = (share - from) / (to - from);
+  return below + (above - below) * f * f * (3 - 2 * f);
+}
+
+}  // namespace
+
+TriangleMesh torso_mesh(int n_around, int n_along, double height) {
+  TriangleMesh mesh = cylinder_mesh(n_around, n_along, 1, height, true);
+  for (int v = 0; v < mesh.n_vertices(); ++v) {
+    const double width = height * half_width(mesh.vertices(2, v) / height + 0.5);
+    mesh.vertices(0, v) *= width;
+    mesh.vertices(1, v) *= width / 2;
+  }
+  return mesh;
+}
+
 TriangleMesh box_mesh(int n, const Vec3d& size) {
   require_count("box/n", n, 1, 1000);
   for (int k = 0; k < 3; ++k) require_size("box/size_m", size[k]);

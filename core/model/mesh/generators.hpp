@@ -18,6 +18,10 @@ TriangleMesh icosphere_mesh(int level, double radius);
 /// Axis z, closed by caps when `closed`: n_around >= 3, n_along >= 1 rings of quads.
 TriangleMesh cylinder_mesh(int n_around, int n_along, double radius, double length, bool closed);
 
+/// A trunk about z from hips to neck, closed, of the height: a cylinder whose rings are ellipses, half as wide along y as
+/// along x, widest at hips and chest: n_around >= 3, n_along >= 1.
+TriangleMesh torso_mesh(int n_around, int n_along, double height);
+
 /// Axis-aligned box with n >= 1 quads along each edge.
 TriangleMesh box_mesh(int n, const Vec3d& size);
 

@@ -103,55 +103,57 @@ double MotionStep::last_change() const {
   return is_static() ? 0 : end;
 }
 
-bool RigidMotion::is_static() const {
-  bool all = true;
+bool PrescribedMotion::is_static() const {
+  bool all = !film;
   for_each_step([&all](const MotionStep& step) { all = all && step.is_static(); });
   return all;
 }
 
-Vec3d RigidMotion::operator()(const Vec3d& x, double t) const {
-  Vec3d out = x;
+Vec3d PrescribedMotion::pose(int vertex, const Vec3d& x, double t) const {
+  Vec3d out = film ? film->at(vertex - first_vertex, t) : x;
   for_each_step([&out, t](const MotionStep& step) { out = step(out, t); });
   return out;
 }
 
-Mat3d RigidMotion::turn(double t) const {
+Mat3d PrescribedMotion::turn(double t) const {
   Mat3d out = MotionStep::turn(t);
   for (const MotionStep& step : then) out = step.turn(t) * out;
   return out;
 }
 
-Vec3d RigidMotion::start_velocity(const Vec3d& x) const {
+Vec3d PrescribedMotion::start_velocity(int vertex, const Vec3d& x) const {
   Vec3d sum = MotionStep::start_velocity(x);  // every operation begins with the identity
   for (const MotionStep& step : then) sum += step.start_velocity(x);
-  return sum;
+  return film ? Vec3d(sum + film->velocity(vertex - first_vertex, 0)) : sum;
 }
 
-double RigidMotion::most_turning() const {
+double PrescribedMotion::most_turning() const {
   double sum = 0;
   for_each_step([&sum](const MotionStep& step) { sum += step.most_turning(); });
   return sum;
 }
 
-bool RigidMotion::changes_size() const {
-  bool any = false;
+bool PrescribedMotion::changes_size() const {
+  bool any = film != nullptr;
   for_each_step([&any](const MotionStep& step) { any = any || step.changes_size(); });
   return any;
 }
 
-double RigidMotion::last_change() const {
-  double last = 0;
+double PrescribedMotion::last_change() const {
+  double last = film ? film->times().back() : 0;
   for_each_step([&last](const MotionStep& step) { last = std::max(last, step.last_change()); });
   return last;
 }
 
-void RigidMotion::translate(const Vec3d& by) {
+void PrescribedMotion::translate(const Vec3d& by) {
+  if (film) film = std::make_shared<const Film>(film->moved(by));
   center += by;
   for (MotionStep& step : then) step.center += by;
 }
 
-bool same_motion(const RigidMotion& a, const RigidMotion& b) {
+bool same_motion(const PrescribedMotion& a, const PrescribedMotion& b) {
   if (a.is_static() && b.is_static()) return true;
+  if (a.film != b.film || (a.film && a.first_vertex != b.first_vertex)) return false;
   return same_step(a, b) && std::equal(a.then.begin(), a.then.end(), b.then.begin(), b.then.end(), same_step);
 }
 

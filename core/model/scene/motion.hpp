@@ -1,12 +1,14 @@
-// Motions that are given as functions of time: rates, keyframes, operations one after the other; and numbers that follow
-// keys.
+// Motions that are given as functions of time: films, rates, keyframes, operations one after the other; and numbers that
+// follow keys.
 #pragma once
 
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/math/types.hpp"
+#include "core/model/scene/film_source.hpp"
 
 namespace bb {
 
@@ -52,9 +54,14 @@ struct MotionStep {
   Keyframe pose(double t) const;
 };
 
-/// Motion of given vertices: its own operation, then those of `then`, each applied to what the ones before make of x.
-struct RigidMotion : MotionStep {
+/// Motion of prescribed vertices: a film, where there is one, then its own operation, then those of `then`, each applied to what the ones
+/// before make of x.
+struct PrescribedMotion : MotionStep {
   std::vector<MotionStep> then = {};
+  FilmSource film_source = {};
+  std::shared_ptr<const Film> film =
+      nullptr;  // of film_source; its vertex 0 is that of the scene's first_vertex
+  int first_vertex = 0;
 
   /// f(step) of every operation, in their order.
   template <class F>
@@ -63,18 +70,21 @@ struct RigidMotion : MotionStep {
     for (const MotionStep& step : then) f(step);
   }
   bool is_static() const;
-  Vec3d operator()(const Vec3d& x, double t) const;
+  Vec3d operator()(const Vec3d& x, double t) const = delete;  // its own operation alone
+  /// Where the vertex of the scene that starts at x is at the time t (s).
+  Vec3d pose(int vertex, const Vec3d& x, double t) const;
   Mat3d turn(double t) const;  // of all operations
-  Vec3d start_velocity(const Vec3d& x) const;
+  /// As that of an operation.
+  Vec3d start_velocity(int vertex, const Vec3d& x) const;
   double most_turning() const;  // rad/s, of all operations together
-  bool changes_size() const;
+  bool changes_size() const;    // or shape
   double last_change() const;
-  /// Every centre moves by this, m.
+  /// Every centre, and every frame of the film, moves by this, m.
   void translate(const Vec3d& by);
 };
 
-/// Every number equal, or both static.
-bool same_motion(const RigidMotion& a, const RigidMotion& b);
+/// Every number equal and the same film, or both static.
+bool same_motion(const PrescribedMotion& a, const PrescribedMotion& b);
 
 /// A value that is given at times, s, which increase: linear between them, constant before the first and after the last.
 /// K has members time and value. Requires a key.

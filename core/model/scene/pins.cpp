@@ -6,7 +6,7 @@
 namespace bb {
 
 Vec3d pin_pose(const Scene& scene, const Pin& pin, double t) {
-  return scene.motions[static_cast<std::size_t>(pin.motion)](scene.x0.col(pin.vertex), t);
+  return scene.motions[static_cast<std::size_t>(pin.motion)].pose(pin.vertex, scene.x0.col(pin.vertex), t);
 }
 
 Vec3d pin_velocity(const Scene& scene, const Pin& pin, double t, double dt) {

@@ -13,6 +13,7 @@
 #include "core/model/scene/all_parts.hpp"
 #include "core/model/scene/collisions.hpp"
 #include "core/model/scene/motion.hpp"
+#include "core/model/scene/rest_motion.hpp"
 
 namespace bb {
 
@@ -121,7 +122,7 @@ struct Obstacle {
   std::optional<double> friction = std::nullopt;     // coefficient; absent: that of the run
   std::optional<double> restitution = std::nullopt;  // as that of a body
   std::string collision_group = {};                  // of Collisions; empty: none
-  RigidMotion motion = {};                           // of its point; turns neither normal nor axis
+  PrescribedMotion motion = {};                      // of its point; turns neither normal nor axis
   int vertex = -1;  // that stands for the point of an obstacle that moves, one of Scene::pins
 };
 
@@ -154,7 +155,9 @@ struct Scene : parts::AllColumns {
   std::vector<Obstacle> obstacles;
   Collisions collisions;
 
-  std::vector<RigidMotion> motions;
+  std::vector<RestMotion>
+      rest_motions;  // of bodies whose rest shape moves: `rest` is that of the time 0 without its factor
+  std::vector<PrescribedMotion> motions;
   std::vector<Pin> pins;  // one entry a prescribed vertex, each vertex at most once
   std::vector<Pull> pulls;
 

@@ -14,9 +14,9 @@ namespace {
 using Pair = std::array<int, 2>;
 
 /// Lengths at rest of pairs of vertices of a body that shrinks.
-class RestLengths {
+class ShrunkLengths {
  public:
-  explicit RestLengths(const BodySpec& spec) : spec_(spec) {
+  explicit ShrunkLengths(const BodySpec& spec) : spec_(spec) {
     if (!spec.material.shrinks_along_warp()) return;
     // Normals of the faces around a vertex, weighted by area: a pair lies in the mean plane of its two.
     normal_ = Positions::Zero(3, spec.mesh.n_vertices());
@@ -117,7 +117,7 @@ class ClothSprings final : public Part {
   void add_elements(const BodySpec& spec, BodyElements& to) const override {
     const Material& m = spec.material;
     if (!m.has_sides() && !m.has_diagonals()) return;
-    const RestLengths rest(spec);
+    const ShrunkLengths rest(spec);
     ClothSpringPart& part = to.scene.cloth_springs;
     const auto add = [&](const Pair& local, double tension, double tension_growing, double compression,
                          double compression_growing) {
@@ -125,7 +125,6 @@ class ClothSprings final : public Part {
       if (to.all_prescribed(pair)) return;
       part.pairs.push_back(pair);
       part.rest_length.push_back(rest.of(local));
-      part.shrink_keys.append(part.pairs.size(), m.shrink_keys);
       part.tension.push_back(tension);
       part.tension_growing.push_back(tension_growing);
       part.compression.push_back(compression);
@@ -150,7 +149,8 @@ class ClothSprings final : public Part {
   std::string_view no_elements() const override { return "no spring of cloth"; }
   void add_families(const Scene& scene, const FamilyPlace& place,
                     std::vector<MadeFamily>& out) const override {
-    if (!scene.cloth_springs.pairs.empty()) out.push_back(cloth_spring_family(place, scene.cloth_springs));
+    if (!scene.cloth_springs.pairs.empty())
+      out.push_back(cloth_spring_family(place, scene.cloth_springs, MovingRest(scene)));
   }
 
   std::vector<std::string> element_names() const override { return {"cloth_spring"}; }

@@ -78,7 +78,7 @@ class Hinges final : public Part {
   std::string_view no_elements() const override { return "no bending"; }
   void add_families(const Scene& scene, const FamilyPlace& place,
                     std::vector<MadeFamily>& out) const override {
-    if (!scene.hinges.hinges.empty()) out.push_back(hinge_family(place, scene.hinges));
+    if (!scene.hinges.hinges.empty()) out.push_back(hinge_family(place, scene.hinges, MovingRest(scene)));
   }
 
   std::vector<std::string> element_names() const override { return {"hinge"}; }

@@ -78,17 +78,15 @@ void check_rest(const Complaints& complain, const BodySpec& spec) {
   const auto refuse = [&](const char* key, double found, const std::string& allowed) {
     complain(std::string("/material/") + key, fmt::format("{}", found), allowed);
   };
-  const bool by_keys = m.shrink_warp == 1 && m.shrink_weft == 1 && !m.shrink_keys.empty();
-  const char* shrink = by_keys ? "shrink_schedule" : m.shrink_warp != 1 ? "shrink_warp" : "shrink_weft";
-  const double factor = by_keys              ? m.shrink_keys.front().value
-                        : m.shrink_warp != 1 ? m.shrink_warp
-                                             : m.shrink_weft;
+  const char* shrink = m.shrink_warp != 1 ? "shrink_warp" : "shrink_weft";
+  const double factor = m.shrink_warp != 1 ? m.shrink_warp : m.shrink_weft;
   for (const ShrinkKey& key : m.shrink_keys) {
     if (key.value > 0 && std::isfinite(key.value)) continue;
     refuse("shrink_schedule", key.value, "factors > 0");
   }
   if (m.shrinks() && m.springs > 0) {
-    refuse(shrink, factor, "1 with springs_N_per_m, whose lengths are those of the mesh");
+    refuse(shrink, factor,
+           "1 with springs_N_per_m, whose lengths are those of the mesh; shrink_schedule shrinks them");
   } else if (m.shrinks() && m.model == "none" && !m.has_sides() && !m.has_diagonals()) {
     refuse(shrink, factor, "1 without a membrane model and without springs of cloth: nothing shrinks");
   }
@@ -127,7 +125,6 @@ void append_options(const Material& m, const Scene& scene, MembranePart& part) {
     part.shrink.resize(n, Vec2d(1, 1));
     part.shrink.back() = Vec2d(m.shrink_warp, m.shrink_weft);
   }
-  part.shrink_keys.append(n, m.shrink_keys);
   if (m.membrane_creep > 0 || !part.creep.empty()) {
     part.yield.resize(n, 0.0);
     part.creep.resize(n, 0.0);
@@ -216,8 +213,11 @@ class Membrane final : public Part {
     out.add("shrink_weft", positive("1"), "The same at right angles to the warp direction.",
             &Material::shrink_weft);
     out.nest_all(
-        "shrink_schedule", "A factor on both over time.", 1, 10000, settings_of<ShrinkKey>(),
-        [](auto& m) -> auto& { return m.shrink_keys; });
+        "shrink_schedule",
+        "A factor on all rest lengths of the body over time: of triangles, springs, rods and tetrahedra, on "
+        "top of the "
+        "other two.",
+        1, 10000, settings_of<ShrinkKey>(), [](auto& m) -> auto& { return m.shrink_keys; });
     out.add(
         "membrane_yield", non_negative("1"),
         "Stretch |sigma - 1| beyond which the rest shape of a triangle follows. Needs membrane_creep_per_s.",
@@ -255,7 +255,8 @@ class Membrane final : public Part {
     complain.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");  // under either name
   }
 
-  std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
+  std::string_view lacks(const TriangleMesh& mesh, std::string_view key) const override {
+    if (key == "shrink_schedule") return "";  // of whatever the body is made of
     return mesh.triangles.empty() ? "the body has no triangle" : "";
   }
 
@@ -292,7 +293,8 @@ class Membrane final : public Part {
   void add_families(const Scene& scene, const FamilyPlace& place,
                     std::vector<MadeFamily>& out) const override {
     for (const MembranePart& part : scene.membranes) {
-      if (!part.triangles.empty()) out.push_back(membrane_family(place, part, scene.rest, scene.planar));
+      if (!part.triangles.empty())
+        out.push_back(membrane_family(place, part, scene.rest, scene.planar, MovingRest(scene)));
     }
   }
   void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {

@@ -12,9 +12,6 @@
 namespace bb {
 namespace {
 
-/// Rest angles below are those of a straight rod whose coordinates are rounded.
-constexpr double least_rest_angle = 1e-6;  // rad
-
 /// The other ends of the lone edges at every vertex, in the order of the edges.
 std::vector<std::vector<int>> neighbours(const TriangleMesh& mesh) {
   std::vector<std::vector<int>> out(static_cast<std::size_t>(mesh.n_vertices()));
@@ -73,7 +70,7 @@ class Rods final : public Part {
   std::string_view no_elements() const override { return "no rod that bends"; }
   void add_families(const Scene& scene, const FamilyPlace& place,
                     std::vector<MadeFamily>& out) const override {
-    if (!scene.rods.corners.empty()) out.push_back(rod_family(place, scene.rods));
+    if (!scene.rods.corners.empty()) out.push_back(rod_family(place, scene.rods, MovingRest(scene)));
   }
 
   std::vector<std::string> element_names() const override { return {"rod_bend"}; }
@@ -112,7 +109,8 @@ class Rods final : public Part {
       return refuse(spec, to, fmt::format("a lone edge without length at vertex {}", local[1]),
                     "edges longer than 0 m");
     }
-    const double angle = spec.material.rod_rest == parts::rods::RestAngle::shape ? angle_between(a, b) : 0.0;
+    const bool straight = spec.material.rod_rest == parts::rods::RestAngle::straight;
+    const double angle = straight ? 0.0 : rod_rest_angle(a, b);
     if (angle > std::numbers::pi - least_rest_angle) {
       return refuse(spec, to, fmt::format("a rest shape that folds back at vertex {}", local[1]),
                     "angles between neighbouring lone edges below pi, or rod_rest straight");
@@ -121,7 +119,8 @@ class Rods final : public Part {
     to.scene.rods.corners.push_back(corner);
     to.scene.rods.stiffness.push_back(spec.material.rod_bending / length +
                                       spec.material.rod_bending_per_mass * mass);
-    to.scene.rods.rest_angle.push_back(angle < least_rest_angle ? 0.0 : angle);
+    to.scene.rods.rest_angle.push_back(angle);
+    to.scene.rods.straight.push_back(straight ? 1 : 0);
   }
 };
 

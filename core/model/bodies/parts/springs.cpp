@@ -81,7 +81,8 @@ class Springs final : public Part {
                     std::vector<MadeFamily>& out) const override {
     const SpringPart& part = scene.springs;
     if (part.edges.empty()) return;
-    out.push_back(spring_family(place, {}, part.edges, part.stiffness, lengths_of(part.edges, scene.rest)));
+    out.push_back(spring_family(place, {}, part.edges, part.stiffness, lengths_of(part.edges, scene.rest),
+                                MovingRest(scene)));
   }
 
   std::vector<std::string> element_names() const override { return {"spring"}; }

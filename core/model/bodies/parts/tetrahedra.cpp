@@ -138,7 +138,8 @@ class Tetrahedra final : public Part {
   void add_families(const Scene& scene, const FamilyPlace& place,
                     std::vector<MadeFamily>& out) const override {
     for (const SolidPart& part : scene.solids) {
-      if (!part.tetrahedra.empty()) out.push_back(tetrahedron_family(place, part, scene.rest));
+      if (!part.tetrahedra.empty())
+        out.push_back(tetrahedron_family(place, part, scene.rest, MovingRest(scene)));
     }
   }
   void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {

@@ -4,14 +4,11 @@
 #include <array>
 #include <vector>
 
-#include "core/model/scene/parts/shrink_key.hpp"
-
 namespace bb {
 
 struct ClothSpringPart {
   std::vector<std::array<int, 2>> pairs;
   std::vector<double> rest_length;                                                 // [n] m
-  ShrinkSchedule shrink_keys;                                                      // factors on it over time
   std::vector<double> tension, tension_growing, compression, compression_growing;  // [n] N/m
   std::vector<double> exponent;                                                    // [n] 1
   std::vector<double> yield, creep;                                                // [n] 1, 1/s

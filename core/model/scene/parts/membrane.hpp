@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/math/types.hpp"
-#include "core/model/scene/parts/shrink_key.hpp"
+#include "core/model/scene/rest_motion.hpp"
 
 namespace bb {
 
@@ -22,7 +22,6 @@ struct MembranePart {
       warp;  // [n] direction, turned into the triangle's plane at rest, of anisotropic models and of shrinkage
              // with a direction; empty: the first edge of each triangle
   std::vector<Vec2d> shrink;         // [n] factors on the rest shape along warp and across; empty: 1
-  ShrinkSchedule shrink_keys;        // further factors, over time
   std::vector<double> yield, creep;  // [n] 1, 1/s; empty: rest shapes stay
 };
 
@@ -45,7 +44,7 @@ struct Keys {
   double poisson = 0.3;                // 1
   double shrink_warp = 1;              // factor on rest lengths along the warp direction
   double shrink_weft = 1;              // and at right angles to it
-  std::vector<ShrinkKey> shrink_keys;  // a factor on both over time; empty: 1
+  std::vector<ShrinkKey> shrink_keys;  // a factor on all rest lengths of the body over time; empty: 1
   double membrane_yield = 0;           // |sigma - 1| up to which the rest shape stays
   double membrane_creep = 0;           // 1/s; 0: it stays anyway
   double density = 0.2;                // kg/m^2 of triangles
@@ -53,7 +52,7 @@ struct Keys {
 
   /// Young's modulus times thickness, N/m.
   double youngs_per_width() const { return youngs * thickness.value_or(1.0); }
-  bool shrinks() const { return shrink_warp != 1 || shrink_weft != 1 || !shrink_keys.empty(); }
+  bool shrinks() const { return shrink_warp != 1 || shrink_weft != 1; }
   bool shrinks_along_warp() const { return shrink_warp != shrink_weft; }
 };
 

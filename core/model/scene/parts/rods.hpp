@@ -12,6 +12,7 @@ namespace bb {
 struct RodPart {
   std::vector<std::array<int, 3>> corners;
   std::vector<double> stiffness, rest_angle;  // [n] J, rad
+  std::vector<char> straight;                 // [n] the rest angle is 0 whatever the rest shape is
 };
 
 namespace parts::rods {
