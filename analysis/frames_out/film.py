@@ -94,7 +94,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells
+@tells("film")
 def main(argv: list[str]) -> int:
     arguments = parse(argv)
     source = read_trajectory(arguments.source)

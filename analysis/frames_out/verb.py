@@ -123,7 +123,7 @@ def positive(text: str) -> float:
     return value
 
 
-positive.__name__ = "length above 0 (m)"
+positive.__name__ = "number above 0"
 
 
 def _times(text: str) -> int:

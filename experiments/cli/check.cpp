@@ -133,18 +133,18 @@ constexpr std::size_t most_crossings = 20;
 
 /// The films of a scene, and where along all of them prescribed parts cross. Errors: ConfigError where they do.
 void check_films(const std::string& file, const RunConfig& config, const Scene& scene) {
-  std::size_t n = 0;
+  std::string films;
   for (const PrescribedMotion& motion : scene.motions) {
     if (!motion.film) continue;
-    ++n;
     const Film& film = *motion.film;
     const auto body = static_cast<std::size_t>(scene.body[static_cast<std::size_t>(motion.first_vertex)]);
-    show("  film of {}: {} frames of {} vertices, {:.6g} to {:.6g} s, {}\n", scene.bodies[body].name,
-         film.n_frames(), film.n_vertices(), film.times().front(), film.times().back(),
-         word_of(motion.film_source.between));
+    films += fmt::format("  film of {}: {} frames of {} vertices, {:.6g} to {:.6g} s, {}\n",
+                         scene.bodies[body].name, film.n_frames(), film.n_vertices(), film.times().front(),
+                         film.times().back(), word_of(motion.film_source.between));
   }
-  if (n == 0)
+  if (films.empty()) {
     throw ConfigError(file + "#/scene", "no film", "a body or pins whose motion has one, for --film");
+  }
   const int steps = steps_of_motions(scene, config.time.dt);
   const auto found = prescribed_crossings(config, scene, steps, most_crossings, {&interrupted()});
   std::vector<Violation> violations;
@@ -154,8 +154,8 @@ void check_films(const std::string& file, const RunConfig& config, const Scene& 
                           "prescribed parts that do not cross each other"});
   }
   if (!violations.empty()) throw ConfigError(std::move(violations));
-  show("  no prescribed part crosses another in {} steps of {:g} s, to the end of the last motion\n", steps,
-       config.time.dt);
+  show("{}  no prescribed part crosses another in {} steps of {:g} s, to the end of the last motion\n", films,
+       steps, config.time.dt);
 }
 
 int check(const CheckVerb& verb) {

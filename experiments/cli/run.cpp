@@ -78,7 +78,7 @@ Action verb::run(CLI::App& app) {
                "a record, a checkpoint, or another file of their names in that folder goes, with the files "
                "of the record; "
                "without it, those of the same config alone");
-  app.add_flag("--keep-inputs", verb->keep_inputs, "copy meshes and plugins beside the record");
+  app.add_flag("--keep-inputs", verb->keep_inputs, "copy meshes, films and plugins beside the record");
   limit_arguments(app, verb->limits);
   return [verb](const CommonOptions& common) { return install_interrupt(), cli::run(*verb, common); };
 }

@@ -97,7 +97,7 @@ Action verb::sweep(CLI::App& app) {
       ->check(CLI::Range(1, 4096));
   app.add_option("--shard", verb->shard, "i/N: the i-th of N shares of one size, 1 to N");
   app.add_option("--index", verb->index, "one case by its number in ./bench plan, from 0");
-  app.add_flag("--keep-inputs", verb->keep_inputs, "copy meshes and plugins beside each record");
+  app.add_flag("--keep-inputs", verb->keep_inputs, "copy meshes, films and plugins beside each record");
   app.add_flag("--dry-run", verb->dry_run, "print what would run");
   app.add_flag("--again", verb->again, "run finished ones too");
   limit_arguments(app, verb->limits);

@@ -97,7 +97,7 @@ def test_a_film_is_the_keyframed_body_of_the_same_motion(program, tmp_path, film
     assert keyed["status"]["outcome"] == filmed["status"]["outcome"] == "ok"
     assert filmed["audit"]["judged"] > 0 and filmed["audit"]["motion_pairs"] > 0
     a, b = (states(r, tmp_path / n / "out") for r, n in ((keyed, "keyed"), (filmed, "filmed")))
-    assert np.isfinite(gaps(keyed)).sum() >= 5, "no contact"
+    assert np.isfinite(gaps(keyed)).sum() >= 3, "no contact"
     np.testing.assert_allclose(gaps(filmed), gaps(keyed), rtol=1e-9)
     for x, y in zip(a, b):
         np.testing.assert_allclose(y, x, atol=1e-9 * 0.3)
@@ -134,7 +134,7 @@ def test_a_smooth_film_goes_through_the_same_frames_another_way(program, tmp_pat
 
 def test_the_inputs_of_a_run_are_kept_and_it_runs_again_from_them(program, tmp_path, film):
     path = film("a", times=TIMES)
-    record = run(program, tmp_path / "one", config(of_film(path, start_s=0.0)))
+    record = run(program, tmp_path / "one", config(of_film(path, start_s=0.0)), "--keep-inputs")
     folder = tmp_path / "one/out"
     kept = sorted(p.name for p in next((folder / "inputs").iterdir()).iterdir())
     assert kept == ["box_000.obj", "box_001.obj", "box_002.obj", "box_003.obj", "times.csv"]
@@ -151,9 +151,9 @@ def test_a_film_that_crosses_itself_is_said_before_the_first_step(program, tmp_p
     curls = {"generator": "bend", "angle_rad": 9.0, "from_m": -0.4, "to_m": 0.4, "period_s": 0.2, "n_frames": 41, "duration_s": 0.2}
     body = {"mesh": leg, "transform": {"translate_m": [0, 0, -0.6]}, "motion": {"film": curls}}
     file = write(tmp_path / "c.json", config(body, time={"dt_s": 0.01, "steps": 12}))
-    done = bench(program, "run", file, "--out", tmp_path / "out")
+    bench(program, "run", file, "--out", tmp_path / "out")
     record = json.loads((tmp_path / "out/run.json").read_text())
-    assert done.returncode != 0 and record["status"]["outcome"] == "given_parts_cross" and record["summary"]["steps"] == 0
+    assert record["status"]["outcome"] == "given_parts_cross" and record["summary"]["steps"] == 0
     detail = record["status"]["detail"]
     assert detail.count("box[") == 2 and "both are prescribed" in detail and " s" in detail
     checked = bench(program, "check", file, "--film")
@@ -180,7 +180,7 @@ def test_what_a_film_may_not_be_is_said_by_name(program, tmp_path, film):
     said(good, "one of linear, smooth", frame_s=0.1, interpolation="cubic")
     said(film("mm", frames=lambda x: [1000 * x, 1000 * x]), "1000 times as large", frame_s=0.1)
     said(film("moved", frames=lambda x: [x + [0, 0, 0.1], x]), "0.1 m from where the body starts", frame_s=0.1)
-    said(film("short", frames=lambda x: [x, x[:-1]]), "box_00", "a number", frame_s=0.1)
+    said(film("short", frames=lambda x: [x, x[:-1]]), "box_001.obj", "a vertex from 1 to 25", frame_s=0.1)
     bad = film("nan", frames=lambda x: [x, np.where(np.arange(len(x))[:, None] == 3, np.nan, x)])
     said(bad, "box_001.obj", "nan", frame_s=0.1)
     turned = film("turned", faces=np.array([[0, 2, 1]]))
@@ -188,7 +188,7 @@ def test_what_a_film_may_not_be_is_said_by_name(program, tmp_path, film):
     hole = film("hole")
     (tmp_path / "hole/box_001.obj").unlink()
     said(hole, "no frame between box_000.obj and box_002.obj", frame_s=0.1)
-    said(str(tmp_path / "none/a_0.obj"), "a_0.obj", "folder of mesh files", frame_s=0.1)
+    said(str(tmp_path / "none/a_0.obj"), "none", "folder of mesh files", frame_s=0.1)
     said(good, "the hash of the files' hashes", frame_s=0.1, sha256="0" * 64)
     ball = {"name": "ball", "kind": "sphere", "radius_m": 0.1, "point_m": [0, 0, 9], **of_film(good)}
     both = config({})
@@ -200,11 +200,11 @@ def test_what_a_film_may_not_be_is_said_by_name(program, tmp_path, film):
 
 
 def pinned(rest: dict, **more) -> dict:
-    """A sheet in the plane, pinned along one side, whose rest shape may grow."""
+    """A planar sheet, pinned along one side, whose rest shape may grow."""
     sheet = {"name": "sheet", "mesh": {"generator": "grid", "n_x": 9, "n_y": 5, "size_x_m": 0.4, "size_y_m": 0.2},
              "limited": False, "pins": [{"box_m": [[-0.201, -1, -1], [-0.199, 1, 1]]}],
-             "material": {"youngs_N_per_m": 200, "poisson": 0, "density_kg_per_m2": 0.2, "bending_J": 1e-4}, **rest}  # fmt: skip
-    return {"schema": "barrierbench.config/1", "scene": {"gravity_m_per_s2": [0, 0, 0], "bodies": [sheet]},
+             "material": {"youngs_N_per_m": 200, "poisson": 0, "density_kg_per_m2": 0.2}, **rest}  # fmt: skip
+    return {"schema": "barrierbench.config/1", "scene": {"planar": True, "gravity_m_per_s2": [0, 0, 0], "bodies": [sheet]},
             "formulation": {"name": "log", "d_hat_m": 0.005}, "integrator": {"name": "quasi_static"},
             "time": {"dt_s": 0.05, "steps": 10}, "passes": {"time": False}, "output": {"frames_every": 10}, **more}  # fmt: skip
 
@@ -232,8 +232,10 @@ def test_a_pinned_grid_grows_along_one_axis(program, tmp_path):
 def test_a_rest_film_stands_beside_a_schedule_and_refuses_what_it_cannot_mean(program, tmp_path):
     material = {**pinned({})["scene"]["bodies"][0]["material"], "shrink_schedule": [{"time_s": 0.0, "factor": 1.0}, {"time_s": 0.5, "factor": 0.8}]}
     both = end_of(program, tmp_path / "both", pinned({"rest_film": GROW, "material": material}))
-    assert np.isclose(both[:, 0].max() + 0.2, 0.4 * 1.5 * 0.8, atol=2e-3)
-    limited = pinned({"rest_film": GROW, "limited": True}, strain_limit={"limit": 0.1})
+    film = end_of(program, tmp_path / "film", pinned({"rest_film": {**GROW, "factor_x": 1.2, "factor_y": 0.8}}))
+    assert np.abs(film[:, 0]).max() > 0.25
+    np.testing.assert_allclose(both, film, atol=1e-7)
+    limited = pinned({"rest_film": GROW, "limited": True}, strain_limit={"limit": 0.1, "stiffness_policy": {"name": "fixed", "k_s_N_per_m": 5}})
     refused(bench(program, "check", write(tmp_path / "l.json", limited)), "rest_film", "a strain limit")
     mesh = pinned({})["scene"]["bodies"][0]["mesh"]
     refused(bench(program, "check", write(tmp_path / "m.json", pinned({"rest_film": GROW, "rest_mesh": mesh}))), "one of both")

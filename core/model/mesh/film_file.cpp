@@ -141,8 +141,8 @@ Positions parse_film_frame(const std::string& bytes, const std::string& name, co
     throw ConfigError(name, fmt::format("{} vertices", frame.vertices.cols()),
                       fmt::format("{}, as the mesh of the body has", of.n_vertices()));
   }
-  // A face of more than three corners may be cut otherwise in another pose.
-  if (!frame.triangles.empty() && of.fans.empty())
+  // A face of more than three corners may be cut otherwise in another pose; of a solid a frame may have the surface.
+  if (!frame.triangles.empty() && of.fans.empty() && of.tetrahedra.empty())
     require_same(name, "triangles", frame.triangles, of.triangles);
   if (!frame.segments.empty()) require_same(name, "lone edges", frame.segments, of.segments);
   if (!frame.tetrahedra.empty()) require_same(name, "tetrahedra", frame.tetrahedra, of.tetrahedra);
