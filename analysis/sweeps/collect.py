@@ -22,6 +22,7 @@ from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..record_file import RecordError, read_record
 from ..run_rows import run_row
+from ..study.archive import study
 from ..whole_file import write_whole, write_whole_bytes
 from . import dictionary
 from .cases import has_list, read_cases, records_below
@@ -141,7 +142,10 @@ def _say_what_is_not_there(folder: Path, rows: list[dict], unreadable: list[str]
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("collect", __doc__, "./bench collect results/runs/my_sweep my_sweep.parquet")
     parser.add_argument(
-        "folder", type=Path, metavar="DIR", help="the folder of a sweep, or one with records below it"
+        "folder",
+        type=Path,
+        metavar="DIR",
+        help="the folder of a sweep, one with records below it, or an archive",
     )
     parser.add_argument(
         "out",
@@ -156,11 +160,12 @@ def arguments(argv: list[str]) -> argparse.Namespace:
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     _check_out(args.out)
-    rows, unreadable = read_rows(args.folder)
+    with study(args.folder) as (folder,):
+        rows, unreadable = read_rows(folder)
+        _say_what_is_not_there(folder, rows, unreadable)
     table = table_of(rows)
     beside = args.out.with_suffix(".columns.csv")
     written = write(as_frame(table), args.out)
     write_whole(beside, pd.DataFrame(dictionary.rows(table)).to_csv(index=False, lineterminator="\n"))
-    _say_what_is_not_there(args.folder, rows, unreadable)
     print(f"{', '.join(map(str, written))}: {len(rows)} runs, {len(table)} columns, which {beside} explains")
     return 0
