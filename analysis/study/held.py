@@ -51,7 +51,10 @@ def _of_steps() -> dict[str, Callable]:
     of_step, of_run = (defs[name]["properties"] for name in ("StepRecord", "Summary"))
     shared = {name: shape for name, shape in of_run.items() if name in of_step}
     sums = {name: sum for name, shape in shared.items() if shape.get("type") == "integer"}
-    return sums | {n: max for n, shape in shared.items() if "largest of the steps" in shape["description"]}
+    largest = {
+        name: max for name, shape in shared.items() if "largest of the steps" in shape.get("description", "")
+    }
+    return sums | largest
 
 
 def _check_sums(record: dict, path: Path, root: Path, held: Held) -> None:

@@ -19,16 +19,19 @@ from pathlib import Path
 
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
-from ..gate.determinism import of_one_config, same_state
-from ..gate.finding import Finding
+from ..gate.determinism import same_state
 from ..gate.records import read_run
 from ..program import require_program, started
-from ..record_file import RecordError
+from ..record_file import RecordError, leaves
 from ..text_table import fitted
 from .archive import read_manifest, study
 from .held import Held, against, held_folder
 
 SAME, DIFFERS, NOT_JUDGED = "same", "differs", "not judged"
+FOUND = ("scene", "matching", "audit", "validity", "summary", "steps")  # sections with what a run has found
+OF_THE_MACHINE = set(
+    "time wall_s solve_s unaccounted_s time_s surface_gap_time_s start_check_s peak_rss_bytes".split()
+)
 
 
 def _whole(text: str) -> int:
@@ -65,12 +68,29 @@ def _rerun(path: Path) -> tuple[str, str]:
         (state,) = same_state("", old, new, False)
         if state.verdict == "not_judged":
             return NOT_JUDGED, state.note
-        red = [one for one in of_one_config("", [old, new]) if one.verdict == "FAIL"]
-    return (DIFFERS, "; ".join(map(_words, red))) if red else (SAME, "")
+    unlike = differences(old.record, new.record)
+    more = f" (and {len(unlike) - 1} more)" if len(unlike) > 1 else ""
+    return (DIFFERS, unlike[0] + more) if unlike else (SAME, "")
 
 
-def _words(finding: Finding) -> str:
-    return f"{finding.metric}: {finding.note or f'{finding.value}, was {finding.reference}'}"
+def found_by(record: dict) -> dict[str, object]:
+    """Place -> every value that a run has found, without times and what else of the machine it says."""
+    known = {"status": {"outcome": record["status"]["outcome"]}, **{name: record[name] for name in FOUND}}
+    return {
+        place: value
+        for place, value in leaves(known)
+        if not {part.removesuffix("_status") for part in place.split("/")} & OF_THE_MACHINE
+    }
+
+
+def differences(old: dict, new: dict) -> list[str]:
+    """What two records of one run do not share."""
+    before, now = found_by(old), found_by(new)
+    return [
+        f"{place} is {before.get(place, 'not there')} and {now.get(place, 'not there')} in the rerun"
+        for place in dict.fromkeys([*before, *now])
+        if before.get(place, NOT_JUDGED) != now.get(place, NOT_JUDGED)
+    ]
 
 
 def rerun(held: Held, root: Path, most: int, seed: int) -> Counter:

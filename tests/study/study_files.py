@@ -36,7 +36,7 @@ def edit(path: Path, place: tuple, value) -> None:
 def made(program: str, folder: Path) -> Path:
     """A run whose cloth is in a file of its own."""
     (folder / "patch.obj").write_text(PATCH)
-    config = {"schema": "barrierbench.config/1", "time": {"dt_s": 0.01, "steps": 2}, "formulation": {"name": "log"}, "threads": 1,
+    config = {"schema": "barrierbench.config/1", "time": {"dt_s": 0.01, "steps": 2}, "formulation": {"name": "log", "d_hat_m": 0.01}, "threads": 1,
               "scene": {"name": "bodies", "bodies": [{"name": "cloth", "mesh": {"file": "patch.obj"}, "material": {"youngs_N_per_m": 50}}]}}
     (folder / "config.json").write_text(json.dumps(config))
     done = subprocess.run([program, "run", str(folder / "config.json"), "--out", str(folder / "run")], capture_output=True, text=True, check=False)

@@ -1,6 +1,7 @@
 """A study as one file: the same pages and verdicts as of its folder, and refusals by name."""
 
 import json
+import re
 import shutil
 import zipfile
 
@@ -77,13 +78,14 @@ def test_compare_takes_it_for_the_folder(kept_study, file, tmp_path, capsys):
     assert "newton" in capsys.readouterr().out
 
 
-def test_a_report_of_it_is_that_of_the_folder(kept_study, file, tmp_path, capsys, unpainted):
+def test_a_report_of_it_is_that_of_the_folder(kept_study, file, tmp_path, capsys):
     assert report.main([str(file), "--players", "0"]) == 0
     page = tmp_path / "study.report.html"
     assert page.is_file() and str(page) in capsys.readouterr().out
     assert report.main([str(kept_study), "--players", "0", "--out", str(tmp_path / "folder.html")]) == 0
-    rows = [line for line in (tmp_path / "folder.html").read_text().splitlines() if "run_id" in line or "<td" in line]
-    assert len(rows) > 10 and page.read_text().count("<td") == (tmp_path / "folder.html").read_text().count("<td")
+    of_archive, of_folder = (re.findall("<td[^>]*>(.*?)</td>", path.read_text()) for path in (page, tmp_path / "folder.html"))
+    same = [a == b for a, b in zip(of_archive, of_folder, strict=True)]
+    assert len(same) > 40 and sum(same) >= len(same) - 8  # commands name the place of a record
     assert report.main([str(file), str(kept_study), "--out", str(tmp_path / "two.html")]) == 0
 
 

@@ -82,7 +82,7 @@ def test_a_rerun_tells_a_number_that_no_sum_knows(study, capsys, built):
         edit(record, ("summary", "gap_min_m"), 1e-7)
     assert told(capsys, study)[0] == 0  # unseen without a rerun
     code, said = told(capsys, study, "--rerun", "1")
-    assert code == 1 and "1 rerun differs" in said and "numbers" in said
+    assert code == 1 and "1 rerun differs" in said and "/summary/gap_min_m is 1e-07 and" in said and "more" not in said
 
 
 def test_a_rerun_of_nothing_is_red(study, capsys, built):
