@@ -9,7 +9,7 @@ from analysis.catalogue.entry import read_entry
 from analysis.catalogue.runs import run_scene
 
 SEEDS = list(range(1, 11))
-STEPS = {"domino": 40, "friction-slope": 25, "jaxls-drape": 30}  # of them some are in contact
+STEPS = {"domino": 40, "friction-slope": 25, "beam-on-wedge": 40}  # of them some are in contact
 
 
 @pytest.fixture(scope="module", params=STEPS)
