@@ -98,8 +98,8 @@ def lines(skips: Skips) -> list[str]:
         "",
         (
             f"A cell is left out where {REASON} (docs/laboratory.md, Gap map). {len(skips.left_out)} cells"
-            f" are left out, and count as not run. {len(skips.checks)} such cells were run all the same, of which"
-            f" {skips.held} ended {OVERLOAD}; `./bench gap-map --spot-check N` runs N more."
+            f" are left out, and count as not run. {len(skips.checks)} such cells were run all the same, of"
+            f" which {skips.held} ended {OVERLOAD}; `./bench gap-map --spot-check N` runs N more."
         ),
         "",
         *(f"- {words(skip.place)}: left out by {words(skip.follows)}" for skip in skips.left_out),
