@@ -80,6 +80,13 @@ def _stays_inside(name: str) -> bool:
     return bool(parts) and not name.startswith("/") and ".." not in parts and "\\" not in name
 
 
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[zipfile.ZipFile]:
+    """To be read."""
+    with input_file.opened(path, input_file.TRAJECTORY) as file, zipfile.ZipFile(file) as archive:
+        yield archive
+
+
 def manifest(archive: zipfile.ZipFile, path: Path) -> list[dict]:
     """The lines of archive.json. Errors: UserError: none there, another version, names that the archive does
     not have or does not say, names that lead out of the folder.
@@ -119,7 +126,7 @@ def read_manifest(path: Path) -> list[dict]:
     """As `manifest`, of a file. Errors: UserError."""
     if not is_archive(path):
         raise _refused(path, "no ZIP archive")
-    with zipfile.ZipFile(path) as archive:
+    with _opened(path) as archive:
         return manifest(archive, path)
 
 
@@ -137,7 +144,7 @@ def study(*paths: Path) -> Iterator[list[Path]]:
             scratch = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="barrierbench-study-")))
             folder = scratch / (path.stem or path.name)
             folder.mkdir()
-            with zipfile.ZipFile(path) as archive:
+            with _opened(path) as archive:
                 for line in manifest(archive, path):
                     _unpack(archive, line, path, folder)
             folders.append(folder)
