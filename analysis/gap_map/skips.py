@@ -10,6 +10,7 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass
 
+from ..text_table import markdown
 from .rows import CANNOT, NOT_RUN, PLACE
 
 OVERLOAD = "stall_overload"
@@ -83,16 +84,26 @@ def skips_of(rows: list[dict]) -> Skips:
     return found
 
 
-def words(place: tuple) -> str:
-    scene, resolution, shape, limit, theta = place
-    return f"{scene} {resolution} `{shape}` limit {limit} theta {theta:g}"
+def _table(skips: Skips) -> list[str]:
+    """A row a cell that was left out, or that ended otherwise than was inferred."""
+    wrong = {skip: outcome for skip, outcome in skips.checks.items() if outcome != OVERLOAD}
+    ends = {
+        **dict.fromkeys(skips.left_out, "left out"),
+        **{skip: f"**{end}**" for skip, end in wrong.items()},
+    }
+    head = ["scene", "level", "shape", "conditions", "theta", "a run decides it, at theta", "how it ended"]
+    rows = []
+    for skip, end in ends.items():
+        scene, resolution, shape, limit, theta = skip.place
+        cells = [scene, resolution, f"`{shape}`", f"limit {limit}", f"{theta:g}"]
+        rows.append([*cells, f"{skip.follows[-1]:g}", end])
+    return markdown(head, rows) if rows else []
 
 
 def lines(skips: Skips) -> list[str]:
     """The part of the page: counts, each cell that was left out, each check that ended otherwise."""
     if not skips.left_out and not skips.checks:
         return []
-    wrong = {skip: outcome for skip, outcome in skips.checks.items() if outcome != OVERLOAD}
     return [
         "## Cells that a run decides",
         "",
@@ -102,10 +113,6 @@ def lines(skips: Skips) -> list[str]:
             f" which {skips.held} ended {OVERLOAD}; `./bench gap-map --spot-check N` runs N more."
         ),
         "",
-        *(f"- {words(skip.place)}: left out by {words(skip.follows)}" for skip in skips.left_out),
-        *(
-            f"- **{words(skip.place)}: {outcome}**, against {words(skip.follows)}"
-            for skip, outcome in wrong.items()
-        ),
+        *_table(skips),
         "",
     ]

@@ -29,8 +29,8 @@ def test_only_an_overload_decides_and_only_smaller_thetas_of_its_series():
     assert found.held == 1
     page = "\n".join(skips.lines(found))
     assert "2 cells are left out" in page and "2 such cells were run all the same, of which 1 ended stall_overload" in page
-    assert "s 8 `cubic` limit on theta 0.05: left out by s 8 `cubic` limit on theta 0.1" in page
-    assert "**s 8 `cubic` limit on theta 0.01: newton_stall**" in page
+    assert "| s | 8 | `cubic` | limit on | 0.05 | 0.1 | left out |" in page
+    assert "| s | 8 | `cubic` | limit on | 0.01 | 0.1 | **newton_stall** |" in page
 
 
 def test_without_an_overload_nothing_is_left_out():
