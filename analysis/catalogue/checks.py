@@ -147,6 +147,25 @@ def fell(record: dict, share: float) -> Finding:
     return Finding(work >= share * most, f"gravity did {work:.3g} J")
 
 
+def carries(record: dict, load_N: float, within: float) -> Finding:
+    """The sum of all contact forces at the end, against the one that rest asks for."""
+    load = record["steps"][-1].get("contact_load_sum_N") if record["steps"] else None
+    if load is None:
+        return Finding(None, "no contact at the end")
+    return Finding(abs(load / load_N - 1) <= within, f"{load:.4g} N, {load_N:g} N at rest")
+
+
+def bounced(record: dict, share: float) -> Finding:
+    """Kinetic energy at the end, against that of the first step; contact has had most of it in between."""
+    steps = record["steps"]
+    if not steps or not steps[0]["kinetic_J"]:
+        return Finding(None, "nothing moved")
+    first, last = steps[0]["kinetic_J"], steps[-1]["kinetic_J"]
+    least = min(step["kinetic_J"] for step in steps)
+    saw = f"{last / first:.4g} of the kinetic energy is back, {least / first:.2g} was left at the turn"
+    return Finding(abs(last / first - 1) <= share and least < 0.9 * first, saw)
+
+
 def rejected(record: dict, outcome: str, says: str) -> Finding:
     """The run did not begin, for this reason, and the message names `says`."""
     status = record["status"]
@@ -174,6 +193,8 @@ CHECKS = {
     "turned": Check(turned, ("body", "turns")),
     "came_to_rest": Check(came_to_rest, ("share",)),
     "fell": Check(fell, ("share",)),
+    "carries": Check(carries, ("load_N", "within")),
+    "bounced": Check(bounced, ("share",)),
     "rejected": Check(rejected, ("outcome", "says")),
 }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tempfile
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UserError
@@ -17,21 +17,28 @@ _COUNTS = re.compile(r"^  (\d+) vertices .*\n  surface: (\d+) triangles, (\d+) e
 
 @dataclass(frozen=True)
 class Counts:
-    """Of a whole scene: vertices, and triangles and edges of all surfaces; `edges` are those of rods where
-    there is no triangle.
+    """Of a whole scene: vertices, triangles and edges of all surfaces, tetrahedra, and springs, which are the
+    segments of rods beside surfaces; without a triangle these are the edges.
     """
 
     vertices: int
     faces: int
     edges: int
+    tetrahedra: int = 0
+    springs: int = 0
+
+    def of(self, kind: str) -> int:
+        """vertices, faces, tetrahedra or segments."""
+        if kind == "segments":
+            return self.springs if self.faces else self.edges
+        return getattr(self, kind)
 
     def unlike(self, stated: dict) -> str:
         """Which of the counts that a scene states are others; empty where none is."""
-        own = {**asdict(self), "segments": self.edges if self.faces == 0 else None}
         return ", ".join(
-            f"{key} {own[key]}, stated {stated[key]}"
+            f"{key} {self.of(key)}, stated {stated[key]}"
             for key in ("vertices", "faces", "segments")
-            if key in stated and stated[key] != own[key]
+            if key in stated and stated[key] != self.of(key)
         )
 
 
@@ -46,4 +53,6 @@ def counts_of(entry: Entry, size: str) -> Counts:
     if done.returncode != 0 or not (found := _COUNTS.search(done.stdout)):
         said = (done.stderr.strip() or done.stdout.strip()).replace(str(file), "").splitlines()
         raise UserError(f"{entry.path} ({size}): {json.dumps(said[0] if said else 'nothing was said')}")
-    return Counts(*map(int, found.groups()))
+    elements = found.group(0).splitlines()[0]
+    more = [re.search(rf"(\d+) {kind}", elements) for kind in ("tetrahedra", "springs")]
+    return Counts(*map(int, found.groups()), *(int(one[1]) if one else 0 for one in more))

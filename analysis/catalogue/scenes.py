@@ -17,10 +17,11 @@ from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..progress import counted
 from ..text_table import fitted
+from ..whole_file import write_whole
+from . import sizes
 from .counts import counts_of
 from .entry import FULL, MINI, Entry, config_text, entries, write_config
-
-LARGE = 500_000  # vertices, from which on a scene is built only where it is named
+from .sizes import LARGE
 
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
@@ -31,7 +32,23 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument("--full", action="store_true", help="at the size of the source")
     parser.add_argument("--list", action="store_true", help="names and titles alone, nothing is built")
+    parser.add_argument(
+        "--sizes",
+        action="store_true",
+        help="build all full scenes and write results/CATALOGUE_SIZES.md: their counts beside their sources'",
+    )
     return parser.parse_args(argv)
+
+
+def _sizes() -> int:
+    """1: a count is off without a reason, or has a reason and is not off."""
+    asked = entries([])
+    kept = sizes.built(asked)
+    sizes.write(kept)
+    write_whole(sizes.PAGE, sizes.page())
+    complaints = [said for entry in asked if (said := sizes.complaint(entry, kept[entry.name]))]
+    print("\n".join([*complaints, str(sizes.PAGE)]))
+    return 1 if complaints else 0
 
 
 def _cell(entry: Entry, size: str, build_large: bool) -> tuple[str, str]:
@@ -93,6 +110,10 @@ def main(argv: list[str]) -> int:
             write_config(asked[0], args.write, size)
         print(args.write)
         return 0
+    if args.sizes:
+        if args.names:
+            raise UserError("--sizes: all scenes, without a NAME")
+        return _sizes()
     if args.full:
         raise UserError("--full: --write FILE is needed with it")
     if args.list:

@@ -23,6 +23,7 @@ from .judge import counts
 from .kept import Kept, about, digests, kept_rows, read_for, sort_out, source_of
 from .rows import CANNOT, NOT_RUN, PLACE, add_rho, cannot_reach, records_in, row
 from .runs import folder_of, run_missing
+from .skips import skips_of
 from .spec import LIMITS, PARTS, Cell, Spec, cells, limit_settings, part, read_spec
 from .table import Map, read, write
 
@@ -153,6 +154,21 @@ def what_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def skip_arguments(parser: argparse.ArgumentParser) -> None:
+    """Cells whose end follows from a run that is there."""
+    parser.add_argument(
+        "--decided", action="store_true", help="run also the cells whose end follows from a run that is there"
+    )
+    parser.add_argument(
+        "--spot-check",
+        type=int,
+        default=0,
+        metavar="N",
+        help="run N of the cells that were left out since another run decides them (default: 0)",
+    )
+    parser.add_argument("--seed", type=int, default=1, help="of the choice of these cells (default: 1)")
+
+
 def arguments(argv: list[str]) -> argparse.Namespace:
     modes = "\n".join(f"  {mode:8} {text}" for mode, text in LIMITS.items())
     parser = parser_of("gap-map", f"{__doc__}\nlimit modes:\n{modes}", "./bench gap-map --plan")
@@ -164,6 +180,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         help="a gap map as data (default: configs/gap_map/default.json)",
     )
     what_arguments(parser)
+    skip_arguments(parser)
     parser.add_argument(
         "--jobs", type=int, default=1, metavar="N", help="sweeps at a time, each of one thread (default 1)"
     )
@@ -183,6 +200,8 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     args = parser.parse_args(argv)
     if args.jobs < 1:
         raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
+    if args.spot_check < 0:
+        raise UserError(f"--spot-check: found {args.spot_check}; a number from 0 on is needed")
     if args.minutes is not None and not args.minutes > 0:
         raise UserError(f"--minutes: found {args.minutes}; a number above 0 is needed")
     return args
@@ -232,6 +251,14 @@ def check_kept(kept: Path, places: set[tuple], rows: list[dict]) -> None:
         )
 
 
+def spot_check(args: argparse.Namespace, spec: Spec, rows: list[dict]) -> None:
+    """Runs a sample of the cells that were left out; their rows say how they ended."""
+    sample = set(skips_of(rows).sample(args.spot_check, args.seed))
+    print(f"gap-map: spot check of {len(sample)} cells that others decide", file=sys.stderr)
+    chosen = [cell for cell in cells(spec) if cell.key in sample]
+    run_missing(spec, chosen, args.runs, digests(spec), args.jobs, None, None)
+
+
 def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
     """Runs what may be run and has no row, and writes gap_map.json. Errors: UserError, RecordError; nothing
     is run where the file would lose runs.
@@ -242,18 +269,13 @@ def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
         check_kept(kept, earlier.places, collect(spec, beyond, args.runs, before)[0])
     if not args.no_run:
         asked = part(spec, args.part) if args.part else spec
-        run_missing(
-            spec,
-            [
-                c
-                for c in cells(asked)
-                if (c.shape, c.theta) not in beyond and (args.anew or c.key not in before)
-            ],
-            args.runs,
-            digests(spec),
-            args.jobs,
-            args.minutes,
-        )
+        wanted = [
+            c for c in cells(asked) if (c.shape, c.theta) not in beyond and (args.anew or c.key not in before)
+        ]
+        ends = None if args.decided else {place: of[0]["outcome"] for place, of in before.items()}
+        run_missing(spec, wanted, args.runs, digests(spec), args.jobs, args.minutes, ends)
+    if args.spot_check:
+        spot_check(args, spec, collect(spec, beyond, args.runs, before)[0])
     rows, sources = collect(spec, beyond, args.runs, before)
     add_rho(spec, rows)
     command = "./bench gap-map" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")

@@ -16,6 +16,7 @@ from ..matching.runs import inputs_sha256
 from ..origin import ID_DIGITS, machine_of
 from ..record_file import other_meanings
 from .rows import PLACE, READ
+from .skips import skips_of
 from .spec import Spec, make_sweep
 from .table import Map, read
 
@@ -142,6 +143,7 @@ def about(spec: Spec, command: str, rows: list[dict], sources: list[dict]) -> di
         "places": {"-".join(place): digest for place, digest in digests(spec).items()},
         "unknowns": [min(sizes), max(sizes)],
         "runs": len(sizes),
+        "skips": [skip.json() for skip in skips_of(rows).left_out],
         "sources": sources,
     }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..text_table import markdown as table_lines
-from . import size_page
+from . import size_page, skips
 from .compare import METRICS, Beside, Common, at_gap, at_theta, counted_once, deepest, gaps_at, middles
 from .figure import TITLES, law_sentence
 from .judge import FAR, MADE, counts, exceptions, extent, failures, made_by_contact, pairs, reason, unreached
@@ -296,7 +296,7 @@ def _tail(found: Map) -> list[str]:
         *never,
         "",
     ]
-    lines += ["## Cells without a gap", "", *_failed(found), ""]
+    lines += ["## Cells without a gap", "", *_failed(found), "", *skips.lines(skips.skips_of(found.rows))]
     lines += [
         "## The area law",
         "",

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
+from ..study.archive import study
 from . import configs, invariants, judge, meanings, report
 from .determinism import same_state
 from .finding import Finding, failures, without_subject
@@ -94,7 +95,11 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
 @tells("compare")
 def main(argv: list[str]) -> int:
     parser = parser_of("compare", __doc__)
-    parser.add_argument("a", type=Path, help="reference: a run.json, its folder, or a folder of such folders")
+    parser.add_argument(
+        "a",
+        type=Path,
+        help="reference: a run.json, its folder, a folder of such folders, or an archive of one",
+    )
     parser.add_argument("b", type=Path, help="what is judged")
     parser.add_argument(
         "--different-configs",
@@ -108,15 +113,16 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--json", type=Path, metavar="FILE", help="the answer as JSON")
     args = parser.parse_args(argv)
     findings: list[Finding] = []
-    for case, a, b in _pairs(args.a, args.b, args.common):
-        old, new = read_run(a), read_run(b)
-        for line in (
-            configs.differences(old.section("config"), new.section("config"))
-            if args.different_configs
-            else []
-        ):
-            print(f"{case}: differs in {line}")
-        findings += compare(case, old, new, args.different_configs)
+    with study(args.a, args.b) as (first, second):
+        for case, a, b in _pairs(first, second, args.common):
+            old, new = read_run(a), read_run(b)
+            for line in (
+                configs.differences(old.section("config"), new.section("config"))
+                if args.different_configs
+                else []
+            ):
+                print(f"{case}: differs in {line}")
+            findings += compare(case, old, new, args.different_configs)
     findings += without_subject(findings, ("I", "III"))
     print(report.table(report.shown(findings, args.verbose)))
     print(report.closing(findings))

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ..errors import UserError, code_of, tells
 from ..front.arguments import parser_of
+from ..study.archive import beside, study
 from ..whole_file import write_whole
 from . import figures, players
 from .gather import gathered
@@ -65,10 +66,15 @@ _count.__name__ = "number of players, 0 or more"
 @tells("report")
 def main(argv: list[str]) -> int:
     parser = parser_of("report", __doc__, "./bench report results/runs/before results/runs/after")
-    parser.add_argument("folder", type=Path, metavar="DIR", help="a folder with records below it")
+    parser.add_argument(
+        "folder", type=Path, metavar="DIR", help="a folder with records below it, or an archive"
+    )
     parser.add_argument("other", type=Path, nargs="?", metavar="DIR2", help="a second one: what differs")
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help=f"the page (default: {NAME} in DIR; of two, in DIR2)"
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help=f"the page (default: {NAME} in DIR, or beside an archive; of two, in DIR2)",
     )
     parser.add_argument(
         "--players",
@@ -79,8 +85,10 @@ def main(argv: list[str]) -> int:
     )
     args = parser.parse_args(argv)
     if args.other is None:
-        print(report(args.folder, args.out or args.folder / NAME, most_players=args.players))
+        with study(args.folder) as (folder,):
+            print(report(folder, args.out or beside(args.folder, NAME), most_players=args.players))
         return 0
-    out = args.out or args.other / NAME_OF_TWO.format(args.folder.resolve().name)
-    print(report_of_two(args.folder, args.other, out))
+    with study(args.folder, args.other) as (first, second):
+        out = args.out or beside(args.other, NAME_OF_TWO.format(first.resolve().name))
+        print(report_of_two(first, second, out))
     return 0

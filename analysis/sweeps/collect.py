@@ -1,7 +1,8 @@
 """The records of a sweep, or of any folder, as one tidy table: a row for each run, whatever its outcome; a
-column for each pointer that a sweep varies and for each field of the record, the unit in its name.
-NAME.columns.csv beside it says of every column its unit, type, place in the record and meaning. May be called
-while runs go on: the table has those that are over. Numbers are written so that they read back bit for bit.
+column for each pointer that a sweep varies and for each field of the record, the unit in its name. NAME.csv
+has it as text, NAME.parquet beside it the same rows with their types; where OUT is a name of Parquet it is
+written alone. NAME.columns.csv says of every column its unit, type, place in the record and meaning. May be
+called while runs go on: the table has those that are over. Numbers read back bit for bit.
 
 Exit codes: 0 written, 2 no record can be read, or the file cannot be written.
 """
@@ -9,7 +10,6 @@ Exit codes: 0 written, 2 no record can be read, or the file cannot be written.
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import io
 import os
 import sys
@@ -22,6 +22,7 @@ from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..record_file import RecordError, read_record
 from ..run_rows import run_row
+from ..study.archive import study
 from ..whole_file import write_whole, write_whole_bytes
 from . import dictionary
 from .cases import has_list, read_cases, records_below
@@ -103,23 +104,26 @@ def as_frame(table: dict[str, list]) -> pd.DataFrame:
     )
 
 
-def write(table: pd.DataFrame, out: Path) -> None:
+def _parquet(table: pd.DataFrame) -> bytes:
+    """A column of Parquet has one type: one of words and numbers has texts, those of the CSV."""
+    buffer = io.BytesIO()
+    mixed = table.select_dtypes("object").columns
+    table.astype(dict.fromkeys(mixed, "string")).to_parquet(buffer, index=False)
+    return buffer.getvalue()
+
+
+def write(table: pd.DataFrame, out: Path) -> list[Path]:
+    """NAME.csv and NAME.parquet, or that alone. Errors: OSError."""
+    binary = out.with_suffix(".parquet")
     if out.suffix == ".csv":
         write_whole(out, table.to_csv(index=False, lineterminator="\n"))
-        return
-    buffer = io.BytesIO()
-    table.to_parquet(buffer, index=False)
-    write_whole_bytes(out, buffer.getvalue())
+    write_whole_bytes(binary, _parquet(table))
+    return list(dict.fromkeys([out, binary]))
 
 
 def _check_out(out: Path) -> None:
     if out.suffix not in (".csv", ".parquet"):
         raise UserError(f"{out}: found the suffix {out.suffix!r}; .csv or .parquet is needed")
-    if out.suffix == ".parquet" and not importlib.util.find_spec("pyarrow"):
-        raise UserError(
-            f"{out}: Parquet is written by pyarrow, which ./bench setup does not install; put it"
-            " into .venv (.venv/bin/pip install pyarrow), or name a .csv"
-        )
 
 
 def _say_what_is_not_there(folder: Path, rows: list[dict], unreadable: list[str]) -> None:
@@ -138,9 +142,17 @@ def _say_what_is_not_there(folder: Path, rows: list[dict], unreadable: list[str]
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("collect", __doc__, "./bench collect results/runs/my_sweep my_sweep.parquet")
     parser.add_argument(
-        "folder", type=Path, metavar="DIR", help="the folder of a sweep, or one with records below it"
+        "folder",
+        type=Path,
+        metavar="DIR",
+        help="the folder of a sweep, one with records below it, or an archive",
     )
-    parser.add_argument("out", type=Path, metavar="OUT", help="the table: NAME.csv, or NAME.parquet")
+    parser.add_argument(
+        "out",
+        type=Path,
+        metavar="OUT",
+        help="NAME.csv, beside which NAME.parquet is written, or NAME.parquet",
+    )
     return parser.parse_args(argv)
 
 
@@ -148,11 +160,12 @@ def arguments(argv: list[str]) -> argparse.Namespace:
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     _check_out(args.out)
-    rows, unreadable = read_rows(args.folder)
+    with study(args.folder) as (folder,):
+        rows, unreadable = read_rows(folder)
+        _say_what_is_not_there(folder, rows, unreadable)
     table = table_of(rows)
     beside = args.out.with_suffix(".columns.csv")
-    write(as_frame(table), args.out)
-    write(pd.DataFrame(dictionary.rows(table)), beside)
-    _say_what_is_not_there(args.folder, rows, unreadable)
-    print(f"{args.out}: {len(rows)} runs, {len(table)} columns, which {beside} explains")
+    written = write(as_frame(table), args.out)
+    write_whole(beside, pd.DataFrame(dictionary.rows(table)).to_csv(index=False, lineterminator="\n"))
+    print(f"{', '.join(map(str, written))}: {len(rows)} runs, {len(table)} columns, which {beside} explains")
     return 0

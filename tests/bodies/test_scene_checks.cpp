@@ -49,6 +49,21 @@ std::string said_of(const TriangleMesh& mesh, const std::function<void(Material&
   return complaint({body});
 }
 
+TEST(scene_checks, refuse_bending_of_an_edge_that_three_triangles_share) {
+  TriangleMesh fan = grid_mesh(2, 2, 1, 1);  // triangles (0, 1, 3) and (0, 3, 2)
+  fan.vertices.conservativeResize(3, 5);
+  fan.vertices.col(4) = Vec3d(0, 0, 1);
+  fan.triangles.push_back({3, 0, 4});
+
+  expect_complaint(said_of(fan, [](Material& m) { m.bending = 0.25; }),
+                   "/material/bending_J: found 0.25, and 3 triangles share the edge of vertices 0 and 3; "
+                   "allowed: 0, or a mesh of which at most two triangles share an edge");
+  expect_complaint(said_of(fan, [](Material& m) { m.bending_exponential = 0.5; }),
+                   "/material/bending_exponential_J: found 0.5, and 3 triangles");
+  EXPECT_EQ(said_of(fan, [](Material&) {}), "");
+  EXPECT_EQ(said_of(grid_mesh(2, 2, 1, 1), [](Material& m) { m.bending = 0.25; }), "");
+}
+
 TEST(scene_checks, refuse_a_key_of_elements_that_the_body_cannot_have) {
   const TriangleMesh sheet = grid_mesh(2, 2, 1, 1), rod = rod_mesh(3, Vec3d(0, 0, 0), Vec3d(1, 0, 0));
   const TriangleMesh block = solid_box_mesh({1, 1, 1}, Vec3d(1, 1, 1));

@@ -14,7 +14,7 @@ from analysis.errors import UserError
 PAPER = (
     "belt cards codim curtain domino drape five-twist fishing-knot friction-slope hang needle noodle ribbon roller stack"
     " trampoline trapped twist woven yarn large-twist large-five-twist large-woven jaxls-drape intersect-1 intersect-2"
-    " intersect-3"
+    " intersect-3 two-points beam-on-wedge ball-in-funnel"
 ).split()
 
 
@@ -69,7 +69,7 @@ def test_a_scene_without_a_config_is_refused(tmp_path, change, message):
 
 
 def test_an_unknown_scene_ends_with_2(capsys):
-    assert main(["drapes"]) == 2 and "one of belt, cards" in capsys.readouterr().err
+    assert main(["drapes"]) == 2 and "one of ball-in-funnel, beam-on-wedge, belt" in capsys.readouterr().err
 
 
 def test_the_page_is_made_of_the_kept_numbers():

@@ -6,7 +6,7 @@ import pytest
 
 from analysis.catalogue.checks import CHECKS, judge
 
-STEP = {"t_s": 0.5, "contact_J": 0.1, "limit_J": 0.2, "kinetic_J": 2.0, "gravity_J": 5.0, "friction_sticking": 3, "friction_sliding": 0, "friction_dissipation_J": 0.01}
+STEP = {"t_s": 0.5, "contact_J": 0.1, "limit_J": 0.2, "kinetic_J": 2.0, "gravity_J": 5.0, "friction_sticking": 3, "friction_sliding": 0, "friction_dissipation_J": 0.01, "contact_load_sum_N": 4.2}
 RECORD = {
     "status": {"outcome": "ok", "detail": ""},
     "summary": {"contacts": {"max": 7}, "gap_min_rel": {"min": 0.4}, "contact_gaps": {"a|b": {"load_N": 3.0}}, "max_stretch": 0.04},
@@ -15,11 +15,14 @@ RECORD = {
     "config": {"scene": {"bodies": [{"name": "a", "pins": [{"motion": {"angular_velocity_rad_per_s": 6.3, "end_s": 0.9}}]}]}},
 }
 EMPTY = {**RECORD, "steps": [], "status": {"outcome": "initial_intersection", "detail": "a meets b"}}
+BOUNCE = {**RECORD, "steps": [{**STEP, "kinetic_J": value} for value in (2.0, 0.4, 1.97)]}
 ASKED = {
     "contacts_active": {"between": "a|*"},
     "turned": {"body": "a", "turns": 0.9},
     "came_to_rest": {"share": 0.01},
     "fell": {"share": 0.5},
+    "carries": {"load_N": 4.0, "within": 0.1},
+    "bounced": {"share": 0.05},
     "rejected": {"outcome": "initial_intersection", "says": "b"},
 }
 
@@ -42,7 +45,7 @@ def changed(place, value):
 
 @pytest.mark.parametrize("name", CHECKS)
 def test_it_holds_of_its_subject(name):
-    assert found(name, EMPTY if name == "rejected" else RECORD).holds is True
+    assert found(name, {"rejected": EMPTY, "bounced": BOUNCE}.get(name, RECORD)).holds is True
 
 
 def each(name, value):
@@ -62,6 +65,10 @@ def each(name, value):
     ("turned", {**RECORD, "steps": []}),
     ("came_to_rest", each("kinetic_J", 0.0)),
     ("fell", {**RECORD, "steps": []}),
+    ("carries", {**RECORD, "steps": []}),
+    ("carries", {**RECORD, "steps": [{**STEP, "contact_load_sum_N": None}]}),
+    ("bounced", {**RECORD, "steps": []}),
+    ("bounced", each("kinetic_J", 0.0)),
     ("rejected", RECORD),
 ])
 def test_it_is_red_without_a_subject(name, record):
@@ -80,6 +87,9 @@ def test_it_is_red_without_a_subject(name, record):
     ("turned", changed(("config", "scene", "bodies", 0, "pins", 0, "motion", "end_s"), 0.5)),
     ("came_to_rest", each("kinetic_J", 1.0)),
     ("fell", each("gravity_J", 1.0)),
+    ("carries", each("contact_load_sum_N", 4.5)),
+    ("bounced", each("kinetic_J", 2.0)),  # nothing was given up at the turn
+    ("bounced", {**BOUNCE, "steps": BOUNCE["steps"][:2]}),  # and nothing has come back yet
     ("rejected", {**EMPTY, "status": {"outcome": "invalid_scene", "detail": "b"}}),
     ("rejected", {**EMPTY, "status": {"outcome": "initial_intersection", "detail": "other words"}}),
 ])

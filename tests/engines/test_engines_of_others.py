@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from analysis import input_file
+from analysis.catalogue import table
+from analysis.catalogue.entry import read_entry, write_config
 from analysis.engines import card as cards
 from analysis.engines import compare, environment, figure, launch, level, matching, scene, verb
 from analysis.engines.judged import energy_of, error_of, judge
@@ -102,6 +104,19 @@ def test_the_scene_of_a_config_is_that_of_the_program(program):
 def test_what_engines_do_not_share_is_refused_by_name(program):
     with pytest.raises(UserError, match="strain_limit"):
         scene.exported(HANG, ["/strain_limit/enabled=true"])
+
+
+@pytest.mark.parametrize("name, term", [("trapped", "tetrahedra"), ("domino", "tetrahedra"), ("noodle", "springs"), ("codim", "springs")])
+def test_scenes_that_peers_cannot_run_are_refused_by_name_and_the_page_says_so(program, tmp_path, name, term):
+    """The table of docs/engines.md has the times of ours that are kept."""
+    entry = read_entry(name)
+    write_config(entry, tmp_path / "scene.json")
+    with pytest.raises(UserError, match=f"found {term} .*engines share no other term"):
+        scene.exported(tmp_path / "scene.json")
+    kept = {row["formulation"]: row for row in table.read()[name]["rows"]}
+    log, dynamic = kept["log"], kept["cubic_dynamic_consistent"]
+    cells = f"| `{name}` | {log['seconds']:g} s, {log['newton']} | {dynamic['seconds']:g} s, {dynamic['newton']} |"
+    assert cells in (ROOT / "docs/engines.md").read_text()
 
 
 def test_a_scene_file_is_checked(tmp_path):

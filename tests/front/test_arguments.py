@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from bench_call import bench
 
 from analysis.errors import UserError
 from analysis import causes, render, text_table
@@ -21,6 +22,13 @@ COMPACT = ["-(d-d_hat)^2*log(d/d_hat)", "-d_hat^2*log(d/d_hat)", "-log(d/d_hat)*
 def test_a_formula_may_begin_with_a_minus(text, words):
     assert formula.parse(words(text)).formula == text
     assert score._arguments(words(text)).what == text
+
+
+def test_the_front_door_hands_on_a_formula_that_begins_with_a_minus():
+    """As a shell gives it, in a process of its own; the formula is none, so that nothing is compiled."""
+    done = bench("formula", "-(d-d_hat)^2*logg(d/d_hat)")
+    assert done.returncode == 2 and "unrecognized arguments" not in done.stderr and "required" not in done.stderr
+    assert "logg" in done.stderr
 
 
 def test_options_stand_before_a_formula_and_behind_it():

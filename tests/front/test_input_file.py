@@ -19,6 +19,7 @@ KNOWN = {
     "gpu_evidence.py": {"open"},  # an archive, of a file that was opened there
     "gate/matrices.py": {"mmread", "mminfo"}, "engines/launch.py": {"load", "open"},  # of bytes that were read there; a log that is written
     "gate/trend.py": {"open"}, "engines/environment.py": {"open"}, "frames_out/formats.py": {"open"}, "front/test.py": {"open"}, "front/building.py": {"open"},
+    "study/archive.py": {"ZipFile", "open"},  # of a file that was opened there; files that it unpacks
     "toolkit_meshes.py": {"open"}, "animation.py": {"open"}, "whole_file.py": {"open"},  # written
     "front/door.py": {"open"},  # /dev/null
     "formula/__main__.py": {"load"},  # of the standard input

@@ -36,11 +36,23 @@ TEST(topology, gives_a_hinge_its_two_opposite_vertices) {
   EXPECT_EQ(edge_hinges(two_triangles().triangles), (std::vector<std::array<int, 4>>{{3, 0, 1, 2}}));
 }
 
-TEST(topology, joins_the_wings_of_a_non_manifold_edge_in_index_order) {
-  const std::vector<std::array<int, 3>> fan = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+TEST(topology, names_an_edge_of_three_triangles_or_more) {
+  const std::vector<std::array<int, 3>> fan = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
+  const std::vector<std::array<int, 3>> wider = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {5, 0, 1}};
 
-  EXPECT_EQ(edge_hinges(fan), (std::vector<std::array<int, 4>>{{0, 1, 2, 3}, {0, 1, 3, 4}}));
+  const auto three = crowded_edge(fan), four = crowded_edge(wider);
+
+  ASSERT_TRUE(three && four);
+  EXPECT_EQ(three->edge, (std::array{0, 1}));
+  EXPECT_EQ(three->n_triangles, 3);
+  EXPECT_EQ(four->n_triangles, 4);
   EXPECT_EQ(boundary_edges(fan).size(), 6u);
+}
+
+TEST(topology, finds_no_crowded_edge_in_a_manifold) {
+  EXPECT_FALSE(crowded_edge(two_triangles().triangles));
+  EXPECT_FALSE(crowded_edge(icosphere_mesh(2, 1.0).triangles));
+  EXPECT_FALSE(crowded_edge({}));
 }
 
 TEST(topology, counts_the_hinges_of_a_grid) {

@@ -1,13 +1,13 @@
 """The records of a sweep as one table, and the words for its columns."""
 
 import csv
-import importlib.util
 import json
 
 import pandas as pd
 import pytest
 from sweep_files import SHAPES, STEPS, bench, records, refused, verb, write_sweep
 
+from analysis.sweeps.collect import as_frame, write
 from analysis.sweeps.dictionary import unit_of
 
 
@@ -85,9 +85,30 @@ def test_what_cannot_be_read_is_named_and_left_out(out, tmp_path):
     assert not (tmp_path / "none.csv").exists()
 
 
-def test_parquet_is_written_where_pyarrow_is_and_asked_for_where_it_is_not(out, tmp_path):
-    done = verb("collect", out, tmp_path / "t.parquet")
-    if importlib.util.find_spec("pyarrow"):
-        assert done.returncode == 0 and len(pd.read_parquet(tmp_path / "t.parquet")) == 5
-    else:
-        refused(done, "pyarrow", "pip install")
+def test_parquet_beside_the_csv_holds_the_same_rows(out, tmp_path):
+    done = verb("collect", out, tmp_path / "t.csv")
+    assert done.returncode == 0 and f"{tmp_path / 't.csv'}, {tmp_path / 't.parquet'}: 5 runs" in done.stdout
+    text, typed = pd.read_csv(tmp_path / "t.csv", float_precision="round_trip"), pd.read_parquet(tmp_path / "t.parquet")
+    assert list(text.columns) == list(typed.columns) and len(text) == len(typed) == 5
+    numbers = [name for name in typed if pd.api.types.is_numeric_dtype(typed[name]) and not pd.api.types.is_bool_dtype(typed[name])]
+    assert len(numbers) > 50 and len(typed.columns) - len(numbers) > 10
+    for name in typed:
+        if name in numbers:
+            assert (typed[name].astype(float).dropna() == text[name].astype(float).dropna()).all() and (typed[name].isna() == text[name].isna()).all(), name
+        else:
+            assert ["" if pd.isna(value) else str(value) for value in typed[name]] == [row[name] for row in read(tmp_path / "t.csv")], name
+
+
+def test_parquet_alone_where_it_is_named(out, tmp_path):
+    assert verb("collect", out, tmp_path / "t.parquet").returncode == 0
+    assert len(pd.read_parquet(tmp_path / "t.parquet")) == 5 and {path.name for path in tmp_path.iterdir()} == {"t.parquet", "t.columns.csv"}
+
+
+def test_a_column_of_words_and_numbers_is_text_in_both(tmp_path):
+    """As a sweep over /linear_solver/tolerance makes it, of which some values are words."""
+    frame = as_frame({"mixed": [0.1, "auto", None, True], "whole": [1, None, 3, 2**53 + 1]})
+    assert write(frame, tmp_path / "t.csv") == [tmp_path / "t.csv", tmp_path / "t.parquet"]
+    typed = pd.read_parquet(tmp_path / "t.parquet")
+    assert list(typed["mixed"].dropna()) == ["0.1", "auto", "True"] and typed["mixed"].isna().tolist() == [False, False, True, False]
+    assert typed["whole"].dropna().tolist() == [1, 3, 2**53 + 1]
+    assert (tmp_path / "t.csv").read_text() == "mixed,whole\n0.1,1\nauto,\n,3\nTrue,9007199254740993\n"

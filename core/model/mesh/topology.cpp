@@ -145,6 +145,18 @@ std::vector<std::array<int, 4>> edge_hinges(std::span<const std::array<int, 3>> 
   return hinges;
 }
 
+std::optional<CrowdedEdge> crowded_edge(std::span<const std::array<int, 3>> triangles) {
+  const std::vector<TriangleSide> sides = sorted_sides(triangles);
+  for (std::size_t i = 2; i < sides.size(); ++i) {
+    const TriangleSide& side = sides[i];
+    if (!sides[i - 2].same_edge(side)) continue;
+    const auto shares = [&side](const TriangleSide& other) { return other.same_edge(side); };
+    return CrowdedEdge{{side.low, side.high},
+                       static_cast<int>(std::count_if(sides.begin(), sides.end(), shares))};
+  }
+  return std::nullopt;
+}
+
 SolidFaces solid_faces(std::span<const std::array<int, 4>> tetrahedra) {
   struct Face {
     std::array<int, 3> sorted, outward;

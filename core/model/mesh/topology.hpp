@@ -29,9 +29,15 @@ std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3
 std::optional<std::array<int, 2>> open_side(std::span<const std::array<int, 3>> triangles);
 
 /// e0 e1 v0 v1 of every edge with exactly two triangles: triangle 0 runs e0 -> e1 and has v0 opposite,
-/// triangle 1 has v1 opposite. Sorted by edge. An edge of three or more triangles (non-manifold) gives one
-/// hinge for each pair of consecutive triangles in index order.
+/// triangle 1 has v1 opposite. Sorted by edge. Of a surface without a crowded edge.
 std::vector<std::array<int, 4>> edge_hinges(std::span<const std::array<int, 3>> triangles);
+
+/// An edge of three triangles or more: a surface has no angle there. The first in the order (smaller, larger). Cost O(n log n).
+struct CrowdedEdge {
+  std::array<int, 2> edge;
+  int n_triangles;
+};
+std::optional<CrowdedEdge> crowded_edge(std::span<const std::array<int, 3>> triangles);
 
 /// Faces of tetrahedra of positive volume.
 struct SolidFaces {

@@ -49,6 +49,20 @@ class Hinges final : public Part {
       complain("/material/bending_creep_per_s", fmt::format("{}", m.bending_creep),
                "0 without bending_J or bending_exponential_J");
     }
+    check_edges(spec, complain);
+  }
+  /// Three triangles at an edge have three angles, of which no two say how it is bent.
+  static void check_edges(const BodySpec& spec, const Complaints& complain) {
+    const Material& m = spec.material;
+    if (!m.hinges_bend()) return;
+    const std::optional<CrowdedEdge> crowded = crowded_edge(spec.mesh.triangles);
+    if (!crowded) return;
+    complain(
+        m.bending > 0 ? "/material/bending_J" : "/material/bending_exponential_J",
+        fmt::format("{}, and {} triangles share the edge of vertices {} and {}",
+                    m.bending > 0 ? m.bending : m.bending_exponential, crowded->n_triangles, crowded->edge[0],
+                    crowded->edge[1]),
+        "0, or a mesh of which at most two triangles share an edge: only such an edge has one bending angle");
   }
   std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
     return mesh.triangles.empty() ? "the body has no triangle" : "";

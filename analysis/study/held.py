@@ -1,0 +1,196 @@
+"""A folder of records held against its files: what is missing, what is there that nothing names, and what was
+edited after the program wrote it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .. import fields
+from ..digests import of_file
+from ..errors import UserError
+from ..input_file import below
+from ..record_file import RecordError, read_record, read_trace, sha256_of
+from ..sweeps.cases import read_cases
+from . import ids
+from .archive import LOCK, MANIFEST
+
+MISSING, EXTRA, EDITED = "missing", "extra", "edited"
+INPUTS = "inputs"  # where --keep-inputs copies files to
+
+
+@dataclass
+class Held:
+    """What was judged, and what is wrong: (missing, extra or edited, file, what was found)."""
+
+    records: int = 0
+    files: int = 0  # that records name
+    ids: int = 0
+    sums: int = 0  # numbers of summaries that follow from the steps
+    cases: int = 0  # of sweeps
+    listed: int = 0  # files of an archive that a folder is held against
+    wrong: list[tuple[str, str, str]] = field(default_factory=list)
+    good: list[Path] = field(default_factory=list)  # records with nothing wrong
+
+    @property
+    def judged(self) -> int:
+        return self.records + self.cases + self.listed
+
+    def say(self, kind: str, path: Path, root: Path, found: str) -> None:
+        self.wrong.append((kind, str(path.relative_to(root)), found.replace(f"{root}/", "")))
+
+
+def _of_steps() -> dict[str, Callable]:
+    """Fields of the summary that follow from those of the steps with the same name, by the schema: counts are
+    sums, and what is the largest of the steps is that.
+    """
+    defs = fields.schema("run")["$defs"]
+    of_step, of_run = (defs[name]["properties"] for name in ("StepRecord", "Summary"))
+    shared = {name: shape for name, shape in of_run.items() if name in of_step}
+    sums = {name: sum for name, shape in shared.items() if shape.get("type") == "integer"}
+    largest = {
+        name: max for name, shape in shared.items() if "largest of the steps" in shape.get("description", "")
+    }
+    return sums | largest
+
+
+def _check_sums(record: dict, path: Path, root: Path, held: Held) -> None:
+    for name, follows in _of_steps().items():
+        steps = [value for step in record["steps"] if (value := step.get(name)) is not None]
+        stated = record["summary"].get(name)
+        if not steps or stated is None:
+            continue
+        held.sums += 1
+        if follows(steps) != stated:
+            why = f"summary/{name} is {stated}, the {follows.__name__} of its steps {follows(steps)}"
+            held.say(EDITED, path, root, why)
+
+
+def _check_ids(record: dict, path: Path, root: Path, held: Held) -> None:
+    stated = record["ids"]
+    if not stated.get("config_id"):
+        return
+    for name, found in zip(("config_id", "run_id"), ids.of_record(path)):
+        held.ids += 1
+        if stated[name] != found:
+            why = f"ids/{name} is {stated[name][:16]}, that of its contents {found[:16]}"
+            held.say(EDITED, path, root, why)
+
+
+def _inputs(value: object) -> Iterator[dict]:
+    """Files that a config names: meshes, with their sha256."""
+    if isinstance(value, dict):
+        if "sha256" in value and value.get("file"):
+            yield value
+        for below_it in value.values():
+            yield from _inputs(below_it)
+    elif isinstance(value, list):
+        for below_it in value:
+            yield from _inputs(below_it)
+
+
+def _named(record: dict) -> list[tuple[str, str]]:
+    """(path from the folder of the record, sha256) of all files that it names."""
+    files = [(file["path"], file["sha256"]) for file in record.get("artifacts") or []]
+    plugins = [
+        one for one in record["provenance"].get("plugins") or [] if not one["name"].startswith("formula:")
+    ]
+    inputs = [(one["file"], one["sha256"]) for one in [*_inputs(record["config"]), *plugins]]
+    return list(dict.fromkeys(files + inputs))
+
+
+def _own_files(folder: Path) -> Iterator[Path]:
+    """Files in the folder of a record and below it, but for folders of other records."""
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not (Path(place) / name / "run.json").is_file())
+        yield from (Path(place) / name for name in sorted(names))
+
+
+def _check_files(record: dict, path: Path, root: Path, held: Held) -> None:
+    named = _named(record)
+    for name, sha256 in named:
+        held.files += 1
+        file = path.parent / name
+        if not file.is_file():
+            held.say(MISSING, path, root, f"{name}, which it names, is not there")
+        elif (found := sha256_of(file)) != sha256:
+            held.say(EDITED, path, root, f"{name} has sha256 {found[:16]}; it names {sha256[:16]}")
+    known = {path, path.with_name(LOCK), *(path.parent / name for name, _ in named)}
+    for file in _own_files(path.parent):
+        if file not in known and path.parent / INPUTS not in file.parents:
+            held.say(EXTRA, file, root, "the record beside it does not name it")
+
+
+def _check_record(path: Path, root: Path, held: Held) -> None:
+    held.records += 1
+    before = len(held.wrong)
+    try:
+        record = read_record(path)
+    except RecordError as error:
+        held.say(EDITED, path, root, str(error))
+        return
+    _check_files(record, path, root, held)
+    _check_ids(record, path, root, held)
+    _check_sums(record, path, root, held)
+    if len(held.wrong) == before:
+        try:
+            read_trace(record, path.parent)
+        except RecordError as error:
+            held.say(EDITED, path, root, str(error))
+    if len(held.wrong) == before:
+        held.good.append(path)
+
+
+def _check_cases(folder: Path, root: Path, held: Held) -> None:
+    """The records of a sweep against its list."""
+    try:
+        cases = read_cases(folder)
+    except (UserError, KeyError, TypeError, ValueError) as error:
+        held.say(EDITED, folder / "cases.json", root, str(error))
+        return
+    for case in cases:
+        held.cases += 1
+        if not case.record.is_file():
+            held.say(MISSING, case.record, root, f"the record of the case {case.label}")
+            continue
+        try:
+            own = read_record(case.record)["ids"]["config_id"]
+        except RecordError:
+            continue  # told by its own check
+        if own != case.config_id:
+            why = f"its config_id is {own[:16]}, in cases.json {case.config_id[:16]}"
+            held.say(EDITED, case.record, root, why)
+    known = {case.record for case in cases}
+    for record in sorted(folder.glob("*/run.json")):
+        if record not in known:
+            held.say(EXTRA, record, root, "no case of the sweep")
+
+
+def held_folder(root: Path) -> Held:
+    """Every record and every list of cases below a folder. Errors: UserError where there is no folder."""
+    if not root.is_dir():
+        raise UserError(f"{root}: no such folder; the folder of a study, or an archive of one, is needed")
+    held = Held()
+    for path in below(root, "run.json"):
+        _check_record(path, root, held)
+    for path in below(root, "cases.json"):
+        _check_cases(path.parent, root, held)
+    return held
+
+
+def against(root: Path, lines: list[dict], held: Held) -> None:
+    """All files of a folder against archive.json of an archive of it, byte for byte."""
+    listed = {line["path"]: line["sha256"] for line in lines}
+    there = {path.relative_to(root).as_posix() for path in root.rglob("*") if path.is_file()}
+    for name in sorted(listed):
+        held.listed += 1
+        if name not in there:
+            held.say(MISSING, root / name, root, "it is in the archive")
+        elif (found := of_file(root / name)) != listed[name]:
+            held.say(EDITED, root / name, root, f"sha256 {found[:16]}, in the archive {listed[name][:16]}")
+    for name in sorted(there - listed.keys() - {MANIFEST}):
+        if Path(name).name != LOCK:
+            held.say(EXTRA, root / name, root, "it is not in the archive")

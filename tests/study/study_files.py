@@ -1,0 +1,44 @@
+"""What the tests of studies make and change."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/sweeps"))
+from sweep_files import bench, write_sweep  # noqa: E402
+
+SHAPES = {"pointer": "/formulation", "values": ["log", "cubic"]}
+STEPS = {"pointer": "/time/steps", "values": [40, 60]}  # long enough to touch
+PATCH = "v 0 0 0.02\nv 1 0 0.02\nv 0 1 0.02\nv 1 1 0.02\nf 1 2 3\nf 2 4 3\n"
+
+
+def sweep_of_four(program: str, folder: Path) -> Path:
+    file = write_sweep(folder, STEPS, SHAPES)
+    assert bench(program, "sweep", file, "--out", folder / "study").returncode == 0
+    paths = sorted((folder / "study").glob("*/run.json"))
+    assert len(paths) == 4 and all(json.loads(path.read_text())["steps"][-1]["contact_load_max_N"] > 0 for path in paths)
+    return folder / "study"
+
+
+def edit(path: Path, place: tuple, value) -> None:
+    record = json.loads(path.read_text())
+    *way, last = place
+    at = record
+    for key in way:
+        at = at[key]
+    assert at[last] != value
+    at[last] = value
+    path.write_text(json.dumps(record))
+
+
+def made(program: str, folder: Path) -> Path:
+    """A run whose cloth is in a file of its own."""
+    (folder / "patch.obj").write_text(PATCH)
+    config = {"schema": "barrierbench.config/1", "time": {"dt_s": 0.01, "steps": 2}, "formulation": {"name": "log", "d_hat_m": 0.01}, "threads": 1,
+              "scene": {"name": "bodies", "bodies": [{"name": "cloth", "mesh": {"file": "patch.obj"}, "material": {"youngs_N_per_m": 50}}]}}
+    (folder / "config.json").write_text(json.dumps(config))
+    done = subprocess.run([program, "run", str(folder / "config.json"), "--out", str(folder / "run")], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return folder / "run"
