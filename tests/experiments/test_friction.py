@@ -110,34 +110,46 @@ def test_what_has_no_meaning_is_refused(program, tmp_path, setting, said):
     refused(bench(program, "run", SLOPE, "--out", tmp_path, "--set", setting), said)
 
 
-def published(program: str, out: Path, *settings: str) -> dict:
+def published(program: str, out: Path, *settings: str, changed: bool = False) -> dict:
     words = [w for setting in ("/method=ando2024", *settings) for w in ("--set", setting)]
     done = bench(program, "run", SLOPE, "--out", out, "--progress", "none", *words)
     assert done.returncode == 0, done.stderr
     record = json.loads((out / "run.json").read_text())
-    assert record["status"]["outcome"] == "ok" and record["labels"]["method"] == "ando2024", record["method"]
+    assert record["status"]["outcome"] == "ok"
+    assert record["labels"]["method"] == "ando2024" + ", changed" * changed, record["method"]
     return record
+
+
+def late_acceleration(record: dict) -> float:
+    """m/s^2, once the patch, which is thrown up by a stiffer contact than the scene was made for, has come down."""
+    late = [step for step in record["steps"] if step["t_s"] > 0.15]
+    assert len(late) > 100 and all((s["friction_sticking"], s["friction_sliding"]) == (0, 9) for s in late)
+    return (speed(late[-1]) - speed(late[0])) / (late[-1]["t_s"] - late[0]["t_s"])
 
 
 @pytest.mark.parametrize("mu", [0.2, 0.4])
 def test_the_cubic_papers_method_slides_as_coulomb_says(program, tmp_path, mu):
-    """Steps of its own length, in single precision, with the loads of every iterate."""
-    record = published(program, tmp_path, f"/friction/mu={mu}")
+    """Steps of its own length, in single precision, with the loads of every iterate; 32 iterations a step, as its authors advise for friction."""
+    record = published(program, tmp_path, f"/friction/mu={mu}", "/step_solver/min_newton_steps=32", changed=True)
     form = {"law": "capped", "refresh": "per_iteration", "hessian": "secant", "eps_m": 1e-5, "combine": "max"}
     assert {key: record["config"]["friction"][key] for key in form} == form
     assert "multiplicities" in record["method"]["differs"]["contacts"] and "as there" in record["method"]["differs"]["friction and air"]
-    late = [step for step in record["steps"] if step["t_s"] > 0.15]
-    assert len(late) > 100 and all((s["friction_sticking"], s["friction_sliding"]) == (0, 9) for s in late)
-    found = (speed(late[-1]) - speed(late[0])) / (late[-1]["t_s"] - late[0]["t_s"])
     expected = G * (math.sin(ANGLE) - mu * math.cos(ANGLE))
-    assert found == pytest.approx(expected, abs=0.01 * mu * G * math.cos(ANGLE))
+    assert late_acceleration(record) == pytest.approx(expected, abs=0.01 * mu * G * math.cos(ANGLE))
+
+
+def test_in_one_iteration_a_step_as_published_ends_before_its_friction_has_converged(program, tmp_path):
+    """The matrix with lambda in both directions lets a slide grow by a part of itself alone in an iteration."""
+    record = published(program, tmp_path, "/friction/mu=0.2")
+    too_much = G * (math.sin(ANGLE) - 0.2 * math.cos(ANGLE)) - late_acceleration(record)
+    assert 0.05 < too_much / (0.2 * G * math.cos(ANGLE)) < 0.3
 
 
 def test_the_cubic_papers_method_sticks_and_creeps_below_its_threshold(program, tmp_path):
-    record = published(program, tmp_path, "/friction/mu=0.51")
+    record = published(program, tmp_path, "/friction/mu=0.6")
     last = record["steps"][-1]
     assert (last["friction_sticking"], last["friction_sliding"]) == (9, 0)
-    assert speed(last) == pytest.approx(1e-5 / 1e-3 * math.tan(ANGLE) / 0.51, rel=0.05)  # eps over the step, times the part of mu
+    assert speed(last) == pytest.approx(1e-5 / 1e-3 * math.tan(ANGLE) / 0.6, rel=0.01)  # eps a step, times the part of mu
 
 
 def test_without_a_coefficient_a_method_leaves_friction_as_it_is(program, tmp_path):
@@ -157,15 +169,15 @@ def test_a_setting_of_friction_beside_a_method_overrides_it(program, tmp_path):
     assert "ando2024, changed" in text and "overridden: /friction/eps_m" in text
 
 
-TWO = {"friction__law": "static_kinetic", "friction__mu_static": 0.51}
+TWO = {"friction__law": "static_kinetic"}
 
 
 @pytest.mark.parametrize("mu", [0.2, 0.4])
 def test_two_coefficients_hold_by_the_static_one_and_brake_by_the_kinetic_one(program, tmp_path, mu):
-    held = slope(program, tmp_path / "held", friction__mu=mu, **TWO)
+    held = slope(program, tmp_path / "held", friction__mu=mu, friction__mu_static=0.53, **TWO)
     assert (held[59]["friction_sticking"], held[59]["friction_sliding"]) == (9, 0)
-    assert speed(held[59]) == pytest.approx(creep("static_kinetic", 0.51), rel=0.05)
-    slides = slope(program, tmp_path / "slides", friction__mu=mu, **(TWO | {"friction__mu_static": 0.49}))
+    assert speed(held[59]) == pytest.approx(creep("static_kinetic", 0.53), rel=0.05)
+    slides = slope(program, tmp_path / "slides", friction__mu=mu, friction__mu_static=0.45, **TWO)
     expected = G * (math.sin(ANGLE) - mu * math.cos(ANGLE))
     assert acceleration(slides) == pytest.approx(expected, abs=0.01 * mu * G * math.cos(ANGLE))
     assert (slides[59]["friction_sticking"], slides[59]["friction_sliding"]) == (0, 9)
@@ -208,7 +220,7 @@ def test_loads_of_every_iterate_end_where_a_lag_ends_that_was_renewed_often(prog
     for name, form in {"once": {}, "often": {"friction__lag_iterations": 30}, "iterate": {"friction__refresh": "per_iteration"}}.items():
         ends[name] = slope(program, tmp_path / name, **fall, **form)
     first = next(k for k, step in enumerate(ends["iterate"]) if step["contact_load_sum_N"])
-    loss = {name: sum(step["friction_dissipation_J"] for step in steps[: first + 5]) for name, steps in ends.items()}
+    loss = {name: sum(step["friction_dissipation_J"] or 0 for step in steps[: first + 5]) for name, steps in ends.items()}
     assert loss["often"] > 0 and loss["iterate"] == pytest.approx(loss["often"], rel=1e-3)
     assert abs(loss["once"] / loss["often"] - 1) > 0.01
 
