@@ -59,15 +59,9 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
     return Base::size() > 0;
   }
   bool refreshes() override {
-    if (options_.refresh == FrictionRefresh::per_step || adopted_) return false;
-    t_lag_ = t_end_;
-    return true;
+    return options_.refresh == FrictionRefresh::per_iteration && !adopted_ && take_at_end();
   }
-  bool renews() override {
-    if (++solved_ >= options_.lag_iterations) return false;
-    t_lag_ = t_end_;
-    return true;
-  }
+  bool renews() override { return ++solved_ < options_.lag_iterations && take_at_end(); }
 
   void report_end(const double* x, StepNumbers& out) override {
     numbers_.clear();
@@ -91,6 +85,11 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
     kind_.reach = kinetic_slide(options_, step.dt);
     t_end_ = step.t_end;
     dt_ = step.dt;
+  }
+  /// Rows are taken next from where obstacles are at the end of the step.
+  bool take_at_end() {
+    t_lag_ = t_end_;
+    return true;
   }
   void step_begins(const FamilyStep& step) override {
     solved_ = 0;
