@@ -86,7 +86,7 @@ TEST_P(EveryFrictionLaw, HasTheDerivativesOfItsClosedFormAndNegativeCurvatureOnl
     EXPECT_GT(largest, 1);
     const bool falls = law.two_coefficients && GetParam() > 1 && GetParam() < reach / eps;
     if (falls) {
-      EXPECT_LT(eigenvalues(MatXd(exact.hess))[0], -0.01 * largest) << law.name;
+      EXPECT_LT(eigenvalues(MatXd(exact.hess))[0], -0.001 * largest) << law.name;
     } else {
       EXPECT_GT(eigenvalues(MatXd(exact.hess))[0], -1e-13 * largest) << law.name;
       EXPECT_LT(relative_difference(clamped(exact.hess), exact.hess, largest), 1e-13) << law.name;
