@@ -32,8 +32,7 @@ template <class Law>
 void expect_friction(const std::string& law_name, CombineRule rule, unsigned seed) {
   const Sides sides(full_scene(3), rule);
   const Scene scene = rubbing_scene<Law>(sides);
-  const Positions x = shaken(scene), y = random_motion(x, 0.7 * eps_m, seed),
-                  given = motion_of_given(scene);
+  const Positions x = shaken(scene), y = random_motion(x, 0.7 * eps_m, seed), given = motion_of_given(scene);
   const HostLag host(scene, x, sides), kinetic(scene, x, kinetic_sides<Law>(sides));
   int slides = 0, sticks = 0;
   double work = 0;
