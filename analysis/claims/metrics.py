@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 from ..figures.kappa_cycle import SETTLED, UNSETTLED_ITERATIONS
@@ -64,6 +65,21 @@ def _slide_loss(record) -> float | None:
     steps = record.get("steps") or [{}]
     first, last = _at(steps[0], "kinetic_J"), _at(steps[-1], "kinetic_J")
     return abs(1 - last / first) if first and last is not None else None
+
+
+def _front_rate(record) -> float | None:
+    """Bodies a second that a front takes along a row block0, block1, ...: from the first touch of two neighbours to the last. Where it does
+    not reach the end of the row, over the rest of the run too. None without two touches or with a failed step."""
+    if record["status"]["outcome"] not in ("ok", "unproven"):
+        return None
+    steps, first = record["steps"], record["summary"].get("first_contact") or {}
+    bodies = len([b for b in (record["config"].get("scene") or {}).get("bodies", ()) if re.fullmatch(r"block\d+", b.get("name", ""))])
+    pairs = [first.get(f"block{k}|block{k + 1}") for k in range(bodies - 1)]
+    times = [steps[step]["t_s"] for step in pairs if step is not None]
+    if len(times) < 2:
+        return None
+    end = max(times) if len(times) == len(pairs) else steps[-1]["t_s"]
+    return (len(times) - 1) / (end - min(times)) if end > min(times) else None
 
 
 def _unsettled(record) -> float:
@@ -128,6 +144,7 @@ METRICS = {
     "gap_end": ("smallest gap at the end of the last step", "d_hat", False, _gap_end),
     "load_end": ("sum of the contact forces at the end of the last step", "N", False, _load_end),
     "slide_loss": ("share of the kinetic energy at the end of the first step that the last one does not have", "1", False, _slide_loss),
+    "front_rate": ("bodies of a row that a front takes in a second", "1/s", False, _front_rate),
     "stretch": ("largest stretch", "1", False, _summary("max_stretch")),
     "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
     "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),

@@ -100,15 +100,27 @@ def _friction(entry: Entry) -> str:
     if not rest and not any(own):
         return "none"
     words = f"coefficient {rest:g}"
+    if (most := settings.get("/friction/mu_static")) is not None:
+        words += f" ({most:g} while it sticks)"
     if own:
         words += (
             f", {listed([f'{value:g}' for value in sorted(set(own))])} of bodies or obstacles with their own"
         )
+    slide = settings.get("/friction/eps_m")
+    threshold = (
+        f"a sliding speed of {_text(settings.get('/friction/eps_v_m_per_s'))} m/s"
+        if slide is None
+        else f"a slide of {_text(slide)} m in a step"
+    )
+    if settings.get("/friction/refresh") == "per_iteration":
+        loads = "with the loads of every iterate"
+    else:
+        loads = (
+            f"solved {counted(settings.get('/friction/lag_iterations') or 1, 'time')} a step for its loads"
+        )
     return (
         f"law {settings.get('/friction/law', 'not recorded')}, {words}, of two sides by the rule"
-        f" {settings.get('/friction/combine', 'not recorded')}, full above a sliding speed of"
-        f" {_text(settings.get('/friction/eps_v_m_per_s'))} m/s, solved"
-        f" {counted(settings.get('/friction/lag_iterations') or 1, 'time')} a step for its loads"
+        f" {settings.get('/friction/combine', 'not recorded')}, full above {threshold}, {loads}"
     )
 
 

@@ -1,5 +1,5 @@
 // Friction of one contact over one time step (docs/design.md, Friction): mu load f0(|u|), u the slide of its two closest points
-// in the tangent plane. Load, normal and weights are those of the start of the step, so this is one convex function of x.
+// in the tangent plane. Load, normal and weights are those of the lag, so this is one function of x, convex with one coefficient.
 #pragma once
 
 #include <cmath>
@@ -19,9 +19,10 @@ BB_HD inline Vec<T, 3> slide_of(const Vec<T, 3>& motion, const Vec<T, 3>& normal
 /// In the relative motion of the closest points.
 template <class T>
 struct MotionTerms {
-  T energy;           // J
-  Vec<T, 3> grad;     // N
-  Mat<T, 3, 3> hess;  // N/m, symmetric bit for bit, no eigenvalue below rounding: exact and clamped are one
+  T energy;        // J
+  Vec<T, 3> grad;  // N
+  Mat<T, 3, 3>
+      hess;  // N/m, symmetric bit for bit, no eigenvalue below rounding where f2 >= 0: exact and clamped are one
 };
 
 /// slide: across the unit normal, of length y (m); strength = mu times load (N); profile: that of y. The matrix is strength
@@ -42,16 +43,20 @@ BB_HD inline MotionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const Ve
   return out;
 }
 
-/// A law of core/energy/friction_laws with its eps, m. secant in [0, 1]: the share of f1/y in the place of f2. With the whole of
+/// A law of core/energy/friction_laws as a term takes it: f2 is that of the matrix, 0 where the law has a negative one, so that the
+/// matrix has no negative eigenvalue. secant in [0, 1]: the share of f1/y in the place of f2. With the whole of
 /// it the quadratic model of the energy lies nowhere below the energy, since f1/y falls with y under every law (lagged
 /// diffusivity; Vogel and Oman 1996 for total variation): a slide that turns round within the step is modelled as one that
 /// brakes, where the exact matrix has no stiffness along a slide beyond eps.
 template <class Law, class T>
-struct LawWithEps {
-  T eps;
+struct LawInTerm {
+  SlideScales<T> of;
   T secant = 0;
   BB_HD FrictionProfile<T> operator()(T y) const {
-    FrictionProfile<T> out = Law::template eval<T>(y, eps);
+    FrictionProfile<T> out = Law::template eval<T>(y, of);
+    if constexpr (Law::two_coefficients) {
+      if (out.f2 < T(0)) out.f2 = T(0);
+    }
     out.f2 += secant * (out.f1_over_y - out.f2);
     return out;
   }

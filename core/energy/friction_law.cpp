@@ -7,7 +7,8 @@ namespace bb {
 
 template <class T>
 const Registry<FrictionLaw<T>>& friction_laws_in() {
-#define ENTRY(name, doc) FrictionLaw<T>{#name, doc, &friction_laws::name::eval<T>},
+#define ENTRY(name, doc) \
+  FrictionLaw<T>{#name, doc, friction_laws::name::two_coefficients, &friction_laws::name::eval<T>},
   static const Registry<FrictionLaw<T>> laws({
 #include "core/energy/friction_laws/registry.inc"
   });
@@ -16,6 +17,14 @@ const Registry<FrictionLaw<T>>& friction_laws_in() {
 }
 
 std::vector<std::string> friction_law_names() { return friction_laws_in<double>().names(); }
+
+std::vector<std::string> two_coefficient_laws() {
+  std::vector<std::string> out;
+  for (const FrictionLaw<double>& law : friction_laws_in<double>()) {
+    if (law.two_coefficients) out.emplace_back(law.name);
+  }
+  return out;
+}
 
 template const Registry<FrictionLaw<float>>& friction_laws_in<float>();
 template const Registry<FrictionLaw<double>>& friction_laws_in<double>();

@@ -12,15 +12,17 @@ namespace bb {
 template <class T>
 struct FrictionLaw {
   std::string_view name, doc;
-  /// y >= 0: length of the slide, eps > 0: from which length on the force is whole, m.
-  FrictionProfile<T> (*eval)(T y, T eps);
+  bool two_coefficients;  // whether it reads a static coefficient beside the kinetic one
+  /// y >= 0: length of the slide, m.
+  FrictionProfile<T> (*eval)(T y, const SlideScales<T>& of);
 };
 
 /// Every registered law, in the order of registry.inc. T: float or double.
 template <class T>
 const Registry<FrictionLaw<T>>& friction_laws_in();
 
-/// Their names.
+/// Their names; those of laws with a static and a kinetic coefficient.
 std::vector<std::string> friction_law_names();
+std::vector<std::string> two_coefficient_laws();
 
 }  // namespace bb

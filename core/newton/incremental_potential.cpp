@@ -44,6 +44,7 @@ void IncrementalPotential::keep(Archive& archive) {
 }
 
 void IncrementalPotential::linearise(const Column& x, Column& g) {
+  for (Term* term : terms_) term->begin_iterate(x);
   linearise_terms(x, g);
   energies_known_ = true;
   announced_ = false;

@@ -11,13 +11,15 @@ namespace bb {
 template <class Law>
 struct FrictionRows : LaggedRows {
   const double*
-      spin;    // [3, n] m, what the turn of an obstacle takes its surface along by; null: nothing turns
-  double eps;  // m
-  double secant = 0;  // of LawWithEps, in the matrix
+      spin;  // [3, n] m, what the turn of an obstacle takes its surface along by; null: nothing turns
+  const double* kinetic;  // [n] coefficient over the static one, which strength has; null: 1 of all
+  double eps, reach;      // m, of SlideScales
+  double secant = 0;      // of LawInTerm, in the matrix
 
   template <class T = double>
-  BB_HD LawWithEps<Law, T> law() const {
-    return {static_cast<T>(eps), static_cast<T>(secant)};
+  BB_HD LawInTerm<Law, T> law(exec::Index r) const {
+    return {{static_cast<T>(eps), kinetic ? static_cast<T>(kinetic[r]) : T(1), static_cast<T>(reach)},
+            static_cast<T>(secant)};
   }
   template <class T = double>
   BB_HD Vec<T, 3> slide(const double* x, exec::Index r) const {
@@ -29,11 +31,11 @@ struct FrictionRows : LaggedRows {
   }
   template <class T = double>
   BB_HD T value(const double* x, exec::Index r) const {
-    return friction_value<T>(slide<T>(x, r), static_cast<T>(strength[r]), law<T>());
+    return friction_value<T>(slide<T>(x, r), static_cast<T>(strength[r]), law<T>(r));
   }
   template <class T = double>
   BB_HD MotionTerms<T> terms(const double* x, exec::Index r) const {
-    return friction_of_slide<T>(slide<T>(x, r), normal_of<T>(r), static_cast<T>(strength[r]), law<T>());
+    return friction_of_slide<T>(slide<T>(x, r), normal_of<T>(r), static_cast<T>(strength[r]), law<T>(r));
   }
 };
 
@@ -75,6 +77,18 @@ struct FindSpins {
   }
 };
 
+/// kinetic [n]: the coefficient of each row over its static one, 1 where that is 0.
+struct KineticParts {
+  LaggedRows rows;
+  SideCoefficients at_rest, sliding;
+  const PairId* pair;
+  double* kinetic;
+  BB_HD void operator()(exec::Index r) const {
+    const double most = at_rest.of(rows.vertex + r, rows.n, pair[r]);
+    kinetic[r] = most > 0 ? sliding.of(rows.vertex + r, rows.n, pair[r]) / most : 1;
+  }
+};
+
 /// What a step says of friction.
 struct FrictionNumbers {
   exec::Compensated work;  // J
@@ -93,7 +107,7 @@ struct FrictionOfRows {
   BB_HD void operator()(exec::Index r, FrictionNumbers& sum) const {
     if (!(rows.strength[r] > 0)) return;
     const double y = rows.slide(x, r).norm();
-    sum.work.add(friction_work<double>(y, rows.strength[r], rows.law()));
+    sum.work.add(friction_work<double>(y, rows.strength[r], rows.law(r)));
     (y < rows.eps ? sum.sticking : sum.sliding) += 1;
   }
 };

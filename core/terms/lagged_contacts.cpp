@@ -49,6 +49,21 @@ void LaggedContacts::linearise(const PositionsView& x, const TermContext&) {
   family_->derivatives(x.data(), families_[0].local);
 }
 
+void LaggedContacts::add_forces(const PositionsView& x, PositionsSpan force) const {
+  if (!family_->loads_known()) return;
+  const LaggedColumns& rows = family_->rows();
+  const auto n = static_cast<std::size_t>(rows.size());
+  std::vector<double> energy(n), gradient(3 * n);
+  family_->gradients(x.data(), energy.data(), gradient.data());
+  for (std::size_t e = 0; e < n; ++e) {
+    const Vec3d of_row(gradient[e], gradient[n + e], gradient[2 * n + e]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int v = rows.vertex.data()[k * n + e];
+      if (v >= 0) force.col(v) -= rows.weight.data()[k * n + e] * of_row;
+    }
+  }
+}
+
 void LaggedContacts::take_rows(const PositionsView& x) {
   const ContactLoads contacts = contacts_at(x);
   contact_ = acting(contacts, family_->sides());

@@ -22,6 +22,10 @@ class LaggedContacts final : public LaggedSteps<HostTerm> {
   void adopt(const KnownStep& known) override;
   void adopt_from(const HostTerm& other) override;
 
+  /// Adds to `force` [3 x n] (N) what its rows, as they are, do to each vertex at x, prescribed ones too; nothing while loads are
+  /// not known.
+  void add_forces(const PositionsView& x, PositionsSpan force) const;
+
   /// Errors: std::logic_error where the terms before, which have been linearised, hold other contacts than when the step began.
   void linearise(const PositionsView& x, const TermContext&) override;
   void change(const PositionsView&, const PositionsView&, EnergyParts& out) const override {

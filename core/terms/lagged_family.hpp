@@ -42,7 +42,7 @@ class LaggedFamily {
   LaggedColumns& rows() { return rows_; }
   exec::Index size() const { return rows_.size(); }
   /// As rows() are combined, also before they are filled. Pointers are memory of the executor.
-  SideCoefficients sides() const { return {of_body_.data(), of_obstacle_.data(), body_, rule_}; }
+  SideCoefficients sides() const { return sides_with(of_body_, of_obstacle_); }
   /// rows() are those of the state x, which has n_numbers coordinates, all but their loads.
   void take(const double* x, exec::Index n_numbers);
   /// rows().load are known now.
@@ -61,6 +61,8 @@ class LaggedFamily {
   virtual void change_step(const FamilyStep&) {}
   /// As Term::take_secant.
   virtual bool take_secant(double /*share*/) { return false; }
+  /// The iterate is another one than rows() are of: whether they are taken anew there.
+  virtual bool refreshes() { return false; }
   /// The step has converged: whether rows are taken anew from where it did.
   virtual bool renews() { return false; }
   /// The step has ended at x.
@@ -90,6 +92,11 @@ class LaggedFamily {
   LaggedFamily(const FamilyPlace& place, const int* body, CombineRule rule, std::span<const double> of_body,
                std::span<const double> of_obstacle);
   virtual void step_begins(const FamilyStep& step) { change_step(step); }
+  /// The same sides with other coefficients.
+  SideCoefficients sides_with(const exec::Buffer<double>& of_body,
+                              const exec::Buffer<double>& of_obstacle) const {
+    return {of_body.data(), of_obstacle.data(), body_, rule_};
+  }
   /// rows() are others, or taken elsewhere.
   virtual void rows_changed() {}
   /// Strengths are coefficients times loads; they become those of the term.

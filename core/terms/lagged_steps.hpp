@@ -24,6 +24,9 @@ class LaggedSteps : public Base {
     take_rows(step.x_n);
   }
   void change_step(const StepColumns& step) override { family_->change_step(step.of_families()); }
+  void begin_iterate(const PositionsView& x) override {
+    if (family_->loads_known() && family_->refreshes()) take_rows(x);
+  }
   bool take_secant(double share) override { return family_->take_secant(share); }
   bool renew_lag(const PositionsView& x) override {
     if (!family_->renews()) return false;

@@ -74,6 +74,8 @@ class Term {
   virtual void keep(Archive&) {}
 
   // --- an iterate
+  /// Every term has accepted x, or begun its step there, and is linearised next: what is taken of other terms anew at every iterate.
+  virtual void begin_iterate(const PositionsView& /*x*/) {}
   /// Adds to the free columns of `force` (N) how this term's gradient changes, to first order, when
   /// prescribed vertices move by `motion` (m, 0 at free vertices), as far as it is in no block of the matrix.
   virtual void add_given_motion(const PositionsView& /*x*/, const PositionsView& /*motion*/,

@@ -18,17 +18,31 @@
 namespace bb {
 
 /// exact: the second derivatives. adaptive: a share of the secant (core/energy/friction.hpp) after steps that the line search
-/// shortened.
-enum class FrictionHessian { exact, adaptive };
+/// shortened. secant: all of it always, where nothing asks for the exact one.
+enum class FrictionHessian { exact, adaptive, secant };
+
+/// When friction takes rows and loads from contact: when a step begins (and converges, lag_iterations), or at every iterate.
+enum class FrictionRefresh { per_step, per_iteration };
 
 struct FrictionOptions {
   std::string law = "smoothed_coulomb";  // of core/energy/friction_laws/registry.inc
   double mu = 0;                         // of bodies and obstacles that have none of their own
+  std::optional<double> mu_static =
+      {};  // the same, while they stick; none: mu. Of laws with two coefficients
   CombineRule combine = CombineRule::min;
   int lag_iterations = 1;  // times that a step is solved, with loads of its start and of the ends before
   double eps_v = 1e-3;     // m/s, sliding speed from which the force is whole
+  std::optional<double> eps_m = {};  // m, the slide of a step itself, in the place of eps_v times its length
+  std::optional<double> kinetic_v = {};                 // m/s, > eps_v, from which the coefficient is mu
   FrictionHessian hessian = FrictionHessian::adaptive;  // of step solvers with a line search on E
+  FrictionRefresh refresh = FrictionRefresh::per_step;
 };
+
+/// m, the slides of a step of dt (s) from which the force is whole, and from which a law with two coefficients has the kinetic one.
+inline double whole_slide(const FrictionOptions& of, double dt) { return of.eps_m.value_or(of.eps_v * dt); }
+inline double kinetic_slide(const FrictionOptions& of, double dt) {
+  return of.kinetic_v ? *of.kinetic_v * dt : 10 * whole_slide(of, dt);
+}
 
 /// Contact without a barrier (core/terms/linear_contact.hpp).
 struct LinearContactRules {

@@ -12,6 +12,7 @@
 #include "core/model/integrators/registry.hpp"
 #include "experiments/config/complain.hpp"
 #include "experiments/config/enum_words.hpp"
+#include "experiments/config/methods.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
 
@@ -275,6 +276,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   }
   check_contact(config, complain);
   check_step_solver(config, complain);
+  check_friction(config, complain);
   check_step_size(config, complain);
   check_damping(config, complain);
   check_policies(config, complain);
@@ -285,8 +287,10 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   check_tolerance(config, complain);
   check_ritz(config, complain);
   if (!config.method.empty()) {
-    refuse_friction(config, "0 with method " + config.method + ", whose file says nothing of friction",
-                    complain);
+    if (friction_of_method(config.method).empty()) {
+      refuse_friction(config, "0 with method " + config.method + ", whose file says nothing of friction",
+                      complain);
+    }
     refuse_restitution(config, "1 with method " + config.method + ", whose file says nothing of it",
                        complain);
   }

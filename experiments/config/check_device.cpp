@@ -8,19 +8,6 @@
 
 namespace bb {
 
-void refuse_friction(const RunConfig& config, const std::string& allowed, const Complain& complain) {
-  const auto refuse = [&](const std::string& pointer, double mu) {
-    if (mu > 0) complain(pointer, fmt::format("{}", mu), allowed);
-  };
-  refuse("/friction/mu", config.friction.mu);
-  for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
-    refuse(fmt::format("/scene/bodies/{}/friction", i), config.scene.bodies[i].spec.friction.value_or(0));
-  }
-  for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
-    refuse(fmt::format("/scene/obstacles/{}/friction", i), config.scene.obstacles[i].friction.value_or(0));
-  }
-}
-
 void refuse_restitution(const RunConfig& config, const std::string& allowed, const Complain& complain) {
   const auto refuse = [&](const char* list, std::size_t i, const std::optional<double>& e) {
     if (e && *e < 1)

@@ -39,11 +39,6 @@ std::string solvers_where(bool (*has)(const StepSolverEntry&)) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Step solvers whose steps end in a minimum of E.
-std::string solvers_with_minimum() {
-  return solvers_where([](const StepSolverEntry& entry) { return entry.needs.minimum; });
-}
-
 /// Settings that ask for a matrix at the end of a step, or for a minimum of E there.
 void check_minimum(const RunConfig& config, const StepNeeds& needs, const Complain& complain) {
   const StepSolverConfig& solver = config.step_solver;
@@ -54,16 +49,6 @@ void check_minimum(const RunConfig& config, const StepNeeds& needs, const Compla
   if (solver.saddle == SaddleRule::escape && !needs.minimum) {
     complain("/step_solver/saddle", "\"escape\"",
              "report or ignore: of step solvers only these can leave a saddle: " + solvers_with_minimum());
-  }
-  if (config.friction.hessian == FrictionHessian::adaptive && !needs.minimum) {
-    complain("/friction/hessian", "\"adaptive\"",
-             "exact: the step solver " + solver.name +
-                 " has no line search on E, these have one: " + solvers_with_minimum());
-  }
-  if (config.friction.lag_iterations > 1 && !needs.minimum) {
-    complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
-             "1: the step solver " + solver.name +
-                 " solves a step once, these solve it again: " + solvers_with_minimum());
   }
 }
 
@@ -106,6 +91,10 @@ StepSettings step_settings_of(const std::string& name) {
 }
 
 }  // namespace
+
+std::string solvers_with_minimum() {
+  return solvers_where([](const StepSolverEntry& entry) { return entry.needs.minimum; });
+}
 
 StepNeeds needs_of(const RunConfig& config) {
   const StepSolverEntry* entry = step_solvers().find(config.step_solver.name);

@@ -143,6 +143,10 @@ void lay_method(json& document, const json& name) {
   for (const auto& [pointer, value] : method.set.items()) {
     set_value(document, json::json_pointer(pointer), value);
   }
+  if (!document.contains("friction") || !document["friction"].is_object()) return;
+  const json over =
+      friction_of_method(method.name);  // laid where a coefficient is known to be above 0 (settle_friction)
+  for (const auto& item : over.items()) document["friction"].erase(item.key());
 }
 
 constexpr std::size_t max_chain = 16;  // configs that extend one another

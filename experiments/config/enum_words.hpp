@@ -46,7 +46,12 @@ inline EnumWords<StepSizeRule> words_of(StepSizeRule) {
 }
 inline EnumWords<RestRule> words_of(RestRule) { return {{RestRule::on, "on"}, {RestRule::off, "off"}}; }
 inline EnumWords<FrictionHessian> words_of(FrictionHessian) {
-  return {{FrictionHessian::exact, "exact"}, {FrictionHessian::adaptive, "adaptive"}};
+  return {{FrictionHessian::exact, "exact"},
+          {FrictionHessian::adaptive, "adaptive"},
+          {FrictionHessian::secant, "secant"}};
+}
+inline EnumWords<FrictionRefresh> words_of(FrictionRefresh) {
+  return {{FrictionRefresh::per_step, "per_step"}, {FrictionRefresh::per_iteration, "per_iteration"}};
 }
 inline EnumWords<CombineRule> words_of(CombineRule) {
   return {{CombineRule::min, "min"}, {CombineRule::max, "max"}, {CombineRule::mean, "mean"}};

@@ -9,6 +9,7 @@
 
 #include "core/base/input/json.hpp"
 #include "core/base/parameters/registry.hpp"
+#include "experiments/config/complain.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/config/sections.hpp"
 
@@ -55,13 +56,16 @@ const std::set<std::string> sections = {"contact",       "formulation", "hessian
                                         "linear_solver", "matching",    "precision", "step_solver",
                                         "strain_limit",  "time"};
 
-bool is_of_a_method(const std::string& pointer, const json& value) {
+const std::set<std::string> of_friction = {"friction"};
+using Sections = std::set<std::string>;
+
+bool is_of_a_method(const Sections& allowed, const std::string& pointer, const json& value) {
   const std::string section = pointer.substr(1, pointer.find('/', 1) - 1);
-  return sections.contains(section) && (pointer != "/formulation" || value.is_object());
+  return allowed.contains(section) && (pointer != "/formulation" || value.is_object());
 }
 
 /// The settings as a config of some scene, so that a pointer that no config has is refused where it stands.
-void check_settings(const PublishedMethod& method, const std::string& where,
+void check_settings(const PublishedMethod& method, const Sections& allowed, const std::string& where,
                     std::vector<Violation>& violations) {
   json config = {{"schema", "barrierbench.config/1"}, {"scene", {{"name", "hang"}}}};
   for (const auto& [pointer, value] : method.set.items()) {
@@ -75,10 +79,10 @@ void check_settings(const PublishedMethod& method, const std::string& where,
           {where + "/set", '"' + pointer + '"', "a JSON pointer into the config, such as /time/dt_s"});
       continue;
     }
-    if (is_of_a_method(pointer, value)) continue;
+    if (is_of_a_method(allowed, pointer, value)) continue;
     violations.push_back(
         {where + "/set", '"' + pointer + "\": " + value.dump(),
-         fmt::format("a setting below one of {}; /formulation is an object", fmt::join(sections, ", "))});
+         fmt::format("a setting below one of {}; /formulation is an object", fmt::join(allowed, ", "))});
   }
   for (const auto& [pointer, fact] : method.because) {
     if (method.set.contains(pointer)) continue;
@@ -88,6 +92,28 @@ void check_settings(const PublishedMethod& method, const std::string& where,
 }
 
 std::string folder() { return configs_folder() + "/methods"; }
+std::string friction_file(const std::string& method) { return folder() + "/friction/" + method + ".json"; }
+
+/// A file of the form of a method whose settings lie below `allowed`.
+PublishedMethod read_method(const std::string& path, const std::string& name, const Sections& allowed) {
+  const std::string where = path + "#";
+  json file = read_json_file(path, config_file);
+  std::vector<Violation> violations;
+  Rule rule;
+  rule.kind = Kind::object;
+  rule.list = [](const json&) { return method_list(); };
+  check_value(file, rule, where, violations);
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+
+  PublishedMethod out{file["name"], file["doc"], file["source"], file["set"], {}, {}};
+  if (out.name != name)
+    violations.push_back({where + "/name", file["name"].dump(), '"' + name + "\", as its file"});
+  out.because = texts_of(file["because"], where + "/because", violations);
+  out.differs = texts_of(file["differs"], where + "/differs", violations);
+  check_settings(out, allowed, where, violations);
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+  return out;
+}
 
 }  // namespace
 
@@ -102,28 +128,27 @@ std::vector<std::string> method_names() {
 }
 
 PublishedMethod load_method(const std::string& name) {
-  const std::string path = folder() + "/" + name + ".json", where = path + "#";
-  json file = read_json_file(path, config_file);
-  std::vector<Violation> violations;
-  Rule rule;
-  rule.kind = Kind::object;
-  rule.list = [](const json&) { return method_list(); };
-  check_value(file, rule, where, violations);
-  if (!violations.empty()) throw ConfigError(std::move(violations));
+  return read_method(folder() + "/" + name + ".json", name, sections);
+}
 
-  PublishedMethod out{file["name"], file["doc"], file["source"], file["set"], {}, {}};
-  if (out.name != name)
-    violations.push_back({where + "/name", file["name"].dump(), '"' + name + "\", as its file"});
-  out.because = texts_of(file["because"], where + "/because", violations);
-  out.differs = texts_of(file["differs"], where + "/differs", violations);
-  check_settings(out, where, violations);
-  if (!violations.empty()) throw ConfigError(std::move(violations));
-  return out;
+PublishedMethod with_friction(PublishedMethod method) {
+  const std::string path = friction_file(method.name);
+  if (!fs::exists(path)) return method;
+  const PublishedMethod more = read_method(path, method.name, of_friction);
+  method.set.update(more.set);
+  for (const auto& [pointer, fact] : more.because) method.because[pointer] = fact;
+  for (const auto& [subject, text] : more.differs) method.differs[subject] = text;
+  return method;
+}
+
+json friction_of_method(const std::string& name) {
+  const PublishedMethod method = with_friction({name, "", "", json::object(), {}, {}});
+  return method.set.empty() ? json::object() : method.set.unflatten().at("friction");
 }
 
 std::vector<PublishedMethod> published_methods() {
   std::vector<PublishedMethod> out;
-  for (const std::string& name : method_names()) out.push_back(load_method(name));
+  for (const std::string& name : method_names()) out.push_back(with_friction(load_method(name)));
   return out;
 }
 
@@ -150,6 +175,7 @@ std::vector<std::string> overridden(const PublishedMethod& method, const json& r
 
 MethodUse method_use(const RunConfig& config) {
   MethodUse use{load_method(config.method), {}};
+  if (has_friction(config)) use.method = with_friction(std::move(use.method));
   use.overridden = overridden(use.method, settings_of<RunConfig>().write(config));
   return use;
 }

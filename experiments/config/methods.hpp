@@ -1,5 +1,6 @@
 // Published methods in one piece, configs/methods/NAME.json: settings by pointer, why each is as it is, and what this program
-// does otherwise than the publication.
+// does otherwise than the publication. What it says of friction is a file of its own, configs/methods/friction/NAME.json, of the same
+// form: settings of /friction that count where a coefficient is above 0.
 #pragma once
 
 #include <map>
@@ -20,10 +21,15 @@ struct PublishedMethod {
   Texts differs;       // subject -> what is not as published
 };
 
+/// The settings of /friction (key -> value) that a method has; empty: its publication says nothing that is here.
+nlohmann::json friction_of_method(const std::string& name);
+
 /// Those of the folder, in the order of the alphabet.
 std::vector<std::string> method_names();
 /// Errors: ConfigError for a file that is not one of a method: file#/pointer, found, allowed.
 PublishedMethod load_method(const std::string& name);
+/// The same with its file of friction, where it has one.
+PublishedMethod with_friction(PublishedMethod method);
 std::vector<PublishedMethod> published_methods();
 
 /// Pointers to the numbers, words and flags of a method, those inside the objects that it sets too.

@@ -84,6 +84,7 @@ void finish_config(const json& document, const ProceduralScene* scene, const Rea
   settle_formulation(child(document, "formulation"), reader, config.formulation);
   settle_strain_limit(child(document, "strain_limit"), reader, config.formulation, defaults.limit,
                       config.strain_limit);
+  settle_friction(child(document, "friction"), config);
   settle_matching(child(document, "matching"), reader, !solver_of_protocol(config.scene).empty(), config);
   if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
     config.step_solver.tol_velocity = default_tolerance(config);

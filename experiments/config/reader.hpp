@@ -55,6 +55,8 @@ void settle_formulation(const nlohmann::json& object, const Reader& reader, Form
 void settle_strain_limit(const nlohmann::json& object, const Reader& reader,
                          const FormulationConfig& formulation, std::optional<double> default_limit,
                          StrainLimitConfig& limit);
+/// The friction of a method under what the section has, where a coefficient is above 0.
+void settle_friction(const nlohmann::json& object, RunConfig& config);
 void settle_matching(const nlohmann::json& object, const Reader& reader, bool literal, RunConfig& config);
 
 /// What the step solver of a config needs; all of an unknown one, which has a violation already.

@@ -9,6 +9,8 @@
 #include "barriers/formulas.hpp"
 #include "barriers/matching.hpp"
 #include "core/base/input/names.hpp"
+#include "experiments/config/complain.hpp"
+#include "experiments/config/methods.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/sections.hpp"
@@ -94,6 +96,14 @@ bool settle_width(const json& object, const Reader& reader, std::optional<double
 }
 
 }  // namespace
+
+void settle_friction(const json& object, RunConfig& config) {
+  if (config.method.empty() || !has_friction(config)) return;
+  json all = friction_of_method(config.method);
+  all.update(object);
+  config.friction = FrictionConfig();
+  settings_of<FrictionConfig>().read(all, config.friction);
+}
 
 void settle_time(const json& object, const Reader& reader, TimeConfig& out) {
   if (!out.duration) return;

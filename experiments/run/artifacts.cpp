@@ -13,6 +13,7 @@
 #include "core/model/bodies/part.hpp"
 #include "core/model/mesh/write_mesh.hpp"
 #include "core/model/scene/contact_plan.hpp"
+#include "core/terms/lagged_contacts.hpp"
 #include "experiments/matrix/matrix_market.hpp"
 #include "experiments/run/keep_record.hpp"
 #include "experiments/run/scene_json.hpp"
@@ -54,7 +55,7 @@ static void write_copy(const std::filesystem::path& from, const std::filesystem:
 
 ContactFields contact_fields(const ContactState& state, int n_vertices) {
   const auto n = static_cast<std::size_t>(n_vertices);
-  ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0)};
+  ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0), std::nullopt};
   const auto gather = [&fields](const auto& rows) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (const int id : rows.key(r)) {  // given vertices included; an obstacle is negative
@@ -79,10 +80,26 @@ ContactFields contact_fields(const ContactState& state, int n_vertices) {
   return fields;
 }
 
+Positions friction_forces(const TermList& terms, const Positions& x) {
+  Positions out = Positions::Zero(3, x.cols());
+  for (const auto& term : terms) {
+    if (term->name() == "friction") static_cast<const LaggedContacts&>(*term).add_forces(x, out);
+  }
+  return out;
+}
+
 ArtifactWriter::ArtifactWriter(std::filesystem::path folder, const Scene& scene)
     : folder_(std::move(folder)), scene_(scene), rods_(lone_edges(scene)) {
   for (const auto& t : scene.surface_triangles) {
     triangle_body_.push_back(scene.body[static_cast<std::size_t>(t[0])]);
+  }
+}
+
+// Of vertices, N.
+static void add_vector(std::vector<PlyColumn>& columns, const std::string& name, const Positions& of) {
+  for (int c = 0; c < 3; ++c) {
+    const VecXd part = of.row(c);
+    columns.push_back({name + "_" + "xyz"[c] + "_N", std::vector<double>(part.begin(), part.end())});
   }
 }
 
@@ -126,6 +143,7 @@ void ArtifactWriter::write_frame(const std::filesystem::path& relative, const Po
   if (fields) {
     of_vertices.push_back({"gap_rel", fields->gap_rel});
     of_vertices.push_back({"load_N", fields->load});
+    if (fields->friction) add_vector(of_vertices, "friction", *fields->friction);
   }
   FrameFields columns{std::move(of_vertices), {{"body", triangle_body_}}};
   for (const PartEntry& entry : part_entries()) entry.part.add_frame_fields(scene_, x, columns);

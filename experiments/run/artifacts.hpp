@@ -15,11 +15,16 @@ namespace bb {
 struct ContactFields {
   std::vector<double> gap_rel;  // [n vertices] smallest d/d_hat of the rows at the vertex; 1 without a row
   std::vector<double> load;     // [n vertices] N, sum of |w_i| kappa |b'| over those rows; 0 without a row
+  std::optional<Positions>
+      friction;  // [3 x n vertices] N, force of friction on the vertex, where it is asked for
 };
 
 /// Both fields from the rows of a state. A nearly parallel edge pair has a gap, but, as in the records, no
 /// load of its own: its mollifier scales kappa |b'|.   Cost: O(vertices + rows).
 ContactFields contact_fields(const ContactState& state, int n_vertices);
+
+/// Forces of friction on every vertex at x, the end of a step [3 x n vertices], N; 0 where there is none.
+Positions friction_forces(const TermList& terms, const Positions& x);
 
 /// Files of one run below `folder`/frames and `folder`/matrices.
 ///

@@ -38,6 +38,21 @@ StepSizeOptions step_size_options(const TimeConfig& time) {
   return out;
 }
 
+FrictionOptions friction_options(const FrictionConfig& friction) {
+  FrictionOptions out;
+  out.law = friction.law;
+  out.mu = friction.mu;
+  out.mu_static = friction.mu_static;
+  out.combine = friction.combine;
+  out.lag_iterations = friction.lag_iterations;
+  out.eps_v = friction.eps_v;
+  out.eps_m = friction.eps_m;
+  out.kinetic_v = friction.kinetic_v;
+  out.hessian = friction.hessian.value_or(out.hessian);
+  out.refresh = friction.refresh.value_or(out.refresh);
+  return out;
+}
+
 }  // namespace
 
 std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
@@ -98,9 +113,7 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.contact.in_float = method.limit.in_float = values_in_float(config.precision);
   method.hessian_mode = config.contact.hessian_mode;
   method.contact_options = contact_options(config.contact);
-  method.friction = {config.friction.law,     config.friction.mu,
-                     config.friction.combine, config.friction.lag_iterations,
-                     config.friction.eps_v,   config.friction.hessian.value_or(FrictionHessian::adaptive)};
+  method.friction = friction_options(config.friction);
   method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);
   method.step_solver = step_solver_options(config);
   method.step_size = step_size_options(config.time);

@@ -64,9 +64,11 @@ void Recorder::on_retry(int step) {
 // the CPU.
 void Recorder::look_at_rows(StepSystem& system, const StepReport& report, const Positions& x) {
   if (!system.is_on_host() && !trace_ && !audit_ && !artifacts_) return;
-  const ContactState& contact = contact_state(system.on_host().diagnosis().terms());
+  const TermList& terms = system.on_host().diagnosis().terms();
+  const ContactState& contact = contact_state(terms);
   if (artifacts_ && config_.output.frames_every > 0) {
     last_.emplace(LastState{report.step, x, contact_fields(contact, system.view().scene().n_vertices())});
+    if (config_.output.friction_forces.value_or(false)) last_->fields.friction = friction_forces(terms, x);
     if (report.step % config_.output.frames_every == 0) write_last();
   }
   first_contacts_.note(contact, report.step, record_.summary.first_contact);
@@ -104,7 +106,9 @@ void Recorder::keep(Archive& archive) {
   if (audit_) archive(*audit_);
 }
 
-void Recorder::LastState::keep(Archive& archive) { archive(step, x, fields.gap_rel, fields.load); }
+void Recorder::LastState::keep(Archive& archive) {
+  archive(step, x, fields.gap_rel, fields.load, fields.friction);
+}
 
 void Recorder::finish() {
   write_last();

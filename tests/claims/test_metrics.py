@@ -18,7 +18,7 @@ def record() -> dict:
 
 WANTED = {"cond_max": 1e9, "cond_p95": 1e5, "cond_median": 10.0, "cond_bj_p95": 10**5.125, "cond_bj_max": 10**9.25, "cond_bj_median": 100.0, "cond_no_contact_p95": 10**5.25,
           "cond_no_contact_no_limit_p95": 10**5.375, "pcg_probe": 37.0, "pcg_solve": 43.0, "newton": 20.0, "factorizations": 23.0, "seconds": 29.0, "contact_seconds": 0.35,
-          "gap_min": 0.11, "gap_median": 0.13, "gap_end": 0.17, "load_end": 59.0, "slide_loss": 0.28125, "stretch": 0.04, "stretch_of_limit": 0.5, "climb_of_limit": None, "kappa_cycles": None, "bound_share": None, "stopped": 0.0,
+          "gap_min": 0.11, "gap_median": 0.13, "gap_end": 0.17, "load_end": 59.0, "slide_loss": 0.28125, "front_rate": None, "stretch": 0.04, "stretch_of_limit": 0.5, "climb_of_limit": None, "kappa_cycles": None, "bound_share": None, "stopped": 0.0,
           "unsettled": 0.0, "time_asked": 3.0, "residual_max": None, "short_of_time": 1.0, "without_residual": 1.0, "close_gap": 0.0, "failed_audit": 1.0, "not_valid": 0.0}
 
 
@@ -26,6 +26,26 @@ def test_every_metric_has_its_number():
     assert set(WANTED) == set(METRICS)
     found = {name: metric[3](record()) for name, metric in METRICS.items()}
     assert found == {name: None if value is None else pytest.approx(value) for name, value in WANTED.items()}
+
+
+def row_of_blocks(touches: dict[str, int], n: int = 5) -> dict:
+    out = record()
+    out["config"]["scene"] = {"bodies": [{"name": name} for name in ["starter", *(f"block{k}" for k in range(n))]]}
+    out["steps"] = [{"t_s": 0.25 * (k + 1)} for k in range(20)]
+    out["summary"]["first_contact"] = touches
+    return out
+
+
+def test_a_front_is_as_fast_as_neighbours_touch():
+    read = METRICS["front_rate"][3]
+    whole = {"block0|block1": 3, "block1|block2": 5, "block2|block3": 7, "block3|block4": 11, "block0|block2": 1, "block4|floor": 0}
+    assert read(row_of_blocks(whole)) == 3 / 2.0
+    stopped = {name: step for name, step in whole.items() if name != "block3|block4"}
+    assert read(row_of_blocks(stopped)) == 2 / 4.0  # until the end of the run, 5 s
+    assert read(row_of_blocks({"block0|block1": 3})) is None
+    failed = row_of_blocks(whole)
+    failed["status"]["outcome"] = "newton_stall"
+    assert read(failed) is None
 
 
 def test_a_bound_counts_where_contact_stops_an_iteration(monkeypatch):

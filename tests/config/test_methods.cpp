@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "experiments/config/config_family.hpp"
 #include "tests/config/config_text.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -95,6 +96,54 @@ TEST(Methods, APolicyOfAnotherNameTakesNothingFromTheirs) {
   EXPECT_EQ(set.formulation.stiffness_policy.parameters, beside.formulation.stiffness_policy.parameters);
   expect_repeats(set);
   expect_repeats(parsed(plain, {"/method=ando2024", "/formulation/stiffness_policy=" + fixed.dump()}));
+}
+
+TEST(Methods, FrictionIsThatOfThePublicationWhereACoefficientIsAboveZero) {
+  const json rubs = pure_with("ando2024", "/friction/mu", 0.3);
+  const RunConfig config = parsed(rubs);
+  EXPECT_EQ(config.friction.law, "capped");
+  EXPECT_EQ(config.friction.refresh, FrictionRefresh::per_iteration);
+  EXPECT_EQ(config.friction.hessian, FrictionHessian::secant);
+  EXPECT_EQ(config.friction.eps_m, 1e-5);
+  EXPECT_EQ(config.friction.combine, CombineRule::max);
+  EXPECT_EQ(config.friction.mu, 0.3);
+  EXPECT_EQ(method_use(config).title(), "ando2024");
+  EXPECT_EQ(config_id(parse_config(resolved_json(config), "resolved")), config_id(config));
+  EXPECT_EQ(overridden_in(rubs, {"/friction/eps_m=1e-4"}), std::vector<std::string>{"/friction/eps_m"});
+  EXPECT_EQ(parsed(rubs, {"/friction/law=smoothed_coulomb"}).friction.law, "smoothed_coulomb");
+
+  json form = hang_config();  // of a file that a method is laid over
+  form.erase("formulation");
+  form["friction"] = {{"mu", 0.2}, {"law", "smoothed_coulomb"}, {"combine", "mean"}};
+  const RunConfig over = parsed(form, {"/method=ando2024"});
+  EXPECT_EQ(over.friction.law, "capped");
+  EXPECT_EQ(over.friction.combine, CombineRule::max);
+  EXPECT_EQ(over.friction.mu, 0.2);
+  EXPECT_TRUE(method_use(over).overridden.empty());
+  for (const char* none :
+       {"/friction/mu=0", "/friction/combine=min"}) {  // without a coefficient it says nothing
+    const RunConfig plain = parsed(pure("ando2024"), {none});
+    EXPECT_EQ(plain.friction.law, "smoothed_coulomb");
+    EXPECT_FALSE(plain.friction.refresh);
+    EXPECT_TRUE(method_use(plain).overridden.empty());
+  }
+  expect_violation(pure_with("ipc2020", "/friction/mu", 0.3), "/friction/mu", "0.3",
+                   "0 with method ipc2020, whose file says nothing of friction");
+}
+
+// A family reads only the sections that changed.
+TEST(Methods, AFamilyHasTheFrictionOfEachOfItsConfigs) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "config.json").string();
+  std::ofstream(path) << pure("ando2024").dump();
+  ConfigFamily family(path);
+  for (const double mu : {0.3, 0.0, 0.2}) {
+    const std::vector<std::string> overrides = {"/friction/mu=" + json(mu).dump()};
+    const RunConfig& read = family.read(overrides);
+    EXPECT_EQ(config_id(read), config_id(load_config(path, overrides))) << mu;
+    EXPECT_EQ(family.identity().config_id, config_id(load_config(path, overrides))) << mu;
+    EXPECT_EQ(read.friction.law, mu > 0 ? "capped" : "smoothed_coulomb");
+  }
 }
 
 TEST(Methods, AnOverrideThatNamesOneLiesOverTheFileAndUnderTheOthers) {

@@ -9,18 +9,38 @@
 namespace bb::lagged_rows_test {
 namespace {
 
+/// Of laws with two coefficients the kinetic ones of bodies and obstacles are other parts of the static ones.
+template <class Law>
+Sides kinetic_sides(const Sides& sides) {
+  Sides out = sides;
+  if (!Law::two_coefficients) return out;
+  for (double& mu : out.of_body) mu *= 0.5;
+  for (double& mu : out.of_obstacle) mu *= 0.8;
+  return out;
+}
+template <class Law>
+Scene rubbing_scene(const Sides& sides) {
+  Scene scene = with_friction(full_scene(3), kinetic_sides<Law>(sides));
+  if (!Law::two_coefficients) return scene;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) scene.bodies[i].friction_static = sides.of_body[i];
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
+    scene.obstacles[i].friction_static = sides.of_obstacle[i];
+  return scene;
+}
+
 template <class Law>
 void expect_friction(const std::string& law_name, CombineRule rule, unsigned seed) {
   const Sides sides(full_scene(3), rule);
-  const Scene scene = with_friction(full_scene(3), sides);
+  const Scene scene = rubbing_scene<Law>(sides);
   const Positions x = shaken(scene), y = random_motion(x, 0.7 * eps_m, seed), given = motion_of_given(scene);
-  const HostLag host(scene, x, sides);
-  const LawWithEps<Law, double> law{eps_m};
+  const HostLag host(scene, x, sides), kinetic(scene, x, kinetic_sides<Law>(sides));
   int slides = 0, sticks = 0;
   double work = 0;
   const Sums expected =
       sums_of(host, scene, y - x, given, [&](const HostLag& lag, std::size_t r, const Vec3d& way) {
         const Vec3d slide = slide_of<double>(way, lag.normal(r));
+        const double part = lag.strength[r] > 0 ? kinetic.strength[r] / lag.strength[r] : 1;
+        const LawInTerm<Law, double> law{{eps_m, part, 10 * eps_m}};
         if (lag.strength[r] > 0) ++(slide.norm() < eps_m ? sticks : slides);
         work += friction_work(slide.norm(), lag.strength[r], law);
         return friction_of_slide<double>(slide, lag.normal(r), lag.strength[r], law);
@@ -45,6 +65,7 @@ TEST(LaggedRows, HaveTheFrictionOfTheContacts) {
     SCOPED_TRACE(static_cast<int>(rule));
     expect_friction<friction_laws::smoothed_coulomb>("smoothed_coulomb", rule, 8);
     expect_friction<friction_laws::capped>("capped", rule, 9);
+    expect_friction<friction_laws::static_kinetic>("static_kinetic", rule, 10);
   }
 }
 

@@ -128,6 +128,27 @@ void add_solves(std::vector<RunCase>& out) {
                  }});
 }
 
+/// Static and kinetic coefficients; loads of every iterate.
+void add_friction_forms(std::vector<RunCase>& out) {
+  out.push_back({"two coefficients", drawn_cloth(), 6,
+                 with([] { return rubbing("static_kinetic", 0.1); },
+                      [](Method& m) { m.friction.mu_static = 0.4, m.friction.kinetic_v = 0.1; }),
+                 slides});
+  const auto at_iterates = [](Method& m) {
+    m.friction = rubbing("capped").friction;
+    m.friction.refresh = FrictionRefresh::per_iteration;
+  };
+  out.push_back({"loads of every iterate", drawn_cloth(), 6, with(cubic, at_iterates), slides});
+  out.push_back({"as published", drawn_cloth(), 6,
+                 with([] { return with_step_solver("accumulated_toi", {}); },
+                      [=](Method& m) {
+                        at_iterates(m);
+                        m.friction.hessian = FrictionHessian::secant;
+                        m.friction.eps_m = 1e-4;
+                      }),
+                 slides});
+}
+
 void add_lagged(std::vector<RunCase>& out) {
   for (const std::string& law : friction_law_names())
     out.push_back({law, drawn_cloth(), 6, [=] { return rubbing(law); }, slides});
@@ -176,6 +197,7 @@ void add_lagged(std::vector<RunCase>& out) {
 TEST(ExecutorRun, EndsWhereTheHostEnds) {
   std::vector<RunCase> cases;
   add_policies(cases), add_bounds(cases), add_solves(cases), add_lagged(cases);
+  add_friction_forms(cases);
   for (const RunCase& one : cases) {
     SCOPED_TRACE(one.name);
     const RunEnd end = expect_same_run(one.scene, one.method, one.steps, one.allowed, one.change_there);

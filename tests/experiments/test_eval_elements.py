@@ -95,11 +95,13 @@ def test_energies(program):
 
 def test_friction(program):
     rng, queries = np.random.default_rng(6), []
-    for k, n in enumerate(5 * (2, 3, 4, 4)):
+    for k, n in enumerate(6 * (2, 3, 4, 4)):
         pair = ("point_point", "point_edge", "point_triangle", "edge_edge")[k % 4]
         lagged, start = rng.normal(size=(n, 3)), rng.normal(size=(n, 3))
         end = start + rng.normal(size=(n, 3)) * (0.02, 0.3)[k // 4 % 2]
-        queries.append({"kind": "friction", "law": ("smoothed_coulomb", "capped")[k // 8 % 2], "mu": 0.4, "load": 5.0, "eps": 0.1, "pair": pair,
+        law = ("smoothed_coulomb", "capped", "static_kinetic")[k // 8]
+        two = {"mu_static": 0.7, "reach": 0.15} if law == "static_kinetic" else {}
+        queries.append({"kind": "friction", "law": law, "mu": 0.4, "load": 5.0, "eps": 0.1, "pair": pair, **two,
                         "points_lagged": lagged.tolist(), "points_start": start.tolist(), "points_end": end.tolist()})
     closest = asked(program, [{"kind": "distance", "pair": q["pair"], "points": q["points_lagged"]} for q in queries])
     regimes = set()
@@ -112,12 +114,18 @@ def test_friction(program):
         def energy(x, slide_only=False, n=n, eps=eps, sums=sums, q=q):
             way = sub(sums(x), sums(q["points_start"]))
             y = norm([a - dot(way, n) * b for a, b in zip(way, n)])
-            cap = eps / 3 + y * y / eps - y**3 / (3 * eps**2) if q["law"] == "smoothed_coulomb" else (eps + y * y / eps) / 2
-            return y if slide_only else mpf(q["mu"]) * mpf(q["load"]) * (cap if y < eps else y)
+            cap = (eps + y * y / eps) / 2 if q["law"] == "capped" else eps / 3 + y * y / eps - y**3 / (3 * eps**2)
+            mu, most, reach = mpf(q["mu"]), mpf(q.get("mu_static", q["mu"])), mpf(q.get("reach", 1))
+            if slide_only or y < eps:
+                return y if slide_only else most * mpf(q["load"]) * cap
+            t = (min(y, reach) - eps) / (reach - eps)  # the integral of most - (most - mu) t^2 (3 - 2 t), then of mu
+            falling = most * (reach - eps) * t - (most - mu) * (reach - eps) * (t**3 - t**4 / 2)
+            return mpf(q["load"]) * (most * eps + falling + mu * max(y - reach, 0))
 
         x = [[mpf(c) for c in p] for p in q["points_end"]]
         slide = energy(x, slide_only=True)
-        regimes.add((q["law"], bool(slide < eps)))
+        falls = q["law"] == "static_kinetic" and eps < slide < mpf(q["reach"])
+        regimes.add((q["law"], bool(slide < eps), bool(falls)))
         assert off(answer["slide"], slide) < 1e-12
-        assert derivatives_agree(energy, x, answer, 40.0, rng)  # friction is convex
-    assert len(regimes) == 4
+        assert derivatives_agree(energy, x, answer, 40.0, rng) == (not falls)  # convex elsewhere
+    assert len(regimes) == 7

@@ -11,8 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-void add_floor(json& config) { config["scene"]["obstacles"] = {{{"name", "floor"}, {"kind", "plane"}}}; }
-
 /// A plate comes down with 1 m/s where nothing else acts.
 json impact(const Method& method, double dt) {
   json config = bare(method, dt, static_cast<int>(std::lround(0.02 / dt)));
@@ -38,33 +36,6 @@ std::string leaves_with_no_more(const Method&, const Track& run) {
 Feature impact_in_steps_of(const char* name, double dt) {
   return {name, "a plate that comes with 1 m/s leaves with 1 m/s at most", {"inertia", "contact"},
           true, [dt](const Method& method) { return impact(method, dt); }, leaves_with_no_more};
-}
-
-/// On the floor, near the gap at which a barrier carries it.
-json on_the_floor(const Method& method, double dt, int steps) {
-  json config = bare(method, dt, steps);
-  add_floor(config);
-  config["scene"]["bodies"] = {plate("plate", 7e-4)};
-  return config;
-}
-
-/// A plate that slides at 1 m/s; without inertia one that springs hold on a slope of 0.6.
-json sliding(const Method& method) {
-  json config = on_the_floor(method, 1e-3, method.still() ? 50 : 200);
-  config["scene"]["gravity_m_per_s2"] = {method.still() ? 0.6 * g : 0.0, 0, -g};
-  config["scene"]["bodies"][0]["velocity_m_per_s"] = {1, 0, 0};
-  config["friction"] = {{"mu", 0.3}, {"eps_v_m_per_s", 1e-3}};
-  ground(method, config, 25);
-  return config;
-}
-
-std::string slows_by_mu_g(const Method& method, const Track& run) {
-  if (method.still()) {
-    const double way = (run.end() - run.x[0]).row(0).mean();  // the load is that of the step before
-    return differs("way", way, (0.6 - 0.3 * 0.98) * g / 100, 0.02 * g / 100);
-  }
-  const double lost = 0.3 * g * method.weight() * run.t_end();
-  return differs("speed", run.velocity(run.t.size() - 1).x(), 1 - lost, 0.03 * lost);
 }
 
 json resting(const Method& method) {
@@ -100,29 +71,8 @@ std::string keeps_no_more_than_half(const Method& method, const Track& run) {
 }  // namespace
 
 std::vector<Feature> contact_features() {
-  const auto renewed = [](const Method& method) {
-    json config = sliding(method);
-    config["friction"]["lag_iterations"] = 3;
-    return config;
-  };
-  const auto renewed_answer = [](const Method& method, const Track& run) {
-    if (!method.still()) return slows_by_mu_g(method, run);
-    return differs("way", (run.end() - run.x[0]).row(0).mean(), 0.3 * g / 100, 0.02 * g / 100);
-  };
   return {impact_in_steps_of("contact", 1e-4),
           impact_in_steps_of("contact in short steps", 1e-5),
-          {"friction",
-           "a plate slows by mu g; on springs, without inertia, it slides by (tan - mu) m g/k",
-           {"contact", "friction"},
-           false,
-           sliding,
-           slows_by_mu_g},
-          {"friction renewed",
-           "the same, with the loads of the end of a step",
-           {"contact", "friction"},
-           false,
-           renewed,
-           renewed_answer},
           {"restitution 0 and a force that lifts",
            "a plate at rest leaves with the acceleration of the force",
            {"contact", "restitution"},

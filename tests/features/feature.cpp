@@ -56,6 +56,15 @@ json bare(const Method& method, double dt, int steps) {
   return out;
 }
 
+void add_floor(json& config) { config["scene"]["obstacles"] = {{{"name", "floor"}, {"kind", "plane"}}}; }
+
+json on_the_floor(const Method& method, double dt, int steps) {
+  json config = bare(method, dt, steps);
+  add_floor(config);
+  config["scene"]["bodies"] = {plate("plate", 7e-4)};
+  return config;
+}
+
 void ground(const Method& method, json& config, double stiffness) {
   if (!method.still()) return;
   for (json& body : config["scene"]["bodies"])
@@ -101,7 +110,8 @@ std::string differs(const char* name, double found, double expected, double tole
 
 std::vector<Feature> features() {
   std::vector<Feature> out;
-  for (const auto& group : {contact_features(), prescribed_features(), load_features(), part_features()})
+  for (const auto& group :
+       {contact_features(), friction_features(), prescribed_features(), load_features(), part_features()})
     out.insert(out.end(), group.begin(), group.end());
   return out;
 }

@@ -55,6 +55,7 @@ struct Feature {
 /// All of them.
 std::vector<Feature> features();
 std::vector<Feature> contact_features();
+std::vector<Feature> friction_features();
 std::vector<Feature> load_features();
 std::vector<Feature> prescribed_features();
 /// One for every part that bodies are made of, and what parts can have besides.
@@ -63,6 +64,9 @@ std::vector<Feature> part_features();
 /// A config without a feature: a plate of springs, 0.1 m x 0.1 m, 1 kg, nothing that acts on it.
 nlohmann::json bare(const Method& method, double dt, int steps);
 nlohmann::json plate(const std::string& name, double height, double velocity_z = 0);
+void add_floor(nlohmann::json& config);
+/// A plate on a floor, near the gap at which a barrier carries it.
+nlohmann::json on_the_floor(const Method& method, double dt, int steps);
 /// Where nothing holds a body by its inertia, springs of `stiffness` (N/m) pull each of its vertices to its start.
 void ground(const Method& method, nlohmann::json& config, double stiffness);
 

@@ -13,7 +13,10 @@ struct AtIterate : TermsOf {
   Positions x;
 
   AtIterate() : AtIterate(scene_with_everything()) {}
-  explicit AtIterate(const Scene& all) : TermsOf(all, all.x0, frame(all)), x(disturbed(scene, 0.004)) {
+  explicit AtIterate(const Scene& all) : AtIterate(all, [](TermOptions&) {}) {}
+  template <class Change>
+  AtIterate(const Scene& all, const Change& change)
+      : TermsOf(all, all.x0, frame(all), change), x(disturbed(scene, 0.004)) {
     for (const auto& term : terms) term->linearise(scene.x0, context());
     move_to(x);
   }
@@ -24,6 +27,7 @@ struct AtIterate : TermsOf {
       term->accept(clock);
       term->take_energies();
     }
+    for (const auto& term : terms) term->begin_iterate(x);
     for (const auto& term : terms) term->linearise(x, context(projection));
   }
   static StepFrame frame(const Scene& scene) {

@@ -124,6 +124,58 @@ TEST(Friction, KeepsItsLoadsForTheStep) {
   EXPECT_NEAR(end.friction_dissipation_J.value, expected, 0.02 * expected);  // nearly all of them slide far
 }
 
+/// lambda = mu load/max(eps, |u|) of every contact of x, and what its matrix has along dx, the same twice.
+struct PublishedForm {
+  Positions gradient;
+  double curvature = 0;
+  int sliding = 0, sticking = 0;
+};
+PublishedForm published(const AtIterate& at, const Positions& dx, double eps_m) {
+  ContactLoads now;
+  for (const auto& term : at.terms) term->add_loads(at.x, now);
+  PublishedForm out{Positions::Zero(3, at.scene.n_vertices())};
+  for (std::size_t r = 0; r < now.size(); ++r) {
+    Vec3d u = Vec3d::Zero(), along = Vec3d::Zero();
+    const Vec3d n = Vec3d::Map(&now.normal[3 * r]);
+    const auto each = [&](const auto& f) {
+      for (std::size_t k = 4 * r; k < 4 * r + 4 && now.stencil[k] >= 0; ++k) f(now.stencil[k], now.weight[k]);
+    };
+    each([&](int v, double w) {
+      u += w * (at.x.col(v) - at.scene.x0.col(v));
+      along += w * dx.col(v);
+    });
+    u -= n.dot(u) * n, along -= n.dot(along) * n;
+    const double lambda = mu * now.load[r] / std::max(eps_m, u.norm());
+    each([&](int v, double w) { out.gradient.col(v) += lambda * w * u; });
+    out.curvature += lambda * along.squaredNorm();
+    ++(u.norm() < eps_m ? out.sticking : out.sliding);
+  }
+  return out;
+}
+
+TEST(Friction, OfEveryIterateHasTheLoadsNormalsAndWeightsThatItHasThere) {
+  constexpr double eps_m = 6e-3;
+  const AtIterate at(test::scene_with_everything(), [&](TermOptions& options) {
+    options.friction.law = "capped";
+    options.friction.refresh = FrictionRefresh::per_iteration;
+    options.friction.hessian = FrictionHessian::secant;
+    options.friction.eps_m = eps_m;
+  });
+  const auto friction = std::find_if(at.terms.begin(), at.terms.end(),
+                                     [](const auto& term) { return term->name() == "friction"; });
+  const Positions dx = test::disturbed(at.scene, 0.01) - at.scene.x0;
+  const PublishedForm expected = published(at, dx, eps_m);
+  ASSERT_GT(expected.sliding, 10);
+  ASSERT_GT(expected.sticking, 3);
+  const Positions found = gradient_of(**friction, at.scene.n_vertices());
+  ASSERT_GT(found.norm(), 1e-3);
+  EXPECT_LT((found - expected.gradient).norm(), 1e-12 * found.norm());
+  EXPECT_NEAR(test::curvature_along(**friction, dx), expected.curvature, 1e-11 * expected.curvature);
+  AtStart start;  // of the start of the step: other loads, and fewer or more contacts
+  start.linearise();
+  EXPECT_NE(start.friction().size(), (*friction)->size());
+}
+
 TEST(Friction, CombinesTheCoefficientsOfTheTwoSides) {
   Scene scene = test::scene_with_everything();
   scene.bodies[0].friction = 0.2;

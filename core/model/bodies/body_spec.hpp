@@ -70,6 +70,7 @@ struct BodySpec {
   double d_hat = 0;                        // m, > 0
   double offset = 0;                       // m, >= 0
   std::optional<double> friction;          // coefficient, >= 0; absent: that of the run
+  std::optional<double> friction_static;   // >= friction; absent: friction, else that of the run
   std::optional<double> restitution;       // in [0, 1]; absent: 1
   double pressure = 0;                     // Pa, from within; other than 0 only with a closed surface
   std::vector<PressureKey> pressure_keys;  // instead, over time

@@ -92,8 +92,8 @@ void SceneBuilder::require_room(const BodySpec& spec) const {
 void SceneBuilder::append_vertices(const BodySpec& spec, const Positions& start) {
   const auto n = static_cast<std::size_t>(spec.mesh.n_vertices());
   const int body = static_cast<int>(scene_.bodies.size());
-  scene_.bodies.push_back(
-      {spec.name, scene_.n_vertices(), static_cast<int>(n), spec.friction, spec.restitution});
+  scene_.bodies.push_back({spec.name, scene_.n_vertices(), static_cast<int>(n), spec.friction,
+                           spec.restitution, spec.friction_static});
   append_columns(scene_.rest, spec.mesh.vertices);
   append_columns(scene_.x0, start);
   const Vec3d velocity = spec.kind == BodyKind::deformable ? spec.velocity : Vec3d(Vec3d::Zero());
@@ -246,7 +246,8 @@ void SceneBuilder::append_obstacle_vertices() {
     if (obstacle.motion.is_static()) continue;
     obstacle.vertex = scene_.n_vertices();
     scene_.body.push_back(static_cast<int>(scene_.bodies.size()));
-    scene_.bodies.push_back({obstacle.name, obstacle.vertex, 1, obstacle.friction, obstacle.restitution});
+    scene_.bodies.push_back({obstacle.name, obstacle.vertex, 1, obstacle.friction, obstacle.restitution,
+                             obstacle.friction_static});
     append_columns(scene_.rest, obstacle.point);
     append_columns(scene_.x0, obstacle.point);
     append_columns(scene_.v0, Vec3d(Vec3d::Zero()));

@@ -51,6 +51,10 @@ void check_material(const Complaints& complain, const BodySpec& spec, bool plana
   complain.number("/limit/width", limit->width, limit->width > 0, "a number > 0");
 }
 
+void check_friction(const Complaints& report, const char* key, const std::optional<double>& mu) {
+  if (mu) report.number(key, *mu, *mu >= 0, "a number >= 0");
+}
+
 void check_restitution(const Complaints& report, const std::optional<double>& e) {
   if (e) report.number("/restitution", *e, *e >= 0 && *e <= 1, "a number in [0, 1]");
 }
@@ -231,7 +235,8 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
   check_mesh(report, spec, planar);
   report.number("/d_hat", spec.d_hat, spec.d_hat > 0, "a number > 0");
   report.number("/offset", spec.offset, spec.offset >= 0, "a number >= 0");
-  if (spec.friction) report.number("/friction", *spec.friction, *spec.friction >= 0, "a number >= 0");
+  check_friction(report, "/friction", spec.friction);
+  check_friction(report, "/friction_static", spec.friction_static);
   check_restitution(report, spec.restitution);
   if (!spec.velocity.allFinite()) report("/velocity", "a non-finite value", "finite numbers");
   if (planar && spec.velocity[2] != 0) report("/velocity", "a z component", "0: the scene is planar");
@@ -261,9 +266,8 @@ void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& wh
     report.number("/radius", obstacle.radius, obstacle.radius > 0 && obstacle.radius <= max_coordinate,
                   "a number > 0 and <= 1e15 m");
   }
-  if (obstacle.friction) {
-    report.number("/friction", *obstacle.friction, *obstacle.friction >= 0, "a number >= 0");
-  }
+  check_friction(report, "/friction", obstacle.friction);
+  check_friction(report, "/friction_static", obstacle.friction_static);
   check_restitution(report, obstacle.restitution);
   check_obstacle_motion(report, obstacle, planar);
   if (!planar) return;

@@ -96,6 +96,8 @@ struct Body {
   int first_vertex = 0, n_vertices = 0;
   std::optional<double> friction = std::nullopt;     // coefficient; absent: that of the run
   std::optional<double> restitution = std::nullopt;  // share of the speed of meeting that is kept; absent: 1
+  std::optional<double> friction_static =
+      std::nullopt;  // coefficient while it sticks, >= friction; absent: as that
 };
 
 /// Elements with a hard limit 1 + onset + width on their stretches.
@@ -119,10 +121,11 @@ struct Obstacle {
   Vec3d axis = Vec3d::UnitZ();  // plane: unit normal towards the allowed side; cylinder: unit axis
   double radius = 0;            // m
   bool inside = false;          // the allowed side is the inside (sphere, cylinder)
-  std::optional<double> friction = std::nullopt;     // coefficient; absent: that of the run
-  std::optional<double> restitution = std::nullopt;  // as that of a body
-  std::string collision_group = {};                  // of Collisions; empty: none
-  PrescribedMotion motion = {};                      // of its point; turns neither normal nor axis
+  std::optional<double> friction = std::nullopt;         // coefficient; absent: that of the run
+  std::optional<double> restitution = std::nullopt;      // as that of a body
+  std::string collision_group = {};                      // of Collisions; empty: none
+  PrescribedMotion motion = {};                          // of its point; turns neither normal nor axis
+  std::optional<double> friction_static = std::nullopt;  // as that of a body
   int vertex = -1;  // that stands for the point of an obstacle that moves, one of Scene::pins
 };
 
