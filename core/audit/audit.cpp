@@ -59,7 +59,7 @@ Audit::Audit(AuditMesh mesh, double promised_overlap)
   require_obstacles(mesh_);
   primitives_ = obstacle_primitives(mesh_);
   ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()),
-                      static_cast<long>(mesh_.obstacles.size()), primitives_.needed(mesh_.obstacles)};
+                      static_cast<long>(mesh_.obstacles.size()), primitives_.needed(mesh_)};
   if (!(promised_overlap > 0) || mesh_.obstacles.empty()) return;
   ends_.emplace(mesh_, promised_overlap);
   pairs_ = mesh_;

@@ -31,6 +31,7 @@ struct AuditLedger {
       0;  // of ends of steps: primitives beyond an obstacle by no more than the step solver promises
   double deepest_overlap_m = 0;  // of these
   int first_overlap_step = -1;
+  long corners_cut = 0;          // ways over a step that cut a corner round a sphere or a cylinder
   long scene_faults = 0;         // prescribed primitives that cross or cannot be certified; in no other count
   long non_finite = 0;           // states and motions that could not be judged
   long unjudged = 0;             // states of the run that no judged motion led to
@@ -91,6 +92,7 @@ struct AuditLedger {
     obstacle_violations += e.obstacles.violations, obstacle_by_vertex += e.obstacles.by_vertex;
     unproven += e.obstacles.unproven, scene_faults += e.obstacles.scene_faults;
     overlaps += e.overlaps;
+    corners_cut += e.corners_cut;
     deepest_overlap_m = std::max(deepest_overlap_m, e.deepest_m);
     if (e.overlaps > 0 && first_overlap_step < 0) first_overlap_step = step;
     note(step, e.obstacles.first_bad, e.obstacles.first_fault);

@@ -35,8 +35,9 @@ std::vector<int> rigid_bodies(const std::vector<RigidMotion>& motions, double dt
 
 }  // namespace
 
-audit::AuditMesh make_audit_mesh(const Scene& scene, double dt) {
+audit::AuditMesh make_audit_mesh(const Scene& scene, double dt, bool only_points) {
   audit::AuditMesh mesh;
+  mesh.only_points = only_points;
   mesh.planar = scene.planar;
   audit::set_edges(scene.surface_triangles, scene.surface_edges, mesh);
   audit::set_points(scene.surface_vertices, scene.n_vertices(), mesh);

@@ -26,6 +26,11 @@ std::string penetration(const Scene& scene, const audit::AuditMesh& mesh, const 
         "; the contact model vertex_vertex has no edge pairs: it allows edges to cross each other and to "
         "enter "
         "obstacles, which is no failure of the solver";
+  } else if (mesh.only_points && ledger.crossings + ledger.violations > 0) {
+    text +=
+        "; the contact model points has no pairs of surfaces: it allows them to cross each other, which is "
+        "no "
+        "failure of the solver";
   } else if (scene.planar && ledger.obstacle_violations > 0) {
     text +=
         "; in the plane contact is of boundaries: where a membrane turns inside out its inner vertices come "
@@ -79,7 +84,7 @@ std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const aud
 }
 
 Verdict judge_audit(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {
-  if (ledger.ok()) return ledger.overlaps > 0 ? Verdict{Outcome::overlap, overlap_text(ledger)} : Verdict{};
+  if (ledger.ok()) return ledger.overlaps > 0 ? Verdict{Outcome::ok, overlap_text(ledger)} : Verdict{};
   if (ledger.scene_faults > 0 && ledger.first_fault) {
     std::string text = fmt::format("{}, and both are prescribed: {}",
                                    describe(scene, mesh, *ledger.first_fault), when(ledger.first_fault_step));

@@ -18,6 +18,10 @@ namespace {
 
 constexpr const char* part = "start check";
 
+audit::AuditMesh audit_mesh_of(const RunConfig& config, const Scene& scene) {
+  return make_audit_mesh(scene, config.time.dt, config.contact.model == ContactModel::points);
+}
+
 // The primitives without a free vertex.
 audit::AuditMesh prescribed_part(const audit::AuditMesh& mesh) {
   audit::AuditMesh out = mesh;
@@ -57,7 +61,7 @@ bool prescribed_may_cross(const Scene& scene) {
 std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene& scene,
                                            const RunLimits& limits) {
   if (!prescribed_may_cross(scene)) return std::nullopt;
-  const audit::AuditMesh mesh = prescribed_part(make_audit_mesh(scene, config.time.dt));
+  const audit::AuditMesh mesh = prescribed_part(audit_mesh_of(config, scene));
   if (mesh.points.empty()) return std::nullopt;  // no more than obstacles are given
   audit::Audit judge(mesh);
   const double tolerance = audit_tolerance(scene, config.contact.ccd_park);
@@ -109,7 +113,7 @@ std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& sce
   limits.look_up(part, "before the start was looked at");
   if (auto found = too_long(config, scene)) return found;
   limits.look_up(part, "before the surface was collected");
-  const audit::AuditMesh mesh = make_audit_mesh(scene, config.time.dt);
+  const audit::AuditMesh mesh = audit_mesh_of(config, scene);
   limits.look_up(part, "before crossings were looked for");
   audit::Audit judge(mesh);
   judge.check_state(scene.x0, -1);

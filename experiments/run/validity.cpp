@@ -59,7 +59,7 @@ void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const s
   if (const BuildValidity& build = record.validity.build; build.checks > 0) {
     add_check(record, "build_valid", build.valid ? 0.0 : 1.0, 0.0, build.valid);
   }
-  const bool ok = record.status.outcome == Outcome::ok || record.status.outcome == Outcome::overlap;
+  const bool ok = record.status.outcome == Outcome::ok;
   add_check(record, "outcome_ok", ok ? 0.0 : 1.0, 0.0, ok);
   record.validity.valid = std::all_of(record.validity.checks.begin(), record.validity.checks.end(),
                                       [](const Check& check) { return check.pass; });
