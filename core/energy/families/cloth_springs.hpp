@@ -63,8 +63,8 @@ struct FlowClothSprings {
     Vec3d p[2];
     elements.points(x, e, p);
     const double length = spring_length<double>(p, elements.law_of<double>(e).softening);
-    ratio[e] = crept_ratio<double>(length, elements.rest_length[e], lengths.shrink(e) * lengths.given[e],
-                                   yield[e], kept_after(creep[e], dt), ratio[e]);
+    const double given = lengths.shrink(e) * lengths.given[e], kept = kept_after(creep[e], dt);
+    ratio[e] = crept_ratio<double>(length, elements.rest_length[e], given, yield[e], kept, ratio[e]);
   }
 };
 
