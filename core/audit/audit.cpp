@@ -56,6 +56,7 @@ Audit::Audit(AuditMesh mesh, double promised_overlap)
     : mesh_(std::move(mesh)), vertices_(colliding_vertices(mesh_)) {
   require_indices(mesh_, vertices_);
   ledger_.self_test_passed = predicates_self_test();
+  ledger_.only_points = mesh_.only_points;
   require_obstacles(mesh_);
   primitives_ = obstacle_primitives(mesh_);
   ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()),

@@ -46,9 +46,8 @@ struct AuditMesh {
                             // body, -1: any other. Empty: fixed vertices are such a body
   std::vector<double> thickness;  // [n_vertices] or empty: half thickness, m; only surface_gap reads it
   std::vector<AuditObstacle> obstacles;
-  bool only_points =
-      false;  // obstacles are judged against vertices alone; surface_gap measures all of the surface
-  bool planar = false;  // the scene lives in x and y; z is ignored
+  bool only_points = false;  // vertices at obstacles alone are judged; the rest is counted
+  bool planar = false;       // the scene lives in x and y; z is ignored
 
   /// The rigid body that a vertex moves with, -1: none.
   int rigid_body(int v) const {

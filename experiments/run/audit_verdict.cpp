@@ -26,11 +26,6 @@ std::string penetration(const Scene& scene, const audit::AuditMesh& mesh, const 
         "; the contact model vertex_vertex has no edge pairs: it allows edges to cross each other and to "
         "enter "
         "obstacles, which is no failure of the solver";
-  } else if (mesh.only_points && ledger.crossings + ledger.violations > 0) {
-    text +=
-        "; the contact model points has no pairs of surfaces: it allows them to cross each other, which is "
-        "no "
-        "failure of the solver";
   } else if (scene.planar && ledger.obstacle_violations > 0) {
     text +=
         "; in the plane contact is of boundaries: where a membrane turns inside out its inner vertices come "

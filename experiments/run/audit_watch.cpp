@@ -20,11 +20,11 @@ static void keep(Archive& archive, PairName& name) {
 static void keep(Archive& archive, AuditLedger& ledger) {
   archive(ledger.states, ledger.motions, ledger.state_pairs, ledger.motion_pairs, ledger.pair_queries,
           ledger.obstacle_judged.vertices, ledger.obstacle_judged.edges, ledger.obstacle_judged.triangles,
-          ledger.crossings, ledger.touches, ledger.violations, ledger.unproven, ledger.inverted,
-          ledger.obstacle_violations, ledger.overlaps, ledger.deepest_overlap_m, ledger.first_overlap_step,
-          ledger.corners_cut, ledger.scene_faults, ledger.non_finite, ledger.unjudged,
-          ledger.self_test_passed, ledger.first_bad_step, ledger.first_fault_step, ledger.first_bad,
-          ledger.first_fault);
+          ledger.crossings, ledger.touches, ledger.violations, ledger.unproven, ledger.obstacle_unproven,
+          ledger.inverted, ledger.obstacle_violations, ledger.overlaps, ledger.deepest_overlap_m,
+          ledger.first_overlap_step, ledger.corners_cut, ledger.scene_faults, ledger.non_finite,
+          ledger.unjudged, ledger.self_test_passed, ledger.first_bad_step, ledger.first_fault_step,
+          ledger.first_bad, ledger.first_fault);
 }
 
 }  // namespace audit
@@ -133,13 +133,16 @@ void AuditWatch::fill_record() {
 }
 
 Verdict AuditWatch::verdict() const {
-  Verdict out = judge_audit(scene_, mesh_, audit_.ledger());
+  const audit::AuditLedger& ledger = audit_.ledger();
+  Verdict out = judge_audit(scene_, mesh_, ledger);
   if (!mesh_.only_points || out.outcome != Outcome::ok) return out;
   const Number& gap = record_.surface_gap_obstacles_m;
-  out.detail = fmt::format(
-      "{}{}audit: points only: vertices were judged at obstacles; the surface between them is at most {:.3g} "
-      "m deep in one",
-      out.detail, out.detail.empty() ? "" : "; ", gap.finite() ? std::max(0.0, -gap.value) : 0.0);
+  out.detail += fmt::format(
+      "{}audit: points only: vertices were judged at obstacles; the surface between them is at most {:.3g} m "
+      "deep in one, and surfaces pass through each other with {} crossings in states and {} passages in "
+      "motions, which nothing keeps them from",
+      out.detail.empty() ? "" : "; ", gap.finite() ? std::max(0.0, -gap.value) : 0.0, ledger.crossings,
+      ledger.violations);
   return out;
 }
 

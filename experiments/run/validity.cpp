@@ -39,8 +39,9 @@ std::optional<int> saddle_ends(const CountMap& proofs) {
 void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const std::string& hash_time,
                    const std::string& hash_seen, RunRecord& record) {
   if (ledger) {
-    const auto found = static_cast<double>(ledger->crossings + ledger->violations + ledger->unproven +
-                                           ledger->obstacle_violations + ledger->scene_faults +
+    const long among = ledger->only_points ? 0 : ledger->crossings + ledger->violations;
+    const long open = ledger->only_points ? ledger->obstacle_unproven : ledger->unproven;
+    const auto found = static_cast<double>(among + open + ledger->obstacle_violations + ledger->scene_faults +
                                            ledger->non_finite + ledger->unjudged);
     add_check(record, "audit_clean", found, 0.0, ledger->clean());
     add_check(record, "audit_judged", static_cast<double>(ledger->judged()), 1.0, ledger->judged() > 0);
