@@ -150,3 +150,19 @@ def test_the_two_sizes_are_the_example_and_a_scene_for_barriers():
     assert damping["near_obstacles_factor_per_s"] ** dt == pytest.approx(0.7, rel=1e-15)
     material = entry.config(FULL)["scene"]["bodies"][0]["material"]
     assert material["density_kg_per_m2"] * 1.4**2 / 15**2 == pytest.approx(0.01, rel=1e-15)
+
+
+def test_the_page_has_the_numbers_of_jaxls():
+    from analysis.places import ROOT
+
+    runs = json.loads((ROOT / "results" / "jaxls_drape.json").read_text())["runs"]
+    rows = {line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]]
+            for line in (ROOT / "docs" / "baselines.md").read_text().split("## The cloth of jaxls")[1].splitlines() if line.startswith("|")}  # fmt: skip
+    assert len(runs) == 11
+    for steps in (31, 41, 150):
+        highest = [run["after_steps"][str(steps)]["highest_m"] for run in runs]
+        cells = rows[f"highest point after {steps} steps, m"]
+        assert cells[1] == f"{highest[0]}" and cells[2] == f"{min(highest)} to {max(highest)}"
+    assert min(highest) < 0.176 < max(highest), "the page of jaxls is within what it does itself"
+    deepest = [run["deepest_m"] for run in runs]
+    assert rows["deepest point of all step ends, m"][2] == f"{min(deepest):.1e} to {max(deepest):.1e}"
