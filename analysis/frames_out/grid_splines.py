@@ -108,7 +108,6 @@ class GridSplines:
             triangles.append(first + corners)
             sources.append(source)
             first += len(made)
-        number[own:] += self.added
         source = np.concatenate(sources)
         return Frame(
             np.concatenate([*points, frame.vertices[own:]]),
