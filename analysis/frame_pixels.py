@@ -10,6 +10,7 @@ from matplotlib.colors import Normalize
 
 from .coloring import colors_of_corners, palette
 from .frames import Frame, frame_of, frame_paths, points_of_bodies, read_scene, scene_at, without_bodies
+from .frames_out.grid_splines import GridSplines
 from .frames_out.obstacle_mesh import obstacle_mesh
 from .frames_out.sequence import finer_frame
 from .picture import Surfaces, camera_of, picture
@@ -28,6 +29,7 @@ class Look:
     subdivide: int = 0  # how often triangles are cut, for a surface that is curved between the vertices
     bare: bool = False  # the picture alone, without title and legend
     hidden: tuple[str, ...] = ()  # bodies that are not drawn
+    bicubic: tuple[int, int] | None = None  # points along columns and rows of grids; None: as they are
 
 
 def _assemble(
@@ -110,7 +112,9 @@ def drawn(
     camera = camera_of(focus, scene["planar"], look.view, look.size)
     reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
     top = None if shared is None else shared.top
-    surfaces, scale = _assemble(frame, scene, look.color, reach, radii, look.subdivide, top)
+    surfaces, scale = _assemble(
+        frame, scene, look.color, reach, radii, look.subdivide or look.bicubic is not None, top
+    )
     return picture(surfaces, camera, look.size, scene["planar"], camera.target, reach), scale
 
 
@@ -121,9 +125,12 @@ def drawn_of_run(
     whole = frame_of(record, run, step)
     scene = scene_at(read_scene(record, run), whole)
     frame = whole
-    if look.subdivide:
+    if look.subdivide or look.bicubic:
         start = frame_of(record, run, min(frame_paths(record, run)))
-        frame = finer_frame(start, frame, len(scene["bodies"]), look.subdivide)
+        if look.bicubic:
+            frame = GridSplines(record, scene, start, look.bicubic, look.hidden).finer(frame)
+        else:
+            frame = finer_frame(start, frame, len(scene["bodies"]), look.subdivide)
         if shared is None:
             shared = Shared(focus_of(whole, scene, look), None)
     frame = without_bodies(frame, scene, look.hidden)

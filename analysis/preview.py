@@ -34,8 +34,10 @@ def preview(config: Path, out: Path | None, look: Look, overrides: list[str]) ->
     """Writes a PNG and its caption; returns the PNG. A start in which something crosses is drawn, and that is
     said. Errors: UserError.
     """
-    if look.color != "body" or look.subdivide:
-        raise UserError("--color, --subdivide: are of runs; a config is drawn with --color body, as it is")
+    if look.color != "body" or look.subdivide or look.bicubic:
+        raise UserError(
+            "--color, --subdivide, --bicubic: are of runs; a config is drawn with --color body, as it is"
+        )
     path = picture_file(out or Path(), f"{config.stem}_start.png")
     with tempfile.TemporaryDirectory() as scratch:
         done = _start(config, overrides, Path(scratch))

@@ -11,7 +11,7 @@ from .animation import animate
 from .coloring import COLORINGS
 from .errors import UserError, tells
 from .frame_pixels import Look
-from .front.arguments import color_argument, finite_number, parser_of, set_argument
+from .front.arguments import bicubic_argument, color_argument, finite_number, parser_of, set_argument
 from .picture_file import MEANS
 from .preview import preview
 from .still_picture import render
@@ -76,6 +76,7 @@ def look_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"cut every triangle into 4, N times (1 to {MOST_TIMES}), for a surface that is curved between"
         " its vertices and smooth at rods; gaps are judged without",
     )
+    bicubic_argument(parser)
     parser.add_argument("--bare", action="store_true", help="the picture alone, without title and legend")
     parser.add_argument(
         "--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn, such as a container"
@@ -89,8 +90,16 @@ def _is_film(out: Path | None) -> bool:
 def written(given: argparse.Namespace) -> Path:
     """What was asked for. Errors: UserError, RecordError."""
     look = Look(
-        given.color, tuple(given.view), tuple(given.size), given.subdivide, given.bare, tuple(given.hide)
+        given.color,
+        tuple(given.view),
+        tuple(given.size),
+        given.subdivide,
+        given.bare,
+        tuple(given.hide),
+        given.bicubic and tuple(given.bicubic),
     )
+    if look.bicubic and look.subdivide:
+        raise UserError("--bicubic: found beside --subdivide; allowed: one of the two")
     is_config = given.run.is_file() and given.run.name != "run.json"
     if given.fps is not None and not (_is_film(given.out) and 0 < given.fps <= 240):
         raise UserError(

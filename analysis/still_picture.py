@@ -99,11 +99,13 @@ def shown(look: Look) -> str:
     colored = (
         "bodies in one colour each" if look.color == "body" else f"colour: {COLORINGS[look.color].label}"
     )
-    surface = (
-        f"triangles cut {look.subdivide} times, curved between the vertices of the simulation"
-        if look.subdivide
-        else "sides of triangles as thin lines"
-    )
+    surface = "sides of triangles as thin lines"
+    if look.subdivide:
+        surface = f"triangles cut {look.subdivide} times, curved between the vertices of the simulation"
+    if look.bicubic:
+        surface = "grids with {} x {} points on cubic splines through the vertices of the simulation".format(
+            *look.bicubic
+        )
     hidden = f"; not drawn: {', '.join(look.hidden)}" if look.hidden else ""
     return f"Shown: {colored}; analytic obstacles grey, at their true size; {surface}{hidden}."
 

@@ -41,7 +41,6 @@ LETTERS = {
     "not_pd": "D",
     "timeout": "T",
     "oom": "M",
-    "overlap": "E",
 }
 FAILED = "#bdbdbd"
 SHOWN = (

@@ -89,6 +89,18 @@ def color_argument(parser: argparse.ArgumentParser, choices: Iterable[str], defa
     )
 
 
+def bicubic_argument(parser: argparse.ArgumentParser) -> None:
+    """--bicubic, of pictures in motion or still. None where it is not given."""
+    parser.add_argument(
+        "--bicubic",
+        type=int,
+        nargs=2,
+        metavar=("COLUMNS", "ROWS"),
+        help="bodies that are grids (mesh generator grid) with so many points, on cubic splines through their"
+        " vertices",
+    )
+
+
 def finite_number(text: str) -> float:
     """The type of an argument that is a number: neither nan nor inf, which float() takes."""
     try:

@@ -31,7 +31,7 @@ class Checked:
 def _outcome(run: Run) -> Checked:
     status, checks = run.section("status"), run.section("validity").get("checks") or []
     failed = [c.get("name", "?") for c in checks if not c.get("pass")]
-    bad = status.get("outcome") not in ("ok", "overlap")
+    bad = status.get("outcome") != "ok"
     note = f"{status.get('outcome')}: {status.get('detail', '')}" if bad else ", ".join(failed)
     return Checked(
         len(checks) + ("outcome" in status), len(failed) + bad + (status.get("valid", True) is not True), note

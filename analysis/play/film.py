@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..frames import Frame, frame_of, frame_paths, frames_of, read_scene
+from ..frames_out.grid_splines import GridSplines
 from ..rasterizer import sharp_corners
 from ..record_file import read_record
 
@@ -101,16 +102,23 @@ class Source:
     record: dict
     steps: list[int]
     frame_bytes: int
+    splines: GridSplines | None = None  # makes its frames finer
 
 
-def opened(run: str | Path) -> Source:
-    """Errors: UserError, RecordError: no run, no frames, a first frame that cannot be read."""
+def opened(run: str | Path, bicubic: tuple[int, int] | None = None) -> Source:
+    """bicubic: points of bodies that are grids, along columns and rows. Errors: UserError, RecordError: no
+    run, no frames, a first frame that cannot be read, a body that is no grid.
+    """
     run = Path(run).parent if Path(run).name == "run.json" else Path(run)
     if not (run / "run.json").is_file():
         raise UserError(f"{run}: no run.json in this folder; allowed: the folder of a run")
     record = read_record(run / "run.json")
     steps = list(frame_paths(record, run))
-    return Source(run, record, steps, bytes_of_a_frame(frame_of(record, run, steps[0])))
+    start, splines = frame_of(record, run, steps[0]), None
+    if bicubic:
+        splines = GridSplines(record, read_scene(record, run), start, bicubic)
+        start = splines.finer(start)
+    return Source(run, record, steps, bytes_of_a_frame(start), splines)
 
 
 def filmed(source: Source, every: int = 1) -> Film:
@@ -120,9 +128,11 @@ def filmed(source: Source, every: int = 1) -> Film:
     run, record = source.run, source.record
     steps, scene = kept(source.steps, every), _checked_scene(record, run)
     paths, frames = frame_paths(record, run), []
+    if source.splines:
+        scene = source.splines.scene(scene)
     for step, frame in zip(steps, frames_of(record, run, steps)):
-        frames.append(frame)
-        check_same_bodies(frame, frames[0], paths[step])
+        frames.append(source.splines.finer(frame) if source.splines else frame)
+        check_same_bodies(frames[-1], frames[0], paths[step])
     n, m = len(frames[0].vertices), len(frames[0].triangles)
     return Film(
         run=str(run),

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..front.arguments import color_argument, parser_of
+from ..front.arguments import bicubic_argument, color_argument, parser_of
 from ..run_rows import case_name, own_name
 from ..whole_file import write_whole
 from .film import Film, Source, filmed, kept, opened
@@ -88,10 +88,15 @@ def default_out(runs: list[Path]) -> Path:
 
 
 def play(
-    runs: list[Path], out: Path, colour: str, every: int | None = None, limit_mb: float = LIMIT_MB
+    runs: list[Path],
+    out: Path,
+    colour: str,
+    every: int | None = None,
+    limit_mb: float = LIMIT_MB,
+    bicubic: tuple[int, int] | None = None,
 ) -> list[str]:
     """Writes the page; returns what is to be said about it. Errors: UserError, RecordError."""
-    sources = [opened(run) for run in runs]
+    sources = [opened(run, bicubic) for run in runs]
     every, cut = chosen_every(sources, every, limit_mb)
     films = [filmed(source, every) for source in sources]
     notes = differences(films) + ([cut] if cut else [])
@@ -142,6 +147,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         metavar="MB",
         help=f"most that the file may take where --every is not given (default: {LIMIT_MB})",
     )
+    bicubic_argument(parser)
     args = parser.parse_args(arguments)
     if len(args.runs) > 2:
         raise UserError(f"found {len(args.runs)} runs; allowed: one, or two side by side")
@@ -152,5 +158,5 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 def main(arguments: list[str]) -> int:
     args = parse(arguments)
     out = args.out or default_out(args.runs)
-    print("\n".join(play(args.runs, out, args.color, args.every, args.limit_mb)))
+    print("\n".join(play(args.runs, out, args.color, args.every, args.limit_mb, args.bicubic)))
     return 0

@@ -19,7 +19,6 @@ OUTCOMES = {
     "kernel_failed": "a kernel of the graphics card failed; the steps before count",
     "timeout": "the time limit that was asked for was reached between two steps",
     "unproven": "all steps were made, but the audit could not certify every motion",
-    "overlap": "all steps were made; surfaces are in obstacles by no more than the step solver promises",
     "ok": "all steps were made and the audit, where it was asked for, is clean",
 }
 

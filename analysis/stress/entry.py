@@ -24,7 +24,7 @@ ONE = "-"  # the case of a test without axes
 # program died without a record.
 BESIDE = ("not_valid", "refused", "crash")
 OUTCOMES = tuple(fields.schema("run")["$defs"]["Status"]["properties"]["outcome"]["enum"]) + BESIDE
-NEVER_NAMED = ("penetration", "unproven", "oom", "timeout", "crash", "not_valid", "refused", "overlap", "ok")
+NEVER_NAMED = ("penetration", "unproven", "oom", "timeout", "crash", "not_valid", "refused", "ok")
 CATALOGUE = "barrierbench.catalogue/1"
 NAMED = "named"  # in an expectation: any failure but these
 

@@ -56,10 +56,11 @@ Audit::Audit(AuditMesh mesh, double promised_overlap)
     : mesh_(std::move(mesh)), vertices_(colliding_vertices(mesh_)) {
   require_indices(mesh_, vertices_);
   ledger_.self_test_passed = predicates_self_test();
+  ledger_.only_points = mesh_.only_points;
   require_obstacles(mesh_);
   primitives_ = obstacle_primitives(mesh_);
   ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()),
-                      static_cast<long>(mesh_.obstacles.size()), primitives_.needed(mesh_.obstacles)};
+                      static_cast<long>(mesh_.obstacles.size()), primitives_.needed(mesh_)};
   if (!(promised_overlap > 0) || mesh_.obstacles.empty()) return;
   ends_.emplace(mesh_, promised_overlap);
   pairs_ = mesh_;

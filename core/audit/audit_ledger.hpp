@@ -31,9 +31,12 @@ struct AuditLedger {
       0;  // of ends of steps: primitives beyond an obstacle by no more than the step solver promises
   double deepest_overlap_m = 0;  // of these
   int first_overlap_step = -1;
+  long corners_cut = 0;          // ways over a step that cut a corner round a sphere or a cylinder
   long scene_faults = 0;         // prescribed primitives that cross or cannot be certified; in no other count
   long non_finite = 0;           // states and motions that could not be judged
   long unjudged = 0;             // states of the run that no judged motion led to
+  long obstacle_unproven = 0;    // those of unproven at obstacles
+  bool only_points = false;      // what surfaces do to each other is counted and decides nothing
   bool self_test_passed = true;  // of the exact predicates on this machine
   int first_bad_step = -1;       // first step at which clean() became false
   int first_fault_step = -1;
@@ -53,13 +56,13 @@ struct AuditLedger {
     return all ? pair_queries + done.total() : 0;
   }
 
-  /// What the solver moves penetrated something.
-  bool penetrated() const { return crossings + violations + obstacle_violations > 0; }
+  /// What the solver moves penetrated something that it has to keep out of.
+  bool penetrated() const { return obstacle_violations > 0 || (!only_points && crossings + violations > 0); }
 
   /// Nothing bad was found. Says nothing of how much was judged.
   bool clean() const {
-    return !penetrated() && unproven == 0 && scene_faults == 0 && non_finite == 0 && unjudged == 0 &&
-           self_test_passed;
+    return !penetrated() && (only_points ? obstacle_unproven : unproven) == 0 && scene_faults == 0 &&
+           non_finite == 0 && unjudged == 0 && self_test_passed;
   }
 
   /// No accepted state or motion penetrates, every one of them was judged, and there was something to judge.
@@ -81,6 +84,7 @@ struct AuditLedger {
     motion_pairs += m.pairs, pair_queries += m.queries;
     obstacle_judged.add(m.obstacle_judged);
     violations += m.violations, unproven += m.unproven + m.obstacle_unproven;
+    obstacle_unproven += m.obstacle_unproven;
     obstacle_by_vertex += m.obstacle_by_vertex;
     obstacle_violations += m.obstacle_violations, scene_faults += m.scene_faults;
     non_finite += m.finite ? 0 : 1;
@@ -89,8 +93,10 @@ struct AuditLedger {
   void add(const StepEndAudit& e, int step) {
     obstacle_judged.add(e.obstacles.judged);
     obstacle_violations += e.obstacles.violations, obstacle_by_vertex += e.obstacles.by_vertex;
-    unproven += e.obstacles.unproven, scene_faults += e.obstacles.scene_faults;
+    unproven += e.obstacles.unproven, obstacle_unproven += e.obstacles.unproven;
+    scene_faults += e.obstacles.scene_faults;
     overlaps += e.overlaps;
+    corners_cut += e.corners_cut;
     deepest_overlap_m = std::max(deepest_overlap_m, e.deepest_m);
     if (e.overlaps > 0 && first_overlap_step < 0) first_overlap_step = step;
     note(step, e.obstacles.first_bad, e.obstacles.first_fault);

@@ -38,7 +38,7 @@ class ObstacleJudge {
       const AuditObstacle& obstacle = mesh_.obstacles[static_cast<std::size_t>(o)];
       const PrimitiveLists& p = primitives.of(obstacle);
       const auto vertex = [](int v) { return std::array{v}; };
-      if (obstacle.allows_a_convex_set()) {
+      if (mesh_.asks_vertices(obstacle)) {
         out.merge(over<1>(p.vertices, PairKind::vertex_obstacle, o, &ObstacleCounts::vertices, vertex));
         continue;
       }
@@ -127,11 +127,11 @@ class ObstacleJudge {
 
 }  // namespace
 
-ObstacleCounts ObstaclePrimitives::needed(const std::vector<AuditObstacle>& obstacles) const {
+ObstacleCounts ObstaclePrimitives::needed(const AuditMesh& mesh) const {
   ObstacleCounts out;
-  for (const AuditObstacle& o : obstacles) {
+  for (const AuditObstacle& o : mesh.obstacles) {
     const PrimitiveLists& p = of(o);
-    if (o.allows_a_convex_set()) {
+    if (mesh.asks_vertices(o)) {
       out.vertices += static_cast<long>(p.vertices.size());
     } else {
       out.add({static_cast<long>(p.lone_vertices.size()), static_cast<long>(p.lone_edges.size()),

@@ -20,7 +20,8 @@ struct ObstacleCounts {
 
 /// What has to be asked so that no point of the surface is left out.
 struct PrimitiveLists {
-  std::vector<int> vertices;       // against planes and `inside`: the allowed set is convex
+  std::vector<int>
+      vertices;  // against planes and `inside`: the allowed set is convex; and where points alone are judged
   std::vector<int> lone_vertices;  // outside spheres and cylinders: on no edge and no triangle
   std::vector<int> lone_edges;     // the same: sides of no triangle
   std::vector<int> triangles;      // the same; of planar scenes the elements
@@ -33,8 +34,8 @@ struct ObstaclePrimitives {
   const PrimitiveLists& of(const AuditObstacle& obstacle) const {
     return obstacle.moves() ? of_moving : of_still;
   }
-  /// That one check of a state asks, over all obstacles.
-  ObstacleCounts needed(const std::vector<AuditObstacle>& obstacles) const;
+  /// That one check of a state asks, over all obstacles of the mesh.
+  ObstacleCounts needed(const AuditMesh& mesh) const;
 };
 ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh);
 

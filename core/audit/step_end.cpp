@@ -34,12 +34,12 @@ StepEndAudit StepEnds::judge(const ObstaclePrimitives& primitives, const Positio
   out.obstacles.scene_faults = exact.scene_faults;  // what is prescribed was promised nothing
   out.obstacles.first_fault = exact.first_fault;
   out.overlaps = std::max(0L, exact.violations - out.obstacles.violations);
-  if (out.overlaps > 0) out.deepest_m = std::max(0.0, -obstacle_gap(mesh_, primitives, x1));
+  if (out.overlaps > 0) out.deepest_m = std::max(0.0, -judged_obstacle_gap(mesh_, primitives, x1));
   if (out.obstacles.violations > 0) return out;
   ObstacleAudit way = audit_obstacles(within_, primitives, x0, x1);
   const long open = way.violations + way.unproven;
   if (open > 0) way = audit_obstacles(inner_, primitives, x0, x1);
-  way.unproven = std::max(0L, open - way.violations);
+  out.corners_cut = std::max(0L, open - way.violations - way.unproven);
   way.scene_faults = 0;
   way.first_fault.reset();
   out.obstacles.merge(way);

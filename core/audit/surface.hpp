@@ -46,7 +46,8 @@ struct AuditMesh {
                             // body, -1: any other. Empty: fixed vertices are such a body
   std::vector<double> thickness;  // [n_vertices] or empty: half thickness, m; only surface_gap reads it
   std::vector<AuditObstacle> obstacles;
-  bool planar = false;  // the scene lives in x and y; z is ignored
+  bool only_points = false;  // vertices at obstacles alone are judged; the rest is counted
+  bool planar = false;       // the scene lives in x and y; z is ignored
 
   /// The rigid body that a vertex moves with, -1: none.
   int rigid_body(int v) const {
@@ -61,6 +62,8 @@ struct AuditMesh {
         std::all_of(ids.begin(), ids.end(), [this, first](int v) { return rigid_body(v) == first; });
     return all ? first : -1;
   }
+  /// Whether vertices are all that is judged against an obstacle.
+  bool asks_vertices(const AuditObstacle& o) const { return only_points || o.allows_a_convex_set(); }
   bool is_fixed(int v) const { return !fixed.empty() && fixed[static_cast<std::size_t>(v)] != 0; }
   bool is_prescribed(int v) const {
     return !prescribed.empty() && prescribed[static_cast<std::size_t>(v)] != 0;

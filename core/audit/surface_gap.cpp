@@ -24,12 +24,13 @@ class GapMeasure {
   GapMeasure(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x, double reach)
       : mesh_(mesh), vertices_(vertices), x_(x), reach_(reach) {}
 
-  double to_obstacles(const ObstaclePrimitives& primitives) const {
+  /// only_points: of the vertices alone.
+  double to_obstacles(const ObstaclePrimitives& primitives, bool only_points = false) const {
     Least out;
     for (const AuditObstacle& given : mesh_.obstacles) {
       const AuditObstacle o = given.in(x_);
       const PrimitiveLists& p = primitives.of(given);
-      if (o.allows_a_convex_set()) {
+      if (only_points || o.allows_a_convex_set()) {
         out.merge(over(p.vertices, [&](int v) { return vertex_to(o, v); }));
         continue;
       }
@@ -174,8 +175,8 @@ SurfaceGap surface_gap(const AuditMesh& mesh, const std::vector<int>& vertices,
   return {measure.to_obstacles(primitives), between, std::move(of_vertices)};
 }
 
-double obstacle_gap(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x) {
-  return GapMeasure(mesh, {}, x, 0).to_obstacles(primitives);
+double judged_obstacle_gap(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x) {
+  return GapMeasure(mesh, {}, x, 0).to_obstacles(primitives, mesh.only_points);
 }
 
 }  // namespace bb::audit

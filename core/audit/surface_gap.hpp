@@ -30,6 +30,6 @@ SurfaceGap surface_gap(const AuditMesh& mesh, const std::vector<int>& vertices,
                        const ObstaclePrimitives& primitives, const Positions& x, double reach);
 
 /// SurfaceGap::to_obstacles alone.
-double obstacle_gap(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x);
+double judged_obstacle_gap(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x);
 
 }  // namespace bb::audit

@@ -19,13 +19,30 @@ std::vector<AnalyticSurface<double>> analytic_surfaces(const Scene& scene) {
   return out;
 }
 
+Scene points_of(const Scene& scene) {
+  Scene out = scene;
+  out.surface_edges.clear();
+  out.surface_triangles.clear();
+  return out;
+}
+
 }  // namespace
+
+Surface contact_surface(const Scene& scene, const ContactOptions& options) {
+  if (options.model == ContactModel::points) return Surface(points_of(scene), options.rest_rule);
+  return Surface(scene, options.rest_rule);
+}
+
+ContactPlan plan_contact(const Scene& scene, const ContactOptions& options) {
+  if (options.model == ContactModel::points) return plan_contact(points_of(scene), options.mollifier);
+  return plan_contact(scene, options.mollifier);
+}
 
 struct ContactSystem::Data {
   Data(const Scene& s, const ContactOptions& o, const ContactPlan& plan)
       : scene(s),
         options(o),
-        surface(s, o.rest_rule),
+        surface(contact_surface(s, o)),
         obstacles(analytic_surfaces(s)),
         broad_phase(surface, obstacles, plan, o.precision),
         builder(surface, obstacles, plan, o.precision, {o.weighting, o.model}),
@@ -56,7 +73,7 @@ struct ContactSystem::Data {
 ContactSystem::ContactSystem(const Scene& scene, const ContactOptions& options, const ContactPlan& plan)
     : data_(std::make_unique<Data>(scene, options, plan)) {}
 ContactSystem::ContactSystem(const Scene& scene, const ContactOptions& options)
-    : ContactSystem(scene, options, plan_contact(scene, options.mollifier)) {}
+    : ContactSystem(scene, options, plan_contact(scene, options)) {}
 ContactSystem::~ContactSystem() = default;
 
 bool ContactSystem::active() const { return data_->broad_phase.active(); }

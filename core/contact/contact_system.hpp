@@ -30,6 +30,11 @@ struct ContactOptions {
   RestRule rest_rule = RestRule::on;
 };
 
+/// The surface that contact acts on: of the model points its vertices alone.
+Surface contact_surface(const Scene& scene, const ContactOptions& options);
+/// plan_contact() of that surface.
+ContactPlan plan_contact(const Scene& scene, const ContactOptions& options);
+
 /// Owns the broad phase. All results are independent of the number of threads. The scene must outlive it. Not
 /// thread-safe, const members included: they share buffers; parallel inside.
 ///
@@ -46,7 +51,7 @@ struct ContactOptions {
 /// Obstacles: every free vertex and a half-space or the inside of a sphere or cylinder, which are convex: what corners
 /// keep to, all of a triangle keeps to. The outside of a sphere: every triangle, edges without a triangle, vertices
 /// without either. The outside of a cylinder: every edge and vertex, edges nearly parallel to the axis mollified.
-/// Planar: every boundary edge and the disk; with vertex pairs alone every vertex.
+/// Planar: every boundary edge and the disk; with vertex pairs alone every vertex. Of the model points every vertex, and no other pair.
 class ContactSystem {
  public:
   /// plan: of the same scene; only what it has is built.

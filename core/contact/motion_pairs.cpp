@@ -69,7 +69,7 @@ PairId id_of(int list, IndexPair pair) {
 
 MotionPairs::MotionPairs(const Scene& scene, const ContactOptions& options, const ContactPlan& plan)
     : options_(options),
-      surface_(scene, options.rest_rule),
+      surface_(contact_surface(scene, options)),
       obstacles_(posed_surfaces(scene)),
       broad_phase_(surface_, obstacles_, plan) {}
 

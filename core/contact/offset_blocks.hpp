@@ -11,8 +11,9 @@
 
 namespace bb {
 
-/// What pairs of surfaces have a row; of obstacles all have one.
-enum class ContactModel { all_pairs, offset_geometric };
+/// What pairs have a row. points: obstacles act on the vertices of surfaces alone, and surfaces not on each other; of the others all
+/// pairs with an obstacle have one.
+enum class ContactModel { all_pairs, offset_geometric, points };
 
 /// The space within d_hat of a surface is cut into blocks, one a feature: over the inside of a triangle, round the inside of
 /// an edge between the planes of its ends and beyond those of its triangles, round a vertex beyond the planes of its edges.

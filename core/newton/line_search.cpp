@@ -37,6 +37,7 @@ class LineSearch final : public StepSolver {
   LineSearch(const StepSolverOptions& options, const LineSearchRules& rules)
       : options_(options),
         search_(number(options.parameters, "armijo"), rules.cap_fraction, rules.bounded),
+        gradient_tolerance_(rules.gradient_tolerance),
         after_motion_(rules.after_motion) {}
   std::string_view name() const override { return options_.name; }
 
@@ -49,7 +50,7 @@ class LineSearch final : public StepSolver {
       IterationReport report = begin_iteration(system, task.step, iteration);  // 1
       find_direction(system, report, observer);                                // 2
       const bool at_pose = system.view().at_target();
-      const bool small = estimate_error(report) < tolerance && at_pose;  // 3
+      const bool small = is_small(system, report, tolerance) && at_pose;  // 3
       if (secant_.share() > 0) ++*secants_;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
@@ -64,7 +65,7 @@ class LineSearch final : public StepSolver {
       if (escaped) continue;
       if (moved && after_motion_ && after_motion_(system)) {
         begin_anew(iteration);
-      } else if (small && is_enough(report, moved, tolerance)) {
+      } else if (small && (level_ || is_enough(report, moved, tolerance))) {
         if (!system.renew_lag()) {
           end_in_minimum(step, end, report, task.dt);
           return step;
@@ -112,6 +113,23 @@ class LineSearch final : public StepSolver {
     error_.took(report.detours > 0 || truncated || search_.taken() > 1 ? 0 : report.alpha);
     crawl_.took(moved && !truncated && !search_.noise() ? search_.taken() : 0, report);
     return moved;
+  }
+
+  bool gradient_is_small(const StepSystem& system) const {
+    if (!(gradient_tolerance_ > 0)) return false;
+    const PositionsView gradient = system.view().gradient();
+    double sum = 0;
+    for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+      if (system.view().fixed()[static_cast<std::size_t>(i)] != 0) continue;
+      sum += gradient.data()[i] * gradient.data()[i];
+    }
+    return std::sqrt(sum) < gradient_tolerance_;
+  }
+
+  // Whether the estimated error of x + dx is below the tolerance, m, or the gradient at x below that of the rules.
+  bool is_small(const StepSystem& system, IterationReport& report, double tolerance) {
+    level_ = gradient_is_small(system);
+    return estimate_error(report) < tolerance || level_;
   }
 
   // Of x + dx, m.
@@ -208,6 +226,8 @@ class LineSearch final : public StepSolver {
 
   StepSolverOptions options_;
   StepSearch search_;
+  double gradient_tolerance_;  // N, 0: none
+  bool level_ = false;         // the gradient of the iterate is below it
   std::function<bool(StepSystem&)> after_motion_;
   ErrorEstimate error_;
   CrawlWatch crawl_;

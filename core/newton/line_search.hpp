@@ -11,6 +11,8 @@ namespace bb {
 struct LineSearchRules {
   double cap_fraction = 1;  // of a bound that binds, in (0, 1]; not read without a bound
   bool bounded = true;      // by ACCD and the strain limit; false: trials are judged as states alone
+  /// N; where > 0, E counts as minimised where the norm of its gradient was below it before the last motion, too.
+  double gradient_tolerance = 0;
   /// After a motion that was accepted: whether E is another one now, so that the step goes on from there.
   std::function<bool(StepSystem&)> after_motion = {};
 };

@@ -17,7 +17,9 @@ namespace {
 class AugmentedLagrangian final : public StepSolver {
  public:
   explicit AugmentedLagrangian(const StepSolverOptions& options)
-      : newton_(make_line_search(options, {.bounded = false})) {}
+      : newton_(make_line_search(
+            options,
+            {.bounded = false, .gradient_tolerance = number(options.parameters, "al_inner_tolerance_N")})) {}
   std::string_view name() const override { return "augmented_lagrangian"; }
   void require(StepSystem& system) const override { require_on_host(system, name()); }
 
@@ -40,13 +42,18 @@ class AugmentedLagrangian final : public StepSolver {
   std::unique_ptr<StepSolver> newton_;
 };
 
+/// m. What is violated at the start of a step was within the tolerance of the step before, so that less than 1 m is.
+double tolerance_of(const ParameterMap& complete) {
+  return std::max(number(complete, "al_tolerance_m"), number(complete, "al_tolerance_relative"));
+}
+
 void set_contact_multipliers(const StepSolverOptions& options, TermOptions& terms) {
   const auto of = [&](const char* name) { return number(options.parameters, name); };
   terms.multipliers = MultiplierRules{.initial = of("al_penalty_initial_N_per_m"),
                                       .factor = of("al_penalty_factor"),
                                       .largest = of("al_penalty_largest_N_per_m"),
                                       .reduction = of("al_reduction"),
-                                      .tolerance_m = of("al_tolerance_m")};
+                                      .tolerance_m = tolerance_of(options.parameters)};
 }
 
 }  // namespace
@@ -55,13 +62,18 @@ StepSolverEntry step_solver_augmented_lagrangian() {
   StepSolverEntry entry;
   entry.guarantee =
       "none against passing through; at the end of a step that converges no contact is violated by more than "
-      "al_tolerance_m, where "
-      "its gap has a sign";
+      "al_tolerance_m, or al_tolerance_relative of 1 m where that is more, where its gap has a sign";
   entry.parameters = {
       {"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"},
       {"al_tolerance_m", positive("m"), 1e-6,
        "augmented_lagrangian: largest violation of a contact, and gap (m) or force (N), whichever is less, "
        "at the end of a step"},
+      {"al_tolerance_relative", open_high(number_in(0, 1, "1")), 0.0,
+       "augmented_lagrangian: the same as a part of what was violated at the start of the step, which counts "
+       "as 1 m where it is less, as in jaxls; the larger of the two tolerances holds"},
+      {"al_inner_tolerance_N", non_negative("N"), 0.0,
+       "augmented_lagrangian: multipliers are updated, and a step may end, once the norm of the gradient was "
+       "below it before a motion, or the step is within tol_velocity; 0: within tol_velocity alone"},
       {"al_penalty_initial_N_per_m", non_negative("N/m"), 0.0,
        "augmented_lagrangian: penalty of a pair that is new in a step; 0: 10 max(1, 2 E), E in J of inertia "
        "and elasticity at its start"},
@@ -90,7 +102,7 @@ StepSolverEntry step_solver_augmented_lagrangian() {
   entry.needs.overlap = entry.needs.multipliers = true;
   entry.settings.velocity_of_step = true;
   entry.set_terms = set_contact_multipliers;
-  entry.promised_overlap = [](const ParameterMap& complete) { return number(complete, "al_tolerance_m"); };
+  entry.promised_overlap = tolerance_of;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AugmentedLagrangian>(options);
   };

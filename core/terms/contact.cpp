@@ -37,8 +37,8 @@ ContactTerm::ContactTerm(const TermInputs& inputs, const TermList& terms)
         "none: " + pair_name(scene, {areas->without_area(), -1, -1, -1}, ContactKind::point_point) +
             " belongs to no triangle and has no area");
   }
-  if (scene.planar && options.contact_options.model == ContactModel::offset_geometric)
-    throw ConfigError("/contact/model", "\"offset_geometric\"", "all_pairs: the scene is planar");
+  if (scene.planar && options.contact_options.model != ContactModel::all_pairs)
+    throw ConfigError("/contact/model", "another one than all_pairs", "all_pairs: the scene is planar");
   families_.resize(2);
   if (const GapStiffness* of = options.stiffness->gap_stiffness()) {
     gap_potential_.emplace(options.contact, *of);

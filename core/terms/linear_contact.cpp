@@ -20,15 +20,13 @@ ContactOptions without_mollifier(ContactOptions options) {
   return options;
 }
 
-ContactPlan plan_without_mollifier(const Scene& scene) { return plan_contact(scene, Mollifier::none); }
-
 }  // namespace
 
 LinearContact::LinearContact(const Scene& scene, const TermOptions& options, const ContactPlan& plan)
     : options_(options),
       rules_(*options.linear_contact),
       pairs_(scene, options.contact_options, plan),
-      contacts_(scene, without_mollifier(options.contact_options), plan_without_mollifier(scene)) {
+      contacts_(scene, without_mollifier(options.contact_options)) {
   if (scene.collisions.chosen()) {
     throw ConfigError("/step_solver/name", "al_free with collisions that are chosen for bodies",
                       "a scene in which all bodies collide as ccd, or another step solver");

@@ -113,7 +113,7 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
 
 Plan make_plan(const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
   Plan plan;
-  plan.contacts = plan_contact(scene, terms.contact_options.mollifier);
+  plan.contacts = plan_contact(scene, terms.contact_options);
   for (const TermEntry& entry : term_entries()) {
     plan.terms.push_back(entry.needs({scene, terms, plan.contacts}));
   }

@@ -70,7 +70,8 @@ void print_formulation(const RunConfig& config, const Scene& scene) {
   }
   const char* head = "guarantee";
   for (const Guarantee& each :
-       guarantees(step_solvers().require(config.step_solver.name, "/step_solver/name"), scene)) {
+       guarantees(step_solvers().require(config.step_solver.name, "/step_solver/name"), scene,
+                  config.contact.model.value_or(ContactModel::all_pairs))) {
     show("{:<9} {}: {}\n", head, each.of, each.text);
     head = "";
   }

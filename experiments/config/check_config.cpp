@@ -111,12 +111,17 @@ void check_corrections(const RunConfig& config, const Complain& complain) {
   refuse_restitution(config, "1 " + allowed, complain);
 }
 
-void check_model(const RunConfig& config, const Complain& complain) {
-  const std::string where = "/contact/model", found = "\"offset_geometric\"";
+void check_model(const RunConfig& config, ContactModel model, const Complain& complain) {
+  const std::string where = "/contact/model", found = '"' + word_of(model) + '"';
+  if (config.scene.planar) complain(where, found, "all_pairs: the scene is planar");
+  if (model == ContactModel::points) {
+    if (config.contact.weighting.value_or(ContactWeighting::none) != ContactWeighting::none)
+      complain(where, found, "all_pairs, or weighting none: points have no area");
+    return;
+  }
   const std::string& solver = config.step_solver.name;
   if (solver != "line_search" && solver != "accumulated_toi")
     complain(where, found, "all_pairs, or line_search or accumulated_toi: the step solver is " + solver);
-  if (config.scene.planar) complain(where, found, "all_pairs: the scene is planar");
   if (config.precision != Precision::full)
     complain(where, found, "all_pairs, or precision double: blocks are asked in double");
   if (config.contact.weighting.value_or(ContactWeighting::none) != ContactWeighting::none)
@@ -131,7 +136,8 @@ void check_contact(const RunConfig& config, const Complain& complain) {
     complain("/contact/bound_gamma", fmt::format("{}", *contact.bound_gamma),
              "nothing: accd does not read it, bounds of each vertex do");
   }
-  if (contact.model == ContactModel::offset_geometric) check_model(config, complain);
+  const ContactModel model = contact.model.value_or(ContactModel::all_pairs);
+  if (model != ContactModel::all_pairs) check_model(config, model, complain);
   const ContactWeighting weighting = contact.weighting.value_or(ContactWeighting::none);
   if (weighting == ContactWeighting::none) return;
   if (weighting == ContactWeighting::area_corrected) check_corrections(config, complain);

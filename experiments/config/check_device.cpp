@@ -53,9 +53,10 @@ void check_device(const RunConfig& config, const Complain& complain) {
     complain("/contact/weighting", '"' + word_of(weighting) + '"',
              "none " + on + ": its kernels count every pair as one");
   }
-  if (config.contact.model == ContactModel::offset_geometric) {
-    complain("/contact/model", "\"offset_geometric\"",
-             "all_pairs " + on + ": no kernel knows the blocks of features");
+  if (const auto model = config.contact.model.value_or(ContactModel::all_pairs);
+      model != ContactModel::all_pairs) {
+    complain("/contact/model", '"' + word_of(model) + '"',
+             "all_pairs " + on + ": its kernels know no other pairs");
   }
   if (is_numeric(config.contact.hessian_mode)) {
     complain("/contact/hessian_mode", '"' + word_of(config.contact.hessian_mode) + '"',

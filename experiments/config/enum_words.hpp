@@ -39,7 +39,9 @@ inline EnumWords<ContactWeighting> words_of(ContactWeighting) {
           {ContactWeighting::area_corrected, "area_corrected"}};
 }
 inline EnumWords<ContactModel> words_of(ContactModel) {
-  return {{ContactModel::all_pairs, "all_pairs"}, {ContactModel::offset_geometric, "offset_geometric"}};
+  return {{ContactModel::all_pairs, "all_pairs"},
+          {ContactModel::offset_geometric, "offset_geometric"},
+          {ContactModel::points, "points"}};
 }
 inline EnumWords<StepSizeRule> words_of(StepSizeRule) {
   return {{StepSizeRule::fixed, "fixed"}, {StepSizeRule::adaptive, "adaptive"}};

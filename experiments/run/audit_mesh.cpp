@@ -35,8 +35,9 @@ std::vector<int> rigid_bodies(const std::vector<PrescribedMotion>& motions, doub
 
 }  // namespace
 
-audit::AuditMesh make_audit_mesh(const Scene& scene, double dt) {
+audit::AuditMesh make_audit_mesh(const Scene& scene, double dt, bool only_points) {
   audit::AuditMesh mesh;
+  mesh.only_points = only_points;
   mesh.planar = scene.planar;
   audit::set_edges(scene.surface_triangles, scene.surface_edges, mesh);
   audit::set_points(scene.surface_vertices, scene.n_vertices(), mesh);
@@ -63,6 +64,10 @@ audit::AuditMesh make_audit_mesh(const Scene& scene, double dt) {
 
 double audit_tolerance(const Scene& scene, double ccd_park) {
   return 0.1 * ccd_park * *std::min_element(scene.d_hat.begin(), scene.d_hat.end());
+}
+
+audit::AuditMesh audit_mesh_of(const RunConfig& config, const Scene& scene) {
+  return make_audit_mesh(scene, config.time.dt, config.contact.model == ContactModel::points);
 }
 
 }  // namespace bb

@@ -79,7 +79,7 @@ std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const aud
 }
 
 Verdict judge_audit(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {
-  if (ledger.ok()) return ledger.overlaps > 0 ? Verdict{Outcome::overlap, overlap_text(ledger)} : Verdict{};
+  if (ledger.ok()) return ledger.overlaps > 0 ? Verdict{Outcome::ok, overlap_text(ledger)} : Verdict{};
   if (ledger.scene_faults > 0 && ledger.first_fault) {
     std::string text = fmt::format("{}, and both are prescribed: {}",
                                    describe(scene, mesh, *ledger.first_fault), when(ledger.first_fault_step));

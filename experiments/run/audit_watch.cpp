@@ -1,5 +1,7 @@
 #include "experiments/run/audit_watch.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,22 +20,25 @@ static void keep(Archive& archive, PairName& name) {
 static void keep(Archive& archive, AuditLedger& ledger) {
   archive(ledger.states, ledger.motions, ledger.state_pairs, ledger.motion_pairs, ledger.pair_queries,
           ledger.obstacle_judged.vertices, ledger.obstacle_judged.edges, ledger.obstacle_judged.triangles,
-          ledger.crossings, ledger.touches, ledger.violations, ledger.unproven, ledger.inverted,
-          ledger.obstacle_violations, ledger.overlaps, ledger.deepest_overlap_m, ledger.first_overlap_step,
-          ledger.scene_faults, ledger.non_finite, ledger.unjudged, ledger.self_test_passed,
-          ledger.first_bad_step, ledger.first_fault_step, ledger.first_bad, ledger.first_fault);
+          ledger.crossings, ledger.touches, ledger.violations, ledger.unproven, ledger.obstacle_unproven,
+          ledger.inverted, ledger.obstacle_violations, ledger.overlaps, ledger.deepest_overlap_m,
+          ledger.first_overlap_step, ledger.corners_cut, ledger.scene_faults, ledger.non_finite,
+          ledger.unjudged, ledger.self_test_passed, ledger.first_bad_step, ledger.first_fault_step,
+          ledger.first_bad, ledger.first_fault);
 }
 
 }  // namespace audit
 
 AuditWatch::AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record,
-                       double promised_overlap)
+                       double promised_overlap, bool only_points)
     : scene_(scene),
       record_(record),
-      mesh_(make_audit_mesh(scene, dt)),
+      mesh_(make_audit_mesh(scene, dt, only_points)),
       audit_(mesh_, promised_overlap),
       tolerance_(audit_tolerance(scene, ccd_park)),
       reach_(*std::max_element(scene.d_hat.begin(), scene.d_hat.end())) {
+  if (promised_overlap > 0) record_.promised_m = promised_overlap;
+  if (only_points) record_.obstacles_judge = "points";
   judge(scene.x0, -1);
   audit_.check_step_end(scene.x0, scene.x0, -1);
   at_step_end_ = {audit_.ledger(), last_judged_};
@@ -122,10 +127,23 @@ void AuditWatch::fill_record() {
   record_.obstacle_violations = ledger.obstacle_violations;
   record_.overlaps = ledger.overlaps;
   record_.overlap_max_m = ledger.overlaps > 0 ? Number(ledger.deepest_overlap_m) : Number::missing("none");
+  record_.corners_cut = ledger.corners_cut;
   record_.scene_faults = ledger.scene_faults;
   record_.first_bad_step = ledger.first_bad_step;
 }
 
-Verdict AuditWatch::verdict() const { return judge_audit(scene_, mesh_, audit_.ledger()); }
+Verdict AuditWatch::verdict() const {
+  const audit::AuditLedger& ledger = audit_.ledger();
+  Verdict out = judge_audit(scene_, mesh_, ledger);
+  if (!mesh_.only_points || out.outcome != Outcome::ok) return out;
+  const Number& gap = record_.surface_gap_obstacles_m;
+  out.detail += fmt::format(
+      "{}audit: points only: vertices were judged at obstacles; the surface between them is at most {:.3g} m "
+      "deep in one, and surfaces pass through each other with {} crossings in states and {} passages in "
+      "motions, which nothing keeps them from",
+      out.detail.empty() ? "" : "; ", gap.finite() ? std::max(0.0, -gap.value) : 0.0, ledger.crossings,
+      ledger.violations);
+  return out;
+}
 
 }  // namespace bb

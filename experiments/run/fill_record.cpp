@@ -99,6 +99,7 @@ void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
 }
 
 void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
+  if (outcome == Outcome::ok && verdict.outcome == Outcome::ok) verdict.detail = detail;
   if (worse(outcome, verdict.outcome) != outcome || outcome == verdict.outcome) return;
   if (was_cut(verdict.outcome)) {
     verdict.detail += fmt::format("; {} so far: {}", to_string(outcome), detail);

@@ -30,7 +30,9 @@ std::string pairs_text(long n) { return fmt::format("{} {}", n, n == 1 ? "pair" 
 
 }  // namespace
 
-std::vector<Guarantee> guarantees(const StepSolverEntry& solver, const Scene& scene) {
+namespace {
+
+std::vector<Guarantee> of_pairs(const StepSolverEntry& solver, const Scene& scene) {
   const std::vector<CollisionLine> lines = collision_lines(scene);
   const auto count = [&lines](CollisionKind kind) {
     return std::count_if(lines.begin(), lines.end(),
@@ -50,6 +52,18 @@ std::vector<Guarantee> guarantees(const StepSolverEntry& solver, const Scene& sc
     const auto n = static_cast<long>(count(kind));
     if (n > 0)
       out.push_back({fmt::format("{} ({})", pairs_text(n), word_of(kind)), promise_of(kind, solver)});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Guarantee> guarantees(const StepSolverEntry& solver, const Scene& scene, ContactModel model) {
+  std::vector<Guarantee> out = of_pairs(solver, scene);
+  if (model == ContactModel::points) {
+    out.push_back({"points only",
+                   "this holds for vertices at obstacles; edges and triangles between them may be in an "
+                   "obstacle (the record says how deep), and surfaces may pass through each other"});
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/contact/offset_blocks.hpp"
 #include "core/model/scene/scene.hpp"
 #include "core/newton/step_solver.hpp"
 
@@ -15,7 +16,7 @@ struct Guarantee {
 };
 
 /// One entry where every pair of bodies collides as `ccd`; else the step solver's of those that do, then one a kind that bounds less.
-/// Cost: O(owners^2) where the scene chooses.
-std::vector<Guarantee> guarantees(const StepSolverEntry& solver, const Scene& scene);
+/// Of the contact model points an entry more, which says what is not constrained. Cost: O(owners^2) where the scene chooses.
+std::vector<Guarantee> guarantees(const StepSolverEntry& solver, const Scene& scene, ContactModel model);
 
 }  // namespace bb

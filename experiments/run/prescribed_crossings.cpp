@@ -66,7 +66,7 @@ std::vector<PrescribedCrossing> prescribed_crossings(const RunConfig& config, co
   std::vector<PrescribedCrossing> out;
   if (!may_cross(scene)) return out;
   const double dt = config.time.dt;
-  const audit::AuditMesh mesh = prescribed_part(make_audit_mesh(scene, dt));
+  const audit::AuditMesh mesh = prescribed_part(audit_mesh_of(config, scene));
   if (mesh.points.empty()) return out;  // no more than obstacles are prescribed
   const double tolerance = audit_tolerance(scene, config.contact.ccd_park);
   double last_end = 0;  // from then on every motion has ended

@@ -59,7 +59,7 @@ std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& sce
   limits.look_up(part, "before the start was looked at");
   if (auto found = too_long(config, scene)) return found;
   limits.look_up(part, "before the surface was collected");
-  const audit::AuditMesh mesh = make_audit_mesh(scene, config.time.dt);
+  const audit::AuditMesh mesh = audit_mesh_of(config, scene);
   limits.look_up(part, "before crossings were looked for");
   audit::Audit judge(mesh);
   judge.check_state(scene.x0, -1);

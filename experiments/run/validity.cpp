@@ -39,8 +39,9 @@ std::optional<int> saddle_ends(const CountMap& proofs) {
 void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const std::string& hash_time,
                    const std::string& hash_seen, RunRecord& record) {
   if (ledger) {
-    const auto found = static_cast<double>(ledger->crossings + ledger->violations + ledger->unproven +
-                                           ledger->obstacle_violations + ledger->scene_faults +
+    const long among = ledger->only_points ? 0 : ledger->crossings + ledger->violations;
+    const long open = ledger->only_points ? ledger->obstacle_unproven : ledger->unproven;
+    const auto found = static_cast<double>(among + open + ledger->obstacle_violations + ledger->scene_faults +
                                            ledger->non_finite + ledger->unjudged);
     add_check(record, "audit_clean", found, 0.0, ledger->clean());
     add_check(record, "audit_judged", static_cast<double>(ledger->judged()), 1.0, ledger->judged() > 0);
@@ -59,7 +60,7 @@ void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const s
   if (const BuildValidity& build = record.validity.build; build.checks > 0) {
     add_check(record, "build_valid", build.valid ? 0.0 : 1.0, 0.0, build.valid);
   }
-  const bool ok = record.status.outcome == Outcome::ok || record.status.outcome == Outcome::overlap;
+  const bool ok = record.status.outcome == Outcome::ok;
   add_check(record, "outcome_ok", ok ? 0.0 : 1.0, 0.0, ok);
   record.validity.valid = std::all_of(record.validity.checks.begin(), record.validity.checks.end(),
                                       [](const Check& check) { return check.pass; });

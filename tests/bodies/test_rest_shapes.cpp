@@ -95,6 +95,8 @@ TEST(RestShapes, AreRefusedByNameWhereTheyMeanNothing) {
   expect_refused([](Material& m) { m.cloth_yield = 0.1, m.cloth_tension = 1; },
                  "/material/cloth_yield: found 0.1");
   expect_refused([](Material& m) { m.cloth_creep = 0.1; }, "0 without a cloth spring");
+  expect_refused([](Material& m) { m.cloth_softening = 0.1; },
+                 "/material/cloth_softening_m: found 0.1; allowed: 0 without a cloth spring");
   expect_refused([](Material& m) { m.shrink_weft = 0; }, "shrink_weft");
   expect_refused([](Material& m) { m.shrink_weft = 0.9, m.model = "none"; },
                  "/material/shrink_weft: found 0.9; allowed: 1 without a membrane model");
@@ -104,9 +106,12 @@ TEST(RestShapes, AreRefusedByNameWhereTheyMeanNothing) {
                  "/material/cloth_exponent: found 3");
   BodySpec ball = cloth("ball");
   ball.mesh = icosphere_mesh(1, 1);
+  ball.material.cloth_skip_one = 4;
   ball.material.cloth_shear = 2, ball.material.cloth_shear_growing = 3;
   for (const char* said :
-       {"/cloth_shear_N_per_m: found 2; allowed: 0: no face of the mesh has more than three corners",
+       {"/cloth_skip_one_N_per_m: found 4; allowed: 0: the mesh is no grid, it has triangle 0, which is no "
+        "half of a quad",
+        "/cloth_shear_N_per_m: found 2; allowed: 0: no face of the mesh has more than three corners",
         "/cloth_shear_exponential_N_per_m: found 3"}) {
     EXPECT_NE(complaint({ball}).find(said), std::string::npos) << complaint({ball});
   }
@@ -155,6 +160,29 @@ TEST(ClothSprings, AreOnSidesAndDiagonalsAndNowhereElse) {
   BodySpec no_shear = spring_sheet();
   no_shear.material.cloth_shear = 0;
   EXPECT_EQ(scene_of({no_shear}).cloth_springs.pairs.size(), 17u);
+}
+
+TEST(ClothSprings, OfVerticesTwoApartAreAlongTheLinesOfAGrid) {
+  BodySpec body = cloth("net");
+  body.mesh = grid_mesh(15, 15, 1.4, 1.4);
+  body.material = spring_sheet().material;
+  body.material.cloth_skip_one = 7;
+  body.material.cloth_softening = 1e-3;
+  const ClothSpringPart& springs = scene_of({body}).cloth_springs;
+  ASSERT_EQ(springs.pairs.size(), 1202U);  // as the net of jaxls's example has
+  int two_apart = 0;
+  for (std::size_t e = 0; e < springs.pairs.size(); ++e) {
+    EXPECT_EQ(springs.softening[e], 1e-3);
+    if (springs.tension[e] != 7) continue;
+    ++two_apart;
+    EXPECT_EQ(springs.compression[e], 7);
+    EXPECT_NEAR(springs.rest_length[e], 0.2, 1e-15);
+    const int way = springs.pairs[e][1] - springs.pairs[e][0];
+    EXPECT_TRUE(way == 2 || way == 30) << way;
+  }
+  EXPECT_EQ(two_apart, 2 * 13 * 15);
+  body.material.cloth_tension = body.material.cloth_compression = body.material.cloth_shear = 0;
+  EXPECT_EQ(scene_of({body}).cloth_springs.pairs.size(), 390U);
 }
 
 TEST(ClothSprings, HaveTheEnergyOfTheirClosedForm) {

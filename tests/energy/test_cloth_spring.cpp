@@ -90,5 +90,58 @@ TEST(ClothSpring, PullsOrPushesAloneWhereOneStiffnessIsZero) {
   EXPECT_GT(collapsed.energy, 1);
 }
 
+/// With a softening of s the length is sqrt(d^2 + s^2): the energy of a linear spring as written, in long double.
+TEST(ClothSpring, WithASofteningHasTheDerivativesOfItsEnergyAndNoCusp) {
+  using Long = long double;
+  const Long stiffness = 50, softening = 0.25L, h = 1e-6L;
+  const auto energy = [&](const Vec<Long, 6>& x) {
+    const Vec<Long, 3> d = x.tail<3>() - x.head<3>();
+    const Long stretch = std::sqrt(d.dot(d) + softening * softening) - Long(rest_length);
+    return stiffness / 2 * stretch * stretch;
+  };
+  SpringLaw<double> soft{50, 0, 50, 0, 10};
+  soft.softening = 0.25;
+  for (const double length : {0.0, 0.1, 0.7, 0.9}) {
+    const Vec<double, 6> x = state(length);
+    const Points<double, 2> p(x);
+    const auto exact = cloth_spring_terms<double>(p.x, rest_length, soft, Projection::none);
+    EXPECT_NEAR(exact.energy, static_cast<double>(energy(x.cast<Long>())), 1e-14 * exact.energy);
+    EXPECT_EQ(exact.energy, cloth_spring_value<double>(p.x, rest_length, soft));
+    EXPECT_FALSE(cloth_spring_is_cusp<double>(p.x, rest_length, soft));
+    for (int i = 0; i < 6; ++i) {
+      Vec<Long, 6> step = Vec<Long, 6>::Zero();
+      step[i] = h;
+      const Vec<Long, 6> at = x.cast<Long>();
+      EXPECT_NEAR(exact.grad[i], static_cast<double>((energy(at + step) - energy(at - step)) / (2 * h)),
+                  1e-8 * (1 + exact.grad.norm()));
+      for (int j = 0; j < 6; ++j) {
+        Vec<Long, 6> other = Vec<Long, 6>::Zero();
+        other[j] = h * 100;
+        step[i] = h * 100;
+        const Long mixed = (energy(at + step + other) - energy(at + step - other) -
+                            energy(at - step + other) + energy(at - step - other)) /
+                           (4 * h * h * 10000);
+        EXPECT_NEAR(exact.hess(i, j), static_cast<double>(mixed), 1e-5 * exact.hess.norm()) << i << j;
+      }
+    }
+    EXPECT_GT(exact.hess.norm(), 1);
+    const Eigen::VectorXd plain = test::eigenvalues(MatXd(exact.hess));
+    const auto clamped = cloth_spring_terms<double>(p.x, rest_length, soft, Projection::psd);
+    const Eigen::VectorXd kept = test::eigenvalues(MatXd(clamped.hess)), most = plain.cwiseMax(0.0);
+    EXPECT_LT((kept - most).norm(), 1e-11) << kept.transpose() << " of " << plain.transpose();
+    EXPECT_EQ(plain.minCoeff() < -1, length < 0.75);
+  }
+}
+
+TEST(ClothSpring, WithoutASofteningIsWhatItWasToTheBit) {
+  const Points<double, 2> p(state(0.5));
+  EXPECT_EQ(spring_length<double>(p.x, 0), (p.x[1] - p.x[0]).norm());
+  SpringLaw<double> none = law<double>();
+  none.softening = 0;
+  const auto a = cloth_spring_terms<double>(p.x, rest_length, none, Projection::psd);
+  EXPECT_EQ(a.grad, cloth_spring_terms<double>(p.x, rest_length, law<double>(), Projection::psd).grad);
+  EXPECT_GT(a.grad.norm(), 1);
+}
+
 }  // namespace
 }  // namespace bb::test::cloth_spring_test

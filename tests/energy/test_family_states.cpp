@@ -49,7 +49,7 @@ TEST(FamilyStates, ClothSpringsShrinkAndCreepAtOnce) {
     part.rest_length.push_back(0.7 * (strip.deformed.col(t[0]) - strip.deformed.col(t[1])).norm());
   }
   part.tension.assign(n, 3), part.tension_growing.assign(n, 2), part.compression.assign(n, 1);
-  part.compression_growing.assign(n, 0.5), part.exponent.assign(n, 4);
+  part.compression_growing.assign(n, 0.5), part.exponent.assign(n, 4), part.softening.assign(n, 0);
   part.yield.assign(n, 0.02), part.creep.assign(n, 5);
   const Scene shrunk = halving(strip.rest);
   const auto half = [&](const FamilyPlace& place) {
@@ -80,7 +80,7 @@ TEST(FamilyStates, MembranesShrinkAndCreepAtOnce) {
 
 TEST(FamilyStates, ColumnsOfClothSpringsHaveOneNumberAnElement) {
   const std::vector<double> one = {1};
-  const ClothSpringPart good = {{{0, 1}}, one, one, one, one, one, one, one, one};
+  const ClothSpringPart good = {{{0, 1}}, one, one, one, one, one, one, one, one, one};
   const auto made = [](const ClothSpringPart& part) {
     return HostFamily([&](const FamilyPlace& place) { return cloth_spring_family(place, part); }).size();
   };
@@ -89,7 +89,7 @@ TEST(FamilyStates, ColumnsOfClothSpringsHaveOneNumberAnElement) {
   for (const auto column :
        {&ClothSpringPart::rest_length, &ClothSpringPart::tension, &ClothSpringPart::tension_growing,
         &ClothSpringPart::compression, &ClothSpringPart::compression_growing, &ClothSpringPart::exponent,
-        &ClothSpringPart::yield, &ClothSpringPart::creep}) {
+        &ClothSpringPart::softening, &ClothSpringPart::yield, &ClothSpringPart::creep}) {
     for (const std::vector<double>& wrong : {std::vector<double>{}, std::vector<double>{1, 1}}) {
       ClothSpringPart part = good;
       part.*column = wrong;
@@ -97,7 +97,7 @@ TEST(FamilyStates, ColumnsOfClothSpringsHaveOneNumberAnElement) {
     }
     ++columns;
   }
-  EXPECT_EQ(columns, 8);
+  EXPECT_EQ(columns, 9);
 }
 
 /// Elements that the function of one element names; all of them, as the family says.

@@ -159,14 +159,6 @@ const std::vector<Case>& cases() {
        nullptr,
        {"time limit", "start check", "there was no first step"},
        [] { return run(resting_block, {}, 1e-9); }},
-      {"multipliers that leave a micrometre",
-       Outcome::overlap,
-       "converged",
-       "ok",
-       {"overlap obstacles", "within what the step solver promises", "first in step"},
-       [] {
-         return run(resting_block, {R"(/step_solver/name="augmented_lagrangian")", "/time/steps=20"});
-       }},
       {"motions that were not judged",
        Outcome::unproven,
        nullptr,

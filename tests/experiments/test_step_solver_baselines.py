@@ -75,11 +75,12 @@ def resting(tmp_path: Path, kind: str) -> Path:
 
 
 @pytest.mark.parametrize("kind", ["floor", "ball"])
-def test_an_overlap_with_an_obstacle_within_al_tolerance_has_its_own_word(program, tmp_path, kind):
+def test_an_overlap_with_an_obstacle_within_al_tolerance_is_ok_and_has_a_depth(program, tmp_path, kind):
     config = resting(tmp_path, kind)
     for tolerance in (1e-6, 1e-4):
         record = run(program, config, tmp_path / str(tolerance), "augmented_lagrangian", "--set", f"/step_solver/al_tolerance_m={tolerance}")
-        assert record["status"]["outcome"] == "overlap" and "within what the step solver promises" in record["status"]["detail"], record["status"]
+        assert record["status"]["outcome"] == "ok" and "within what the step solver promises" in record["status"]["detail"], record["status"]
+        assert record["audit"]["promised_m"] == tolerance
         assert 0 < record["audit"]["overlap_max_m"] <= tolerance and record["audit"]["overlaps"] > 0
         assert record["audit"]["violations"] == 0 and record["status"]["valid"]
         assert sum(step["contacts"]["total"] for step in record["steps"]) > 0

@@ -38,6 +38,17 @@ Feature impact_in_steps_of(const char* name, double dt) {
           true, [dt](const Method& method) { return impact(method, dt); }, leaves_with_no_more};
 }
 
+/// A plate that comes down past a ball, which is between its vertices.
+json past_a_ball(const Method& method) {
+  json config = impact(method, 1e-3);
+  config["time"]["steps"] = 60;
+  config["scene"]["bodies"] = {plate("plate", 0.035, -1)};
+  config["scene"]["obstacles"].push_back(
+      {{"name", "ball"}, {"kind", "sphere"}, {"point_m", {0, 0, 0.02}}, {"radius_m", 0.01}});
+  config["contact"]["model"] = "points";
+  return config;
+}
+
 json resting(const Method& method) {
   json config = on_the_floor(method, 1e-3, 140);
   config["scene"]["obstacles"][0]["restitution"] = 0.0;
@@ -73,6 +84,13 @@ std::string keeps_no_more_than_half(const Method& method, const Track& run) {
 std::vector<Feature> contact_features() {
   return {impact_in_steps_of("contact", 1e-4),
           impact_in_steps_of("contact in short steps", 1e-5),
+          {"contact of points",
+           "a plate passes a ball between its vertices, comes to the floor with 1 m/s and leaves with 1 m/s "
+           "at most",
+           {"inertia", "contact"},
+           true,
+           past_a_ball,
+           leaves_with_no_more},
           {"restitution 0 and a force that lifts",
            "a plate at rest leaves with the acceleration of the force",
            {"contact", "restitution"},

@@ -102,6 +102,15 @@ std::vector<Feature> part_features() {
                     {"density_kg_per_m2", 1}},
                    upper_side);
   };
+  const auto two_apart = [](const Method& method) {
+    return hanging(method, cloth(),
+                   {{"model", "none"},
+                    {"cloth_tension_N_per_m", 20},
+                    {"cloth_skip_one_N_per_m", 8},
+                    {"cloth_softening_m", 0.02},
+                    {"density_kg_per_m2", 1}},
+                   upper_side);
+  };
   const auto rod = [](const Method& method) {
     return hanging(method, {{"generator", "rod"}, {"n_segments", 7}, {"length_m", 0.35}},
                    {{"line_density_kg_per_m", 0.1}, {"rod_stretching_N", 20}, {"rod_bending_N_m2", 1e-4}},
@@ -144,6 +153,7 @@ std::vector<Feature> part_features() {
   };
   return {as_line_search("springs", {"springs"}, springs),
           as_line_search("springs of cloth", {"cloth_springs"}, cloth_springs),
+          as_line_search("springs two apart", {"cloth_springs"}, two_apart),
           as_line_search("membrane", {"membrane"}, of_membrane(json::object())),
           as_line_search("hinges", {"hinges"}, of_membrane({{"bending_J", 1e-3}})),
           as_line_search("rods", {"rods"}, rod),

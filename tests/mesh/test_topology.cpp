@@ -64,5 +64,29 @@ TEST(topology, counts_the_hinges_of_a_grid) {
   EXPECT_EQ(interior, 12u + 4u * 2u + 3u * 3u);  // diagonals, inner rows, inner columns
 }
 
+TEST(topology, joins_vertices_two_apart_along_the_lines_of_a_grid) {
+  const GridLines lines = skip_one_pairs(grid_mesh(4, 3, 1.5, 1.0));
+  EXPECT_EQ(lines.fault, "");
+  EXPECT_EQ(lines.pairs,
+            (std::vector<std::array<int, 2>>{
+                {0, 2}, {0, 8}, {1, 3}, {1, 9}, {2, 10}, {3, 11}, {4, 6}, {5, 7}, {8, 10}, {9, 11}}));
+  EXPECT_EQ(skip_one_pairs(grid_mesh(15, 15, 1.4, 1.4)).pairs.size(), 2u * 13u * 15u);
+  EXPECT_EQ(skip_one_pairs(grid_mesh(2, 2, 1, 1)).pairs.size(), 0u);
+}
+
+TEST(topology, names_what_no_line_of_a_grid_goes_through) {
+  EXPECT_EQ(skip_one_pairs(icosphere_mesh(0, 1)).fault, "triangle 0, which is no half of a quad");
+  TriangleMesh corner = grid_mesh(3, 3, 1, 1);  // of its four quads three are left
+  corner.triangles.resize(6);
+  corner.fans.pop_back();
+  EXPECT_EQ(skip_one_pairs(corner).fault, "vertex 4, at which no line of a grid goes on: it is in 3 quads");
+  TriangleMesh tie = grid_mesh(2, 2, 1, 1);  // two quads that have one vertex in common
+  tie.vertices.conservativeResize(3, 7);
+  tie.fans.push_back({2, 2});
+  tie.triangles.push_back({3, 4, 6});
+  tie.triangles.push_back({3, 6, 5});
+  EXPECT_EQ(skip_one_pairs(tie).fault, "vertex 3, at which no line of a grid goes on: it is in 2 quads");
+}
+
 }  // namespace
 }  // namespace bb

@@ -26,11 +26,10 @@ enum class Outcome {
   kernel_failed,         // a kernel of the device failed; the steps before count
   timeout,               // the time limit that was asked for was reached between two steps
   unproven,              // finished, but the audit could not certify every motion
-  overlap,               // finished; surfaces are in obstacles by no more than the step solver promises
-  ok
+  ok                     // finished; an overlap that the step solver promises to keep to is no failure
 };
 template <>
-inline constexpr int n_words<Outcome> = 17;
+inline constexpr int n_words<Outcome> = 16;
 
 constexpr std::string_view to_string(Outcome outcome) {
   constexpr std::array<std::string_view, n_words<Outcome>> words = {"invalid_scene",
@@ -48,7 +47,6 @@ constexpr std::string_view to_string(Outcome outcome) {
                                                                     "kernel_failed",
                                                                     "timeout",
                                                                     "unproven",
-                                                                    "overlap",
                                                                     "ok"};
   return words[static_cast<std::size_t>(outcome)];
 }

@@ -31,7 +31,8 @@ struct Status {
       Outcome, outcome,
       "of several that hold, the first in the order of this list; where time or memory ended a run, that") =
       Outcome::ok;
-  BB_FIELD(std::string, detail, "one sentence; empty when ok");
+  BB_FIELD(std::string, detail,
+           "one sentence; empty when ok, but for what a step solver or a contact model leaves open");
   BB_FIELD(bool, valid, "every check of `validity` passed") = false;
   BB_FIELD(Number, resumed_from_step, "first step after the checkpoint that the run went on from",
            "whole") = Number::missing("whole");

@@ -24,7 +24,7 @@ class ClothSpringFamily final : public FamilyOf<ClothSprings> {
         creeps_(any_positive(part.creep)) {
     std::vector<double> law;
     for (const auto* column : {&part.tension, &part.tension_growing, &part.compression,
-                               &part.compression_growing, &part.exponent}) {
+                               &part.compression_growing, &part.exponent, &part.softening}) {
       law.insert(law.end(), column->begin(), column->end());
     }
     law_.upload(law);
@@ -73,6 +73,7 @@ MadeFamily cloth_spring_family(const FamilyPlace& place, const ClothSpringPart& 
   check_column("cloth_springs/compression", n, part.compression, false);
   check_column("cloth_springs/compression_growing", n, part.compression_growing, false);
   check_column("cloth_springs/exponent", n, part.exponent, false);
+  check_column("cloth_springs/softening", n, part.softening, false);
   check_column("cloth_springs/yield", n, part.yield, false);
   check_column("cloth_springs/creep", n, part.creep, false);
   return std::make_unique<ClothSpringFamily>(place, part, std::move(rest));

@@ -7,12 +7,12 @@
 namespace bb {
 
 struct ClothSprings : ElementVertices<2> {
-  const double* law;          // [5, n] the members of SpringLaw, N/m and 1
+  const double* law;          // [6, n] the members of SpringLaw, N/m and 1
   const double* rest_length;  // [n] m
   template <class T>
   BB_HD SpringLaw<T> law_of(exec::Index e) const {
-    return {static_cast<T>(law[e]), static_cast<T>(law[n + e]), static_cast<T>(law[2 * n + e]),
-            static_cast<T>(law[3 * n + e]), static_cast<T>(law[4 * n + e])};
+    return {static_cast<T>(law[e]),         static_cast<T>(law[n + e]),     static_cast<T>(law[2 * n + e]),
+            static_cast<T>(law[3 * n + e]), static_cast<T>(law[4 * n + e]), static_cast<T>(law[5 * n + e])};
   }
   template <class T = double>
   BB_HD T value(const double* x, exec::Index e) const {
@@ -51,8 +51,9 @@ struct FlowClothSprings {
   BB_HD void operator()(exec::Index e) const {
     Vec3d p[2];
     elements.points(x, e, p);
-    ratio[e] = crept_ratio<double>(p, elements.rest_length[e], given[e], yield[e], kept_after(creep[e], dt),
-                                   ratio[e]);
+    const double length = spring_length<double>(p, elements.law_of<double>(e).softening);
+    const double kept = kept_after(creep[e], dt);
+    ratio[e] = crept_ratio<double>(length, elements.rest_length[e], given[e], yield[e], kept, ratio[e]);
   }
 };
 

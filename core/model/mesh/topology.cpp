@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 #include <tuple>
 
 #include "core/math/products.hpp"
@@ -75,6 +76,26 @@ FacePairs face_pairs(const TriangleMesh& mesh) {
   return out;
 }
 
+/// The pairs of neighbours of a vertex that are in none of its faces. beside: the two neighbours in each face. False where faces and
+/// neighbours are not those of a grid.
+bool add_lines(const Edges& beside, Edges& to) {
+  std::vector<int> near;
+  for (const auto& pair : beside) near.insert(near.end(), pair.begin(), pair.end());
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  Edges across;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    for (std::size_t j = i + 1; j < near.size(); ++j) {
+      const std::array<int, 2> pair{near[i], near[j]};
+      if (std::find(beside.begin(), beside.end(), pair) == beside.end()) across.push_back(pair);
+    }
+  }
+  to.insert(to.end(), across.begin(), across.end());
+  const std::size_t faces = beside.size(), neighbours = near.size(), lines = across.size();
+  return faces == 0 || (faces == 1 && neighbours == 2) || (faces == 2 && neighbours == 3) ||
+         (faces == 4 && neighbours == 4 && lines == 2);
+}
+
 }  // namespace
 
 std::vector<std::array<int, 2>> face_diagonals(const TriangleMesh& mesh) {
@@ -86,6 +107,38 @@ std::vector<std::array<int, 2>> face_diagonals(const TriangleMesh& mesh) {
 }
 
 std::vector<std::array<int, 2>> face_sides(const TriangleMesh& mesh) { return face_pairs(mesh).sides; }
+
+GridLines skip_one_pairs(const TriangleMesh& mesh) {
+  GridLines out;
+  std::vector<char> in_quad(mesh.triangles.size(), 0);
+  std::vector<Edges> beside(
+      static_cast<std::size_t>(mesh.n_vertices()));  // of each vertex: its neighbours, face by face
+  for (const auto& [first, n] : mesh.fans) {
+    if (n != 2) continue;
+    const auto& half = mesh.triangles[static_cast<std::size_t>(first)];
+    const std::array<int, 4> corners{half[0], half[1], half[2],
+                                     mesh.triangles[static_cast<std::size_t>(first) + 1][2]};
+    in_quad[static_cast<std::size_t>(first)] = in_quad[static_cast<std::size_t>(first) + 1] = 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+      beside[static_cast<std::size_t>(corners[k])].push_back(
+          edge_of(corners[(k + 1) % 4], corners[(k + 3) % 4]));
+    }
+  }
+  const auto lone = std::find(in_quad.begin(), in_quad.end(), 0);
+  if (lone != in_quad.end()) {
+    out.fault = "triangle " + std::to_string(lone - in_quad.begin()) + ", which is no half of a quad";
+    return out;
+  }
+  for (std::size_t v = 0; v < beside.size(); ++v) {
+    if (!add_lines(beside[v], out.pairs)) {
+      out.fault = "vertex " + std::to_string(v) + ", at which no line of a grid goes on: it is in " +
+                  std::to_string(beside[v].size()) + " quads";
+      return out;
+    }
+  }
+  sort_once(out.pairs);
+  return out;
+}
 
 std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh) {
   std::vector<std::array<int, 2>> edges;

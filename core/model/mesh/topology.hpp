@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/model/mesh/triangle_mesh.hpp"
@@ -19,6 +20,15 @@ std::vector<std::array<int, 2>> face_diagonals(const TriangleMesh& mesh);
 
 /// Sides of all faces of triangles and of fans, the same way.
 std::vector<std::array<int, 2>> face_sides(const TriangleMesh& mesh);
+
+/// Vertices two apart along the lines of a surface of quads: two neighbours of a vertex that no face has with it, the same way.
+struct GridLines {
+  std::vector<std::array<int, 2>> pairs;
+  std::string
+      fault;  // why the mesh has no such lines, "triangle 3, which is no half of a quad"; empty: it has
+};
+/// Lines go on at a vertex of four quads, or of two at the border; they end where it has one. Every other vertex is a fault.
+GridLines skip_one_pairs(const TriangleMesh& mesh);
 
 /// Edges of exactly one triangle, in the direction that the triangle runs through them, sorted
 /// by (smaller, larger).

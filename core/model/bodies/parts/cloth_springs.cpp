@@ -64,6 +64,17 @@ class ClothSprings final : public Part {
               "more than three corners: "
               "of OBJ and PLY files, and of the generator grid).",
               &Material::cloth_shear, &Material::cloth_shear_growing);
+    out.add("cloth_skip_one_N_per_m", non_negative("N/m"),
+            "Stiffness, either way, of springs between vertices two apart along a line of a grid, found from "
+            "the faces: two "
+            "neighbours of a vertex that no face has with it. Surfaces of quads alone (of OBJ and PLY files, "
+            "and of the "
+            "generator grid) whose vertices are in four, or at the border in one or two.",
+            &Material::cloth_skip_one);
+    out.add("cloth_softening_m", non_negative("m"),
+            "The length of cloth springs is sqrt(|d|^2 + this^2), smooth where two vertices meet; lengths at "
+            "rest are |d|.",
+            &Material::cloth_softening);
     out.add("cloth_exponent", positive("1"),
             "Growth of exponential parts: e-fold with every 1 over this of relative elongation.",
             &Material::cloth_exponent);
@@ -106,8 +117,14 @@ class ClothSprings final : public Part {
     if (m.cloth_yield > 0 && m.cloth_creep == 0) {
       refuse("cloth_yield", m.cloth_yield, "0 without cloth_creep_per_s: nothing yields");
     }
-    if (m.cloth_creep > 0 && !m.has_sides() && !m.has_diagonals()) {
-      refuse("cloth_creep_per_s", m.cloth_creep, "0 without a cloth spring");
+    if (!m.has_cloth_springs()) {
+      refuse_all({{"cloth_creep_per_s", m.cloth_creep}, {"cloth_softening_m", m.cloth_softening}},
+                 "0 without a cloth spring");
+    }
+    if (m.cloth_skip_one > 0) {
+      const std::string fault = skip_one_pairs(spec.mesh).fault;
+      if (!fault.empty())
+        refuse("cloth_skip_one_N_per_m", m.cloth_skip_one, "0: the mesh is no grid, it has " + fault);
     }
   }
   std::string_view lacks(const TriangleMesh& mesh, std::string_view) const override {
@@ -116,7 +133,7 @@ class ClothSprings final : public Part {
 
   void add_elements(const BodySpec& spec, BodyElements& to) const override {
     const Material& m = spec.material;
-    if (!m.has_sides() && !m.has_diagonals()) return;
+    if (!m.has_cloth_springs()) return;
     const ShrunkLengths rest(spec);
     ClothSpringPart& part = to.scene.cloth_springs;
     const auto add = [&](const Pair& local, double tension, double tension_growing, double compression,
@@ -130,6 +147,7 @@ class ClothSprings final : public Part {
       part.compression.push_back(compression);
       part.compression_growing.push_back(compression_growing);
       part.exponent.push_back(m.cloth_exponent);
+      part.softening.push_back(m.cloth_softening);
       part.yield.push_back(m.cloth_yield);
       part.creep.push_back(m.cloth_creep);
     };
@@ -138,9 +156,15 @@ class ClothSprings final : public Part {
         add(side, m.cloth_tension, m.cloth_tension_growing, m.cloth_compression, m.cloth_compression_growing);
       }
     }
-    if (!m.has_diagonals()) return;
-    for (const Pair& diagonal : face_diagonals(spec.mesh)) {
-      add(diagonal, m.cloth_shear, m.cloth_shear_growing, m.cloth_shear, m.cloth_shear_growing);
+    if (m.has_diagonals()) {
+      for (const Pair& diagonal : face_diagonals(spec.mesh)) {
+        add(diagonal, m.cloth_shear, m.cloth_shear_growing, m.cloth_shear, m.cloth_shear_growing);
+      }
+    }
+    if (m.cloth_skip_one > 0) {
+      for (const Pair& pair : skip_one_pairs(spec.mesh).pairs) {
+        add(pair, m.cloth_skip_one, 0, m.cloth_skip_one, 0);
+      }
     }
   }
 
@@ -162,6 +186,7 @@ class ClothSprings final : public Part {
       };
       SpringLaw<T> law{number("tension"), number("tension_exponential"), number("compression"),
                        number("compression_exponential"), T(10)};
+      law.softening = number("softening");
       if (fields.has("exponent")) law.exponent = static_cast<T>(fields.number("exponent", kPositive));
       const T length = (rest.x[1] - rest.x[0]).norm();
       if (!fields.wrong() && !(length > T(0))) {
