@@ -40,8 +40,8 @@ Feature impact_in_steps_of(const char* name, double dt) {
 
 /// A plate that comes down past a ball, which is between its vertices.
 json past_a_ball(const Method& method) {
-  json config = impact(method, 1e-3);
-  config["time"]["steps"] = 60;
+  json config = impact(method, 1e-4);
+  config["time"]["steps"] = 600;
   config["scene"]["bodies"] = {plate("plate", 0.035, -1)};
   config["scene"]["obstacles"].push_back(
       {{"name", "ball"}, {"kind", "sphere"}, {"point_m", {0, 0, 0.02}}, {"radius_m", 0.01}});
