@@ -39,7 +39,7 @@ class Motion:
         """
         for body in self.record["config"]["scene"].get("bodies", []):
             lumping = body.get("material", {}).get("lumping", "barycentric")
-            if body.get("rest_mesh") or lumping != "barycentric":
+            if body.get("rest_mesh") or body.get("rest_film") or lumping != "barycentric":
                 raise UserError(
                     f"{body['name']}: masses are known where mesh is the rest shape, lumping barycentric"
                 )

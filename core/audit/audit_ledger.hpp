@@ -53,6 +53,7 @@ struct AuditLedger {
                        (need.triangles == 0 || done.triangles > 0);
     const bool pairs = subjects.edges + subjects.triangles == 0 || pair_queries > 0;
     const bool all = pairs && kinds && (subjects.obstacles == 0 || done.total() > 0);
+    if (only_points) return kinds ? done.total() : 0;
     return all ? pair_queries + done.total() : 0;
   }
 

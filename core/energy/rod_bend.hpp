@@ -30,6 +30,10 @@ BB_HD T angle_between(const Vec<T, 3>& a, const Vec<T, 3>& b) {
 
 /// Rest angles below are those of a straight rod whose coordinates are rounded.
 constexpr double least_rest_angle = 1e-6;  // rad
+/// Whether two segments can be the rest shape of a rod: both have a length, and they do not fold back on each other.
+inline bool can_rest(const Vec3d& a, const Vec3d& b) {
+  return a.norm() > 0 && b.norm() > 0 && angle_between(a, b) <= 3.14159265358979323846 - least_rest_angle;
+}
 /// The angle at rest of two segments a, b (m) of a rod, rad.
 inline double rod_rest_angle(const Vec3d& a, const Vec3d& b) {
   const double angle = angle_between(a, b);

@@ -47,7 +47,7 @@ class HostEngine final : public IncrementalPotential {
   std::size_t nnz() const override { return nnz_; }
 
   double truncate(Column& dx) override;
-  Cusps cusps(const Column& x) override;
+  Cusps cusps(const Column& x, double t_end) override;
   std::string describe_non_finite() override;
   KnownStep known_step() const override;
   /// How many times the largest force of a bounded barrier the loads of a step without progress are. dx: the Newton

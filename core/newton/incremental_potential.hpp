@@ -110,7 +110,7 @@ class IncrementalPotential {
   void report(const Column& x, IterateNumbers& out);
   void report_end(const Column& x, StepNumbers& out);
   /// Elements at a cusp.
-  virtual Cusps cusps(const Column& x) = 0;
+  virtual Cusps cusps(const Column& x, double t_end) = 0;
   /// The first element with a number that is not finite; empty without one.
   virtual std::string describe_non_finite() = 0;
   /// What is frozen for the step, for the copy on the host.

@@ -173,7 +173,7 @@ EndCheck NewtonSystem::check_end() {
 // The derivatives of an element at a cusp are a choice, so the matrix proves nothing. Away from it E falls along the gradient's
 // limits: a direction of no symmetry finds one of them.
 void NewtonSystem::look_for_cusps(EndCheck& out) {
-  const Cusps found = state_.potential->cusps(state_.x);
+  const Cusps found = state_.potential->cusps(state_.x, t_end_);
   if (found.count == 0) return;
   const VecXd seeded = definiteness_right_hand_side(3 * static_cast<Eigen::Index>(found.vertices.size()));
   std::vector<double> way(static_cast<std::size_t>(state_.x.size()), 0.0);

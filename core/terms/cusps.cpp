@@ -24,9 +24,12 @@ CuspSearch::CuspSearch(const Scene& scene, Precision precision) {
   if (!scene.stitches.pairs.empty()) families_.push_back({"stitch", stitch_family(place, scene.stitches)});
 }
 
-Cusps CuspSearch::find(const PositionsView& x) const {
+Cusps CuspSearch::find(const PositionsView& x, double t_end) const {
   Cusps out;
-  for (const Named& named : families_) out.add(named.term, *named.family, x);
+  for (const Named& named : families_) {
+    named.family->change_step({.t_end = t_end});
+    out.add(named.term, *named.family, x);
+  }
   return out;
 }
 

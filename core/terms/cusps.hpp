@@ -23,12 +23,13 @@ struct Cusps {
   void add(std::string_view of, const ElementFamily& family, const PositionsView& x);
 };
 
-/// The elastic elements of a scene on the host, for a potential whose own are elsewhere. Rest shapes that creep or shrink
-/// are taken as at the start.
+/// The elastic elements of a scene on the host, for a potential whose own are elsewhere. What has crept is not known: rest shapes
+/// are those that are given.
 class CuspSearch {
  public:
   CuspSearch(const Scene& scene, Precision precision);
-  Cusps find(const PositionsView& x) const;
+  /// t_end: end of the step, s.
+  Cusps find(const PositionsView& x, double t_end) const;
 
  private:
   struct Named {

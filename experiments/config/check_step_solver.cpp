@@ -11,6 +11,7 @@
 #include "experiments/config/complain.hpp"
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/reader.hpp"
+#include "experiments/config/step_promise.hpp"
 
 namespace bb {
 namespace {
@@ -76,6 +77,14 @@ void check_hessians(const RunConfig& config, const Complain& complain) {
   }
 }
 
+/// What a step solver lets surfaces be in obstacles is less than the distance at which they are in contact.
+void check_promise(const RunConfig& config, const Complain& complain) {
+  const double promised = promised_overlap(config), d_hat = config.formulation.d_hat;
+  if (promised <= d_hat) return;
+  complain("/step_solver", fmt::format("tolerances that let surfaces be {:g} m in obstacles", promised),
+           fmt::format("at most d_hat, {:g} m", d_hat));
+}
+
 void check_protocol(const RunConfig& config, const std::string& followed, const Complain& complain) {
   const std::string asked = solver_of_protocol(config.scene), &name = config.step_solver.name;
   if (asked == name || (asked.empty() && followed.empty())) return;
@@ -138,6 +147,7 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   }
   if (settings.clamped) check_hessians(config, complain);
   check_protocol(config, settings.protocol, complain);
+  if (step_solvers().find(solver.name)) check_promise(config, complain);
   if (const auto own = settings.contradiction
                            ? settings.contradiction(solver.parameters, solver.max_iterations)
                            : std::nullopt) {

@@ -1,8 +1,12 @@
 #include "experiments/config/film_generators.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
@@ -15,6 +19,10 @@ double swing(double t, double period) { return 0.5 * (1 - std::cos(2 * std::numb
 Positions bend(const Positions& x, const ParameterMap& p, double t) {
   const double from = number(p, "from_m"), length = number(p, "to_m") - from;
   const double angle = number(p, "angle_rad") * swing(t, number(p, "period_s"));
+  if (!(length > 0)) {
+    throw ConfigError("to_m", fmt::format("{}", number(p, "to_m")),
+                      fmt::format("a number > {}, from_m (m)", from));
+  }
   if (angle == 0) return x;
   const double radius = length / angle;
   Positions out = x;

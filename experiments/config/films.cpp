@@ -18,6 +18,7 @@ using nlohmann::json;
 Rule numbers(std::string unit) {
   Rule rule = any_number(std::move(unit));
   rule.kind = Kind::numbers;
+  rule.min_size = 2;
   return rule;
 }
 
@@ -191,7 +192,12 @@ std::shared_ptr<const Film> make_film(const FilmSource& film, const TriangleMesh
     const int n = integer(film.parameters, "n_frames");
     for (int k = 0; k < n; ++k) {
       const double t = number(film.parameters, "duration_s") * k / (n - 1);
-      frames.push_back(made.pose(mesh.vertices, film.parameters, t));
+      try {
+        frames.push_back(made.pose(mesh.vertices, film.parameters, t));
+      } catch (const ConfigError& error) {
+        const Violation& wrong = error.violations().front();
+        throw ConfigError(where + "/" + wrong.where, wrong.found, wrong.allowed);
+      }
       times.push_back(t + film.start);
     }
   }

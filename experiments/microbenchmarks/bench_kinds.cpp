@@ -130,7 +130,7 @@ void register_contact_motions() {
         [&law](benchmark::State& state) {
           contact_motion(state, [&law](const Vec3d& motion) {
             const Vec3d normal = Vec3d::UnitZ(), slide = slide_of<double>(motion, normal);
-            const auto eval = [&law](double y) { return law.eval(y, 1e-5); };
+            const auto eval = [&law](double y) { return law.eval(y, {1e-5, 0.5, 1e-4}); };
             return friction_of_slide<double>(slide, normal, 0.3, eval);
           });
         });

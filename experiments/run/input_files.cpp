@@ -57,6 +57,8 @@ RunConfig name_from(const fs::path& folder, RunConfig config) {
     }
     for (FilmSource* film : films_of(body)) {
       for (HashedFile& file : film->files) file.path = relative_name(folder, file.path);
+      std::string& times = film->times_file.path;
+      if (!times.empty()) times = relative_name(folder, times);
     }
   }
   return config;

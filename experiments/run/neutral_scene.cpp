@@ -45,6 +45,7 @@ void check_motion(const Scene& scene) {
   if (scene.planar) refuse(scene, "a planar scene", "three dimensions");
   if (!scene.gravity_keys.empty()) refuse(scene, "gravity over time", "constant gravity");
   if (scene.damping.acts()) refuse(scene, "damping of velocities", "none");
+  if (!scene.rest_motions.empty()) refuse(scene, "a rest shape that moves", "rest shapes that stay");
   for (const Obstacle& o : scene.obstacles) {
     if (o.vertex >= 0) refuse(scene, "obstacle " + o.name + " moves", "obstacles that rest");
   }
@@ -98,9 +99,7 @@ struct BodyNumbers {
 
 void add_membranes(const Scene& scene, BodyNumbers& numbers) {
   for (const MembranePart& part : scene.membranes) {
-    const bool plain = part.model != "baraff_witkin" && part.shrink.empty() && part.creep.empty() &&
-                       scene.rest_motions.empty();
-    if (!plain)
+    if (part.model == "baraff_witkin" || !part.shrink.empty() || !part.creep.empty())
       refuse(scene, "a membrane of " + part.model + " that is anisotropic, shrinks or creeps",
              "an isotropic elastic membrane");
     for (std::size_t k = 0; k < part.triangles.size(); ++k) {

@@ -1,24 +1,13 @@
 #include "experiments/run/recorder.hpp"
 
 #include "core/newton/newton_system.hpp"
-#include "core/step_solvers/registry.hpp"
 #include "core/terms/contact.hpp"
+#include "experiments/config/step_promise.hpp"
 #include "experiments/run/keep_record.hpp"
 #include "experiments/run/run_summary.hpp"
 #include "experiments/run/step_energies.hpp"
 
 namespace bb {
-namespace {
-
-/// m, 0: none.
-double promised_overlap(const RunConfig& config) {
-  const StepSolverEntry& solver = step_solvers().require(config.step_solver.name, "/step_solver/name");
-  if (!solver.promised_overlap) return 0;
-  return solver.promised_overlap(
-      own_parameters(solver.parameters, config.step_solver.parameters, "/step_solver"));
-}
-
-}  // namespace
 
 Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace,
                    ArtifactWriter* artifacts)

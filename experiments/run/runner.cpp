@@ -232,6 +232,8 @@ RunRecord identified(const RunConfig& config, const RunOptions& options) {
     }
     for (const FilmSource* film : films_of(body)) {
       for (const HashedFile& file : film->files) record.scene.mesh_sha256[file.path] = file.sha256;
+      const HashedFile& times = film->times_file;
+      if (!times.path.empty()) record.scene.mesh_sha256[times.path] = times.sha256;
     }
   }
   record.provenance = collect_provenance(options.argv, thread_count(config));

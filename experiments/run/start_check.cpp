@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "core/audit/audit.hpp"
 #include "core/energy/families/limit_family.hpp"
 #include "core/exec/host_executor.hpp"
+#include "core/model/bodies/part.hpp"
+#include "core/model/scene/moving_rest.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
 #include "experiments/run/method.hpp"
@@ -53,11 +57,33 @@ std::optional<Verdict> too_long(const RunConfig& config, const Scene& scene) {
                       scene.solid_limit);
 }
 
+/// A rest shape that moves has to be one at the end of every step, also between the frames of its film.
+std::optional<Verdict> rest_failure(const RunConfig& config, const Scene& scene, const RunLimits& limits) {
+  MovingRest rest(scene);
+  if (!rest.moves()) return std::nullopt;
+  exec::HostExecutor executor;
+  std::vector<std::unique_ptr<ElementFamily>> families;
+  for (const PartEntry& entry : part_entries()) entry.part.add_families(scene, {executor}, families);
+  for (int step = 0; step < config.time.steps; ++step) {
+    const double t = (step + 1) * config.time.dt;
+    limits.look_up(part, fmt::format("in the rest shapes, at step {} of {}", step, config.time.steps));
+    if (!rest.move(t)) break;
+    try {
+      for (const auto& family : families) family->change_step({.t_end = t});
+    } catch (const ConfigError& error) {
+      return Verdict{Outcome::invalid_scene,
+                     fmt::format("the rest shape at the end of step {}, {:g} s: {}", step, t, error.what())};
+    }
+  }
+  return std::nullopt;
+}
+
 // Errors: Interrupted; TimeOver.
 std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& scene, const ContactPlan& plan,
                                        const RunLimits& limits) {
   limits.look_up(part, "before the start was looked at");
   if (auto found = too_long(config, scene)) return found;
+  if (auto found = rest_failure(config, scene, limits)) return found;
   limits.look_up(part, "before the surface was collected");
   const audit::AuditMesh mesh = audit_mesh_of(config, scene);
   limits.look_up(part, "before crossings were looked for");

@@ -70,13 +70,6 @@ TEST(Films, AreRefusedByName) {
          {"vertex", "0.1 m from where", "do not jump"});
   expect(of(film_to(Positions(1000 * x), raised)), {"1000 times as large", "unit may be another"});
   expect(of(film_to(x, [](const Vec3d&) { return Vec3d(NAN, 0, 0); })), {"no number", "at 1 s", "finite"});
-  Obstacle ball;
-  ball.name = "ball";
-  ball.kind = ObstacleKind::sphere;
-  ball.radius = 0.1;
-  ball.point = Vec3d(0, 0, 9);
-  ball.motion.film = film_to(x, raised);
-  expect(complaint({cloth("cloth", 1)}, {ball}), {"ball", "a film of an obstacle", "rigid body, or of pins"});
   BodySpec flat = cloth("flat");
   PinSpec pin;
   pin.all = true;

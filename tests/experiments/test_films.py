@@ -138,7 +138,7 @@ def test_the_inputs_of_a_run_are_kept_and_it_runs_again_from_them(program, tmp_p
     folder = tmp_path / "one/out"
     kept = sorted(p.name for p in next((folder / "inputs").iterdir()).iterdir())
     assert kept == ["box_000.obj", "box_001.obj", "box_002.obj", "box_003.obj", "times.csv"]
-    assert len(record["scene"]["mesh_sha256"]) == 4
+    assert len(record["scene"]["mesh_sha256"]) == 5
     again = bench(program, "rerun", folder / "run.json", "--out", tmp_path / "again")
     assert again.returncode == 0, again.stderr
     other = json.loads((tmp_path / "again/run.json").read_text())
@@ -196,6 +196,72 @@ def test_what_a_film_may_not_be_is_said_by_name(program, tmp_path, film):
     refused(bench(program, "check", write(tmp_path / "o.json", both)), "a film of an obstacle", "rigid body, or of pins")
 
 
+# --- films that deform, with all else that a motion has
+
+
+def turned(points, angle):
+    """Cross-sections turn the more the higher they are: every vertex goes a way of its own."""
+    a = angle * (points[:, 2] + 1)
+    c, s = np.cos(a), np.sin(a)
+    return np.stack([c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1], points[:, 2]], axis=1)
+
+
+TURNS = {"generator": "twist", "turn_rad_per_m": 0.6, "from_m": -1, "period_s": 0.2, "n_frames": 101, "duration_s": 0.1}
+
+
+def angle(t):
+    return 0.6 * 0.5 * (1 - np.cos(2 * np.pi * t / 0.2))
+
+
+def test_every_vertex_goes_its_own_way_and_the_operations_come_after(program, tmp_path):
+    moved = {"motion": {"film": TURNS, "velocity_m_per_s": [0, 0, 0.5], "end_s": 0.1}}
+    more = {"translate_m": [1, 2, 3]}
+    whole = config(moved)
+    whole["scene"].update(more)
+    whole["scene"]["bodies"][0]["transform"]["translate_m"][2] = 0.2
+    record = run(program, tmp_path / "a", whole)
+    there = states(record, tmp_path / "a/out")
+    start = there[0][-26:] - [1, 2, 3]
+    assert np.abs(there[10][-26:] - there[0][-26:]).max() > 0.05
+    for k, x in enumerate(there):
+        expected = turned(start, angle(0.01 * k)) + [1, 2, 3 + 0.5 * 0.01 * k]
+        np.testing.assert_allclose(x[-26:], expected, atol=1e-5)
+
+
+def test_a_run_on_a_film_that_is_cut_goes_on_to_the_same_end(program, tmp_path):
+    body = config({"motion": {"film": TURNS}}, output={"checkpoint_every": 1})
+    body["scene"]["bodies"][0].update(limited=False, rest_film={"generator": "grow", "factor_x": 1.2, "period_s": 0.2, "duration_s": 0.1})
+    file = write(tmp_path / "c.json", body)
+    assert bench(program, "run", file, "--out", tmp_path / "whole").returncode == 0
+    assert bench(program, "run", file, "--out", tmp_path / "cut", "--step-limit", 4).returncode == 0
+    assert bench(program, "run", file, "--out", tmp_path / "cut", "--resume").returncode == 0
+    a, b = (json.loads((tmp_path / n / "run.json").read_text()) for n in ("whole", "cut"))
+    assert a["status"]["outcome"] == "ok" and a["summary"]["steps"] == 10
+    assert a["summary"]["state_hash"] == b["summary"]["state_hash"]
+
+
+@pytest.mark.parametrize("pin", [{"hold_s": 0.03}, {"pull_N_per_m": 1e5}, {}])
+def test_pins_of_a_film_go_where_their_own_vertices_go(program, tmp_path, pin):
+    whole = config({}, time={"dt_s": 0.005, "steps": 20})
+    sheet = whole["scene"]["bodies"][0]
+    sheet.update(transform={"translate_m": [0, 0, 0.3]}, pins=[{"indices": [0, 6], "motion": {"film": TURNS}, **pin}])
+    record = run(program, tmp_path / "a", whole)
+    there = states(record, tmp_path / "a/out")
+    start = there[0][[0, 6]] - [0, 0, 0.3]  # films go through the transform of the body
+    assert record["status"]["outcome"] == "ok" and np.abs(there[-1][[0, 6]] - there[0][[0, 6]]).max() > 0.02
+    expected = turned(start, angle(0.1)) + [0, 0, 0.3]
+    np.testing.assert_allclose(there[-1][[0, 6]], expected, atol=2e-3 if "pull_N_per_m" in pin else 1e-5)
+
+
+def test_a_film_of_pins_may_differ_where_nothing_is_pinned(program, tmp_path, film):
+    whole = config({})
+    whole["scene"]["bodies"][0].update(pins=[{"indices": [3], "motion": {"film": TURNS}}])
+    assert bench(program, "check", write(tmp_path / "a.json", whole)).returncode == 0
+    jumps = {**TURNS, "start_s": -0.05}  # at the time 0 it has turned
+    whole["scene"]["bodies"][0]["pins"][0]["motion"]["film"] = jumps
+    refused(bench(program, "check", write(tmp_path / "b.json", whole)), "pins/0/motion/film", "vertex 3", "do not jump")
+
+
 # --- rest shapes
 
 
@@ -227,6 +293,24 @@ def test_a_pinned_grid_grows_along_one_axis(program, tmp_path):
     np.testing.assert_allclose(grown[:, 1:], still[:, 1:], atol=1e-4)
     held = np.isclose(x, 0)
     assert held.sum() == 5 and (grown[held] == still[held]).all()
+
+
+def test_a_rest_film_is_the_same_on_an_executor(program, tmp_path):
+    cpu = end_of(program, tmp_path / "cpu", pinned({"rest_film": GROW}))
+    host = end_of(program, tmp_path / "host", pinned({"rest_film": GROW}, device="host"))
+    assert np.abs(cpu[:, 0]).max() > 0.25
+    np.testing.assert_allclose(host, cpu, atol=1e-8)
+
+
+def test_a_rest_shape_that_is_none_between_two_frames_is_said_before_the_first_step(program, tmp_path, film):
+    sheet = pinned({})
+    points = np.array([[x, y, 0] for y in (-0.1, -0.05, 0, 0.05, 0.1) for x in np.linspace(-0.2, 0.2, 9)])
+    out = tmp_path / "half_turn"
+    out.mkdir()
+    for k, sign in enumerate((1, -1)):  # half a turn: all is on one line in between
+        (out / f"rest_{k}.obj").write_text("".join("v %.17g %.17g %.17g\n" % tuple(p * [sign, 1, 1]) for p in points))
+    sheet["scene"]["bodies"][0]["rest_film"] = {"file": str(out / "rest_0.obj"), "frame_s": 0.5}
+    refused(bench(program, "check", write(tmp_path / "c.json", sheet)), "the rest shape at the end of step 4, 0.25 s", "triangle")
 
 
 def test_a_rest_film_stands_beside_a_schedule_and_refuses_what_it_cannot_mean(program, tmp_path):

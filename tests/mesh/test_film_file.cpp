@@ -69,6 +69,10 @@ TEST(FilmFiles, NameWhatIsMissing) {
 }
 
 TEST(FilmTimes, AreTheColumnOfThatName) {
+  EXPECT_EQ(parse_film_times("frame,time_s\r\n0,0.5\r\n1,0.75\r\n", "times.csv"),
+            (std::vector<double>{0.5, 0.75}));
+  expect_says(refusal([] { parse_film_times("frame,time_s\n0,0\n1\n", "times.csv"); }),
+              {"times.csv:3", "\"\""});
   EXPECT_EQ(parse_film_times("frame,step,time_s\n0,-1,0.0\n1,0,0.25\n", "times.csv"),
             (std::vector<double>{0, 0.25}));
   expect_says(refusal([] { parse_film_times("frame,time\n0,1\n", "times.csv"); }), {"times.csv:1", "time_s"});

@@ -23,11 +23,15 @@ TEST(MovingRest, IsTheFilmTimesTheFactor) {
   MovingRest rest(of);
   ASSERT_TRUE(rest.moves());
   EXPECT_EQ(rest.start(), of.rest);
-  EXPECT_EQ(rest.at(0), of.rest);
-  const Positions half = rest.at(1);  // half way of the film: twice as long, and half of that
+  EXPECT_TRUE(rest.move(0));
+  EXPECT_EQ(rest.now(), of.rest);
+  EXPECT_TRUE(rest.move(1));
+  const Positions half = rest.now();  // half way of the film: twice as long, and half of that
   EXPECT_EQ(half.leftCols(2), of.rest.leftCols(2)) << "another body";
   EXPECT_NEAR((half.col(3) - half.col(2)).norm(), 2 * 2 * 0.5, 1e-15);
-  EXPECT_NEAR((rest.at(5).col(3) - rest.at(5).col(2)).norm(), 2 * 3 * 0.5, 1e-15) << "held after its end";
+  EXPECT_TRUE(rest.move(5));
+  EXPECT_NEAR((rest.now().col(3) - rest.now().col(2)).norm(), 2 * 3 * 0.5, 1e-15) << "held after its end";
+  EXPECT_FALSE(rest.move(6)) << "nothing is left to change";
 }
 
 TEST(MovingRest, DoesNotMoveWhereNoBodySaysSo) {

@@ -7,7 +7,7 @@ namespace bb {
 /// MODEL.REVISION.ADDITION. The first number counts fields that are gone, and readers refuse another one; the second
 /// fields that mean something else (changed_in_run, changed_in_trace) or hold more words; the third those that were added.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.9.2";
+inline constexpr const char* run_schema_version = "3.10.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 /// A field whose values are not compared with those of records before `since`.
@@ -37,6 +37,11 @@ inline constexpr ChangedMeaning changed_in_run[] = {
     {"steps[].kappa_max_N_per_m", "3.6.0", "of pairs with one closest feature their mean"},
     {"matching.contacts_considered", "3.6.0", "pairs with one closest feature counted once"},
     {"matching.contacts_left_out", "3.6.0", "pairs with one closest feature counted once"},
+    {"status.outcome", "3.10.0",
+     "invalid_scene where prescribed primitives cross, overlap where surfaces are in obstacles by no more "
+     "than the step "
+     "solver promises, unproven where a straight way cuts a corner round an obstacle"},
+    {"audit.unproven", "3.10.0", "with straight ways that cut a corner round an obstacle"},
 };
 
 inline constexpr ChangedMeaning changed_in_trace[] = {

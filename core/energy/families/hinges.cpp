@@ -13,16 +13,16 @@ namespace bb {
 namespace {
 
 /// By how much angles of a rest shape that moves differ from those of its start.
-std::vector<double> moved_angles(const HingePart& part, MovingRest& rest, double t) {
+std::vector<double> moved_angles(const HingePart& part, const MovingRest& rest) {
   const auto angle = [](const Positions& x, const std::array<int, 4>& hinge) {
     Vec3d p[4];
     for (std::size_t k = 0; k < 4; ++k) p[k] = x.col(hinge[k]);
     return hinge_angle(p);
   };
   std::vector<double> out;
-  const Positions& now = rest.at(t);
   for (const auto& hinge : part.hinges) {
-    out.push_back(std::remainder(angle(now, hinge) - angle(rest.start(), hinge), 2 * std::numbers::pi));
+    out.push_back(
+        std::remainder(angle(rest.now(), hinge) - angle(rest.start(), hinge), 2 * std::numbers::pi));
   }
   return out;
 }
@@ -74,7 +74,7 @@ class HingeFamily final : public FamilyOf<Elements> {
  private:
   void place_angles(double t) {
     if (!rest_.moves()) return;
-    moved_.upload(moved_angles(part_, rest_, t));
+    if (rest_.move(t)) moved_.upload(moved_angles(part_, rest_));
     place_.executor.each(elements_.n, PlaceHinges{crept_.data(), moved_.data(), rest_angle_.data()});
   }
 

@@ -73,7 +73,7 @@ class MembraneFamily final : public FamilyOf<Elements> {
 
  private:
   void place_shapes(double t) {
-    if (rest_.moves()) given_.set(given_rests(part_, rest_.at(t), planar_));
+    if (rest_.move(t)) given_.set(given_rests(part_, rest_.now(), planar_));
     if (!creeps_) return;
     place_.executor.each(
         elements_.n, PlaceTriangles{given_.numbers.data(), plastic_inv_.data(), elements_.n, crept_.data()});

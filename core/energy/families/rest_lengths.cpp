@@ -22,8 +22,8 @@ RestLengths::RestLengths(std::span<const std::array<int, 2>> pairs, std::vector<
 }
 
 bool RestLengths::move(double t) {
-  if (!rest_.moves()) return false;
-  const Positions& x = rest_.at(t);
+  if (!rest_.move(t)) return false;
+  const Positions& x = rest_.now();
   for (std::size_t e = 0; e < pairs_.size(); ++e) {
     const double length = distance(x, pairs_[e]);
     if (!(length > 0)) {

@@ -16,7 +16,7 @@ class RestLengths {
 
   std::span<const double> now() const { return now_; }
   /// Becomes the lengths of the time t (s): those of the start times how many times as far as there the two ends are apart at rest.
-  /// @return whether rest shapes move at all   Errors: ConfigError for two ends at one place.
+  /// @return whether now() may have changed   Errors: ConfigError for two ends at one place.
   bool move(double t);
 
  private:

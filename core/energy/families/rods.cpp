@@ -1,6 +1,8 @@
 // Rods that bend: their columns, and rest angles that move.
 #include "core/energy/families/rods.hpp"
 
+#include <fmt/format.h>
+
 #include "core/energy/element_loop.hpp"
 #include "core/energy/families/families.hpp"
 #include "core/energy/families/family_of.hpp"
@@ -26,12 +28,20 @@ class RodFamily final : public FamilyOf<Rods> {
 
  private:
   void place_angles(double t) {
-    if (!rest_.moves()) return;
-    const Positions& x = rest_.at(t);
+    if (!rest_.move(t)) return;
+    const Positions& x = rest_.now();
     std::vector<double> angle = part_.rest_angle;
     for (std::size_t e = 0; e < angle.size(); ++e) {
+      if (part_.straight[e] != 0) continue;
       const auto& [a, v, b] = part_.corners[e];
-      if (part_.straight[e] == 0) angle[e] = rod_rest_angle(x.col(v) - x.col(a), x.col(b) - x.col(v));
+      const Vec3d along = x.col(v) - x.col(a), on = x.col(b) - x.col(v);
+      if (!can_rest(along, on)) {
+        throw ConfigError(
+            "rest_film",
+            fmt::format("a rod that folds back, or has no length, at the scene's vertex {} at {:g} s", v, t),
+            "edges longer than 0 m at less than pi to each other");
+      }
+      angle[e] = rod_rest_angle(along, on);
     }
     rest_angle_.upload(angle);
   }

@@ -32,7 +32,7 @@ class TetrahedronFamily final : public FamilyOf<Tetrahedra<Model>> {
 
  private:
   void place_shapes(double t) {
-    if (rest_.moves()) shapes_.set(tetrahedron_rests(part_.tetrahedra, rest_.at(t)));
+    if (rest_.move(t)) shapes_.set(tetrahedron_rests(part_.tetrahedra, rest_.now()));
   }
 
   const SolidPart& part_;

@@ -53,30 +53,36 @@ std::string unit_hint(const Positions& film, const Positions& start) {
   return fmt::format("; the film is {:.4g} times as large as the body, so its unit may be another", ratio);
 }
 
-void check_start(const Complaints& report, const std::string& what, const Film& film,
-                 const Positions& start) {
-  const Positions x = frame_at(film, 0);
-  Eigen::Index vertex = 0;
-  const double apart = (x - start).colwise().norm().maxCoeff(&vertex);
-  const double allowed = same_place * (diagonal(start) + start.cwiseAbs().maxCoeff());
-  if (apart <= allowed) return;
-  report(what,
-         fmt::format("vertex {} {:.4g} m from where the body starts, at the time 0{}", vertex, apart,
-                     unit_hint(x, start)),
-         "a film that begins where the body starts: vertices that are prescribed do not jump");
-}
-
 }  // namespace
 
 void check_film(const Complaints& report, const std::string& what, const PrescribedMotion& motion,
-                const BodySpec& spec, bool planar, bool from_start) {
-  if (!motion.film) return;
-  const Film& film = *motion.film;
-  if (!check_numbers(report, what + "/film", film, spec.mesh.n_vertices(), planar) || !from_start) return;
-  check_start(report, what + "/film", film, spec.start ? *spec.start : spec.mesh.vertices);
+                const BodySpec& spec, bool planar) {
+  if (motion.film) check_numbers(report, what + "/film", *motion.film, spec.mesh.n_vertices(), planar);
+}
+
+void check_film_start(const Complaints& report, const std::string& what, const PrescribedMotion& motion,
+                      const Positions& start, std::span<const int> vertices) {
+  if (!motion.film || motion.film->n_vertices() != start.cols()) return;
+  const Positions x = frame_at(*motion.film, 0);
+  const double allowed = same_place * (diagonal(start) + start.cwiseAbs().maxCoeff());
+  for (const int v : vertices) {
+    const double apart = (x.col(v) - start.col(v)).norm();
+    if (apart <= allowed) continue;
+    return report(what + "/film",
+                  fmt::format("vertex {} {:.4g} m from where the body starts, at the time 0{}", v, apart,
+                              unit_hint(x, start)),
+                  "a film that begins where the body starts: vertices that are prescribed do not jump");
+  }
 }
 
 void check_rest_film(const Complaints& report, const BodySpec& spec, bool planar) {
+  for (const ShrinkKey& key : spec.material.shrink_keys) {
+    const auto& limit = spec.material.limit;
+    if (!limit || key.value < 1 + limit->onset + limit->width) continue;
+    report("/material/shrink_schedule", fmt::format("{}", key.value),
+           fmt::format("factors < {}, the strain limit of the body, which is that of its mesh",
+                       1 + limit->onset + limit->width));
+  }
   if (!spec.rest_film) return;
   const Film& film = *spec.rest_film;
   if (!check_numbers(report, "/rest_film", film, spec.mesh.n_vertices(), planar)) return;
@@ -84,11 +90,6 @@ void check_rest_film(const Complaints& report, const BodySpec& spec, bool planar
     report("/rest_film", "a strain limit of a body whose rest shape moves",
            "limited false, since a rest shape that moves would carry elements over their limit between two "
            "steps");
-  }
-  if (spec.start) {
-    const Positions x = frame_at(film, 0);
-    const std::string hint = unit_hint(x, *spec.start);
-    if (!hint.empty()) report("/rest_film", "a rest shape of another size" + hint, "a film in m");
   }
   for (const double t : film.times()) {
     const Positions x = frame_at(film, t);

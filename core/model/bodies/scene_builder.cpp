@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/input/memory.hpp"
 #include "core/math/stop_request.hpp"
+#include "core/model/bodies/film_checks.hpp"
 #include "core/model/bodies/part.hpp"
 #include "core/model/bodies/pin_selection.hpp"
 #include "core/model/bodies/scene_checks.hpp"
@@ -140,6 +142,10 @@ void SceneBuilder::pin_vertex(const std::string& body, const Pin& pin) {
 void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int first) {
   if (spec.kind == BodyKind::rigid) {
     const int motion = motion_index(spec.motion, first);
+    std::vector<int> all(static_cast<std::size_t>(spec.mesh.n_vertices()));
+    std::iota(all.begin(), all.end(), 0);
+    check_film_start({fmt::format("{}: body \"{}\"", where_, spec.name), violations_}, "/motion", spec.motion,
+                     start, all);
     for (int v = 0; v < spec.mesh.n_vertices(); ++v) pin_vertex(spec.name, {first + v, motion});
     return;
   }
@@ -151,6 +157,10 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
       continue;
     }
     const int motion = motion_index(spec.pins[p].motion, first);
+    if (!spec.pins[p].pull && !(spec.pins[p].span.hold > 0)) {
+      check_film_start({fmt::format("{}: body \"{}\"", where_, spec.name), violations_},
+                       fmt::format("/pins/{}/motion", p), spec.pins[p].motion, start, selected);
+    }
     Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors, spec.pins[p].span};
     for (const int v : selected) {
       if (v >= spec.mesh.n_vertices()) {

@@ -172,8 +172,6 @@ void check_pull(const Complaints& report, const PinSpec& pin) {
 /// An obstacle keeps its size, its normal and its axis.
 void check_obstacle_motion(const Complaints& report, const Obstacle& obstacle, bool planar) {
   check_given_motion(report, "/motion", obstacle.motion, planar);
-  if (obstacle.motion.film)
-    return report("/motion/film", "a film of an obstacle", "one of a rigid body, or of pins");
   if (obstacle.motion.changes_size()) report("/motion", "a scale", "1: obstacles keep their size");
   obstacle.motion.for_each_step([&](const MotionStep& step) {
     const bool turns = step.most_turning() > 0;
@@ -242,13 +240,13 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
   if (planar && spec.velocity[2] != 0) report("/velocity", "a z component", "0: the scene is planar");
   if (spec.kind == BodyKind::rigid) {
     check_given_motion(report, "/motion", spec.motion, planar);
-    check_film(report, "/motion", spec.motion, spec, planar, true);
+    check_film(report, "/motion", spec.motion, spec, planar);
   } else {
     check_material(report, spec, planar);
     check_rest_film(report, spec, planar);
     for (const PinSpec& pin : spec.pins) {
       (pin.pull ? check_motion : check_given_motion)(report, "/pins/motion", pin.motion, planar);
-      check_film(report, "/pins/motion", pin.motion, spec, planar, !pin.pull && !(pin.span.hold > 0));
+      check_film(report, "/pins/motion", pin.motion, spec, planar);
       check_pull(report, pin);
     }
   }

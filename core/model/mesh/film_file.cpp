@@ -112,7 +112,12 @@ std::string film_times_file(const std::string& first) {
 std::vector<double> parse_film_times(const std::string& bytes, const std::string& name) {
   std::istringstream lines(bytes);
   std::string line, field;
-  std::getline(lines, line);
+  const auto next_line = [&lines, &line] {
+    const bool there = static_cast<bool>(std::getline(lines, line));
+    if (there && line.ends_with('\r')) line.pop_back();
+    return there;
+  };
+  next_line();
   std::istringstream header(line);
   int column = -1;
   for (int k = 0; std::getline(header, field, ','); ++k) {
@@ -120,10 +125,12 @@ std::vector<double> parse_film_times(const std::string& bytes, const std::string
   }
   if (column < 0) throw ConfigError(name + ":1", "no column time_s", "a header that names one");
   std::vector<double> out;
-  for (int n = 2; std::getline(lines, line); ++n) {
+  for (int n = 2; next_line(); ++n) {
     if (line.empty()) continue;
     std::istringstream fields(line);
-    for (int k = 0; k <= column && std::getline(fields, field, ','); ++k) {
+    for (int k = 0; k <= column; ++k) {
+      field.clear();  // a row may have fewer fields than the header
+      std::getline(fields, field, ',');
     }
     double time = 0;
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), time);

@@ -1,9 +1,19 @@
 #include "core/model/scene/moving_rest.hpp"
 
+#include <algorithm>
+
 namespace bb {
 
-const Positions& MovingRest::at(double t) {
-  if (t == time_) return x_;
+MovingRest::MovingRest(const Scene& scene) : scene_(scene.rest_motions.empty() ? nullptr : &scene) {
+  for (const RestMotion& motion : scene.rest_motions) {
+    if (motion.film) last_ = std::max(last_, motion.film->times().back());
+    if (!motion.factors.empty()) last_ = std::max(last_, motion.factors.back().time);
+  }
+}
+
+bool MovingRest::move(double t) {
+  t = std::min(t, last_);
+  if (!moves() || t == time_) return false;
   time_ = t;
   x_ = scene_->rest;
   for (const RestMotion& motion : scene_->rest_motions) {
@@ -11,7 +21,7 @@ const Positions& MovingRest::at(double t) {
     if (motion.film) motion.film->at(t, own);
     if (!motion.factors.empty()) own *= value_at(motion.factors, t);
   }
-  return x_;
+  return true;
 }
 
 }  // namespace bb

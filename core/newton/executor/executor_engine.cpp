@@ -133,12 +133,12 @@ void ExecutorEngine::set_list_budget(std::size_t bytes) {
 }
 
 // No kernel looks for what next to no step has: the elements of the host do, at the positions of the end of a step.
-Cusps ExecutorEngine::cusps(const Column& x) {
+Cusps ExecutorEngine::cusps(const Column& x, double t_end) {
   if (executor_->counts_only()) return {};
   if (!cusps_) cusps_ = std::make_unique<CuspSearch>(scene_, method_.precision);
   Positions at(3, x.size() / 3);
   x.download({at.data(), static_cast<std::size_t>(at.size())});
-  return cusps_->find(at);
+  return cusps_->find(at, t_end);
 }
 
 void count_memory(NewtonSystem& system, ExecutorEngine& potential, const Scene& scene,

@@ -46,7 +46,7 @@ class ExecutorEngine final : public IncrementalPotential {
                        Column& step, Column& direction) override;
   std::size_t nnz() const override;
 
-  Cusps cusps(const Column& x) override;
+  Cusps cusps(const Column& x, double t_end) override;
   std::string describe_non_finite() override;
   KnownStep known_step() const override;
 
