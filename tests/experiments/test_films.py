@@ -139,7 +139,7 @@ def test_the_inputs_of_a_run_are_kept_and_it_runs_again_from_them(program, tmp_p
     kept = sorted(p.name for p in next((folder / "inputs").iterdir()).iterdir())
     assert kept == ["box_000.obj", "box_001.obj", "box_002.obj", "box_003.obj", "times.csv"]
     assert len(record["scene"]["mesh_sha256"]) == 5
-    again = bench(program, "rerun", folder / "run.json", "--out", tmp_path / "again")
+    again = bench(program, "run", folder / "run.json", "--out", tmp_path / "again")
     assert again.returncode == 0, again.stderr
     other = json.loads((tmp_path / "again/run.json").read_text())
     assert other["summary"]["state_hash"] == record["summary"]["state_hash"]
