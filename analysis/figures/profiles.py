@@ -12,6 +12,7 @@ import pandas as pd
 
 from .. import panels, style
 from ..captions import Facts
+from ..report.words import reservations
 from ..robustness import Trial, profile
 from .drawing import Drawing, common, formulations, outcomes
 from .subjects import SweepRecords
@@ -136,21 +137,41 @@ def draw_pairs(axis, pairs: pd.DataFrame) -> None:
     axis.grid(False)
 
 
-def _facts(runs: pd.DataFrame, found: pd.DataFrame, statistic: str) -> Facts:
+def judged_alike(runs: pd.DataFrame) -> tuple[pd.DataFrame, str]:
+    """The runs whose audit judges obstacles as that of most runs does, by surfaces or by points, since others
+    are not the same success; what of the others is to be said.
+    """
+    if "audit_obstacles_judge" not in runs:
+        return runs, ""
+    judges = runs["audit_obstacles_judge"].fillna("surface")
+    judge = judges.value_counts().sort_index(ascending=False).idxmax()  # surface before points
+    others = int((judges != judge).sum())
+    text = f"{others} runs whose audit does not judge obstacles by `{judge}` are left out" if others else ""
+    return runs[judges == judge], text
+
+
+def _facts(runs: pd.DataFrame, left_out: str, found: pd.DataFrame, statistic: str) -> Facts:
     problems = found["problem"].nunique()
+    solved = runs[(runs["outcome"] == "ok") & runs["valid"].astype(bool)]
+    held = [(row["series"], why) for _, row in solved.iterrows() if (why := reservations(row))]
+    reserved = "; ".join(f"{series} ({', '.join(why)})" for series, why in held)
     return Facts(
         f"{problems} problems, {outcomes(runs)}",
         statistic,
         "the cheapest formulation of each problem" if "ratio" in statistic else "none",
         f"problems {', '.join(dict.fromkeys(found['problem']))};"
         f" {common(runs, {'scene_free_dofs': 'unknowns'})};"
-        f" {SOLVED.format(apart=int(found['apart'].sum()), solved=int(found['solved'].sum()))}",
+        f" {SOLVED.format(apart=int(found['apart'].sum()), solved=int(found['solved'].sum()))}"
+        + (f"; {len(held)} solved runs are ok with a reservation: {reserved}" if held else "")
+        + (f"; {left_out}" if left_out else ""),
     )
 
 
 def _draw(subject: SweepRecords, drawing: Drawing, points_of, more: int):
-    """Figure, its panels, the runs, the trials of every cost, and the numbers that were drawn."""
-    runs, costs = subject.records.runs, drawing.options["costs"]
+    """Figure, its panels, the runs and what is left out of them, the trials of every cost, and the numbers
+    that were drawn.
+    """
+    (runs, left_out), costs = judged_alike(subject.records.runs), drawing.options["costs"]
     of = {cost: trials(runs, cost) for cost in costs}
     if not any(found["solved"].any() for found in of.values()):
         raise drawing.nothing(f"no run solves a problem ({outcomes(runs)})")
@@ -165,7 +186,7 @@ def _draw(subject: SweepRecords, drawing: Drawing, points_of, more: int):
         axis.set(xscale="log", ylim=(0, 1.04))
     axes[0].set_ylabel("share of problems")
     style.letter_panels(axes)
-    return fig, axes, runs, of, pd.DataFrame(rows)
+    return fig, axes, (runs, left_out), of, pd.DataFrame(rows)
 
 
 def performance_profile(subject: SweepRecords, drawing: Drawing) -> list[Path]:
@@ -181,7 +202,7 @@ def performance_profile(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     statistic = "ratio to the least cost of a problem; cells: geometric mean of the ratio, and n"
     numbers = pd.concat([numbers, pairs.assign(cost=next(iter(of)))], ignore_index=True)
     shown = PERFORMANCE.format(costs=", ".join(costs))
-    return drawing.save(fig, numbers, shown, _facts(runs, first, statistic), runs)
+    return drawing.save(fig, numbers, shown, _facts(*runs, first, statistic), runs[0])
 
 
 def data_profile(subject: SweepRecords, drawing: Drawing) -> list[Path]:
@@ -190,5 +211,5 @@ def data_profile(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     for axis, cost in zip(axes, costs):
         axis.set_xlabel(f"budget: {cost}")
     style.legend_below(fig, axes[0])
-    facts = _facts(runs, next(iter(of.values())), "share of all problems, failed ones among them")
-    return drawing.save(fig, numbers, DATA.format(costs=", ".join(costs)), facts, runs)
+    facts = _facts(*runs, next(iter(of.values())), "share of all problems, failed ones among them")
+    return drawing.save(fig, numbers, DATA.format(costs=", ".join(costs)), facts, runs[0])

@@ -202,20 +202,28 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
     if args.spot_check < 0:
         raise UserError(f"--spot-check: found {args.spot_check}; a number from 0 on is needed")
+    for name, is_given in (("--no-run", args.no_run), ("--plan", args.plan)):
+        if args.spot_check and is_given:
+            raise UserError(
+                f"--spot-check: found beside {name}, which runs nothing; allowed: one of the two, since a"
+                " spot check runs cells"
+            )
     if args.minutes is not None and not args.minutes > 0:
         raise UserError(f"--minutes: found {args.minutes}; a number above 0 is needed")
     return args
 
 
-def show_plan(spec: Spec, rows: list[dict], beyond: set[tuple[str, float]]) -> int:
+def decided(args: argparse.Namespace, rows: list[dict]) -> set[tuple]:
+    """Places of the cells that this call leaves out, since other runs decide them."""
+    return set() if args.decided else {skip.place for skip in skips_of(rows).left_out}
+
+
+def show_plan(spec: Spec, rows: list[dict], beyond: set[tuple[str, float]], left_out: set[tuple]) -> int:
     sizes = {(s.label, r): n for s in spec.scenes for r, n in s.unknowns.items()}
-    print(
-        "\n".join(
-            plan.lines(
-                plan.estimate([c for c in cells(spec) if (c.shape, c.theta) not in beyond], rows, sizes)
-            )
-        )
-    )
+    asked = [c for c in cells(spec) if (c.shape, c.theta) not in beyond and c.key not in left_out]
+    print("\n".join(plan.lines(plan.estimate(asked, rows, sizes))))
+    if left_out:
+        print(f"{len(left_out)} more cells need no run, since others decide them (--decided runs them)")
     return 0
 
 
@@ -281,7 +289,7 @@ def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
     command = "./bench gap-map" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
     found = Map(about(spec, command, rows, sources), rows)
     write(found, kept)
-    if left := counts(rows)[NOT_RUN]:
+    if left := counts(rows)[NOT_RUN] - len(decided(args, rows)):
         print(f"gap-map: {left} of {len(rows)} cells are not run yet: {command}", file=sys.stderr)
     return found
 
@@ -294,7 +302,8 @@ def main(argv: list[str]) -> int:
     spec = read_spec(args.spec)
     if args.plan:
         beyond = cannot_reach(spec)
-        return show_plan(spec, collect(spec, beyond, args.runs, told_rows(kept, spec).counted)[0], beyond)
+        rows, _ = collect(spec, beyond, args.runs, told_rows(kept, spec).counted)
+        return show_plan(spec, rows, beyond, decided(args, rows))
     check_store(kept, spec)
     # The page from the kept numbers, without the program.
     alone = args.no_run and kept.is_file() and next(args.runs.rglob("run.json"), None) is None

@@ -118,7 +118,7 @@ def diff_of(a: Folder, b: Folder) -> Diff:
     pairs, only_a, only_b = paired(a, b)
     if not pairs:
         raise UserError(
-            f"{a.root} and {b.root} have no config in common ({len(only_a)} and {len(only_b)} records);"
+            f"{a.place} and {b.place} have no config in common ({len(only_a)} and {len(only_b)} records);"
             f" allowed:"
             " folders with runs of the same config_id (./bench compare --different-configs compares two"
             " others)"

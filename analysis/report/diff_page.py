@@ -10,7 +10,7 @@ from .comparison import METRICS, Metric
 from .diff import Diff, Pair, changes
 from .gather import Entry, Folder
 from .page import filled, title
-from .tables import RECORD, Cell, Column, Table, command_of, link_to, numeric, outcome, shown_path
+from .tables import RECORD, Cell, Column, Table, command_cell, numeric, outcome, record_cell, shown_path
 from .verdict import BAD, GOOD, PLAIN, Sentence
 from .words import counted, listed, number
 
@@ -20,10 +20,6 @@ NO_NUMBER = Cell("-")
 
 def _head(entry: Entry) -> Cell:
     return Cell(entry.name, colour=look(entry.row["formulation"]).color)
-
-
-def _command(entry: Entry) -> Cell:
-    return Cell("", command=command_of(entry), copies=f"Copy the command of {entry.run}")
 
 
 def verdict(diff: Diff) -> list[Sentence]:
@@ -132,12 +128,12 @@ def regressed(diff: Diff) -> tuple[Table, int]:
                     _value(f.value),
                     Cell(_allowed(f.lower, f.upper)),
                     Cell(f.note or "-"),
-                    _command(pair.new),
+                    command_cell(pair.new),
                 ]
             )
         if pair.fault:
             lead = [_head(pair.new), Cell("not compared", tone="bad"), NO_NUMBER, NO_NUMBER, NO_NUMBER]
-            table.rows.append([*lead, NO_NUMBER, Cell(pair.fault), _command(pair.new)])
+            table.rows.append([*lead, NO_NUMBER, Cell(pair.fault), command_cell(pair.new)])
     left = max(0, len(table.rows) - MOST_REDS)
     del table.rows[MOST_REDS:]
     return table, left
@@ -202,9 +198,9 @@ def _pair(pair: Pair, shown: list[Metric], page: Path) -> list[Cell]:
         Cell(SAME_BITS[pair.same_bits], tone="bad" if pair.same_bits is False else ""),
         red,
         *(cell for metric in shown for cell in _two(metric.of(pair.old), metric.of(pair.new))),
-        Cell(Path(pair.old.run).name, href=link_to(pair.old.path, page)),
-        Cell(Path(pair.new.run).name, href=link_to(pair.new.path, page)),
-        _command(pair.new),
+        record_cell(pair.old, page),
+        record_cell(pair.new, page),
+        command_cell(pair.new),
     ]
 
 
@@ -244,10 +240,10 @@ def lonely(diff: Diff, page: Path) -> Table:
         [Column("run"), Column("only in", filtered=True), Column("outcome"), RECORD, Column("command")],
     )
     for folder, some in ((diff.a, diff.only_a), (diff.b, diff.only_b)):
-        name = str(shown_path(folder.root))
+        name = str(shown_path(folder.place))
         for entry in some:
-            link = Cell(Path(entry.run).name, href=link_to(entry.path, page))
-            table.rows.append([_head(entry), Cell(name), outcome(entry), link, _command(entry)])
+            lead = [_head(entry), Cell(name), outcome(entry)]
+            table.rows.append([*lead, record_cell(entry, page), command_cell(entry)])
         for fault in folder.unreadable:
             table.rows.append(
                 [Cell("a file"), Cell(name), Cell("unreadable", tone="bad"), Cell(fault), NO_NUMBER]
@@ -266,7 +262,7 @@ def _provenance(folder: Folder) -> str:
 
 def page(diff: Diff, out: Path) -> str:
     table, left = regressed(diff)
-    a, b = shown_path(diff.a.root), shown_path(diff.b.root)
+    a, b = shown_path(diff.a.place), shown_path(diff.b.place)
     return filled(
         "diff.html",
         title=f"{title(diff.b)} against {title(diff.a)}",

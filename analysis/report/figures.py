@@ -96,7 +96,9 @@ def drawn(folder: Folder, kept: Path | None = None) -> Figures:
                     files = [entry.path for entry in folder.groups[group]]
                     paths = _over_time(load(folder.root, files), group, Path(scratch))
             except UserError as error:
-                found.notes.append(f"{group} has no figures: {textwrap.shorten(str(error), 300)}")
+                found.notes.append(
+                    f"{group} has no figures: {textwrap.shorten(folder.told(str(error)), 300)}"
+                )
                 continue
             found.shown += [figure_of(group, path) for path in paths]
         for group in large[:MOST_GROUPS]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 from .. import processes
@@ -15,6 +15,7 @@ from ..input_file import below
 from ..record_file import RecordError, leaves, named_files, read_record, read_trace
 from ..run_rows import run_row
 from ..sweeps.cases import read_cases, sighted, split_records
+from .words import reservations
 
 PARALLEL_FROM = 200  # records, from which on reading them is shared by the cores
 SHOWN_FAULTS = 20  # of an error that names what cannot be read
@@ -31,6 +32,7 @@ class Entry:
     frames: int  # that the record names
     argv: tuple[str, ...]  # of the program
     trace_fault: str = ""  # why its trace cannot be read; its figures over time lack it
+    in_archive: bool = False  # `path` is where the archive was unpacked to, and is gone afterwards
 
     @property
     def run(self) -> str:
@@ -48,6 +50,11 @@ class Entry:
     def good(self) -> bool:
         """Whether it ended ok and every check of its validity passed."""
         return self.row["outcome"] == "ok" and bool(self.row["valid"])
+
+    @property
+    def reserved(self) -> list[str]:
+        """Why a run that counts says less than others do; empty for one that does not count."""
+        return reservations(self.row) if self.good else []
 
     def cond(self, matrix: str, statistic: str = "median") -> float | None:
         """A condition number of the clamped matrices; matrix: stage/scaling, as in the summary."""
@@ -87,6 +94,16 @@ class Folder:
     unreadable: list[str] = field(default_factory=list)  # file: place, what was found, what is allowed
     absent: list[Absent] = field(default_factory=list)
     earlier: list[Path] = field(default_factory=list)  # records of no case of their sweep as it is now
+    archive: Path | None = None  # that the folder was unpacked from
+
+    @property
+    def place(self) -> Path:
+        """Where a reader finds it: the folder, or the archive."""
+        return self.archive or self.root
+
+    def told(self, fault: str) -> str:
+        """A fault that names files, which are named as they are in the archive where there is one."""
+        return fault.replace(f"{self.root}/", "") if self.archive else fault
 
     @cached_property
     def by_run(self) -> dict[str, Entry]:
@@ -122,21 +139,22 @@ def _trace_fault(record: dict, folder: Path) -> str:
     return ""
 
 
-def _entry(path: Path, root: Path) -> Entry | str:
+def _entry(path: Path, found: Folder) -> Entry | str:
     """An entry, or why the record cannot be read."""
     try:
         record = read_record(path)
     except RecordError as error:
-        return str(error)
+        return found.told(str(error))
     checks = (record.get("validity") or {}).get("checks") or []
     return Entry(
         path,
-        run_row(record, str(path.parent.relative_to(root))),
+        run_row(record, str(path.parent.relative_to(found.root))),
         dict(leaves(record.get("config") or {})),
         tuple(check["name"] for check in checks if not check["pass"]),
         len(named_files(record, "frame")),
         tuple((record.get("provenance") or {}).get("argv") or ()),
-        _trace_fault(record, path.parent),
+        found.told(_trace_fault(record, path.parent)),
+        found.archive is not None,
     )
 
 
@@ -149,7 +167,8 @@ def _lists(root: Path, found: Folder) -> list[Path]:
         try:
             lists[file.parent] = read_cases(file.parent)
         except (UserError, KeyError, TypeError, ValueError) as error:
-            found.unreadable.append(str(error) if isinstance(error, UserError) else f"{file}: {error!r}")
+            fault = str(error) if isinstance(error, UserError) else f"{file}: {error!r}"
+            found.unreadable.append(found.told(fault))
             continue
         for case in lists[file.parent]:
             if case.record.is_file():
@@ -170,28 +189,35 @@ def _half_written(root: Path) -> list[str]:
     ]
 
 
-def gathered(root: Path) -> Folder:
-    """Errors: UserError: no folder, or no record in it that can be read; the faults are named.
+def gathered(root: Path, archive: Path | None = None) -> Folder:
+    """archive: that the folder was unpacked from. Errors: UserError: no folder, or no record in it that can
+    be read; the faults are named.
     Cost: 3 to 15 ms a record and core, most of them for its trace.
     """
     if not root.is_dir():
         what = "a file" if root.exists() else "nothing there"
         raise UserError(f"{root}: found {what}; allowed: a folder with records (run.json) below it")
-    found = Folder(root, [])
+    found = Folder(root, [], archive=archive)
     paths = _lists(root, found)
     workers = len(os.sched_getaffinity(0))
     if len(paths) < PARALLEL_FROM or workers == 1:
-        read = [_entry(path, root) for path in paths]
+        read = [_entry(path, found) for path in paths]
     else:
         with processes.pool(workers) as pool:
-            read = list(pool.map(_entry, paths, [root] * len(paths), chunksize=32))
+            read = list(
+                pool.map(partial(_entry, found=Folder(root, [], archive=archive)), paths, chunksize=32)
+            )
     found.entries = [one for one in read if isinstance(one, Entry)]
-    found.unreadable += [one for one in read if isinstance(one, str)] + _half_written(root)
+    found.unreadable += [one for one in read if isinstance(one, str)]
+    found.unreadable += map(found.told, _half_written(root))
     if not found.entries:
         faults = found.unreadable[:SHOWN_FAULTS]
         raise UserError(
             "\n".join(
-                [f"{root}: no record that can be read; allowed: a folder with run.json below it", *faults]
+                [
+                    f"{found.place}: no record that can be read; allowed: a folder with run.json below it",
+                    *faults,
+                ]
             )
         )
     return found

@@ -200,6 +200,6 @@ def sweep_commands(folder: Folder) -> list[str]:
             file.is_file() and kept.is_file() and input_file.read_bytes(file) == input_file.read_bytes(kept)
         )
         if same and file.is_relative_to(ROOT):
-            out = shown_path(kept.parent)
-            lines[f"./bench sweep {file.relative_to(ROOT)} --out {shlex.quote(str(out))}"] = None
+            out = "" if entry.in_archive else f" --out {shlex.quote(str(shown_path(kept.parent)))}"
+            lines[f"./bench sweep {file.relative_to(ROOT)}{out}"] = None
     return list(lines)

@@ -55,13 +55,13 @@ def about(folder: Folder) -> str:
 
 def title(folder: Folder) -> str:
     """The path in this repository; of a folder elsewhere the name, since a page is sent to others."""
-    path = tables.shown_path(folder.root)
+    path = tables.shown_path(folder.place)
     return path.name or path.resolve().name if path.is_absolute() else str(path)
 
 
 def commands(folder: Folder) -> list[str]:
     """Of the whole page: its sweeps, the figures, the page."""
-    root = tables.shown_path(folder.root)
+    root = tables.shown_path(folder.place)
     return [*methods.sweep_commands(folder), f"./bench figures {root}", f"./bench report {root}"]
 
 
@@ -79,6 +79,7 @@ def page(folder: Folder, out: Path, figures: Figures, players: Players) -> str:
         verdict=verdict.verdict(folder),
         limits=verdict.limits(folder),
         failures=tables.failures(folder, out),
+        reserved=tables.reserved(folder, out),
         apart=tables.not_compared(folder, out),
         comparison=tables.comparison(folder),
         figures=figures,

@@ -81,7 +81,8 @@ def made(folder: Folder, most: int = MOST) -> Players:
             found.shown.append(_player(runs))
             shown |= {run.run for run in runs}
         except UserError as error:
-            found.notes.append(f"No player of {listed([run.run for run in runs])}: {error}")
+            why = folder.told(str(error))
+            found.notes.append(f"No player of {listed([run.run for run in runs])}: {why}")
     if found.shown:
         found.library = packed_library()
     if left := kept - len(shown):

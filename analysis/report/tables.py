@@ -52,6 +52,9 @@ class Table:
         return sorted({row[index].text for row in self.rows})
 
 
+NONE = Cell("-")
+
+
 def numeric(value: float | None, digits: int = 3) -> Cell:
     return Cell(number(value, digits), None if value is None else float(value))
 
@@ -63,12 +66,16 @@ def shown_path(path: Path) -> Path:
 
 
 def command_of(entry: Entry) -> str:
-    """The line that makes the record again, in a folder of its own, and compares the two."""
-    return f"./bench run {shlex.quote(str(shown_path(entry.path)))}"
+    """The line that makes the record again, in a folder of its own, and compares the two; empty for one that
+    is in an archive: no verb runs it from there.
+    """
+    return "" if entry.in_archive else f"./bench run {shlex.quote(str(shown_path(entry.path)))}"
 
 
-def _command(entry: Entry) -> Cell:
-    return Cell("", command=command_of(entry), copies=f"Copy the command of {entry.run}")
+def command_cell(entry: Entry) -> Cell:
+    if not (command := command_of(entry)):
+        return NONE
+    return Cell("", command=command, copies=f"Copy the command of {entry.run}")
 
 
 def link_to(path: Path, page: Path) -> str:
@@ -76,7 +83,10 @@ def link_to(path: Path, page: Path) -> str:
     return quote(Path(os.path.relpath(path.resolve(), page.resolve().parent)).as_posix())
 
 
-def _record(entry: Entry, page: Path) -> Cell:
+def record_cell(entry: Entry, page: Path) -> Cell:
+    """A link to it; where it is in an archive, its place there."""
+    if entry.in_archive:
+        return Cell(Path(entry.run, entry.path.name).as_posix())
     return Cell(Path(entry.run).name, href=link_to(entry.path, page))
 
 
@@ -88,11 +98,21 @@ def outcome(entry: Entry) -> Cell:
     word = entry.row["outcome"]
     if word == "ok" and not entry.row["valid"]:
         return Cell("ok, not valid", tone="bad")
+    if entry.reserved:
+        return Cell(f"ok: {', '.join(entry.reserved)}")
     return Cell(word, tone="good" if word == "ok" else "bad")
 
 
-RECORD = Column("record", "folder of its run.json; the link works while the page lies beside the records")
-COMMAND = Column("command", "makes the record again in a folder of its own and says whether it is the same")
+RECORD = Column(
+    "record",
+    "folder of its run.json, with a link that works while the page lies beside the records; of an archive the"
+    " path of run.json in it",
+)
+COMMAND = Column(
+    "command",
+    "makes the record again in a folder of its own and says whether it is the same; -: the record is in an"
+    " archive, which has to be unpacked for that",
+)
 
 
 def _why(entry: Entry) -> str:
@@ -106,7 +126,6 @@ def _how_far(entry: Entry) -> Cell:
     return Cell("-") if steps is None else Cell(f"{steps} of {entry.settings.get('/time/steps', '?')}", steps)
 
 
-NONE = Cell("-")
 UNREADABLE = Cell("unreadable", tone="bad")
 
 
@@ -114,7 +133,7 @@ def _failed(entry: Entry, page: Path) -> list[Cell]:
     """A run that did not end ok, or is not valid."""
     said = Cell(entry.row.get("detail") or "-")
     lead = [_head(entry), Cell(entry.group), outcome(entry), Cell(_why(entry)), said]
-    return [*lead, _how_far(entry), _record(entry, page), _command(entry)]
+    return [*lead, _how_far(entry), record_cell(entry, page), command_cell(entry)]
 
 
 def _absent(one: Absent) -> list[Cell]:
@@ -133,7 +152,7 @@ def _without_trace(entry: Entry, page: Path) -> list[Cell]:
     """A run whose record can be read, and its trace cannot."""
     why = Cell("its trace: the numbers of its record count, and no figure over time has it")
     lead = [_head(entry), Cell(entry.group), UNREADABLE, why, Cell(entry.trace_fault)]
-    return [*lead, _how_far(entry), _record(entry, page), _command(entry)]
+    return [*lead, _how_far(entry), record_cell(entry, page), command_cell(entry)]
 
 
 def _earlier(path: Path) -> list[Cell]:
@@ -167,6 +186,31 @@ def failures(folder: Folder, page: Path) -> Table:
     return table
 
 
+def reserved(folder: Folder, page: Path) -> Table:
+    """Runs that count, though not all of their surfaces were kept out of everything."""
+    table = Table(
+        "reserved",
+        "Ended ok, and its surfaces may be in obstacles or in each other",
+        [
+            Column("run"),
+            Column("group", filtered=True),
+            Column("outcome", "ok, and what its audit allows"),
+            Column("what the record says"),
+            Column(
+                "deepest overlap m", "of a primitive and an obstacle at the end of a step", is_number=True
+            ),
+            RECORD,
+            COMMAND,
+        ],
+    )
+    for entry in folder.entries:
+        if entry.reserved:
+            lead = [_head(entry), Cell(entry.group), outcome(entry), Cell(entry.row.get("detail") or "-")]
+            deepest = numeric(entry.row.get("audit_overlap_max_m"))
+            table.rows.append([*lead, deepest, record_cell(entry, page), command_cell(entry)])
+    return table
+
+
 def not_compared(folder: Folder, page: Path) -> Table:
     """Runs that count, and whose numbers must not be held against their reference."""
     table = Table(
@@ -192,8 +236,8 @@ def not_compared(folder: Folder, page: Path) -> Table:
                     Cell(row.get("comparability_reason") or "-"),
                     Cell(row.get("comparability_pair") or "-"),
                     numeric(row.get("comparability_pair_ratio")),
-                    _record(entry, page),
-                    _command(entry),
+                    record_cell(entry, page),
+                    command_cell(entry),
                 ]
             )
     return table
@@ -206,13 +250,21 @@ def _factor(factor: Factor | None) -> Cell:
     return Cell(number(factor.mean, 2) + spread, factor.mean)
 
 
+def _good(one: Beside) -> Cell:
+    """How many count; it is no plain success where some of them count with a reservation."""
+    kept = sum(bool(run.reserved) for run in one.runs)
+    with_all = "" if kept else "good"
+    text = f"{one.good} of {len(one.runs)}" + (f", {kept} with reservations" if kept else "")
+    return Cell(text, one.good, with_all if one.good == len(one.runs) else "bad")
+
+
 def _beside(one: Beside) -> list[Cell]:
     reference = one.reference or ("is the reference" if one.is_reference else "none in this folder")
     return [
         Cell(one.contender, colour=look(one.runs[0].row["formulation"]).color),
         Cell(one.group),
         Cell(reference),
-        Cell(f"{one.good} of {len(one.runs)}", one.good, "good" if one.good == len(one.runs) else "bad"),
+        _good(one),
         Cell(str(one.count("comparable")), one.count("comparable")),
         *(_factor(one.factors.get(metric.key)) for metric in METRICS),
     ]
@@ -228,7 +280,12 @@ def comparison(folder: Folder) -> Table:
             Column("formulation"),
             Column("group", filtered=True),
             Column("reference"),
-            Column("ok", "ended ok and valid, of all runs", is_number=True),
+            Column(
+                "ok",
+                "ended ok and valid, of all runs; with reservations: surfaces may be in obstacles or in each"
+                " other, see Failures",
+                is_number=True,
+            ),
             Column("comparable", "runs that the program calls comparable", is_number=True),
             *(Column(f"{metric.heading}, x", metric.meaning, is_number=True) for metric in METRICS),
         ],
@@ -268,8 +325,8 @@ def _run(entry: Entry, swept: list[str], page: Path) -> list[Cell]:
         numeric(entry.wall_s),
         numeric(row.get("scene_free_dofs"), 9),
         *(_setting(row.get(name)) for name in swept),
-        _record(entry, page),
-        _command(entry),
+        record_cell(entry, page),
+        command_cell(entry),
     ]
 
 

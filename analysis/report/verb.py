@@ -14,7 +14,7 @@ from ..front.arguments import parser_of
 from ..study.archive import beside, study
 from ..whole_file import write_whole
 from . import figures, players
-from .gather import gathered
+from .gather import Folder, gathered
 from .page import page
 from .verdict import headline
 
@@ -33,22 +33,28 @@ def write_page(out: Path, text: str) -> None:
         ) from None
 
 
-def report(folder: Path, out: Path, drawn: Path | None = None, most_players: int = players.MOST) -> str:
+def report(
+    folder: Path,
+    out: Path,
+    drawn: Path | None = None,
+    most_players: int = players.MOST,
+    archive: Path | None = None,
+) -> str:
     """Writes the page of a folder; what is to be said of it. drawn: where ./bench figures has just drawn
-    the figures of these records. Errors: UserError, RecordError.
+    the figures of these records. archive: that the folder was unpacked from. Errors: UserError, RecordError.
     """
-    found = gathered(folder)
+    found = gathered(folder, archive)
     text = page(found, out, figures.drawn(found, drawn), players.made(found, most_players))
     write_page(out, text)
     return f"{headline(found).text}\n{out} ({out.stat().st_size / 1e6:.1f} MB)"
 
 
-def report_of_two(a: Path, b: Path, out: Path) -> str:
+def report_of_two(a: Folder, b: Folder, out: Path) -> str:
     """The same of what differs between two folders. Errors: UserError, RecordError."""
     from . import diff_page  # takes what judges records, and scipy: a page of one folder needs neither
     from .diff import diff_of
 
-    diff = diff_of(gathered(a), gathered(b))
+    diff = diff_of(a, b)
     write_page(out, diff_page.page(diff, out))
     return f"{diff_page.verdict(diff)[0].text}\n{out} ({out.stat().st_size / 1e6:.1f} MB)"
 
@@ -86,9 +92,16 @@ def main(argv: list[str]) -> int:
     args = parser.parse_args(argv)
     if args.other is None:
         with study(args.folder) as (folder,):
-            print(report(folder, args.out or beside(args.folder, NAME), most_players=args.players))
+            archive = args.folder if folder != args.folder else None
+            out = args.out or beside(args.folder, NAME)
+            print(report(folder, out, most_players=args.players, archive=archive))
         return 0
-    with study(args.folder, args.other) as (first, second):
+    asked = args.folder, args.other
+    with study(*asked) as (first, second):
+        found = [
+            gathered(folder, path if folder != path else None)
+            for folder, path in zip((first, second), asked, strict=True)
+        ]
         out = args.out or beside(args.other, NAME_OF_TWO.format(first.resolve().name))
-        print(report_of_two(first, second, out))
+        print(report_of_two(*found, out))
     return 0

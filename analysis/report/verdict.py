@@ -50,6 +50,21 @@ def headline(folder: Folder) -> Sentence:
     return Sentence("; ".join([text, *parts]) + ".", BAD)
 
 
+def reserved(folder: Folder) -> list[Sentence]:
+    """Runs that ended ok with less than others promise."""
+    runs = [run for run in folder.entries if run.reserved]
+    if not runs:
+        return []
+    names = listed([f"{run.name} ({', '.join(run.reserved)})" for run in runs])
+    return [
+        Sentence(
+            f"{counted(len(runs), 'run').capitalize()} of these {_are(len(runs))} ok with a reservation:"
+            f" {names}. What each of them means stands under Failures.",
+            BAD,
+        )
+    ]
+
+
 def crossings(folder: Folder) -> list[Sentence]:
     audited = [run for run in folder.entries if run.faults is not None]
     through = [run for run in audited if run.faults]
@@ -243,4 +258,4 @@ def limits(folder: Folder) -> list[str]:
 
 def verdict(folder: Folder) -> list[Sentence]:
     """The headline first."""
-    return [headline(folder), *crossings(folder), *comparability(folder), *ratios(folder)]
+    return [headline(folder), *reserved(folder), *crossings(folder), *comparability(folder), *ratios(folder)]

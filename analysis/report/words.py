@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 # Words of core/base/record/outcome.hpp; a test holds the keys to the schema.
 OUTCOMES = {
-    "invalid_scene": "the scene cannot be run: its pilot could not be matched; there is no first step",
-    "given_parts_cross": "parts that the scene itself moves or fixes cross each other, which no solver decides",
+    "invalid_scene": (
+        "the scene cannot be run: an element begins beyond its strain limit, or its calibration run could not"
+        " be matched; there is no first step"
+    ),
+    "given_parts_cross": (
+        "parts that the scene itself moves or fixes cross each other, which no solver decides"
+    ),
     "initial_intersection": "surfaces cross each other before the first step; there is no first step",
     "penetration": "the audit found a surface in or through another",
     "nan": "an energy, a gradient or a position is no finite number",
@@ -34,6 +41,18 @@ COMPARED = {
 def meaning(outcome: str) -> str:
     """Of an outcome; a word of a later version has none here."""
     return OUTCOMES.get(outcome, "a word that this version does not know (./bench help record)")
+
+
+def reservations(row: Mapping) -> list[str]:
+    """What the audit of a run that ended ok allows, by a row of `runs`; empty: its surfaces kept out of each
+    other and of all obstacles.
+    """
+    found = {
+        "obstacles are judged by points": row.get("audit_obstacles_judge") == "points",
+        "overlaps within its promise": (row.get("audit_overlaps") or 0) > 0,
+        "corners of obstacles cut": (row.get("audit_corners_cut") or 0) > 0,
+    }
+    return [text for text, holds in found.items() if holds]
 
 
 def counted(count: int, one: str, many: str = "") -> str:

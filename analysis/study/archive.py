@@ -8,37 +8,54 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import lzma
 import os
 import shutil
 import tempfile
 import zipfile
 import zlib
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 from .. import input_file
 from ..digests import BLOCK, of_file
 from ..errors import UserError
+from ..sweeps.cases import RUNNING, Case, sighted
 from ..whole_file import whole
 
 SCHEMA = "barrierbench.archive/1"
 MANIFEST = "archive.json"
 LOCK = "bench.lock"  # of a folder that a run is in
+# What reading an entry raises: damaged, cut short, encrypted (RuntimeError), packed in a way that Python
+# does not know (NotImplementedError, which is one).
+UNREADABLE = (zipfile.BadZipFile, EOFError, zlib.error, lzma.LZMAError, RuntimeError)
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # that a ZIP archive can say: the same files make the same archive
 
 
+def _require_over(folder: Path) -> None:
+    """Errors: UserError where a run or a sweep is at work: what it has written so far is no study."""
+    holder = sighted(Case(0, folder, "", "", {}))
+    if holder.state == RUNNING:
+        raise UserError(
+            f"{folder}: found {holder.detail}, at work in it; allowed: a folder that no run is in"
+        )
+
+
 def files_of(folder: Path) -> list[Path]:
-    """All files below a folder but locks, by their paths. Errors: UserError: no folder, no record in it."""
+    """All files below a folder but locks and archive.json of an archive that was unpacked there, by their
+    paths. Errors: UserError: no folder, no record in it, a run at work in it.
+    """
     if not folder.is_dir():
         raise UserError(
             f"{folder}: no such folder; the folder of a study, with records (run.json), is needed"
         )
-    found = sorted(
-        Path(place) / name for place, _, names in os.walk(folder) for name in names if name != LOCK
-    )
+    found = sorted(Path(place) / name for place, _, names in os.walk(folder) for name in names)
+    for lock in (path for path in found if path.name == LOCK):
+        _require_over(lock.parent)
     if not any(path.name == "run.json" for path in found):
         raise UserError(f"{folder}: no run.json below this folder; the folder of a study is needed")
-    return found
+    return [path for path in found if path.name != LOCK and path != folder / MANIFEST]
 
 
 def _add(archive: zipfile.ZipFile, path: Path, name: str) -> dict:
@@ -83,24 +100,40 @@ def _stays_inside(name: str) -> bool:
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[zipfile.ZipFile]:
     """To be read."""
-    with input_file.opened(path, input_file.TRAJECTORY) as file, zipfile.ZipFile(file) as archive:
-        yield archive
+    with input_file.opened(path, input_file.TRAJECTORY) as file:
+        try:
+            archive = zipfile.ZipFile(file)
+        except UNREADABLE as error:
+            raise _refused(path, f"a ZIP archive that cannot be read ({error})") from None
+        with archive:
+            yield archive
+
+
+def _line_fault(line: object) -> str:
+    """What is wrong with a line of archive.json; empty: nothing."""
+    for key, kind in (("path", str), ("bytes", int), ("sha256", str)):
+        if not isinstance(line, dict) or not isinstance(line.get(key), kind):
+            return f"{MANIFEST}#/files: found {json.dumps(line)[:100]}, without {key!r}"
+    return ""
 
 
 def manifest(archive: zipfile.ZipFile, path: Path) -> list[dict]:
-    """The lines of archive.json. Errors: UserError: none there, another version, names that the archive does
-    not have or does not say, names that lead out of the folder.
+    """The lines of archive.json. Errors: UserError: none there, another version, a line without what it has
+    to say, names that the archive does not have or does not say, names that lead out of the folder.
     """
     try:
         data = json.loads(archive.read(MANIFEST))
-        version, lines = data.get("schema"), data.get("files")
-        names = [line["path"] for line in lines] if version == SCHEMA else []
-    except (KeyError, ValueError, TypeError, AttributeError, zipfile.BadZipFile):
+        version, lines = data.get("schema"), list(data.get("files"))
+    except (KeyError, ValueError, TypeError, AttributeError, *UNREADABLE):
         raise _refused(path, f"no {MANIFEST} in it that can be read") from None
     if version != SCHEMA:
         raise _refused(path, f"{MANIFEST}#/schema: found {version!r}")
+    if fault := next(filter(None, map(_line_fault, lines)), ""):
+        raise _refused(path, fault)
+    names = [line["path"] for line in lines]
     held = sorted(name for name in archive.namelist() if name != MANIFEST)
-    if unlike := sorted(set(held) ^ set(names)) or (held if len(held) != len(set(held)) else []):
+    twice = [name for of in (Counter(held), Counter(names)) for name, count in of.items() if count > 1]
+    if unlike := sorted(set(held) ^ set(names)) or twice:
         raise _refused(path, f"{MANIFEST} and what is in it differ in {unlike[0]!r}")
     if outside := [name for name in names if not _stays_inside(name)]:
         raise _refused(path, f"the name {outside[0]!r}, which leads out of the folder")
@@ -112,12 +145,12 @@ def _unpack(archive: zipfile.ZipFile, line: dict, path: Path, folder: Path) -> N
     out, size = folder / line["path"], archive.getinfo(line["path"]).file_size
     if size != line["bytes"]:
         raise _refused(path, f"{line['path']} of {size} bytes, {line['bytes']} in {MANIFEST}")
-    out.parent.mkdir(parents=True, exist_ok=True)
     try:
+        out.parent.mkdir(parents=True, exist_ok=True)
         with archive.open(line["path"]) as source, out.open("wb") as target:
             shutil.copyfileobj(source, target, BLOCK)
-    except (zipfile.BadZipFile, EOFError, zlib.error):
-        raise _refused(path, f"{line['path']} cannot be read") from None
+    except (OSError, *UNREADABLE) as error:
+        raise _refused(path, f"{line['path']} cannot be read ({error})") from None
     if (found := of_file(out)) != line["sha256"]:
         raise _refused(path, f"{line['path']} with sha256 {found[:16]}, {line['sha256'][:16]} in {MANIFEST}")
 

@@ -7,11 +7,29 @@ Exit codes: 0 written, 2 no record below the folder, or the file cannot be writt
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
+from ..input_file import below
+from ..record_file import RecordError, read_record
 from .archive import packed
+from .named import inputs, leads_out
+
+
+def inputs_outside(folder: Path) -> list[str]:
+    """Files that records below the folder were made of and that lie elsewhere. A record that cannot be read
+    names none.
+    """
+    found = {}
+    for path in below(folder, "run.json"):
+        try:
+            names = inputs(read_record(path))
+        except RecordError:
+            continue
+        found |= {name: None for name in names if leads_out(folder, path.parent, name)}
+    return list(found)
 
 
 @tells("archive")
@@ -23,6 +41,13 @@ def main(argv: list[str]) -> int:
     if args.file.suffix != ".zip":
         raise UserError(f"{args.file}: found the suffix {args.file.suffix!r}; .zip is needed")
     lines = packed(args.folder, args.file)
+    if outside := inputs_outside(args.folder):
+        print(
+            f"archive: {len(outside)} inputs lie outside {args.folder} and are not in the archive, the first"
+            f" {outside[0]}: runs that need them cannot be made again from it; ./bench run and ./bench sweep"
+            " copy inputs beside the record with --keep-inputs",
+            file=sys.stderr,
+        )
     records = sum(Path(line["path"]).name == "run.json" for line in lines)
     before, after = sum(line["bytes"] for line in lines) / 1e6, args.file.stat().st_size / 1e6
     print(f"{args.file}: {records} records, {len(lines)} files, {after:.1f} MB ({before:.1f} MB unpacked)")

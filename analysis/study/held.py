@@ -17,15 +17,17 @@ from ..record_file import RecordError, read_record, read_trace, sha256_of
 from ..sweeps.cases import read_cases
 from . import ids
 from .archive import LOCK, MANIFEST
+from .found import contradictions
+from .named import artifacts, inputs, leads_out, unlike_config
 
 MISSING, EXTRA, EDITED = "missing", "extra", "edited"
-INPUTS = "inputs"  # where --keep-inputs copies files to
 
 
 @dataclass
 class Held:
     """What was judged, and what is wrong: (missing, extra or edited, file, what was found)."""
 
+    of_archive: bool = False  # the folder is an unpacked archive, which no file outside belongs to
     records: int = 0
     files: int = 0  # that records name
     ids: int = 0
@@ -33,7 +35,8 @@ class Held:
     cases: int = 0  # of sweeps
     listed: int = 0  # files of an archive that a folder is held against
     wrong: list[tuple[str, str, str]] = field(default_factory=list)
-    good: list[Path] = field(default_factory=list)  # records with nothing wrong
+    outside: dict[Path, list[str]] = field(default_factory=dict)  # record -> inputs that an archive has not
+    good: list[Path] = field(default_factory=list)  # records with nothing wrong and with all their inputs
 
     @property
     def judged(self) -> int:
@@ -58,48 +61,27 @@ def _of_steps() -> dict[str, Callable]:
 
 
 def _check_sums(record: dict, path: Path, root: Path, held: Held) -> None:
+    summary, steps = record["summary"], record["steps"]
+    if (count := summary.get("steps", len(steps))) != len(steps):
+        held.say(EDITED, path, root, f"summary/steps is {count}, and there are {len(steps)} steps")
+        return
     for name, follows in _of_steps().items():
-        steps = [value for step in record["steps"] if (value := step.get(name)) is not None]
-        stated = record["summary"].get(name)
-        if not steps or stated is None:
+        values = [value for step in steps if (value := step.get(name)) is not None]
+        if not values or name not in summary:
             continue
         held.sums += 1
-        if follows(steps) != stated:
-            why = f"summary/{name} is {stated}, the {follows.__name__} of its steps {follows(steps)}"
+        if follows(values) != summary[name]:
+            why = f"summary/{name} is {summary[name]}, the {follows.__name__} of its steps {follows(values)}"
             held.say(EDITED, path, root, why)
 
 
 def _check_ids(record: dict, path: Path, root: Path, held: Held) -> None:
-    stated = record["ids"]
-    if not stated.get("config_id"):
-        return
     for name, found in zip(("config_id", "run_id"), ids.of_record(path)):
+        stated = record["ids"].get(name) or "empty"
         held.ids += 1
-        if stated[name] != found:
-            why = f"ids/{name} is {stated[name][:16]}, that of its contents {found[:16]}"
+        if stated != found:
+            why = f"ids/{name} is {stated[:16]}, that of its contents {found[:16]}"
             held.say(EDITED, path, root, why)
-
-
-def _inputs(value: object) -> Iterator[dict]:
-    """Files that a config names: meshes, with their sha256."""
-    if isinstance(value, dict):
-        if "sha256" in value and value.get("file"):
-            yield value
-        for below_it in value.values():
-            yield from _inputs(below_it)
-    elif isinstance(value, list):
-        for below_it in value:
-            yield from _inputs(below_it)
-
-
-def _named(record: dict) -> list[tuple[str, str]]:
-    """(path from the folder of the record, sha256) of all files that it names."""
-    files = [(file["path"], file["sha256"]) for file in record.get("artifacts") or []]
-    plugins = [
-        one for one in record["provenance"].get("plugins") or [] if not one["name"].startswith("formula:")
-    ]
-    inputs = [(one["file"], one["sha256"]) for one in [*_inputs(record["config"]), *plugins]]
-    return list(dict.fromkeys(files + inputs))
 
 
 def _own_files(folder: Path) -> Iterator[Path]:
@@ -110,17 +92,22 @@ def _own_files(folder: Path) -> Iterator[Path]:
 
 
 def _check_files(record: dict, path: Path, root: Path, held: Held) -> None:
-    named = _named(record)
-    for name, sha256 in named:
+    named = inputs(record) | artifacts(record)
+    for name, sha256 in named.items():
+        if held.of_archive and leads_out(root, path.parent, name):
+            held.outside.setdefault(path, []).append(name)
+            continue
         held.files += 1
         file = path.parent / name
         if not file.is_file():
             held.say(MISSING, path, root, f"{name}, which it names, is not there")
         elif (found := sha256_of(file)) != sha256:
             held.say(EDITED, path, root, f"{name} has sha256 {found[:16]}; it names {sha256[:16]}")
-    known = {path, path.with_name(LOCK), *(path.parent / name for name, _ in named)}
+    for name in unlike_config(record):
+        held.say(EDITED, path, root, f"{name}: its sha256 in the config is not that of scene/mesh_sha256")
+    known = {path, path.with_name(LOCK), *(path.parent / name for name in named)}
     for file in _own_files(path.parent):
-        if file not in known and path.parent / INPUTS not in file.parents:
+        if file not in known:
             held.say(EXTRA, file, root, "the record beside it does not name it")
 
 
@@ -135,12 +122,14 @@ def _check_record(path: Path, root: Path, held: Held) -> None:
     _check_files(record, path, root, held)
     _check_ids(record, path, root, held)
     _check_sums(record, path, root, held)
+    for why in contradictions(record):
+        held.say(EDITED, path, root, why)
     if len(held.wrong) == before:
         try:
             read_trace(record, path.parent)
         except RecordError as error:
             held.say(EDITED, path, root, str(error))
-    if len(held.wrong) == before:
+    if len(held.wrong) == before and path not in held.outside:
         held.good.append(path)
 
 
@@ -169,11 +158,13 @@ def _check_cases(folder: Path, root: Path, held: Held) -> None:
             held.say(EXTRA, record, root, "no case of the sweep")
 
 
-def held_folder(root: Path) -> Held:
-    """Every record and every list of cases below a folder. Errors: UserError where there is no folder."""
+def held_folder(root: Path, of_archive: bool = False) -> Held:
+    """Every record and every list of cases below a folder, which may be an unpacked archive. Errors:
+    UserError where there is no folder.
+    """
     if not root.is_dir():
         raise UserError(f"{root}: no such folder; the folder of a study, or an archive of one, is needed")
-    held = Held()
+    held = Held(of_archive)
     for path in below(root, "run.json"):
         _check_record(path, root, held)
     for path in below(root, "cases.json"):

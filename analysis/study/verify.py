@@ -1,10 +1,10 @@
 """The records below a folder, or in an archive of ./bench archive, held against their files. Of every record:
 it is read as strictly as for a comparison; config_id and run_id are those of what it holds; counts and
-largest values of its summary are those of its steps; every file that it names is there with the sha256 that
-it names; and no other file lies in its folder. Of every sweep: each case has its record, and no record is of
-no case. A number that is none of these may be edited unseen: --rerun N makes N of the runs again, chosen by
---seed, and asks for the same state and the same numbers to the last bit; --archive FILE holds every file
-against those that were packed.
+largest values of its summary are those of its steps; its outcome agrees with its checks and its audit; every
+file that it names is there with the sha256 that it names; and no other file lies in its folder. Of every
+sweep: each case has its record, and no record is of no case. A number that is none of these may be edited
+unseen: --rerun N makes N of the runs again, chosen by --seed, and asks for the same state and the same
+numbers to the last bit; --archive FILE holds every file against those that were packed.
 
 Exit codes: 0 nothing is wrong, 1 something is, or nothing was judged, 2 no folder, no archive.
 """
@@ -26,6 +26,7 @@ from ..record_file import RecordError, leaves
 from ..text_table import fitted
 from .archive import read_manifest, study
 from .held import Held, against, held_folder
+from .named import meshes
 
 SAME, DIFFERS, NOT_JUDGED = "same", "differs", "not judged"
 FOUND = ("scene", "matching", "audit", "validity", "summary", "steps")  # sections with what a run has found
@@ -74,8 +75,11 @@ def _rerun(path: Path) -> tuple[str, str]:
 
 
 def found_by(record: dict) -> dict[str, object]:
-    """Place -> every value that a run has found, without times and what else of the machine it says."""
+    """Place -> every value that a run has found, without times and what else of the machine it says. Its
+    inputs count by their contents: it names them from its folder, which is another one.
+    """
     known = {"status": {"outcome": record["status"]["outcome"]}, **{name: record[name] for name in FOUND}}
+    known["scene"] = {**known["scene"], "mesh_sha256": sorted(set(meshes(record).values()))}
     return {
         place: value
         for place, value in leaves(known)
@@ -118,6 +122,11 @@ def report(held: Held, reruns: Counter, asked: int) -> int:
         f"judged: {held.records} records with {held.files} files, {held.ids} ids and {held.sums} numbers of"
         f" summaries; {held.cases} cases of sweeps; {held.listed} files against an archive"
     )
+    if held.outside:
+        print(
+            f"not judged: {sum(map(len, held.outside.values()))} inputs of {len(held.outside)} records lie"
+            " outside the archive, and these records cannot be run again from it"
+        )
     if asked:
         print(
             f"reruns: {reruns.total()} of {asked} asked for: {reruns[SAME]} the same to the last bit,"
@@ -132,9 +141,9 @@ def report(held: Held, reruns: Counter, asked: int) -> int:
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
     with study(args.study) as (root,):
-        held = held_folder(root)
+        held = held_folder(root, of_archive=root != args.study)
         if args.archive:
-            if root != args.study:
+            if held.of_archive:
                 raise UserError(
                     f"--archive: found {args.study}, an archive itself; a folder is needed with it"
                 )

@@ -2,6 +2,8 @@
 
 import argparse
 import json
+import re
+import shutil
 
 import pytest
 from test_gap_map_verb import ROOT, small
@@ -77,6 +79,45 @@ def test_a_decided_cell_is_not_run_and_a_spot_check_runs_it(overloaded, capsys):
     rows = [dict.fromkeys(COLUMNS) | dict(zip((*PLACE, "outcome"), (*cell.key, ends.get(cell.key, NOT_RUN)), strict=True)) for cell in wanted]
     entry.spot_check(argparse.Namespace(spot_check=5, seed=1, runs=folder / "runs", jobs=1), spec, rows)
     assert made(spec, folder) == {0.1} and "spot check of 1 cells" in capsys.readouterr().err
+
+
+@pytest.fixture
+def kept_overload(overloaded, monkeypatch):
+    """Words of a call whose gap_map.json keeps that overload; the three other cells are `ok` but one, which is not run."""
+    spec, wanted, ends, folder = overloaded
+    monkeypatch.setattr(entry.figure, "draw_all", lambda *_: [])
+    words = [str(folder / "small.json"), "--runs", str(folder / "runs"), "--results", str(folder / "out")]
+    (folder / "runs").mkdir(), (folder / "out").mkdir()
+    assert entry.main(words) == 0
+    kept_map = table.read(folder / "out/gap_map.json")
+    for row in kept_map.rows:
+        if row["shape"] == "cubic":
+            end = ends.get(skips.place_of(row), NOT_RUN)
+            row.update({"outcome": end} if end != NOT_RUN else dict.fromkeys(set(COLUMNS) - {*PLACE, "outcome"}) | {"outcome": NOT_RUN})
+    table.write(kept_map, folder / "out/gap_map.json")
+    shutil.rmtree(folder / "runs"), (folder / "runs").mkdir()
+    assert len(skips.skips_of(kept_map.rows).left_out) == 1
+    return words, folder
+
+
+def test_a_cell_that_a_run_decides_is_not_among_those_to_be_run(kept_overload, capsys):
+    words, folder = kept_overload
+    assert entry.main([*words, "--plan"]) == 0
+    said = capsys.readouterr().out
+    assert re.search(r"all +: 4 runs, 4 there", said) and "1 more cells need no run, since others decide them" in said
+    assert entry.main([*words, "--plan", "--decided"]) == 0
+    said = capsys.readouterr().out
+    assert re.search(r"all +: 5 runs, 4 there", said) and "need no run" not in said
+    assert entry.main(words) == 0 and "not run yet" not in capsys.readouterr().err
+    assert not list((folder / "runs").rglob("run.json"))
+    assert entry.main([*words, "--decided", "--minutes", "1e-9"]) == 0 and "1 of 6 cells are not run yet" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["--no-run", "--plan"])
+def test_a_spot_check_where_nothing_is_run_is_refused(tmp_path, capsys, option):
+    words = [str(small(tmp_path)), "--runs", str(tmp_path / "runs"), "--results", str(tmp_path), option]
+    assert entry.main([*words, "--spot-check", "5"]) == 2
+    assert f"--spot-check: found beside {option}, which runs nothing" in capsys.readouterr().err and not (tmp_path / "runs").exists()
 
 
 def test_without_the_rule_every_cell_is_run(overloaded):

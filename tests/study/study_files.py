@@ -1,7 +1,6 @@
 """What the tests of studies make and change."""
 
 import json
-import subprocess
 import sys
 from pathlib import Path
 
@@ -33,12 +32,29 @@ def edit(path: Path, place: tuple, value) -> None:
     path.write_text(json.dumps(record))
 
 
+def ran(program: str, folder: Path, config: dict, *words) -> Path:
+    (folder / "config.json").write_text(json.dumps(config))
+    done = bench(program, "run", folder / "config.json", "--out", folder / "run", *words)
+    assert done.returncode == 0, done.stderr
+    return folder / "run"
+
+
+def filmed(program: str, folder: Path, *words) -> Path:
+    """A run of a tetrahedron whose mesh and motion are three files; the first of them is both."""
+    for k, number in enumerate((8, 9, 10)):
+        corners = "".join(f"v {x} {y} {z + k / 100}\n" for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))
+        (folder / f"walk_{number}.obj").write_text(corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+    body = {"name": "walker", "kind": "rigid", "mesh": {"file": "walk_8.obj"}, "motion": {"film": {"file": "walk_8.obj"}}}
+    (folder / "times.csv").write_text("time_s\n0\n0.01\n0.03\n")
+    sheet = {"name": "sheet", "mesh": {"generator": "grid", "n_x": 3, "n_y": 3}, "transform": {"translate_m": [0, 0, 2]}, "material": {"youngs_N_per_m": 50}}
+    config = {"schema": "barrierbench.config/1", "time": {"dt_s": 0.01, "steps": 2}, "formulation": {"name": "log", "d_hat_m": 0.01}, "threads": 1,
+              "scene": {"name": "bodies", "bodies": [sheet, body]}}
+    return ran(program, folder, config, *words)
+
+
 def made(program: str, folder: Path) -> Path:
     """A run whose cloth is in a file of its own."""
     (folder / "patch.obj").write_text(PATCH)
     config = {"schema": "barrierbench.config/1", "time": {"dt_s": 0.01, "steps": 2}, "formulation": {"name": "log", "d_hat_m": 0.01}, "threads": 1,
               "scene": {"name": "bodies", "bodies": [{"name": "cloth", "mesh": {"file": "patch.obj"}, "material": {"youngs_N_per_m": 50}}]}}
-    (folder / "config.json").write_text(json.dumps(config))
-    done = subprocess.run([program, "run", str(folder / "config.json"), "--out", str(folder / "run")], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return folder / "run"
+    return ran(program, folder, config)

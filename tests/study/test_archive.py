@@ -1,9 +1,15 @@
 """A study as one file: the same pages and verdicts as of its folder, and refusals by name."""
 
 import json
+import os
 import re
 import shutil
+import socket
+import subprocess
+import sys
 import zipfile
+from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
 from study_files import edit
@@ -12,7 +18,7 @@ from analysis.errors import UserError
 from analysis.figures import verb as figures
 from analysis.gate import compare
 from analysis.report import verb as report
-from analysis.study import archive, archive_verb
+from analysis.study import archive, archive_verb, verify
 from analysis.study.archive import MANIFEST, SCHEMA, packed, study
 from analysis.sweeps import collect
 
@@ -52,6 +58,32 @@ def test_it_holds_every_file_and_the_same_files_make_the_same_bytes(kept_study, 
     assert not folder.exists()
 
 
+def test_an_archive_that_was_unpacked_is_packed_again_to_the_same_bytes(file, tmp_path):
+    with zipfile.ZipFile(file) as old:
+        old.extractall(tmp_path / "study")
+    assert (tmp_path / "study" / MANIFEST).is_file()
+    packed(tmp_path / "study", tmp_path / "again.zip")
+    assert (tmp_path / "again.zip").read_bytes() == file.read_bytes()
+    with study(tmp_path / "again.zip") as (folder,):
+        assert len(list(folder.glob("*/run.json"))) == 4
+
+
+def test_a_folder_that_a_run_is_in_is_refused(kept_study, tmp_path, capsys):
+    """One whose process is gone has left its lock there, which is not packed."""
+    mine = shutil.copytree(kept_study, tmp_path / "mine")
+    place = next(mine.glob("*/run.json")).parent
+    lock = place / archive.LOCK
+    lock.write_text(f"process {os.getpid()} on {socket.gethostname()} since 2026-01-01T00:00:00Z")
+    assert archive_verb.main([str(mine), str(tmp_path / "a.zip")]) == 2
+    said = capsys.readouterr().err
+    assert f"{place}: found process {os.getpid()} on" in said and "at work in it; allowed: a folder that no run is in" in said
+    assert not (tmp_path / "a.zip").exists()
+    gone = subprocess.run([sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True, text=True, check=True).stdout.strip()
+    lock.write_text(f"process {gone} on {socket.gethostname()} since 2026-01-01T00:00:00Z")
+    assert archive_verb.main([str(mine), str(tmp_path / "a.zip")]) == 0
+    assert archive.LOCK not in {Path(line["path"]).name for line in archive.read_manifest(tmp_path / "a.zip")}
+
+
 def test_a_folder_is_taken_as_it_is(kept_study):
     with study(kept_study) as (folder,):
         assert folder == kept_study
@@ -83,10 +115,38 @@ def test_a_report_of_it_is_that_of_the_folder(kept_study, file, tmp_path, capsys
     page = tmp_path / "study.report.html"
     assert page.is_file() and str(page) in capsys.readouterr().out
     assert report.main([str(kept_study), "--players", "0", "--out", str(tmp_path / "folder.html")]) == 0
-    of_archive, of_folder = (re.findall("<td[^>]*>(.*?)</td>", path.read_text()) for path in (page, tmp_path / "folder.html"))
-    same = [a == b for a, b in zip(of_archive, of_folder, strict=True)]
-    assert len(same) > 40 and sum(same) >= len(same) - 8  # commands name the place of a record
-    assert report.main([str(file), str(kept_study), "--out", str(tmp_path / "two.html")]) == 0
+    text = page.read_text()
+    of_archive, of_folder = (re.findall("<td[^>]*>(.*?)</td>", one) for one in (text, (tmp_path / "folder.html").read_text()))
+    unlike = [(a, b) for a, b in zip(of_archive, of_folder, strict=True) if a != b]
+    names = sorted(path.parent.name for path in kept_study.glob("*/run.json"))
+    assert len(of_folder) > 40 and len(unlike) == 2 * len(names)
+    assert sorted(a for a, b in unlike if "<a href=" in b) == [f"{name}/run.json" for name in names]  # its place in the archive
+    assert [a for a, b in unlike if "data-copy=" in b] == ["-"] * len(names)  # no verb runs a record that is in an archive
+    assert_names_no_scratch(text, file)
+    for two, others in (("two", [kept_study]), ("archives", [file])):
+        assert report.main([str(file), *map(str, others), "--out", str(tmp_path / f"{two}.html")]) == 0
+        assert_names_no_scratch((tmp_path / f"{two}.html").read_text(), file)
+    assert report.main([str(kept_study), str(file), "--out", str(tmp_path / "two.html")]) == 0
+    assert_names_no_scratch((tmp_path / "two.html").read_text(), file)
+
+
+def assert_names_no_scratch(page: str, file) -> None:
+    """Nothing of the folder that an archive was unpacked into: links and commands are of files that stay."""
+    assert "barrierbench-study-" not in page and re.search(f"<code>./bench report [^<]*{re.escape(str(file))}", page)
+    links = [link for link in re.findall('href="([^"]*)"', page) if not link.startswith(("#", "data:"))]
+    assert all((file.parent / unquote(link)).is_file() for link in links)
+
+
+def test_what_cannot_be_read_in_an_archive_is_named_as_it_is_there(kept_study, tmp_path):
+    mine = shutil.copytree(kept_study, tmp_path / "mine")
+    one, two, *_ = sorted(mine.glob("*/run.json"))
+    one.write_text("{")
+    (two.parent / "trace.jsonl").unlink()
+    packed(mine, tmp_path / "mine.zip")
+    assert report.main([str(tmp_path / "mine.zip"), "--players", "0"]) == 0
+    text = (tmp_path / "mine.report.html").read_text()
+    assert "barrierbench-study-" not in text and f">{one.parent.name}/run.json: not JSON" in text and f">{two.parent.name}/trace.jsonl: " in text
+    assert report.main([str(mine), "--players", "0"]) == 0 and f"{one}: not JSON" in (mine / "report.html").read_text()
 
 
 def test_figures_and_tables_of_it_are_those_of_the_folder(kept_study, file, tmp_path, capsys, unpainted):
@@ -105,6 +165,12 @@ def test_figures_and_tables_of_it_are_those_of_the_folder(kept_study, file, tmp_
     (lambda content: content.update({MANIFEST: b"{"}), "no archive.json in it that can be read"),
     (lambda content: content.update({"sweep.json": content["sweep.json"].replace(b"own", b"owm")}), "sweep.json with sha256"),
     (lambda content: content.update({"sweep.json": b""}), "sweep.json of 0 bytes"),
+    (of_manifest(lambda data: data["files"][0].pop("bytes")), "without 'bytes'"),
+    (of_manifest(lambda data: data["files"][0].pop("sha256")), "without 'sha256'"),
+    (of_manifest(lambda data: data["files"][0].update(sha256=1)), "without 'sha256'"),
+    (of_manifest(lambda data: data["files"].append("a")), "without 'path'"),
+    (of_manifest(lambda data: data.update(files=7)), "no archive.json in it that can be read"),
+    (of_manifest(lambda data: data["files"].append(data["files"][0])), "differ in"),
     (lambda content: content.pop("cases.json"), "differ in 'cases.json'"),
     (lambda content: content.update({"more.txt": b"x"}), "differ in 'more.txt'"),
 ])
@@ -115,6 +181,27 @@ def test_another_version_and_what_is_damaged_are_refused(file, tmp_path, capsys,
         said = capsys.readouterr().err
         assert says in said and str(bad) in said and f"allowed: an archive of ./bench archive ({SCHEMA})" in said
     assert not (tmp_path / "t.csv").exists()
+
+
+def with_entries(file, out, offset: int, value: int, name: bytes):
+    """An archive whose headers of an entry say something else: `offset` in its local header, +2 in that of the directory."""
+    data = bytearray(file.read_bytes())
+    at = data.index(name) - 30, data.rindex(name) - 46
+    assert data[at[0] : at[0] + 4] == b"PK\x03\x04" and data[at[1] : at[1] + 4] == b"PK\x01\x02"
+    for place in (at[0] + offset, at[1] + offset + 2):
+        data[place] = value
+    out.write_bytes(data)
+    return out
+
+
+@pytest.mark.parametrize("name", ["sweep.json", MANIFEST])
+@pytest.mark.parametrize("offset, value", [(6, 1), (8, 77)])  # the flag of encryption, the method
+def test_an_encrypted_entry_and_an_unknown_method_are_refused(file, tmp_path, capsys, offset, value, name):
+    bad = with_entries(file, tmp_path / "bad.zip", offset, value, name.encode())
+    for verb, words in ((compare, [bad, bad]), (verify, [bad]), (report, [bad]), (figures, [bad]), (collect, [bad, tmp_path / "t.csv"])):
+        assert verb.main([str(word) for word in words]) == 2
+        said = capsys.readouterr().err
+        assert name in said and "can" in said and "be read" in said and f"allowed: an archive of ./bench archive ({SCHEMA})" in said
 
 
 def test_a_name_that_leads_out_is_refused(file, tmp_path):

@@ -4,9 +4,9 @@ import json
 import shutil
 
 import pytest
-from study_files import edit, made
+from study_files import edit, filmed, made
 
-from analysis.study import held, ids, verify
+from analysis.study import archive_verb, held, ids, verify
 from analysis.study.archive import packed
 
 
@@ -39,12 +39,118 @@ def test_a_study_as_it_was_written_has_nothing_wrong(study, capsys):
     (("summary", "contact_load_max_N"), 1e9, "the max of its steps"),
     (("ids", "build_id"), "0" * 64, "ids/run_id is"),
     (("status", "outcome"), "fine", "status/outcome"),
+    (("ids", "config_id"), "", "ids/config_id is empty"),
+    (("ids", "run_id"), "0" * 64, "ids/run_id is"),
+    (("steps",), [], "there are 0 steps"),
+    (("summary", "contact_load_max_N"), None, "summary/contact_load_max_N is None"),
+    (("status", "outcome"), "newton_stall", "status/outcome is newton_stall, and its check outcome_ok passed"),
+    (("status", "outcome"), "penetration", "its audit has 0 obstacle_violations, 0 crossings, 0 violations"),
+    (("status", "valid"), False, "status/valid is false, and of its"),
+    (("validity", "valid"), False, "validity/valid is false, and of its"),
+    (("validity", "checks", 0, "pass"), False, "checks"),
+    (("validity", "checks"), [], "status/valid is true, and of its 0 checks 0 passed"),
+    (("audit", "crossings"), 3, "status/outcome is ok, and its audit has 0 obstacle_violations, 3 crossings, 0 violations"),
+    (("audit", "unproven"), 2, "status/outcome is ok, and its audit has 2 unproven"),
+    (("audit", "judged"), 0, "its audit judged nothing"),
 ])
 def test_an_edited_record_is_told(study, capsys, place, value, says):
     edit(records(study)[1], place, value)
     code, said = told(capsys, study)
     assert code == 1 and says in said and records(study)[1].parent.name in said and "edited" in said.splitlines()[-1]
     assert len(held.held_folder(study).good) == 3
+
+
+def test_a_penetration_that_is_called_ok_is_told_wherever_it_is_edited(study, capsys):
+    """Of a record that says so everywhere, each place that is set to what a good run says contradicts the others."""
+    path = records(study)[1]
+    edit(path, ("audit", "crossings"), 3)
+    edit(path, ("status", "outcome"), "penetration")
+    good = json.loads(records(study)[0].read_text())["validity"]["checks"]
+    names = [check["name"] for check in good]
+    for name in ("audit_clean", "outcome_ok"):
+        edit(path, ("validity", "checks", names.index(name), "pass"), False)
+    edit(path, ("status", "valid"), False)
+    edit(path, ("validity", "valid"), False)
+    assert told(capsys, study)[0] == 0
+    bad = path.read_text()
+    places = [("status", "outcome"), ("status", "valid"), ("validity", "valid"), ("validity", "checks", names.index("outcome_ok"), "pass"), ("audit", "crossings")]
+    for place, value in zip(places, ("ok", True, True, True, 0), strict=True):
+        path.write_text(bad)
+        edit(path, place, value)
+        code, said = told(capsys, study)
+        assert code == 1 and "edited" in said, place
+
+
+def test_a_run_of_points_is_ok_with_surfaces_that_cross(study, capsys):
+    path = records(study)[0]
+    edit(path, ("audit", "obstacles_judge"), "points")
+    edit(path, ("audit", "crossings"), 3)
+    assert told(capsys, study)[0] == 0
+    edit(path, ("audit", "obstacle_violations"), 1)
+    code, said = told(capsys, study)
+    assert code == 1 and "its audit has 1 obstacle_violations" in said
+
+
+@pytest.mark.parametrize("words, files", [((), 4), (("--keep-inputs",), 5)])  # kept apart, the mesh is no frame
+def test_every_frame_of_a_film_is_held(program, tmp_path, capsys, words, files):
+    folder = filmed(program, tmp_path, *words)
+    named = json.loads((folder / "run.json").read_text())["scene"]["mesh_sha256"]
+    assert len(named) == files and sum("times.csv" in name for name in named) == 1
+    code, said = told(capsys, folder)
+    assert code == 0 and held.held_folder(folder).files == files + 1, said  # and its trace
+    for name in named:
+        file = folder / name
+        text = file.read_text()
+        file.write_text(text + "\n")
+        code, said = told(capsys, folder)
+        assert code == 1 and f"{name} has sha256" in said and said.count("has sha256") == 1, name
+        file.write_text(text)
+
+
+def test_a_frame_whose_hash_is_edited_too_is_not_that_of_the_config(program, tmp_path, capsys):
+    folder = filmed(program, tmp_path)
+    for name in ("../walk_10.obj", "../times.csv"):
+        before = (folder / name).read_text(), (folder / "run.json").read_text()
+        (folder / name).write_text(before[0] + "\n")
+        edit(folder / "run.json", ("scene", "mesh_sha256", name), held.of_file(folder / name))
+        code, said = told(capsys, folder)
+        assert code == 1 and "../walk_8.obj: its sha256 in the config is not that of scene/mesh_sha256" in said and "has sha256" not in said
+        (folder / name).write_text(before[0]), (folder / "run.json").write_text(before[1])
+    assert told(capsys, folder)[0] == 0
+
+
+def test_a_file_among_kept_inputs_that_nothing_names_is_extra(program, tmp_path, capsys):
+    folder = filmed(program, tmp_path, "--keep-inputs")
+    (next((folder / "inputs").glob("film-*")) / "walk_11.obj").write_text("v 0 0 0\n")
+    code, said = told(capsys, folder)
+    assert code == 1 and "walk_11.obj" in said and "1 extra" in said.splitlines()[-1]
+
+
+def test_inputs_outside_an_archive_are_counted_and_not_missing(program, tmp_path, capsys, built):
+    """In its folder they are held as ever; the archive says when it is packed that it has them not."""
+    folder = made(program, tmp_path)
+    assert archive_verb.main([str(folder), str(tmp_path / "study.zip")]) == 0
+    assert "1 inputs lie outside" in (said := capsys.readouterr().err) and "../patch.obj" in said and "--keep-inputs" in said
+    code, said = told(capsys, tmp_path / "study.zip", "--rerun", "1")
+    assert "1 inputs of 1 records lie outside the archive" in said and "missing" not in said and "reruns: 0 of 1" in said
+    assert code == 1 and "nothing was judged" in said  # of the rerun
+    assert told(capsys, tmp_path / "study.zip")[0] == 0
+    (tmp_path / "patch.obj").unlink()
+    code, said = told(capsys, folder)
+    assert code == 1 and "1 missing" in said.splitlines()[-1]
+
+
+def test_a_run_with_a_mesh_is_the_same_from_another_folder(program, tmp_path, capsys, built):
+    """Its record names the mesh by another path."""
+    code, said = told(capsys, made(program, tmp_path), "--rerun", "1")
+    assert code == 0 and "1 the same to the last bit" in said
+
+
+def test_an_archive_with_its_inputs_is_run_again(program, tmp_path, capsys, built):
+    folder = filmed(program, tmp_path, "--keep-inputs")
+    assert archive_verb.main([str(folder), str(tmp_path / "study.zip")]) == 0 and capsys.readouterr().err == ""
+    code, said = told(capsys, tmp_path / "study.zip", "--rerun", "1")
+    assert code == 0 and "1 the same to the last bit" in said and "outside" not in said
 
 
 def test_lost_extra_and_edited_files_are_told(study, capsys):
