@@ -59,7 +59,9 @@ TEST(Film, HasTheVelocityOfItsPlaces) {
     for (const double t : {0.1, 0.15, 0.2, 0.3, 0.38, 0.59}) {
       const double h = 1e-7;
       const Vec3d slope = (film.at(1, t + h) - film.at(1, t)) / h;
-      if (t > 0.1) EXPECT_GT(slope.norm(), 0.1) << t;
+      if (t > 0.1) {  // a smooth one begins at rest
+        EXPECT_GT(slope.norm(), 0.1) << t;
+      }
       EXPECT_LT((film.velocity(1, t) - slope).norm(), 1e-4) << t;
     }
   }

@@ -94,7 +94,7 @@ TEST(Motion, OperationsFollowOneAnotherInTheirOrder) {
   PrescribedMotion other;  // the way first: it is turned too
   other.velocity = way.velocity;
   other.then = {static_cast<const MotionStep&>(motion)};
-  EXPECT_LT((other(x0, 2) - Vec3d(-2, 3, 3)).norm(), 1e-14);
+  EXPECT_LT((other.pose(0, x0, 2) - Vec3d(-2, 3, 3)).norm(), 1e-14);
   EXPECT_FALSE(same_motion(motion, other));
   EXPECT_TRUE(same_motion(motion, PrescribedMotion(motion)));
   const Vec3d slope = (motion.pose(0, x0, 1e-7) - x0) / 1e-7;
