@@ -121,6 +121,27 @@ TEST(SplitLoads, are_thirds_without_a_column_where_no_body_splits_otherwise) {
   EXPECT_EQ(split.inflation.parts.size(), split.inflation.triangles.size());
 }
 
+/// A body that splits by thirds keeps its bits, whatever the others do.
+TEST(SplitLoads, change_no_bit_of_a_body_of_thirds) {
+  std::vector<std::vector<double>> gradients;
+  for (const Lumping lumping : {Lumping::barycentric, Lumping::mixed_voronoi}) {
+    const Scene scene = behind_a_cloth(balloon(lumping));
+    HostFamily family([&](const FamilyPlace& place) { return air_drag_family(place, scene); });
+    const Positions x = moved(scene.x0, 0.03);
+    family->begin_step({.x_n = scene.x0.data(), .dt = dt, .t_end = t_end});
+    LocalTerms terms;
+    family.derivatives(x, Projection::none, terms);
+    gradients.push_back(terms.grad);
+  }
+  const std::size_t of_cloth = 3 * 12;
+  const auto first = [of_cloth](const std::vector<double>& all) {
+    return std::vector<double>(all.begin(), all.begin() + of_cloth);
+  };
+  EXPECT_GT(std::abs(gradients[0][0]), 1e-3);
+  EXPECT_EQ(first(gradients[0]), first(gradients[1]));
+  EXPECT_NE(gradients[0], gradients[1]);
+}
+
 TEST(SplitLoads, drag_on_a_corner_is_that_of_its_part) {
   const auto found = [](Lumping lumping, Positions* expected) {
     const BodySpec body = balloon(lumping);

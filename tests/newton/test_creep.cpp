@@ -59,7 +59,8 @@ std::string bytes_of(Simulation& simulation) {
 
 /// So heavy that its inertia holds it, for 20 steps; then light, from the same state, until it rests. What it is left is left to it.
 double angle_at_rest_after_holding(double creep, double plasticity = 0) {
-  const Scene heavy = bent_strip(1e9, creep, yield, plasticity), light = bent_strip(1, creep > 0 ? 1e-9 : 0);
+  const Scene heavy = bent_strip(1e9, creep, yield, plasticity),
+              light = bent_strip(1, creep > 0 ? 1e-9 : 0, yield, plasticity > 0 ? 1e-12 : 0);
   Method method = test::fixed_method("log", 1);
   Simulation held(heavy, method, dt, 20);
   advance(held, 20);
