@@ -194,6 +194,27 @@ ElementAnswer triangle_answer(Fields& fields, const MembraneModel<T>& model) {
                                           model.terms(triangle, x.x, mu, lambda, Projection::psd)));
 }
 
+/// Rest shapes that follow.
+void add_creep(Settings<Material>& out) {
+  out.add("membrane_yield", non_negative("1"),
+          "Stretch |sigma - 1| beyond which the rest shape of a triangle follows. Needs "
+          "membrane_creep_per_s or "
+          "plasticity.",
+          &Material::membrane_yield);
+  out.add("membrane_creep_per_s", non_negative("1/s"),
+          "Rate at which what is beyond membrane_yield decays, since the rest shape follows. 0: it stays.",
+          &Material::membrane_creep);
+  out.add(
+      "plasticity", number_in(0, 1, "1"),
+      "Share of what is beyond a yield (membrane_yield, bending_yield_rad, cloth_yield) that the rest "
+      "shape takes in plasticity_step_s, of triangles, hinges and springs of cloth alike, whatever dt is. "
+      "0: it stays.",
+      &Material::plasticity);
+  out.add("plasticity_step_s", positive("s"),
+          "Time in which the rest shape takes that share: the dt of a program that blends by it once a step.",
+          &Material::plasticity_step);
+}
+
 class Membrane final : public Part {
  public:
   void add_keys(Settings<Material>& out) const override {
@@ -222,24 +243,7 @@ class Membrane final : public Part {
         "top of the "
         "other two.",
         1, 10000, settings_of<ShrinkKey>(), [](auto& m) -> auto& { return m.shrink_keys; });
-    out.add("membrane_yield", non_negative("1"),
-            "Stretch |sigma - 1| beyond which the rest shape of a triangle follows. Needs "
-            "membrane_creep_per_s or "
-            "plasticity.",
-            &Material::membrane_yield);
-    out.add("membrane_creep_per_s", non_negative("1/s"),
-            "Rate at which what is beyond membrane_yield decays, since the rest shape follows. 0: it stays.",
-            &Material::membrane_creep);
-    out.add(
-        "plasticity", number_in(0, 1, "1"),
-        "Share of what is beyond a yield (membrane_yield, bending_yield_rad, cloth_yield) that the rest "
-        "shape takes in plasticity_step_s, of triangles, hinges and springs of cloth alike, whatever dt is. "
-        "0: it stays.",
-        &Material::plasticity);
-    out.add(
-        "plasticity_step_s", positive("s"),
-        "Time in which the rest shape takes that share: the dt of a program that blends by it once a step.",
-        &Material::plasticity_step);
+    add_creep(out);
     out.add("density_kg_per_m2", non_negative("kg/m^2"), "Mass per area of triangles.", &Material::density);
     out.add("lumping", word({"barycentric", "mixed_voronoi", "uniform"}),
             "How that mass is split: a third of a triangle at each corner; what is closest to a corner "
