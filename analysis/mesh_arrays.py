@@ -30,6 +30,8 @@ class MeshArrays:
     fields: dict[str, int] = field(default_factory=dict)  # of the points: name, components
     values: dict[str, np.ndarray] = field(default_factory=dict)  # [n, components] of those asked for
     notes: tuple[str, ...] = ()  # what the file has and no mesh
+    uvs: np.ndarray | None = None  # [u, 2] texture coordinates, where they are asked for
+    corner_uvs: np.ndarray | None = None  # [corners] into uvs, -1: none
 
 
 class Reader:
@@ -92,19 +94,25 @@ def _wide(cells: np.ndarray) -> np.ndarray:
     return cells.astype(np.int64)
 
 
-def read_frame_file(path: Path, fields: tuple[str, ...] = ()) -> MeshArrays:
-    """Any positions, flat and repeated faces too. fields: of which the values are wanted. Errors: UserError
-    with the file and the place.
+def read_frame_file(path: Path, fields: tuple[str, ...] = (), uvs: bool = False) -> MeshArrays:
+    """Any positions, flat and repeated faces too. fields: of which the values are wanted. uvs: texture
+    coordinates too, which OBJ files have; of other files there are none. Errors: UserError with the file and
+    the place.
     """
-    answer, arrays = _asked(path, fields=list(fields))
+    answer, arrays = _asked(path, fields=list(fields), uvs=uvs)
+    corners = arrays["corners"]
+    if uvs and not len(arrays["corner_uvs"]):
+        arrays["corner_uvs"] = np.full(len(corners), -1)
     return MeshArrays(
         arrays["points"],
         *(_wide(arrays[name]) for name in ("triangles", "segments", "tetrahedra")),
-        arrays["corners"],
+        corners,
         arrays["sizes"],
         answer["fields"],
         {name: arrays[f"field {name}"] for name in fields},
         tuple(answer["notes"]),
+        arrays.get("uvs"),
+        arrays.get("corner_uvs"),
     )
 
 

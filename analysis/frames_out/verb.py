@@ -16,6 +16,7 @@ from ..mesh_arrays import SUFFIXES, read_frame_file
 from .binding import Binding, Fit, bound_mesh, refined
 from .formats import WRITERS, write
 from .sequence import Run, bodies, obstacles, opened, simulated, triangles_of
+from .uv_binding import bound_by_uv
 
 REACH = 0.05  # of the diagonal of a body's box: how far a vertex may be from its surface
 MOST_TIMES = 6  # 4^6 = 4096 triangles for one
@@ -48,28 +49,34 @@ def _check_close(file: Path, fit: Fit, limit: float, name: str) -> None:
 
 
 def with_mesh(
-    run: Run, file: Path, name: str, smooth: bool, reach: float | None
+    run: Run, file: Path, name: str, smooth: bool, reach: float | None, by_uv: bool
 ) -> tuple[list[Binding], str]:
     """Bindings of all bodies, that of one from a file, and a sentence on it. Errors: UserError: a file that
-    is none, a body that is none, a vertex that is too far away.
+    is none, a body that is none, a vertex that is too far away, or whose texture coordinates (by_uv) the body
+    has not.
     """
     body, chosen = _body_with_surface(run, name)
     if run.steps[0] != -1:
         raise UserError(f"{run.folder}: no frame of the start, which a mesh is bound to")
-    cells = read_frame_file(file)
+    cells = read_frame_file(file, uvs=by_uv)
     if not len(cells.triangles):
         raise UserError(f"{file}: no triangle; at least one is needed")
-    bound, fit = bound_mesh(
-        cells.points, cells.triangles, run.start.vertices, run.start.triangles, chosen, smooth
-    )
-    limit = _limit(run, chosen, reach)
-    _check_close(file, fit, limit, name)
+    if by_uv:
+        bound, fit = bound_by_uv(cells, file, run, name, chosen)
+        how = f"by texture coordinates; largest way from the place in the file {fit.error_m:.6g} m"
+    else:
+        bound, fit = bound_mesh(
+            cells.points, cells.triangles, run.start.vertices, run.start.triangles, chosen, smooth
+        )
+        limit = _limit(run, chosen, reach)
+        _check_close(file, fit, limit, name)
+        how = (
+            f"to {name}; largest distance {fit.distance_m.max():.6g} m (allowed: {limit:.6g}), largest error"
+            f" at the start {fit.error_m:.3g} m"
+        )
     parts = [bound if k == body else simulated(run.start, k) for k, _ in enumerate(run.scene["bodies"])]
-    return parts, (
-        f"{file}: {len(cells.points)} vertices and {len(cells.triangles)} triangles bound to {name}; largest"
-        f" distance {fit.distance_m.max():.6g} m (allowed: {limit:.6g}), largest error at the start"
-        f" {fit.error_m:.3g} m"
-    )
+    said = f"{len(cells.points)} vertices and {len(cells.triangles)} triangles bound"
+    return parts, f"{file}: {said} {f'to {name} ' if by_uv else ''}{how}"
 
 
 def with_finer(run: Run, times: int, name: str | None, smooth: bool) -> list[Binding]:
@@ -160,6 +167,13 @@ def parse(argv: list[str]) -> argparse.Namespace:
         metavar="N",
         help=f"cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})",
     )
+    parser.add_argument(
+        "--bind",
+        choices=("closest", "uv"),
+        default="closest",
+        help="with --render-mesh. closest (default): to the closest point of the surface. uv: to the point of"
+        " the surface that has the same texture coordinates; both are OBJ files with vt",
+    )
     parser.add_argument("--body", metavar="NAME", help="the body that is drawn finer")
     parser.add_argument(
         "--smooth",
@@ -180,6 +194,13 @@ def parse(argv: list[str]) -> argparse.Namespace:
 def _check_together(given: argparse.Namespace) -> None:
     if given.render_mesh and not given.body:
         raise UserError("--render-mesh: no --body; allowed: with the name of the body that it follows")
+    if given.bind == "uv" and not given.render_mesh:
+        raise UserError("--bind uv: nothing to bind; allowed: with --render-mesh")
+    if given.bind == "uv" and (given.reach or given.smooth):
+        option = "--reach" if given.reach else "--smooth"
+        raise UserError(
+            f"{option}: vertices lie on the surface that has their coordinates; allowed: without --bind uv"
+        )
     if given.reach and not given.render_mesh:
         raise UserError("--reach: nothing to bind; allowed: with --render-mesh")
     if (given.body or given.smooth) and not (given.render_mesh or given.subdivide):
@@ -193,7 +214,9 @@ def main(argv: list[str]) -> int:
     _check_together(given)
     run, note = opened(given.run), ""
     if given.render_mesh:
-        parts, note = with_mesh(run, given.render_mesh, given.body, given.smooth, given.reach)
+        parts, note = with_mesh(
+            run, given.render_mesh, given.body, given.smooth, given.reach, given.bind == "uv"
+        )
     elif given.subdivide:
         parts = with_finer(run, given.subdivide, given.body, given.smooth)
     else:

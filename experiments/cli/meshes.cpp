@@ -3,7 +3,7 @@
 //   {"path": FILE, "names": answer with the objects and groups of the file, all of them, "name": what messages call it and whose extension decides (default: path),
 //    "as": "frame" (default: any positions, as frames are judged) or "body" (the rules of a body's mesh),
 //    "skin": of a body, keep triangles that are faces of one tetrahedron, "objects": of a body, [names of OBJ objects and groups] alone,
-//    "fields": [names of fields of points]}
+//    "fields": [names of fields of points], "uvs": of a frame, texture coordinates of an OBJ file and which of them corners have}
 // An answer is a line of JSON, {"error": ...} or notes, objects and groups where they are asked for, and the list of arrays, and then the numbers of these arrays, one after
 // the other, little-endian and by rows.
 #include <fmt/format.h>
@@ -36,8 +36,8 @@ class Arrays {
     parts_.emplace_back(reinterpret_cast<const char*>(numbers),
                         sizeof(T) * rows * std::max<std::size_t>(columns, 1));
   }
-  template <std::size_t N>
-  void add(const std::string& name, const std::vector<std::array<int, N>>& cells) {
+  template <class T, std::size_t N>
+  void add(const std::string& name, const std::vector<std::array<T, N>>& cells) {
     add(name, cells.empty() ? nullptr : cells[0].data(), cells.size(), N);
   }
   void write(Json head) const {
@@ -79,9 +79,10 @@ void answer_body(const std::string& bytes, const std::string& name, const nlohma
   arrays.write(std::move(head));
 }
 
-void answer_frame(const std::string& bytes, const std::string& name,
-                  const std::set<std::string, std::less<>>& wanted, Json head) {
-  const FrameMesh mesh = parse_frame(bytes, name, wanted);
+void answer_frame(const std::string& bytes, const std::string& name, const nlohmann::json& request,
+                  Json head) {
+  const auto wanted = request.value("fields", std::set<std::string, std::less<>>());
+  const FrameMesh mesh = parse_frame(bytes, name, wanted, request.value("uvs", false));
   Arrays arrays;
   arrays.add("points", mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.cols()), 3);
   arrays.add("corners", mesh.corners.data(), mesh.corners.size(), 0);
@@ -89,6 +90,10 @@ void answer_frame(const std::string& bytes, const std::string& name,
   arrays.add("triangles", mesh.triangles);
   arrays.add("segments", mesh.segments);
   arrays.add("tetrahedra", mesh.tetrahedra);
+  if (request.value("uvs", false)) {
+    arrays.add("uvs", mesh.uvs);
+    arrays.add("corner_uvs", mesh.corner_uvs.data(), mesh.corner_uvs.size(), 0);
+  }
   Json fields = Json::object();
   for (const FrameField& field : mesh.fields) {
     fields[field.name] = field.components;
@@ -108,7 +113,7 @@ void answer(const std::string& line) {
   Json head = Json::object();
   if (request.value("names", false)) head["objects"] = objects_json(parse_mesh_objects(bytes, name));
   if (request.value("as", "frame") == "body") return answer_body(bytes, name, request, std::move(head));
-  answer_frame(bytes, name, request.value("fields", std::set<std::string, std::less<>>()), std::move(head));
+  answer_frame(bytes, name, request, std::move(head));
 }
 
 int answer_all() {

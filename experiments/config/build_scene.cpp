@@ -8,16 +8,16 @@
 #include <utility>
 
 #include "core/base/input/names.hpp"
-#include "core/base/input/read_file.hpp"
 #include "core/base/parameters/registry.hpp"
-#include "core/base/record/provenance.hpp"
 #include "core/model/bodies/scene_builder.hpp"
 #include "core/model/bodies/scene_checks.hpp"
 #include "core/model/mesh/bounds.hpp"
 #include "core/model/mesh/read_mesh.hpp"
 #include "experiments/config/films.hpp"
+#include "experiments/config/hashed_file.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/config/weights.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {
@@ -34,11 +34,7 @@ MeshFile make_mesh(const MeshSource& source, const std::string& where) {
       throw ConfigError(std::move(violations));
     }
   }
-  const std::string bytes = read_input_file(source.file, mesh_file);
-  if (sha256_hex(bytes) != source.sha256) {
-    throw ConfigError(source.file, "a file that has changed since the config was read",
-                      "SHA-256 " + source.sha256);
-  }
+  const std::string bytes = unchanged({source.file, source.sha256}, mesh_file);
   return parse_mesh_file(bytes, source.file, {false, source.objects, where + "/objects"});
 }
 
@@ -136,6 +132,7 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     if (body.rest_mesh.given()) {
       take_rest_shape(body, where + "/rest_mesh", spec);
     }
+    spec.weights = make_weights(body.weights, spec.start ? *spec.start : spec.mesh.vertices);
     if (body.limited) spec.material.limit = limit;
     spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);
     builder.add_body(spec);

@@ -29,14 +29,19 @@ void expand_shorthands(json& document) {
   if (formulation.is_string()) formulation = json{{"name", formulation}};
 }
 
-void absolute_mesh_path(json& body, const char* key, const std::string& folder) {
-  if (!body.is_object() || !body.contains(key) || !body[key].is_object()) return;
-  json& mesh = body[key];
-  if (!mesh.contains("file") || !mesh["file"].is_string() || mesh["file"].get<std::string>().empty()) return;
+/// Of an object that names a file.
+void absolute_path(json& mesh, const std::string& folder) {
+  if (!mesh.is_object() || !mesh.contains("file") || !mesh["file"].is_string() ||
+      mesh["file"].get<std::string>().empty())
+    return;
   const std::string path =
       fs::absolute(fs::path(folder) / mesh["file"].get<std::string>()).lexically_normal().string();
   if (!is_utf8(path)) throw ConfigError(path, "a path that is not UTF-8", "UTF-8: records name their meshes");
   mesh["file"] = path;
+}
+
+void absolute_mesh_path(json& body, const char* key, const std::string& folder) {
+  if (body.is_object() && body.contains(key)) absolute_path(body[key], folder);
 }
 
 void absolute_film_path(json& motion, const std::string& folder) {
@@ -50,6 +55,9 @@ void absolute_mesh_paths(json& document, const std::string& folder) {
     for (const char* key : {"mesh", "rest_mesh", "rest_film"}) absolute_mesh_path(body, key, folder);
     if (!body.is_object()) continue;
     if (body.contains("motion")) absolute_film_path(body["motion"], folder);
+    if (body.contains("weights") && body["weights"].is_array()) {
+      for (json& group : body["weights"]) absolute_path(group, folder);
+    }
     if (!body.contains("pins") || !body["pins"].is_array()) continue;
     for (json& pin : body["pins"]) {
       if (pin.is_object() && pin.contains("motion")) absolute_film_path(pin["motion"], folder);

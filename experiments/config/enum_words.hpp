@@ -77,6 +77,11 @@ inline EnumWords<Precision> words_of(Precision) {
 inline EnumWords<BodyKind> words_of(BodyKind) {
   return {{BodyKind::deformable, "deformable"}, {BodyKind::rigid, "rigid"}};
 }
+inline EnumWords<StiffnessKind> words_of(StiffnessKind) {
+  return {{StiffnessKind::membrane, "membrane"},
+          {StiffnessKind::hinges, "hinges"},
+          {StiffnessKind::springs, "springs"}};
+}
 inline EnumWords<CollisionKind> words_of(CollisionKind) {
   return {{CollisionKind::ccd, "ccd"},
           {CollisionKind::static_test, "static"},

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/input/read_file.hpp"
 #include "core/base/record/provenance.hpp"
 #include "core/model/mesh/film_file.hpp"
 #include "experiments/config/film_generators.hpp"
+#include "experiments/config/hashed_file.hpp"
 
 namespace bb {
 namespace {
@@ -67,16 +67,6 @@ ParameterList film_list(const json& film) {
   return list;
 }
 
-std::string hash_of(const std::string& path, const std::string& pointer, const Reader& reader) {
-  try {
-    return sha256_hex(read_input_file(path, mesh_file));
-  } catch (const ConfigError& error) {
-    const Violation& wrong = error.violations().front();
-    reader.complain(pointer + "/file", path + ": " + wrong.found, wrong.allowed);
-    return "";
-  }
-}
-
 void read_times(const json& object, const std::string& pointer, const Reader& reader, FilmSource& film) {
   if (object.contains("frame_s")) film.frame_time = object["frame_s"].get<double>();
   if (object.contains("times_s")) film.times = object["times_s"].get<std::vector<double>>();
@@ -89,7 +79,7 @@ void read_times(const json& object, const std::string& pointer, const Reader& re
     return reader.missing(pointer + "/frame_s",
                           "frame_s, a number > 0 (s), or times_s, or a file times.csv beside the frames");
   }
-  film.times_file.sha256 = hash_of(film.times_file.path, pointer, reader);
+  film.times_file.sha256 = hash_of(film.times_file.path, mesh_file, pointer + "/file", reader);
 }
 
 void read_files(const json& object, const std::string& pointer, const Reader& reader, FilmSource& film) {
@@ -104,7 +94,7 @@ void read_files(const json& object, const std::string& pointer, const Reader& re
   }
   std::string hashes;
   for (const std::string& file : files) {
-    film.files.push_back({file, hash_of(file, pointer, reader)});
+    film.files.push_back({file, hash_of(file, mesh_file, pointer + "/file", reader)});
     hashes += film.files.back().sha256 + "\n";
   }
   read_times(object, pointer, reader, film);
@@ -115,18 +105,12 @@ void read_files(const json& object, const std::string& pointer, const Reader& re
   }
 }
 
-std::string unchanged(const HashedFile& file) {
-  std::string bytes = read_input_file(file.path, mesh_file);
-  if (sha256_hex(bytes) == file.sha256) return bytes;
-  throw ConfigError(file.path, "a file that has changed since the config was read", "SHA-256 " + file.sha256);
-}
-
 std::vector<double> times_of(const FilmSource& film, std::size_t n, const std::string& where) {
   std::vector<double> out = film.times;
   std::string named = where + "/times_s";
   if (!film.times_file.path.empty()) {
     named = film.times_file.path;
-    out = parse_film_times(unchanged(film.times_file), named);
+    out = parse_film_times(unchanged(film.times_file, mesh_file), named);
   }
   for (std::size_t k = 0; film.frame_time && k < n; ++k)
     out.push_back(static_cast<double>(k) * *film.frame_time);
@@ -184,7 +168,7 @@ std::shared_ptr<const Film> make_film(const FilmSource& film, const TriangleMesh
   std::vector<double> times;
   if (film.generator.empty()) {
     for (const HashedFile& file : film.files) {
-      frames.push_back(parse_film_frame(unchanged(file), file.path, mesh));
+      frames.push_back(parse_film_frame(unchanged(file, mesh_file), file.path, mesh));
     }
     times = times_of(film, frames.size(), where);
   } else {

@@ -43,14 +43,6 @@ MeshGenerators closed_meshes() {
          return cylinder_mesh(integer(p, "n_around"), integer(p, "n_along"), number(p, "radius_m"),
                               number(p, "length_m"), boolean(p, "closed"));
        }},
-      {"torso",
-       "closed trunk of a body about z, from hips to neck",
-       {{"n_around", count(3, 20000), 40, "quads around"},
-        {"n_along", count(1, 20000), 49, "quads along"},
-        {"height_m", positive("m"), 0.9, "height; the widths follow"}},
-       [](const ParameterMap& p) {
-         return torso_mesh(integer(p, "n_around"), integer(p, "n_along"), number(p, "height_m"));
-       }},
       {"cone",
        "closed cone, tip at the origin, base below; rings close at the tip",
        {{"n_around", count(3, 20000), 16, "vertices of a ring"},
@@ -72,6 +64,18 @@ MeshGenerators closed_meshes() {
          return box_mesh(integer(p, "n"),
                          Vec3d(number(p, "size_x_m"), number(p, "size_y_m"), number(p, "size_z_m")));
        }}};
+}
+
+/// What is dressed.
+MeshGenerators body_meshes() {
+  return {{"torso",
+           "closed trunk of a body about z, from hips to neck",
+           {{"n_around", count(3, 20000), 40, "quads around"},
+            {"n_along", count(1, 20000), 49, "quads along"},
+            {"height_m", positive("m"), 0.9, "height; the widths follow"}},
+           [](const ParameterMap& p) {
+             return torso_mesh(integer(p, "n_around"), integer(p, "n_along"), number(p, "height_m"));
+           }}};
 }
 
 /// Lone edges, one behind the other.
@@ -191,8 +195,8 @@ MeshGenerators all_meshes(std::initializer_list<MeshGenerators> tables) {
 }  // namespace
 
 const Registry<MeshGenerator>& mesh_generators() {
-  static const Registry<MeshGenerator> list(
-      all_meshes({sheet_meshes(), closed_meshes(), strand_meshes(), entangled_meshes(), solid_meshes()}));
+  static const Registry<MeshGenerator> list(all_meshes(
+      {sheet_meshes(), closed_meshes(), body_meshes(), strand_meshes(), entangled_meshes(), solid_meshes()}));
   return list;
 }
 

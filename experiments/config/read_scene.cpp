@@ -6,13 +6,13 @@
 #include <map>
 #include <set>
 
-#include "core/base/input/read_file.hpp"
-#include "core/base/record/provenance.hpp"
 #include "core/model/bodies/part.hpp"
 #include "experiments/config/films.hpp"
+#include "experiments/config/hashed_file.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/sections.hpp"
+#include "experiments/config/weights.hpp"
 
 namespace bb {
 namespace {
@@ -23,19 +23,10 @@ using nlohmann::json;
 const json& given(const json& scene, const char* key, std::size_t i) { return scene.at(key).at(i); }
 
 void read_mesh_file(const json& object, const std::string& pointer, const Reader& reader, MeshSource& mesh) {
-  mesh.file = object["file"].get<std::string>();
   if (object.contains("objects")) mesh.objects = object["objects"].get<std::vector<std::string>>();
-  try {
-    mesh.sha256 = sha256_hex(read_input_file(mesh.file, mesh_file));
-  } catch (const ConfigError& error) {
-    const Violation& wrong = error.violations().front();
-    reader.complain(pointer + "/file", object["file"].dump() + ": " + wrong.found, wrong.allowed);
-    return;
-  }
-  if (object.contains("sha256") && object["sha256"] != mesh.sha256) {
-    reader.complain(pointer + "/sha256", object["sha256"].dump(),
-                    "\"" + mesh.sha256 + "\", the hash of " + mesh.file);
-  }
+  HashedFile file;
+  read_hashed(object, mesh_file, pointer, reader, file);
+  mesh.file = file.path, mesh.sha256 = file.sha256;
 }
 
 void read_mesh(const json& object, const std::string& pointer, const Reader& reader, MeshSource& mesh) {
@@ -154,6 +145,7 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
   }
   settle_material(child(object, "material"), pointer + "/material", reader, spec.material);
   read_motion(child(object, "motion"), pointer + "/motion", reader, spec.motion);
+  read_weights(object, pointer, reader, body.weights);
   check_times(spec.pressure_keys, pointer + "/pressure_schedule", reader);
   if (spec.pressure != 0 && !spec.pressure_keys.empty()) {
     reader.complain(pointer + "/pressure_Pa", "a pressure beside pressure_schedule", "one of both");
@@ -167,8 +159,9 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
     check_times(pin.pull_factors, where + "/pull_factors", reader);
     check_span(pin, where, reader);
     check_pull(pin, where, reader);
-    if (pin.indices.empty() && pin.objects.empty() && !pin.box && !pin.top_row && !pin.all) {
-      reader.missing(where, "at least one of indices, objects, box_m, top_row, all");
+    if (pin.indices.empty() && pin.objects.empty() && !pin.box && !pin.top_row && !pin.all &&
+        pin.mix.empty()) {
+      reader.missing(where, "at least one of indices, objects, box_m, top_row, all, mix");
     }
   }
 }

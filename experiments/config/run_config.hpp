@@ -3,6 +3,7 @@
 // default and meaning.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -52,13 +53,28 @@ struct MeshSource {
   bool given() const { return !generator.empty() || !file.empty(); }
 };
 
+/// Vertices in a closed box (min, max) of start positions have this weight.
+struct WeightBox {
+  std::optional<std::array<Vec3d, 2>> box;  // m
+  double weight = 1;
+};
+/// A weight group of a body: numbers of a file, of boxes, or that rise along an axis.
+struct WeightGroupConfig {
+  std::string name;
+  HashedFile file;               // none: empty path
+  std::vector<WeightBox> boxes;  // the last one counts; outside of all 0
+  Vec3d axis = Vec3d::UnitX();
+  std::optional<double> from, to;  // m along the axis: 0 there, 1 here, linear between
+};
+
 /// A body of a scene given as JSON; `spec.mesh` is empty until build_scene reads or generates it.
 struct BodyConfig {
   MeshSource mesh;
   MeshSource rest_mesh;  // whose vertices are the rest shape; none: those of mesh
   FilmSource rest_film;  // the same over time; none: they stay
   TransformConfig transform;
-  BodySpec spec;                // without mesh and d_hat
+  std::vector<WeightGroupConfig> weights;
+  BodySpec spec;                // without mesh, weights and d_hat
   std::optional<double> d_hat;  // m; absent: formulation.d_hat
   bool limited = true;          // subject to strain_limit
 };

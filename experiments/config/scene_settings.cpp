@@ -47,6 +47,19 @@ void add_film(Settings<PrescribedMotion>& out) {
       nullptr, [](const PrescribedMotion& motion) { return film_json(motion.film_source); });
 }
 
+/// Read by read_weights, which opens it.
+void add_weights_file(Settings<WeightGroupConfig>& out) {
+  const auto row = [&out](const char* name, Rule rule, const char* doc, std::string HashedFile::*member) {
+    out.add_row({name, std::move(rule), no_default, doc}, nullptr, [member](const WeightGroupConfig& group) {
+      return group.file.path.empty() ? json() : json(group.file.*member);
+    });
+  };
+  row("file", text_up_to(0),
+      "Path of a text file: one number from 0 to 1 in a line, in the order of the vertices.",
+      &HashedFile::path);
+  row("sha256", any_text(), "Expected SHA-256 of the file (hex).", &HashedFile::sha256);
+}
+
 /// Of a MotionStep, and of the first operation of a PrescribedMotion.
 template <class S>
 void add_motion_rows(Settings<S>& out) {
@@ -189,18 +202,49 @@ void leave_out_defaults(json& motion) {
   }
 }
 
+void leave_out_empty(json& object, std::initializer_list<const char*> lists) {
+  for (const char* list : lists) {
+    if (object.contains(list) && object[list].empty()) object.erase(list);
+  }
+}
+
+void leave_out_constant_influences(json& object, const char* mix) {
+  if (!object.contains(mix)) return;
+  for (json& share : object[mix]) leave_out_empty(share, {"influence_schedule"});
+}
+
+/// Weights, as a config says them that has some.
+void leave_out_of_weights(json& body) {
+  leave_out_empty(body, {"weights", "pressure_mix", "stiffness_weights"});
+  leave_out_constant_influences(body, "pressure_mix");
+  if (body.contains("stiffness_weights")) {
+    for (json& weights : body["stiffness_weights"]) leave_out_constant_influences(weights, "mix");
+  }
+  if (!body.contains("weights")) return;
+  for (json& group : body["weights"]) {
+    leave_out_empty(group, {"boxes"});
+    if (!group.contains("from_m")) group.erase("axis");
+  }
+}
+
 void leave_out_defaults_of_body(json& body) {
   if (body.contains("motion")) leave_out_defaults(body["motion"]);
   if (body.contains("pressure_Pa") && body["pressure_Pa"] == 0) body.erase("pressure_Pa");
   if (body.contains("pressure_schedule")) {
     body.erase(body["pressure_schedule"].empty() ? "pressure_schedule" : "pressure_Pa");
   }
-  if (body.contains("material") && body["material"]["shrink_schedule"].empty())
-    body["material"].erase("shrink_schedule");
+  if (body.contains("material")) {
+    leave_out_empty(body["material"], {"shrink_schedule"});
+    if (body["material"]["plasticity"] == 0) {
+      for (const char* key : {"plasticity", "plasticity_step_s"}) body["material"].erase(key);
+    }
+  }
+  leave_out_of_weights(body);
   if (!body.contains("pins")) return;
   for (json& pin : body["pins"]) {
     leave_out_defaults(pin["motion"]);
-    if (pin["pull_factors"].empty()) pin.erase("pull_factors");
+    leave_out_empty(pin, {"pull_factors", "mix"});
+    leave_out_constant_influences(pin, "mix");
   }
 }
 
@@ -251,8 +295,9 @@ json scene_json(const SceneConfig& scene) {
 
 std::vector<std::string> keys_of_others(BodyKind kind) {
   if (kind == BodyKind::rigid)
-    return {"rest_mesh", "rest_film", "material",    "velocity_m_per_s",
-            "pins",      "limited",   "pressure_Pa", "pressure_schedule"};
+    return {"rest_mesh", "rest_film",    "material",         "velocity_m_per_s",
+            "pins",      "limited",      "pressure_Pa",      "pressure_schedule",
+            "weights",   "pressure_mix", "stiffness_weights"};
   return {"motion"};
 }
 std::vector<std::string> keys_of_others(ObstacleKind kind) {

@@ -55,6 +55,9 @@ RunConfig name_from(const fs::path& folder, RunConfig config) {
     for (MeshSource* mesh : {&body.mesh, &body.rest_mesh}) {
       if (!mesh->file.empty()) mesh->file = relative_name(folder, mesh->file);
     }
+    for (WeightGroupConfig& group : body.weights) {
+      if (!group.file.path.empty()) group.file.path = relative_name(folder, group.file.path);
+    }
     for (FilmSource* film : films_of(body)) {
       for (HashedFile& file : film->files) file.path = relative_name(folder, file.path);
       std::string& times = film->times_file.path;
@@ -73,6 +76,9 @@ void copy_inputs(const fs::path& folder, RunConfig& config, std::vector<PluginFi
   for (BodyConfig& body : config.scene.bodies) {
     for (MeshSource* mesh : {&body.mesh, &body.rest_mesh}) {
       if (!mesh->file.empty()) copy_one(folder, mesh_file, mesh->file, mesh->sha256);
+    }
+    for (WeightGroupConfig& group : body.weights) {
+      if (!group.file.path.empty()) copy_one(folder, weights_file, group.file.path, group.file.sha256);
     }
     for (FilmSource* film : films_of(body)) copy_film(folder, *film);
   }

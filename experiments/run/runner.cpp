@@ -230,6 +230,9 @@ RunRecord identified(const RunConfig& config, const RunOptions& options) {
     for (const MeshSource* mesh : {&body.mesh, &body.rest_mesh}) {
       if (!mesh->file.empty()) record.scene.mesh_sha256[mesh->file] = mesh->sha256;
     }
+    for (const WeightGroupConfig& group : body.weights) {
+      if (!group.file.path.empty()) record.scene.mesh_sha256[group.file.path] = group.file.sha256;
+    }
     for (const FilmSource* film : films_of(body)) {
       for (const HashedFile& file : film->files) record.scene.mesh_sha256[file.path] = file.sha256;
       const HashedFile& times = film->times_file;

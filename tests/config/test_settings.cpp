@@ -32,6 +32,10 @@ void add_lists(json& scene) {
   json& pin = scene["bodies"][0]["pins"][0];
   pin["pull_N_per_m"] = 1;
   pin["pull_factors"] = {{{"time_s", 0}, {"factor", 1}}};
+  const json mix = {{{"group", "a"}, {"influence_schedule", {{{"time_s", 0}, {"influence", 1}}}}}};
+  pin["mix"] = scene["bodies"][0]["pressure_mix"] = mix;
+  scene["bodies"][0]["stiffness_weights"] = {{{"of", "membrane"}, {"mix", mix}}};
+  scene["bodies"][0]["weights"] = {{{"name", "a"}, {"boxes", {{{"box_m", {{0, 0, 0}, {1, 1, 1}}}}}}}};
   pin["motion"] = scene["bodies"][1]["motion"] = scene["obstacles"][0]["motion"] = motion;
   scene["gravity_schedule"] = {{{"time_s", 0}, {"gravity_m_per_s2", {0, 0, -9}}}};
   scene["air"]["wind_schedule"] = {{{"time_s", 0}, {"wind_m_per_s", {0, 0, 1}}}};

@@ -11,6 +11,7 @@
 #include "barriers/stiffness/registry.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/energy/solid_model.hpp"
+#include "core/model/bodies/lumping.hpp"
 #include "core/model/bodies/scene_builder.hpp"
 #include "core/model/mesh/generators.hpp"
 #include "core/model/mesh/solid_generators.hpp"
@@ -148,12 +149,24 @@ Scene sheet_with(const Set& set) {
   return scene_of({sheet}, false, Vec3d::Zero());
 }
 
-inline Scene pulled() {
+/// A weight group of every vertex, and a mix of it that grows.
+inline std::vector<WeightShare> weigh(BodySpec& body) {
+  WeightGroup& group = body.weights.emplace_back();
+  group.name = "waves";
+  for (Eigen::Index v = 0; v < body.mesh.vertices.cols(); ++v)
+    group.weight.push_back(0.5 + 0.5 * std::cos(2.0 * static_cast<double>(v)));
+  return {{"waves", 1, {{0, 0.2}, {1, 1}}}};
+}
+
+/// weighted: by a mix over time.
+inline Scene pulled(bool weighted = false) {
   BodySpec sheet = bare_sheet("sheet");
+  const std::vector<WeightShare> mix = weigh(sheet);
   for (const int v : {3, 12}) {
     PinSpec& pin = sheet.pins.emplace_back();
     pin.indices = {v, v + 1};
     pin.pull = 4.0 * v;
+    if (weighted) pin.mix = mix;
     pin.pull_factors = {{0, 1}, {1, 0.25}};
     pin.motion.velocity = Vec3d(0.2, -0.1, 0.4);
     pin.motion.angular_velocity = 0.7;
@@ -162,10 +175,12 @@ inline Scene pulled() {
 }
 
 /// The vertex that is held has no mass, and so no drag.
-inline Scene in_wind() {
+inline Scene in_wind(Lumping lumping = Lumping::barycentric) {
   SceneBuilder builder("in wind", false, Vec3d::Zero(), "test");
   builder.set_air({0.9, 0.2, Vec3d::Zero(), {{0, Vec3d(1, 2, -1)}, {1, Vec3d(0, -3, 5)}}});
-  builder.add_body(with_pins(bare_sheet("sheet"), {0}));
+  BodySpec sheet = with_pins(bare_sheet("sheet"), {0});
+  sheet.material.lumping = lumping;
+  builder.add_body(sheet);
   return builder.finish();
 }
 
@@ -180,8 +195,8 @@ inline Scene stitched() {
   return builder.finish();
 }
 
-/// Two balls, one with a pressure that changes.
-inline Scene inflated() {
+/// Two balls, one with a pressure that changes. weighted: that one by a mix over time, split as its mass is.
+inline Scene inflated(bool weighted = false) {
   std::vector<BodySpec> balls;
   for (const int i : {0, 1}) {
     BodySpec& ball = balls.emplace_back(bare_sheet("ball"));
@@ -190,6 +205,10 @@ inline Scene inflated() {
     ball.mesh.vertices.row(0).array() += 2 * i;
     if (i == 0) ball.pressure = 30;
     if (i == 1) ball.pressure_keys = {{0, 20}, {1, 40}};
+    if (i == 0 || !weighted) continue;
+    ball.mesh.vertices.row(1) *= 2.5;
+    ball.material.lumping = Lumping::mixed_voronoi;
+    ball.pressure_mix = weigh(ball);
   }
   return scene_of(balls, false, Vec3d::Zero());
 }
@@ -227,6 +246,9 @@ inline std::vector<TermCase> driven_cases() {
   add("pulls", "pull", pulled());
   add("drag", "air_drag", in_wind());
   add("pressure", "inflation", inflated());
+  add("weighted pulls", "pull", pulled(true));
+  add("split drag", "air_drag", in_wind(Lumping::mixed_voronoi));
+  add("weighted pressure", "inflation", inflated(true));
   add("stitches", "stitch", stitched());
   add("springs of cloth", "cloth_springs", sheet_with([](Material& m) {
         m.cloth_tension = 3, m.cloth_tension_growing = 2, m.cloth_compression = 1;

@@ -1,7 +1,9 @@
 // Forces on vertices, and what acts on velocities.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "tests/features/feature.hpp"
 
@@ -53,6 +55,23 @@ std::string slows_by_the_air(const Method&, const Track& run) {
   return differs("speed", speed(run), std::exp(-10 * run.t_end()), 0.02);
 }
 
+/// Both triangles of the plate are right: a half at the right angle, quarters at the ends of the diagonal.
+json braked_as_its_mass(const Method& method) {
+  json config = braked(method);
+  config["scene"]["bodies"][0]["material"]["lumping"] = "mixed_voronoi";
+  config["scene"]["bodies"][0]["material"]["springs_N_per_m"] = 1e-3;
+  return config;
+}
+
+std::string every_vertex_slows_alike(const Method&, const Track& run) {
+  for (int v = 0; v < 4; ++v) {
+    const double vz = run.v.back()(2, v);
+    if (auto wrong = differs("speed of a vertex", vz, std::exp(-10 * run.t_end()), 0.02); !wrong.empty())
+      return wrong;
+  }
+  return {};
+}
+
 json damped(const Method& method) {
   json config = flying(method, 1);
   config["scene"]["velocity_damping"]["factor_per_s"] = 1e-3;
@@ -70,14 +89,42 @@ json pulled(const Method& method) {
   return config;
 }
 
-std::string swings_on_its_springs(const Method& method, const Track& run) {
+/// On springs of k (N/m) times the weight of each vertex.
+std::string swings(const Method& method, const Track& run, double k,
+                   const std::function<double(const Vec3d&)>& weight) {
   for (int v = 0; v < 4; ++v) {
-    const double m = run.scene.mass[static_cast<std::size_t>(v)], rest = m * g * method.weight() / 25;
-    const double part = method.still() ? 1 : 1 - std::cos(std::sqrt(25 / m) * run.t_end());
+    const double own = k * weight(run.x[0].col(v));
+    const double m = run.scene.mass[static_cast<std::size_t>(v)], rest = m * g * method.weight() / own;
+    const double part = method.still() ? 1 : 1 - std::cos(std::sqrt(own / m) * run.t_end());
     const auto wrong = differs("height", run.end()(2, v) - run.x[0](2, v), -rest * part, 0.03 * rest);
     if (!wrong.empty()) return wrong;
   }
   return {};
+}
+std::string swings_on_its_springs(const Method& method, const Track& run) {
+  return swings(method, run, 25, [](const Vec3d&) { return 1; });
+}
+
+/// A weight that rises along x from 0.25 at one side of the plate to 1 at the other, of two groups.
+json weights_along_x() {
+  return {{{"name", "along x"}, {"from_m", -0.05}, {"to_m", 0.05}},
+          {{"name", "all"}, {"boxes", {{{"box_m", {{-9, -9, -9}, {9, 9, 9}}}}}}}};
+}
+json mix_along_x() {
+  return {{{"group", "along x"}, {"influence", 0.75}}, {{"group", "all"}, {"influence", 0.25}}};
+}
+
+json pulled_by_weights(const Method& method) {
+  json config = pulled(method);
+  json& body = config["scene"]["bodies"][0];
+  body["material"]["springs_N_per_m"] = 1e-3;
+  body["weights"] = weights_along_x();
+  body["pins"][0].update({{"pull_N_per_m", 50}, {"mix", mix_along_x()}});
+  return config;
+}
+
+std::string swings_as_it_weighs(const Method& method, const Track& run) {
+  return swings(method, run, 50, [](const Vec3d& x) { return x[0] > 0 ? 1 : 0.25; });
 }
 
 constexpr double pressure = 10;  // Pa
@@ -92,19 +139,28 @@ json inflated(const Method& method) {
   return config;
 }
 
-/// The force of the pressure on each vertex: p times the gradient of the volume within.
-Positions pressure_force(const Track& run) {
+json inflated_by_weights(const Method& method) {
+  json config = inflated(method);
+  json& ball = config["scene"]["bodies"][0];
+  ball["weights"] = weights_along_x();
+  ball["pressure_mix"] = mix_along_x();
+  return config;
+}
+double weight_along_x(const Vec3d& x) { return 0.25 + 0.75 * std::clamp(x[0] / 0.1 + 0.5, 0.0, 1.0); }
+
+/// The force of the pressure on each vertex: p times the gradient of the volume within. weight: on the pressure.
+Positions pressure_force(const Track& run, const std::function<double(const Vec3d&)>& weight) {
   Positions out = Positions::Zero(3, run.x[0].cols());
   for (const auto& [a, b, c] : run.scene.surface_triangles) {
     const Vec3d x = run.x[0].col(a), y = run.x[0].col(b), z = run.x[0].col(c);
-    const Vec3d force = pressure / 6 * (y - x).cross(z - x);  // a third of the area
+    const double own = pressure * (weight(x) + weight(y) + weight(z)) / 3;
+    const Vec3d force = own / 6 * (y - x).cross(z - x);  // a third of the area
     for (const int v : {a, b, c}) out.col(v) += force;
   }
   return out;
 }
 
-std::string swells(const Method& method, const Track& run) {
-  const Positions force = pressure_force(run);
+std::string goes_with_its_force(const Method& method, const Track& run, const Positions& force) {
   for (Eigen::Index v = 0; v < force.cols(); ++v) {
     const double m = run.scene.mass[static_cast<std::size_t>(v)], t = run.t_end();
     const double expected = force.col(v).norm() * (method.still() ? 1 / 25.0 : t * t / 2 / m);
@@ -113,6 +169,13 @@ std::string swells(const Method& method, const Track& run) {
     if (!wrong.empty()) return wrong;
   }
   return {};
+}
+
+std::string swells(const Method& method, const Track& run) {
+  return goes_with_its_force(method, run, pressure_force(run, [](const Vec3d&) { return 1; }));
+}
+std::string swells_as_it_weighs(const Method& method, const Track& run) {
+  return goes_with_its_force(method, run, pressure_force(run, weight_along_x));
 }
 
 constexpr double apart = 0.05, stitch = 25;  // m, N/m
@@ -154,6 +217,18 @@ std::vector<Feature> load_features() {
        scheduled,
        has_the_sum_of_its_weight},
       {"pull", "every vertex swings on its spring", {"pull"}, false, pulled, swings_on_its_springs},
+      {"pull by weights",
+       "every vertex swings on its share of the stiffness",
+       {"pull"},
+       false,
+       pulled_by_weights,
+       swings_as_it_weighs},
+      {"drag split as mass",
+       "the speed of every vertex falls as exp(-C A t/m)",
+       {"air_drag"},
+       true,
+       braked_as_its_mass,
+       every_vertex_slows_alike},
       {"drag", "the speed falls as exp(-C A t/m)", {"air_drag"}, true, braked, slows_by_the_air},
       {"velocity damping", "the speed falls by its factor", {"inertia"}, true, damped, keeps_its_part},
       {"inflation",
@@ -162,6 +237,12 @@ std::vector<Feature> load_features() {
        false,
        inflated,
        swells},
+      {"inflation by weights",
+       "the same with the mean weight of each triangle",
+       {"inflation"},
+       false,
+       inflated_by_weights,
+       swells_as_it_weighs},
       {"stitches", "two plates swing towards each other", {"stitch"}, false, stitched, is_drawn_together}};
 }
 

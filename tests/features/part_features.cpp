@@ -151,6 +151,15 @@ std::vector<Feature> part_features() {
       return out;
     };
   };
+  const auto weighted = [](const Method& method) {
+    json out = membrane(method, {{"bending_J", 1e-3}});
+    json& body = out["scene"]["bodies"][0];
+    body["weights"] = {{{"name", "down"}, {"axis", {0, 1, 0}}, {"from_m", 0.15}, {"to_m", -0.15}}};
+    for (const char* of : {"membrane", "hinges"})
+      body["stiffness_weights"].push_back(
+          {{"of", of}, {"mix", {{{"group", "down"}}}}, {"min", 2}, {"max", 0.5}});
+    return out;
+  };
   return {as_line_search("springs", {"springs"}, springs),
           as_line_search("springs of cloth", {"cloth_springs"}, cloth_springs),
           as_line_search("springs two apart", {"cloth_springs"}, two_apart),
@@ -166,6 +175,8 @@ std::vector<Feature> part_features() {
           as_line_search("rest film of solids", {}, grows(solid)),
           as_line_search("shrink schedule of rods", {}, shrinking(rod, shrinks)),
           as_line_search("shrink schedule of solids", {}, shrinking(solid, shrinks)),
+          as_line_search("plasticity", {}, of_membrane({{"plasticity", 0.4}})),
+          as_line_search("stiffness by weights", {}, weighted),
           as_line_search("creep", {}, of_membrane({{"membrane_creep_per_s", 20.0}})),
           {"strain limit",
            "no stretch reaches the limit",

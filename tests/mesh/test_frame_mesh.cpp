@@ -30,6 +30,21 @@ TEST(frame_mesh, cuts_a_polygon_that_no_fan_covers) {
   EXPECT_TRUE(mesh.notes.empty());
 }
 
+TEST(frame_mesh, has_texture_coordinates_of_corners_where_they_are_asked_for) {
+  const std::string text =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.5 0.25 7\nvt 2\nf 1/2 2//3 3/-2/1\nf 1/3 3 4/1\nvt 3 4\n";
+  const FrameMesh mesh = parse_frame(text, "a.obj", {}, true);
+
+  EXPECT_EQ(mesh.uvs, (std::vector<std::array<double, 2>>{{0.5, 0.25}, {2, 0}, {3, 4}}));
+  EXPECT_EQ(mesh.corner_uvs, (std::vector<int>{1, -1, 0, 2, -1, 0}));
+  EXPECT_EQ(mesh.corner_uvs.size(), mesh.corners.size());
+  EXPECT_TRUE(parse_frame(text, "a.obj").corner_uvs.empty());
+  const std::string wrong = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt half\nf 1/9 2 3\n";
+  EXPECT_EQ(parse_frame(wrong, "a.obj").triangles.size(), 1u);  // read past
+  EXPECT_THROW(parse_frame(wrong, "a.obj", {}, true), ConfigError);
+  EXPECT_THROW(parse_frame("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/2 2 3\n", "a.obj", {}, true), ConfigError);
+}
+
 TEST(frame_mesh, says_where_the_sides_of_a_polygon_cross) {
   const FrameMesh mesh = parse_frame("v 0 0 0\nv 2 2 0\nv 3 0 0\nv 0 3 0\nf 1 2 3 4\n", "a.obj");
 

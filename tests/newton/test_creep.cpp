@@ -14,7 +14,8 @@ namespace {
 constexpr double dt = 0.01, held_angle = 1.2, yield = 0.3, rate = 4;
 
 /// Two triangles that are flat at rest and start bent; the edge and the first vertex are held. Without gravity.
-Scene bent_strip(double density, double creep, double bending_yield = yield) {
+/// plasticity: in the place of creep, in 50 ms.
+Scene bent_strip(double density, double creep, double bending_yield = yield, double plasticity = 0) {
   BodySpec spec;
   spec.name = "strip";
   spec.mesh.vertices.resize(3, 4);
@@ -26,7 +27,8 @@ Scene bent_strip(double density, double creep, double bending_yield = yield) {
   spec.material.youngs = 1e4;
   spec.material.bending = 0.7;
   spec.material.bending_yield = creep > 0 ? bending_yield : 0;
-  spec.material.bending_creep = creep;
+  spec.material.bending_creep = plasticity > 0 ? 0 : creep;
+  if (plasticity > 0) spec.material.plasticity = plasticity, spec.material.plasticity_step = 0.05;
   spec.d_hat = 1e-3;
   PinSpec pin;
   pin.indices = {0, 1, 2};
@@ -56,8 +58,9 @@ std::string bytes_of(Simulation& simulation) {
 }
 
 /// So heavy that its inertia holds it, for 20 steps; then light, from the same state, until it rests. What it is left is left to it.
-double angle_at_rest_after_holding(double creep) {
-  const Scene heavy = bent_strip(1e9, creep), light = bent_strip(1, creep > 0 ? 1e-9 : 0);
+double angle_at_rest_after_holding(double creep, double plasticity = 0) {
+  const Scene heavy = bent_strip(1e9, creep, yield, plasticity),
+              light = bent_strip(1, creep > 0 ? 1e-9 : 0, yield, plasticity > 0 ? 1e-12 : 0);
   Method method = test::fixed_method("log", 1);
   Simulation held(heavy, method, dt, 20);
   advance(held, 20);
@@ -74,6 +77,14 @@ TEST(Creep, LeavesAStripTheAngleOfItsClosedForm) {
   ASSERT_GT(kept, 0.4);
   EXPECT_NEAR(angle_at_rest_after_holding(rate), kept, 1e-5);
   EXPECT_NEAR(angle_at_rest_after_holding(0), 0, 1e-5);
+}
+
+/// In steps of 10 ms, its own being 50 ms: a share of 0.3 is left four times over.
+TEST(Creep, OfPlasticityLeavesItsShareInItsOwnTime) {
+  const double kept = (held_angle - yield) * (1 - std::pow(1 - 0.3, 20 * dt / 0.05));
+  ASSERT_GT(kept, 0.6);
+  EXPECT_NEAR(angle_at_rest_after_holding(1, 0.3), kept, 1e-5);
+  EXPECT_NEAR(angle_at_rest_after_holding(1, 1), held_angle - yield, 1e-5);  // all at once
 }
 
 TEST(Creep, ChangesNoBitBelowTheYield) {

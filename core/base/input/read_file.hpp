@@ -20,6 +20,7 @@ inline constexpr InputKind sweep_file{"a sweep file", std::uint64_t{16} << 20};
 inline constexpr InputKind record_file{"a record", std::uint64_t{256} << 20};
 inline constexpr InputKind mesh_file{"a mesh file (.obj, .ply, .stl, .msh, .vtk, .vtu, .vtp)",
                                      std::uint64_t{1} << 30};
+inline constexpr InputKind weights_file{"a file of weights (a number a line)", std::uint64_t{256} << 20};
 inline constexpr InputKind matrix_file{"a Matrix Market file (.mtx)", std::uint64_t{1} << 30};
 inline constexpr InputKind side_car_file{"the side-car of a matrix (.json)", std::uint64_t{256} << 20};
 inline constexpr InputKind query_file{"a file of JSON Lines (- reads the standard input, pipes too)",

@@ -50,13 +50,16 @@ class PullFamily final : public QuadraticFamily {
     for (const Pull& pull : scene_.pulls) {
       const PrescribedMotion& motion = scene_.motions[static_cast<std::size_t>(pull.motion)];
       const double stiffness = stiffness_of(pull, step);
+      const std::vector<double> weights =
+          pull.weights.given() ? pull.weights.at(step.t_end) : std::vector<double>(pull.vertices.size(), 1.0);
+      auto weight = weights.begin();
       for (const int v : pull.vertices) {
         const Vec3d to = motion.pose(v, scene_.x0.col(v), step.t_end);
         for (std::size_t c = 0; c < 3; ++c) {
           at_[c * n + e] = to[static_cast<Eigen::Index>(c)];
-          stiffness_[4 * c * n + e] = stiffness;
+          stiffness_[4 * c * n + e] = stiffness * *weight;
         }
-        ++e;
+        ++e, ++weight;
       }
     }
     places_.upload(at_);
@@ -71,6 +74,7 @@ class PullFamily final : public QuadraticFamily {
 struct CornersInAir {
   std::vector<int> vertices;
   std::vector<std::uint32_t> start = {0}, of;  // [n + 1]; ascending
+  std::vector<double> thrice;                  // of each, three times what the corner bears; empty: 1
 };
 CornersInAir corners_in_air(const Scene& scene) {
   std::vector<std::vector<std::uint32_t>> of_vertex(scene.mass.size());
@@ -86,6 +90,14 @@ CornersInAir corners_in_air(const Scene& scene) {
     out.vertices.push_back(static_cast<int>(v));
     out.of.insert(out.of.end(), own.begin(), own.end());
     out.start.push_back(static_cast<std::uint32_t>(out.of.size()));
+    for (const std::uint32_t t : own) {
+      if (scene.corner_parts.empty()) break;
+      const auto& corner = scene.surface_triangles[t];
+      const auto k = static_cast<std::size_t>(corner[0] == static_cast<int>(v)   ? 0
+                                              : corner[1] == static_cast<int>(v) ? 1
+                                                                                 : 2);
+      out.thrice.push_back(3 * scene.corner_parts[t][k]);
+    }
   }
   return out;
 }
@@ -97,15 +109,18 @@ class AirDragFamily final : public QuadraticFamily {
         triangle_(place.executor, "triangles in the air"),
         start_(place.executor, "triangles of corners in the air, starts"),
         of_(place.executor, "triangles of corners in the air"),
+        thrice_(place.executor, "parts of triangles in the air"),
         coefficient_(place.executor, "air_drag coefficients", 9 * size()) {
     triangle_.upload(flat(scene.surface_triangles));
     start_.upload(corners.start);
     of_.upload(corners.of);
+    thrice_.upload(corners.thrice);
   }
 
   void begin_step(const FamilyStep& step) override {
     place_.executor.each(
-        size(), DragCoefficients{triangle_.data(), start_.data(), of_.data(), size(), scene_.air.normal,
+        size(), DragCoefficients{triangle_.data(), start_.data(), of_.data(),
+                                 thrice_.size() > 0 ? thrice_.data() : nullptr, size(), scene_.air.normal,
                                  scene_.air.tangential, step.x_n, coefficient_.data()});
     change_step(step);
   }
@@ -119,6 +134,7 @@ class AirDragFamily final : public QuadraticFamily {
  private:
   exec::Buffer<int> triangle_;  // [3 triangles]
   exec::Buffer<std::uint32_t> start_, of_;
+  exec::Buffer<double> thrice_;
   exec::Buffer<double> coefficient_;  // [9, n] N s/m
 };
 

@@ -1,7 +1,7 @@
 // Vertices that are pulled to places: 1/2 (x - y)^T K (x - y), and what drag of the air makes of y and K. Drag of the air on
-// triangles: every corner of a triangle of area A bears -A/3 (c_n u_n + c_t u_t), u_n and u_t the parts of its velocity
-// relative to the wind along and across the triangle's normal. Areas and normals are those of the start of the step, the
-// velocity is (x - x_n)/h: the energy is 1/(2 h) u^T C u with u = x - x_n - h wind, and convex.
+// triangles: every corner of a triangle of area A bears -A w (c_n u_n + c_t u_t), w its part of the triangle (a third, or as the mass is
+// split), u_n and u_t the parts of its velocity relative to the wind along and across the triangle's normal. Areas and normals are those of
+// the start of the step, the velocity is (x - x_n)/h: the energy is 1/(2 h) u^T C u with u = x - x_n - h wind, and convex.
 #pragma once
 
 #include "core/energy/air_drag.hpp"
@@ -45,6 +45,7 @@ struct Quadratics : ElementVertices<1> {
 struct DragCoefficients {
   const int* triangle;              // [3 triangles] vertices
   const std::uint32_t *start, *of;  // [n + 1]; triangles of every element, ascending
+  const double* thrice;             // of each of these, three times what the corner bears of it; null: 1
   exec::Index n;
   double normal, tangential;  // N s/m^3
   const double* x_n;          // [3 n_vertices] m
@@ -54,7 +55,8 @@ struct DragCoefficients {
     for (std::uint32_t i = start[e]; i < start[e + 1]; ++i) {
       const int* const corner = triangle + 3 * static_cast<exec::Index>(of[i]);
       const Vec3d x[3] = {point_at(x_n, corner[0]), point_at(x_n, corner[1]), point_at(x_n, corner[2])};
-      sum += drag_of_corner<double>(x, normal, tangential);
+      const Mat3d third = drag_of_corner<double>(x, normal, tangential);
+      sum += thrice == nullptr ? third : Mat3d(thrice[i] * third);
     }
     for (int c = 0; c < 9; ++c) coefficient[c * n + e] = sum.data()[c];
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/model/bodies/complaints.hpp"
+#include "core/model/bodies/weights.hpp"
 #include "core/model/scene/scene.hpp"
 
 namespace bb {
@@ -30,6 +31,7 @@ struct BodyElements {
   const int first;                 // vertex 0 of the body in the scene
   const std::vector<int>& pin_of;  // [n vertices of the scene] -1: free
   const Complaints& complain;      // at the body
+  const StiffnessFactors& stiffness;
 
   /// The same vertices, numbered as those of the scene.
   template <std::size_t n>

@@ -22,6 +22,30 @@ struct StrainLimitSpec {
 /// What a body says of all parts that it can be made of (core/model/scene/parts). Stiffness 0 switches elements off.
 struct Material : parts::AllKeys {
   std::optional<StrainLimitSpec> limit;  // absent: no limit
+
+  /// Rate (1/s) at which a rest shape follows that has `own` of its own: that, or plasticity as a rate, with which the part
+  /// 1 - plasticity is left after plasticity_step.
+  double creep_rate(double own) const;
+};
+
+/// A number in [0, 1] for every vertex of a body.
+struct WeightGroup {
+  std::string name;
+  std::vector<double> weight;  // [n vertices]
+};
+/// A group of the body in a mix (core/model/scene/weight_mix.hpp).
+struct WeightShare {
+  std::string group;
+  double influence = 1;            // in [-1, 1]
+  std::vector<InfluenceKey> keys;  // of the influence, instead; empty: constant
+};
+
+enum class StiffnessKind { membrane, hinges, springs };  // springs: of edges and of cloth
+/// A factor on stiffnesses of elements: low + (high - low) times the mean of the mixed weights of their vertices.
+struct StiffnessWeights {
+  StiffnessKind of = StiffnessKind::membrane;
+  std::vector<WeightShare> mix;  // constant
+  double low = 0, high = 1;      // >= 0
 };
 
 /// Which vertices of a body are prescribed, or pulled; a vertex is selected when any of the given ways selects it.
@@ -31,6 +55,10 @@ struct PinSpec {
   std::optional<std::array<Vec3d, 2>> box;  // closed box (min, max) in start positions, m
   bool top_row = false;                     // vertices with the largest start y (planar) or z, exactly
   bool all = false;
+  std::vector<WeightShare>
+      mix;  // of a pull: factors on the stiffness of each vertex, which select those that have any
+  std::optional<double>
+      threshold;  // selects vertices whose mixed weight is at least this, in (0, 1]; constant influences
   PrescribedMotion motion;            // static by default
   std::optional<double> pull;         // N/m, of springs from free vertices to there; absent: they are there
   std::vector<PullKey> pull_factors;  // of it; empty: 1
@@ -74,7 +102,10 @@ struct BodySpec {
   std::optional<double> restitution;       // in [0, 1]; absent: 1
   double pressure = 0;                     // Pa, from within; other than 0 only with a closed surface
   std::vector<PressureKey> pressure_keys;  // instead, over time
-  std::string collision_group;             // bodies of different groups do not collide; empty: of none
+  std::vector<WeightGroup> weights;        // deformable only
+  std::vector<WeightShare> pressure_mix;   // factors on the pressure of triangles; none: 1
+  std::vector<StiffnessWeights> stiffness_weights;  // at most one of a kind
+  std::string collision_group;  // bodies of different groups do not collide; empty: of none
 };
 
 }  // namespace bb

@@ -41,6 +41,21 @@ void lump_uniformly(const TriangleMesh& mesh, double per_area, const AddMass& ad
 
 }  // namespace
 
+CornerParts load_parts(const Positions& x, const std::array<int, 3>& triangle, Lumping lumping) {
+  if (lumping != Lumping::mixed_voronoi) return {1.0 / 3, 1.0 / 3, 1.0 / 3};
+  return mixed_voronoi_parts(x, triangle, area_vector(x, triangle).norm());
+}
+
+void append_load_parts(const BodySpec& spec, std::span<const std::array<int, 3>> triangles,
+                       std::size_t before, std::vector<CornerParts>& all) {
+  const bool thirds = spec.kind == BodyKind::rigid || spec.material.lumping != Lumping::mixed_voronoi;
+  if (thirds && all.empty()) return;
+  all.resize(before, {1.0 / 3, 1.0 / 3, 1.0 / 3});
+  for (const auto& t : triangles) {
+    all.push_back(load_parts(spec.mesh.vertices, t, thirds ? Lumping::barycentric : spec.material.lumping));
+  }
+}
+
 void lump_triangles(const TriangleMesh& mesh, Lumping lumping, double per_area, const AddMass& add) {
   if (mesh.triangles.empty()) return;
   if (lumping == Lumping::uniform) return lump_uniformly(mesh, per_area, add);

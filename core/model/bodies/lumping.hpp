@@ -1,7 +1,11 @@
-// How a quantity per area of triangles (mass, load) is split among their vertices.
+// How mass and loads of triangles are split among their vertices.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "core/model/bodies/body_elements.hpp"
+#include "core/model/bodies/body_spec.hpp"
 #include "core/model/mesh/triangle_mesh.hpp"
 #include "core/model/scene/parts/membrane.hpp"
 
@@ -16,5 +20,12 @@ using parts::membrane::Lumping;
 ///   uniform        the same at every vertex of a triangle.
 /// The sum is the same for all.   Requires triangles of positive area.   Cost: O(triangles).
 void lump_triangles(const TriangleMesh& mesh, Lumping lumping, double per_area, const AddMass& add);
+
+/// What the corners of a triangle bear of a load on it, as parts of 1: as of its mass. `uniform` is a rule on all vertices of a mesh: of one
+/// triangle it leaves thirds, as `barycentric` does. x: rest shape, m.   Requires a positive area.
+CornerParts load_parts(const Positions& x, const std::array<int, 3>& triangle, Lumping lumping);
+/// Those of the triangles of a body, behind `before` others of `all`, which stays empty while thirds are all that there is.
+void append_load_parts(const BodySpec& spec, std::span<const std::array<int, 3>> triangles,
+                       std::size_t before, std::vector<CornerParts>& all);
 
 }  // namespace bb

@@ -7,7 +7,8 @@
 
 namespace bb {
 
-/// Sorted, unique; indices are passed on unchecked. start: [3 x n] m.
-std::vector<int> select_vertices(const PinSpec& spec, const Positions& start, bool planar);
+/// Sorted, unique; indices are passed on unchecked. body: that the weights are of. start: [3 x n] m.
+std::vector<int> select_vertices(const PinSpec& spec, const BodySpec& body, const Positions& start,
+                                 bool planar);
 
 }  // namespace bb

@@ -9,9 +9,11 @@
 #include "core/base/input/memory.hpp"
 #include "core/math/stop_request.hpp"
 #include "core/model/bodies/film_checks.hpp"
+#include "core/model/bodies/lumping.hpp"
 #include "core/model/bodies/part.hpp"
 #include "core/model/bodies/pin_selection.hpp"
 #include "core/model/bodies/scene_checks.hpp"
+#include "core/model/bodies/weights.hpp"
 #include "core/model/mesh/topology.hpp"
 
 namespace bb {
@@ -150,7 +152,7 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
     return;
   }
   for (std::size_t p = 0; p < spec.pins.size(); ++p) {
-    const std::vector<int> selected = select_vertices(spec.pins[p], start, scene_.planar);
+    const std::vector<int> selected = select_vertices(spec.pins[p], spec, start, scene_.planar);
     if (selected.empty()) {
       complain(fmt::format("pins/{} of body \"{}\"", p, spec.name), "no vertex selected",
                "at least one vertex");
@@ -161,7 +163,7 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
       check_film_start({fmt::format("{}: body \"{}\"", where_, spec.name), violations_},
                        fmt::format("/pins/{}/motion", p), spec.pins[p].motion, start, selected);
     }
-    Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors, spec.pins[p].span};
+    Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors, spec.pins[p].span, {}};
     for (const int v : selected) {
       if (v >= spec.mesh.n_vertices()) {
         complain(fmt::format("pins/{} of body \"{}\"", p, spec.name), fmt::format("vertex {}", v),
@@ -172,7 +174,9 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
         pin_vertex(spec.name, {first + v, motion, spec.pins[p].span});
       }
     }
-    if (spec.pins[p].pull) scene_.pulls.push_back(std::move(pull));
+    if (!spec.pins[p].pull) continue;
+    pull.weights = mix_of(spec, spec.pins[p].mix, pull.vertices, first);
+    scene_.pulls.push_back(std::move(pull));
   }
   check_pulls(spec.name);
 }
@@ -197,7 +201,8 @@ void SceneBuilder::append_masses(const BodySpec& spec, int first) {
 
 void SceneBuilder::append_elements(const BodySpec& spec, int first) {
   const Complaints complain{fmt::format("{}: body \"{}\"", where_, spec.name), violations_};
-  BodyElements to{scene_, first, held_, complain};
+  const StiffnessFactors stiffness(spec);
+  BodyElements to{scene_, first, held_, complain, stiffness};
   for (const PartEntry& entry : part_entries()) entry.part.add_elements(spec, to);
   if (!spec.material.limit) return;
   for (const auto& local : spec.mesh.triangles) {
@@ -228,6 +233,7 @@ void SceneBuilder::append_surface(const BodySpec& spec, int first) {
     for (int& v : vertices) v += first;
     return vertices;
   };
+  append_load_parts(spec, surface.mesh.triangles, scene_.surface_triangles.size(), scene_.corner_parts);
   for (const auto& t : surface.mesh.triangles) scene_.surface_triangles.push_back(in_scene(t));
   closed_.push_back(surface.mesh.segments.empty() && !surface.mesh.triangles.empty() &&
                     !open_side(surface.mesh.triangles));

@@ -9,6 +9,7 @@
 
 #include "core/model/bodies/film_checks.hpp"
 #include "core/model/bodies/part.hpp"
+#include "core/model/bodies/weights.hpp"
 #include "core/model/mesh/bounds.hpp"
 #include "core/model/mesh/topology.hpp"
 
@@ -244,6 +245,7 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
   } else {
     check_material(report, spec, planar);
     check_rest_film(report, spec, planar);
+    check_weights(report, spec);
     for (const PinSpec& pin : spec.pins) {
       (pin.pull ? check_motion : check_given_motion)(report, "/pins/motion", pin.motion, planar);
       check_film(report, "/pins/motion", pin.motion, spec, planar);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/bodies/lumping.hpp"
 #include "core/model/bodies/scene_builder.hpp"
+#include "core/model/bodies/weights.hpp"
 #include "core/model/mesh/topology.hpp"
 
 namespace bb {
@@ -91,6 +93,11 @@ void SceneBuilder::append_pressure(const BodySpec& spec, std::span<const std::ar
   const int keys = spec.pressure_keys.empty() ? -1 : static_cast<int>(inflation.key_lists.size());
   if (keys >= 0) inflation.key_lists.push_back(spec.pressure_keys);
   const double pressure = keys >= 0 ? 1 : spec.pressure;
+  append_load_parts(spec, surface, inflation.triangles.size(), inflation.parts);
+  if (!spec.pressure_mix.empty()) {
+    inflation.weights.push_back({first, static_cast<int>(inflation.triangles.size()),
+                                 static_cast<int>(surface.size()), mix_of(spec, spec.pressure_mix)});
+  }
   for (const auto& [a, b, c] : surface) {
     inflation.triangles.push_back({first + a, first + b, first + c});
     inflation.pressure.push_back(volume > 0 ? pressure : -pressure);

@@ -25,6 +25,7 @@ class FrameBuilder {
     for (std::size_t t = 0; t < raw_.tetrahedra.size(); ++t) {
       mesh_.tetrahedra.push_back(checked(raw_.tetrahedra[t], "tetrahedron", raw_.tetrahedron_place[t]));
     }
+    copy_uvs();
     for (PointField& field : raw_.fields) {
       mesh_.fields.push_back({std::move(field.name), field.components, std::move(field.values)});
     }
@@ -44,6 +45,21 @@ class FrameBuilder {
     }
     mesh_.vertices.resize(3, static_cast<Eigen::Index>(n));
     for (std::size_t i = 0; i < n; ++i) mesh_.vertices.col(static_cast<Eigen::Index>(i)) = raw_.vertices[i];
+  }
+
+  void copy_uvs() {
+    for (const Vec2d& uv : raw_.uvs) mesh_.uvs.push_back({uv[0], uv[1]});
+    for (std::size_t p = 0; p < raw_.n_polygons() && !raw_.corner_uvs.empty(); ++p) {
+      for (std::size_t c = raw_.first_corner[p]; c < raw_.end_corner(p); ++c) {
+        const long long uv = raw_.corner_uvs[c];
+        if (uv >= static_cast<long long>(raw_.uvs.size())) {
+          throw ConfigError(raw_.where("face", raw_.polygon_place[p]),
+                            fmt::format("the texture coordinate {}", uv + 1),
+                            fmt::format("one of the {} of the file", raw_.uvs.size()));
+        }
+        mesh_.corner_uvs.push_back(static_cast<int>(uv));
+      }
+    }
   }
 
   int checked(long long corner, const char* element, long long place) const {
@@ -99,8 +115,8 @@ class FrameBuilder {
 
 }  // namespace
 
-FrameMesh parse_frame(const std::string& bytes, const std::string& name, const FieldNames& fields) {
-  FrameMesh mesh = FrameBuilder(parse_raw(bytes, name, fields)).run();
+FrameMesh parse_frame(const std::string& bytes, const std::string& name, const FieldNames& fields, bool uvs) {
+  FrameMesh mesh = FrameBuilder(parse_raw(bytes, name, fields, uvs)).run();
   for (const std::string& wanted : fields) {
     const auto found = std::find_if(mesh.fields.begin(), mesh.fields.end(),
                                     [&](const FrameField& field) { return field.name == wanted; });

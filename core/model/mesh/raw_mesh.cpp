@@ -41,11 +41,15 @@ void RawMesh::keep_polygons(const std::function<bool(std::size_t)>& keep) {
   for (std::size_t p = 0; p < n_polygons(); ++p) {
     if (!keep(p)) continue;
     const std::size_t first = kept.corners.size();
-    for (std::size_t c = first_corner[p]; c < end_corner(p); ++c) kept.corners.push_back(corners[c]);
+    for (std::size_t c = first_corner[p]; c < end_corner(p); ++c) {
+      kept.corners.push_back(corners[c]);
+      if (!corner_uvs.empty()) kept.corner_uvs.push_back(corner_uvs[c]);
+    }
     kept.close_polygon(first, polygon_place[p]);
     if (!polygon_objects.empty()) kept.polygon_objects.push_back(polygon_objects[p]);
   }
   corners = std::move(kept.corners);
+  corner_uvs = std::move(kept.corner_uvs);
   first_corner = std::move(kept.first_corner);
   polygon_place = std::move(kept.polygon_place);
   polygon_objects = std::move(kept.polygon_objects);

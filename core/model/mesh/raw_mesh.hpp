@@ -48,7 +48,9 @@ struct RawMesh {
   std::vector<std::vector<std::size_t>>
       object_sets;  // names that polygons and segments have together, each set once
   std::vector<std::size_t> polygon_objects,
-      segment_objects;  // the set of each; empty: no names in the format
+      segment_objects;                // the set of each; empty: no names in the format
+  std::vector<Vec2d> uvs;             // texture coordinates, where they were asked for
+  std::vector<long long> corner_uvs;  // of every corner, into uvs; -1: none, empty: not asked for
   std::vector<PointField> fields;
   std::map<std::string, LeftOut>
       left_out;  // what is no surface, rod or solid: points, text, elements of other names
@@ -100,10 +102,11 @@ MeshObjects objects_of(const RawMesh& raw);
 /// which vertices the mesh has. Errors: ConfigError for an unknown name.
 RawMesh only_objects(RawMesh raw, const MeshChoice& choice, MeshObjects& objects);
 
-/// By the extension of the name. Errors: ConfigError, see read_mesh.
-RawMesh parse_raw(const std::string& bytes, const std::string& name, const FieldNames& wanted = {});
+/// By the extension of the name. uvs: texture coordinates too, of formats that have them. Errors: ConfigError, see read_mesh.
+RawMesh parse_raw(const std::string& bytes, const std::string& name, const FieldNames& wanted = {},
+                  bool uvs = false);
 
-RawMesh parse_obj(const std::string& bytes, const std::string& name);
+RawMesh parse_obj(const std::string& bytes, const std::string& name, bool uvs = false);
 RawMesh parse_ply(const std::string& bytes, const std::string& name);
 RawMesh parse_stl(const std::string& bytes, const std::string& name);
 RawMesh parse_msh(const std::string& bytes, const std::string& name);

@@ -25,9 +25,9 @@ bool has_sides(const std::string& extension) {
 
 }  // namespace
 
-RawMesh parse_raw(const std::string& bytes, const std::string& name, const FieldNames& wanted) {
+RawMesh parse_raw(const std::string& bytes, const std::string& name, const FieldNames& wanted, bool uvs) {
   const std::string extension = extension_of(name);
-  if (extension == ".obj") return parse_obj(bytes, name);
+  if (extension == ".obj") return parse_obj(bytes, name, uvs);
   if (extension == ".ply") return parse_ply(bytes, name);
   if (extension == ".stl") return parse_stl(bytes, name);
   if (extension == ".msh") return parse_msh(bytes, name);

@@ -1,7 +1,7 @@
 // Wavefront OBJ: v, f (v, v/vt, v//vn, v/vt/vn; negative indices count back from the vertices so far), l; a line that ends
 // with \ goes on in the next one. Objects (o) and groups (g) name the faces and lines that follow. An object ends the groups that
-// vertices, faces or lines came after; a g line that stands before it alone goes on. What draws is read past, lines of words that
-// OBJ does not have are counted.
+// vertices, faces or lines came after; a g line that stands before it alone goes on. What draws is read past (vt unless it is asked for),
+// lines of words that OBJ does not have are counted.
 #include <algorithm>
 #include <optional>
 
@@ -51,8 +51,9 @@ bool is_free_form(std::string_view word) {
 
 class ObjReader {
  public:
-  ObjReader(const std::string& bytes, const std::string& name)
-      : scanner_(
+  ObjReader(const std::string& bytes, const std::string& name, bool uvs)
+      : uvs_(uvs),
+        scanner_(
             std::string_view(bytes).substr(bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0),
             name) {
     mesh_.name = name;
@@ -120,6 +121,9 @@ class ObjReader {
       groups_are_used_ = true;
     } else if (key == "f" || key == "fo") {
       take_face();
+    } else if (key == "vt" && uvs_) {
+      if (words_.size() < 2) scanner_.fail("a texture coordinate without numbers", "vt U V");
+      mesh_.uvs.emplace_back(number(1), words_.size() > 2 ? number(2) : 0.0);
     } else if (key == "l") {
       take_line();
     } else if (key == "o") {
@@ -139,7 +143,10 @@ class ObjReader {
 
   void take_face() {
     const std::size_t first = mesh_.corners.size();
-    for (std::size_t k = 1; k < words_.size(); ++k) mesh_.corners.push_back(vertex(words_[k]));
+    for (std::size_t k = 1; k < words_.size(); ++k) {
+      mesh_.corners.push_back(vertex(words_[k]));
+      if (uvs_) mesh_.corner_uvs.push_back(texture(words_[k]));
+    }
     if (mesh_.corners.size() - first < 3) {
       scanner_.fail(fmt::format("a face of {} corners", words_.size() - 1), "at least 3 corners");
     }
@@ -202,16 +209,29 @@ class ObjReader {
 
   /// 0-based. A number above that of the vertices so far may be of one that comes.
   long long vertex(std::string_view word) const {
-    const std::string_view text = word.substr(0, word.find('/'));
-    const char* allowed = "a vertex index (1 is the first, -1 the last so far)";
+    return index_of(word.substr(0, word.find('/')), word, mesh_.vertices.size(), "vertices",
+                    "a vertex index (1 is the first, -1 the last so far)");
+  }
+  /// Of the second number of a corner; -1: it has none.
+  long long texture(std::string_view word) const {
+    const std::size_t slash = word.find('/');
+    if (slash == std::string_view::npos) return -1;
+    const std::string_view rest = word.substr(slash + 1), text = rest.substr(0, rest.find('/'));
+    return text.empty() ? -1
+                        : index_of(text, word, mesh_.uvs.size(), "texture coordinates",
+                                   "the index of a texture coordinate (1 is the first, -1 the last so far)");
+  }
+  long long index_of(std::string_view text, std::string_view word, std::size_t n_so_far, const char* what,
+                     const char* allowed) const {
     const auto index = scanner_.value<long long>(text, allowed);
-    const auto n = static_cast<long long>(mesh_.vertices.size());
+    const auto n = static_cast<long long>(n_so_far);
     if (index == 0 || index < -n) {
-      scanner_.fail(fmt::format("\"{}\" after {} vertices", word, n), allowed);
+      scanner_.fail(fmt::format("\"{}\" after {} {}", word, n, what), allowed);
     }
     return index > 0 ? index - 1 : n + index;
   }
 
+  const bool uvs_;  // are read
   TextScanner scanner_;
   RawMesh mesh_;
   Words words_;
@@ -226,6 +246,8 @@ class ObjReader {
 
 }  // namespace
 
-RawMesh parse_obj(const std::string& bytes, const std::string& name) { return ObjReader(bytes, name).run(); }
+RawMesh parse_obj(const std::string& bytes, const std::string& name, bool uvs) {
+  return ObjReader(bytes, name, uvs).run();
+}
 
 }  // namespace bb

@@ -14,6 +14,7 @@
 #include "core/model/scene/collisions.hpp"
 #include "core/model/scene/motion.hpp"
 #include "core/model/scene/rest_motion.hpp"
+#include "core/model/scene/weight_mix.hpp"
 
 namespace bb {
 
@@ -47,6 +48,7 @@ struct Pull {
   double stiffness = 0;          // N/m, of each spring
   std::vector<PullKey> factors;  // empty: 1 always
   HoldSpan span = {};
+  WeightMix weights = {};  // of the vertices, factors on stiffness; none: 1
 };
 
 /// Springs between single vertices.
@@ -61,12 +63,21 @@ struct PressureKey {
   double time = 0;   // s
   double value = 0;  // Pa
 };
+/// How the load of a triangle is split among its corners: their sum is 1.
+using CornerParts = std::array<double, 3>;
+/// Factors on the pressures of a body over time, of its vertices; a triangle has their mean.
+struct PressureWeights {
+  int first_vertex = 0, first_triangle = 0, n_triangles = 0;  // the latter two of Inflation::triangles
+  WeightMix mix;
+};
 /// Triangles of closed surfaces that a pressure from within acts on.
 struct Inflation {
   std::vector<std::array<int, 3>> triangles;
   std::vector<double> pressure;  // [n] Pa; 1 or -1 of a triangle with keys
   std::vector<int> keys;         // [n] into key_lists, -1: constant
   std::vector<std::vector<PressureKey>> key_lists;
+  std::vector<CornerParts> parts;        // [n]; empty: thirds
+  std::vector<PressureWeights> weights;  // of bodies that have some
 };
 
 /// Velocities are multiplied by these to the power of the step's length in s, when it is over.
@@ -153,6 +164,7 @@ struct Scene : parts::AllColumns {
   SolidLimitPart solid_limit;
 
   std::vector<std::array<int, 3>> surface_triangles;  // collision surface
+  std::vector<CornerParts> corner_parts;              // [surface triangles], of drag; empty: thirds
   std::vector<std::array<int, 2>> surface_edges;  // of triangles and rods; planar: boundary edges and rods
   std::vector<int> surface_vertices;
   std::vector<Obstacle> obstacles;

@@ -79,7 +79,8 @@ class ClothSprings final : public Part {
             "Growth of exponential parts: e-fold with every 1 over this of relative elongation.",
             &Material::cloth_exponent);
     out.add("cloth_yield", non_negative("1"),
-            "Relative elongation |l/l0 - 1| beyond which a rest length follows. Needs cloth_creep_per_s.",
+            "Relative elongation |l/l0 - 1| beyond which a rest length follows. Needs cloth_creep_per_s or "
+            "plasticity.",
             &Material::cloth_yield);
     out.add("cloth_creep_per_s", non_negative("1/s"),
             "Rate at which what is beyond cloth_yield decays, since the rest length follows. 0: it stays.",
@@ -114,8 +115,8 @@ class ClothSprings final : public Part {
         m.cloth_compression_growing == 0 && m.cloth_shear_growing == 0) {
       refuse("cloth_exponent", m.cloth_exponent, "nothing without an exponential stiffness of cloth springs");
     }
-    if (m.cloth_yield > 0 && m.cloth_creep == 0) {
-      refuse("cloth_yield", m.cloth_yield, "0 without cloth_creep_per_s: nothing yields");
+    if (m.cloth_yield > 0 && m.creep_rate(m.cloth_creep) == 0) {
+      refuse("cloth_yield", m.cloth_yield, "0 without cloth_creep_per_s or plasticity: nothing yields");
     }
     if (!m.has_cloth_springs()) {
       refuse_all({{"cloth_creep_per_s", m.cloth_creep}, {"cloth_softening_m", m.cloth_softening}},
@@ -140,16 +141,17 @@ class ClothSprings final : public Part {
                          double compression_growing) {
       const Pair pair = to.in_scene(local);
       if (to.all_prescribed(pair)) return;
+      const double factor = to.stiffness.of(StiffnessKind::springs, local);
       part.pairs.push_back(pair);
       part.rest_length.push_back(rest.of(local));
-      part.tension.push_back(tension);
-      part.tension_growing.push_back(tension_growing);
-      part.compression.push_back(compression);
-      part.compression_growing.push_back(compression_growing);
+      part.tension.push_back(factor * tension);
+      part.tension_growing.push_back(factor * tension_growing);
+      part.compression.push_back(factor * compression);
+      part.compression_growing.push_back(factor * compression_growing);
       part.exponent.push_back(m.cloth_exponent);
       part.softening.push_back(m.cloth_softening);
       part.yield.push_back(m.cloth_yield);
-      part.creep.push_back(m.cloth_creep);
+      part.creep.push_back(m.creep_rate(m.cloth_creep));
     };
     if (m.has_sides()) {
       for (const Pair& side : face_sides(spec.mesh)) {

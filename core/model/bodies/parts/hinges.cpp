@@ -21,7 +21,8 @@ class Hinges final : public Part {
     out.add("bending_exponent_per_rad", positive("1/rad"),
             "Growth of bending_exponential_J: e-fold every 1 over this.", &Material::bending_exponent);
     out.add("bending_yield_rad", non_negative("rad"),
-            "Angle from rest beyond which the rest angle of a hinge follows. Needs bending_creep_per_s.",
+            "Angle from rest beyond which the rest angle of a hinge follows. Needs bending_creep_per_s or "
+            "plasticity.",
             &Material::bending_yield);
     out.add(
         "bending_creep_per_s", non_negative("1/s"),
@@ -41,9 +42,9 @@ class Hinges final : public Part {
       complain("/material/bending_exponent_per_rad", fmt::format("{}", m.bending_exponent),
                "nothing without bending_exponential_J");
     }
-    if (m.bending_yield > 0 && m.bending_creep == 0) {
+    if (m.bending_yield > 0 && m.creep_rate(m.bending_creep) == 0) {
       complain("/material/bending_yield_rad", fmt::format("{}", m.bending_yield),
-               "0 without bending_creep_per_s: nothing yields");
+               "0 without bending_creep_per_s or plasticity: nothing yields");
     }
     if (m.bending_creep > 0 && !m.hinges_bend()) {
       complain("/material/bending_creep_per_s", fmt::format("{}", m.bending_creep),
@@ -77,13 +78,14 @@ class Hinges final : public Part {
       if (to.all_prescribed(hinge)) continue;
       Vec3d x[4];
       for (std::size_t k = 0; k < 4; ++k) x[k] = spec.mesh.vertices.col(local[k]);
+      const double factor = to.stiffness.of(StiffnessKind::hinges, local);
       part.hinges.push_back(hinge);
-      part.stiffness.push_back(m.bending);
+      part.stiffness.push_back(factor * m.bending);
       part.rest_angle.push_back(hinge_angle(x));
-      part.exponential.push_back(m.bending_exponential);
+      part.exponential.push_back(factor * m.bending_exponential);
       part.exponent.push_back(m.bending_exponent);
       part.yield.push_back(m.bending_yield);
-      part.creep.push_back(m.bending_creep);
+      part.creep.push_back(m.creep_rate(m.bending_creep));
     }
   }
 

@@ -11,6 +11,7 @@
 #include "core/math/svd.hpp"
 #include "core/model/bodies/lumping.hpp"
 #include "core/model/bodies/part.hpp"
+#include "core/model/bodies/plasticity.hpp"
 #include "core/model/bodies/poisson_check.hpp"
 #include "core/model/mesh/topology.hpp"
 
@@ -90,9 +91,11 @@ void check_rest(const Complaints& complain, const BodySpec& spec) {
   } else if (m.shrinks() && m.model == "none" && !m.has_sides() && !m.has_diagonals()) {
     refuse(shrink, factor, "1 without a membrane model and without springs of cloth: nothing shrinks");
   }
-  if (m.membrane_yield > 0 && m.membrane_creep == 0) {
-    refuse("membrane_yield", m.membrane_yield, "0 without membrane_creep_per_s: nothing yields");
+  if (m.membrane_yield > 0 && m.creep_rate(m.membrane_creep) == 0) {
+    refuse("membrane_yield", m.membrane_yield,
+           "0 without membrane_creep_per_s or plasticity: nothing yields");
   }
+  check_plasticity(complain, m);
   if (m.membrane_creep > 0 && m.model == "none") {
     refuse("membrane_creep_per_s", m.membrane_creep, "0 without a membrane model");
   }
@@ -125,11 +128,12 @@ void append_options(const Material& m, const Scene& scene, MembranePart& part) {
     part.shrink.resize(n, Vec2d(1, 1));
     part.shrink.back() = Vec2d(m.shrink_warp, m.shrink_weft);
   }
-  if (m.membrane_creep > 0 || !part.creep.empty()) {
+  const double creep = m.creep_rate(m.membrane_creep);
+  if (creep > 0 || !part.creep.empty()) {
     part.yield.resize(n, 0.0);
     part.creep.resize(n, 0.0);
     part.yield.back() = m.membrane_yield;
-    part.creep.back() = m.membrane_creep;
+    part.creep.back() = creep;
   }
 }
 
@@ -190,6 +194,27 @@ ElementAnswer triangle_answer(Fields& fields, const MembraneModel<T>& model) {
                                           model.terms(triangle, x.x, mu, lambda, Projection::psd)));
 }
 
+/// Rest shapes that follow.
+void add_creep(Settings<Material>& out) {
+  out.add("membrane_yield", non_negative("1"),
+          "Stretch |sigma - 1| beyond which the rest shape of a triangle follows. Needs "
+          "membrane_creep_per_s or "
+          "plasticity.",
+          &Material::membrane_yield);
+  out.add("membrane_creep_per_s", non_negative("1/s"),
+          "Rate at which what is beyond membrane_yield decays, since the rest shape follows. 0: it stays.",
+          &Material::membrane_creep);
+  out.add(
+      "plasticity", number_in(0, 1, "1"),
+      "Share of what is beyond a yield (membrane_yield, bending_yield_rad, cloth_yield) that the rest "
+      "shape takes in plasticity_step_s, of triangles, hinges and springs of cloth alike, whatever dt is. "
+      "0: it stays.",
+      &Material::plasticity);
+  out.add("plasticity_step_s", positive("s"),
+          "Time in which the rest shape takes that share: the dt of a program that blends by it once a step.",
+          &Material::plasticity_step);
+}
+
 class Membrane final : public Part {
  public:
   void add_keys(Settings<Material>& out) const override {
@@ -218,18 +243,12 @@ class Membrane final : public Part {
         "top of the "
         "other two.",
         1, 10000, settings_of<ShrinkKey>(), [](auto& m) -> auto& { return m.shrink_keys; });
-    out.add(
-        "membrane_yield", non_negative("1"),
-        "Stretch |sigma - 1| beyond which the rest shape of a triangle follows. Needs membrane_creep_per_s.",
-        &Material::membrane_yield);
-    out.add("membrane_creep_per_s", non_negative("1/s"),
-            "Rate at which what is beyond membrane_yield decays, since the rest shape follows. 0: it stays.",
-            &Material::membrane_creep);
+    add_creep(out);
     out.add("density_kg_per_m2", non_negative("kg/m^2"), "Mass per area of triangles.", &Material::density);
     out.add("lumping", word({"barycentric", "mixed_voronoi", "uniform"}),
             "How that mass is split: a third of a triangle at each corner; what is closest to a corner "
-            "(obtuse: half, a quarter, "
-            "a quarter); the same at every vertex of a triangle.",
+            "(obtuse: half, a quarter, a quarter), and drag of the air and a pressure with it; the same at "
+            "every vertex of a triangle (drag and pressure: thirds).",
             &Material::lumping);
   }
   std::string_view keys_doc() const override {
@@ -281,8 +300,9 @@ class Membrane final : public Part {
       const auto t = to.in_scene(local);
       if (to.all_prescribed(t)) continue;
       part.triangles.push_back(t);
-      part.lame_mu.push_back(lame.mu);
-      part.lame_lambda.push_back(lame.lambda);
+      const double factor = to.stiffness.of(StiffnessKind::membrane, local);
+      part.lame_mu.push_back(factor * lame.mu);
+      part.lame_lambda.push_back(factor * lame.lambda);
       append_options(material, to.scene, part);
     }
   }

@@ -68,6 +68,7 @@ class Springs final : public Part {
         if (!(length > 0)) return refuse_length(local, to);
         stiffness += spec.material.rod_stretching / length;
       }
+      stiffness *= to.stiffness.of(StiffnessKind::springs, local);
       if (stiffness == 0) continue;
       to.scene.springs.edges.push_back(edge);
       to.scene.springs.stiffness.push_back(stiffness);

@@ -47,7 +47,9 @@ struct Keys {
   std::vector<ShrinkKey> shrink_keys;  // a factor on all rest lengths of the body over time; empty: 1
   double membrane_yield = 0;           // |sigma - 1| up to which the rest shape stays
   double membrane_creep = 0;           // 1/s; 0: it stays anyway
-  double density = 0.2;                // kg/m^2 of triangles
+  double plasticity = 0;  // share of what is beyond a yield that rest shapes take in plasticity_step
+  double plasticity_step = 1.0 / 24;  // s
+  double density = 0.2;               // kg/m^2 of triangles
   Lumping lumping = Lumping::barycentric;
 
   /// Young's modulus times thickness, N/m.
