@@ -28,7 +28,8 @@ struct Place {
 
 /// One entry, with what it needs, in every list of a scene whose entries need something.
 void add_lists(json& scene) {
-  const json first = {{"time_s", 0}}, motion = {{"keyframes", {first}}, {"then", {{{"keyframes", {first}}}}}};
+  const json first = {{"time_s", 0}}, film = {{"generator", "twist"}};
+  const json motion = {{"film", film}, {"keyframes", {first}}, {"then", {{{"keyframes", {first}}}}}};
   json& pin = scene["bodies"][0]["pins"][0];
   pin["pull_N_per_m"] = 1;
   pin["pull_factors"] = {{{"time_s", 0}, {"factor", 1}}};
@@ -52,6 +53,7 @@ json full_bodies() {
   config["scene"]["bodies"].push_back(
       {{"name", "plate"}, {"kind", "rigid"}, {"mesh", {{"generator", "grid"}}}});
   config["scene"]["bodies"][0]["rest_mesh"] = {{"generator", "grid"}};
+  config["scene"]["bodies"][0]["rest_film"] = {{"generator", "grow"}};
   config["scene"]["obstacles"] = {{{"name", "pole"}, {"kind", "cylinder"}, {"radius_m", 1}}};
   add_lists(config["scene"]);
   return config;
