@@ -60,6 +60,14 @@ def test_an_edited_record_is_told(study, capsys, place, value, says):
     assert len(held.held_folder(study).good) == 3
 
 
+def test_steps_that_are_gone_are_told_by_what_they_add_up_to(study, capsys):
+    path = records(study)[1]
+    edit(path, ("steps",), [])
+    edit(path, ("summary", "steps"), 0)
+    code, said = told(capsys, study)
+    assert code == 1 and "the sum of its steps 0" in said
+
+
 def test_a_penetration_that_is_called_ok_is_told_wherever_it_is_edited(study, capsys):
     """Of a record that says so everywhere, each place that is set to what a good run says contradicts the others."""
     path = records(study)[1]
