@@ -12,7 +12,7 @@ from analysis.catalogue.scenes import main
 from analysis.errors import UserError
 
 PAPER = (
-    "belt cards codim curtain domino drape five-twist fishing-knot friction-slope hang needle noodle ribbon roller stack"
+    "belt cards codim curtain domino drape five-twist fishing-knot fitting friction-slope hang kick needle noodle ribbon roller stack"
     " trampoline trapped twist woven yarn large-twist large-five-twist large-woven jaxls-drape intersect-1 intersect-2"
     " intersect-3 two-points beam-on-wedge ball-in-funnel"
 ).split()

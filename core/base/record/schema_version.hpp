@@ -37,11 +37,6 @@ inline constexpr ChangedMeaning changed_in_run[] = {
     {"steps[].kappa_max_N_per_m", "3.6.0", "of pairs with one closest feature their mean"},
     {"matching.contacts_considered", "3.6.0", "pairs with one closest feature counted once"},
     {"matching.contacts_left_out", "3.6.0", "pairs with one closest feature counted once"},
-    {"status.outcome", "3.10.0",
-     "invalid_scene where prescribed primitives cross, overlap where surfaces are in obstacles by no more "
-     "than the step "
-     "solver promises, unproven where a straight way cuts a corner round an obstacle"},
-    {"audit.unproven", "3.10.0", "with straight ways that cut a corner round an obstacle"},
 };
 
 inline constexpr ChangedMeaning changed_in_trace[] = {
