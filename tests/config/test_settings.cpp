@@ -38,6 +38,7 @@ void add_lists(json& scene) {
   scene["bodies"][0]["stiffness_weights"] = {{{"of", "membrane"}, {"mix", mix}}};
   scene["bodies"][0]["weights"] = {{{"name", "a"}, {"boxes", {{{"box_m", {{0, 0, 0}, {1, 1, 1}}}}}}}};
   pin["motion"] = scene["bodies"][1]["motion"] = scene["obstacles"][0]["motion"] = motion;
+  scene["obstacles"][0]["motion"].erase("film");
   scene["gravity_schedule"] = {{{"time_s", 0}, {"gravity_m_per_s2", {0, 0, -9}}}};
   scene["air"]["wind_schedule"] = {{{"time_s", 0}, {"wind_m_per_s", {0, 0, 1}}}};
   scene["bodies"][0]["material"]["shrink_schedule"] = {{{"time_s", 0}, {"factor", 1}}};
@@ -47,16 +48,24 @@ void add_lists(json& scene) {
       {{"a", "cloth"}, {"a_vertices", {0}}, {"b", "cloth"}, {"b_vertices", {3}}, {"stiffness_N_per_m", 1}}};
 }
 
-/// Two bodies, one of each kind, and an obstacle, that have every setting.
-json full_bodies() {
+/// Two bodies, one of each kind, and an obstacle, that have every setting; of the rest shape the one of that name.
+json full_bodies(const char* rest, const char* generator) {
   json config = bodies_config();
   config["scene"]["bodies"].push_back(
       {{"name", "plate"}, {"kind", "rigid"}, {"mesh", {{"generator", "grid"}}}});
-  config["scene"]["bodies"][0]["rest_mesh"] = {{"generator", "grid"}};
-  config["scene"]["bodies"][0]["rest_film"] = {{"generator", "grow"}};
+  config["scene"]["bodies"][0][rest] = {{"generator", generator}};
   config["scene"]["obstacles"] = {{{"name", "pole"}, {"kind", "cylinder"}, {"radius_m", 1}}};
   add_lists(config["scene"]);
   return config;
+}
+
+/// What a config with everything else cannot have: obstacles have no film, and a body one rest shape.
+bool is_excluded(const std::string& pointer, const json& config) {
+  const json::json_pointer body("/scene/bodies/0");
+  const auto given = [&](const char* rest) { return config.contains(body / rest); };
+  return pointer == "/scene/obstacles/0/motion/film" ||
+         (pointer == "/scene/bodies/0/rest_film" && given("rest_mesh")) ||
+         (pointer == "/scene/bodies/0/rest_mesh" && given("rest_film"));
 }
 
 void walk(const ParameterList& list, const std::string& pointer, const json& config,
@@ -64,6 +73,7 @@ void walk(const ParameterList& list, const std::string& pointer, const json& con
   for (const Parameter& row : list.rows) {
     std::string at = pointer + "/" + row.name;
     if (at == "/scene/bodies/0/motion") at = "/scene/bodies/1/motion";  // only a rigid body has one
+    if (is_excluded(at, config)) continue;
     out.push_back({at, row, config});
     if (!row.rule.list || row.rule.kind == Kind::word) continue;
     const json::json_pointer place(at);
@@ -76,9 +86,10 @@ void walk(const ParameterList& list, const std::string& pointer, const json& con
 std::vector<Place> all_places() {
   std::vector<Place> out;
   walk(config_list(), "", hang_config(), out);
-  const json bodies = full_bodies();
-  for (const Parameter& row : config_list().rows) {
-    if (row.name == "scene") walk(row.rule.list(bodies["scene"]), "/scene", bodies, out);
+  for (const json& bodies : {full_bodies("rest_mesh", "grid"), full_bodies("rest_film", "grow")}) {
+    for (const Parameter& row : config_list().rows) {
+      if (row.name == "scene") walk(row.rule.list(bodies["scene"]), "/scene", bodies, out);
+    }
   }
   return out;
 }
