@@ -62,7 +62,7 @@ void read_weights(const json& body, const std::string& pointer, const Reader& re
       reader.complain(where, "no weights, or two ways to say them", "one of file, boxes, from_m with to_m");
     } else if (ramp && *group.from == *group.to) {
       reader.complain(where + "/to_m", fmt::format("{}", *group.to), "another number than from_m (m)");
-    } else if (!ramp && object.contains("axis")) {
+    } else if (!ramp && object.contains("axis") && group.axis != WeightGroupConfig().axis) {
       reader.complain(where + "/axis", object["axis"].dump(), "nothing without from_m and to_m");
     }
   }

@@ -263,6 +263,9 @@ inline std::vector<TermCase> driven_cases() {
       }));
   add("bending that creeps", "hinges",
       sheet_with([](Material& m) { m.bending = 0.01, m.bending_yield = 0.02, m.bending_creep = 4; }));
+  add("bending whose rest shape moves", "hinges", sheet_with([](Material& m) {
+        m.bending = 0.01, m.bending_creep = 4, m.shrink_keys = {{0, 1}, {1, 0.7}};
+      }));
   add("bending that grows and creeps", "hinges", sheet_with([](Material& m) {
         m.bending = 0.01, m.bending_exponential = 0.02, m.bending_yield = 0.02, m.bending_creep = 4;
       }));

@@ -27,7 +27,8 @@ std::vector<Parameter> keys_of(const Part& part) {
 TriangleMesh mesh_of(const MeshGenerator& made) { return made.make(to_map(made.parameters, json::object())); }
 
 /// All other parts are off; of this one, every number that is 0 by default is 1, and so is every mass, whosever it is; but for
-/// what the mesh has nothing for, and for plasticity, which stands in the place of rates of creep.
+/// what the mesh has nothing for, for plasticity, which stands in the place of rates of creep, and for a softening, which lengthens springs
+/// beyond their rest.
 json material_of(const PartEntry& entry, const TriangleMesh& mesh) {
   json out = json::object();
   if (entry.name != "membrane") out["model"] = "none";
@@ -35,7 +36,8 @@ json material_of(const PartEntry& entry, const TriangleMesh& mesh) {
     for (const Parameter& key : keys_of(each.part)) {
       const bool own = each.name == entry.name || key.rule.unit.starts_with("kg");
       if (!own || !each.part.lacks(mesh, key.name).empty()) continue;
-      if (to_json(key.fallback) == 0.0 && key.name != "plasticity") out[key.name] = 1.0;
+      const bool off = key.name == "plasticity" || key.name == "cloth_softening_m";
+      if (to_json(key.fallback) == 0.0 && !off) out[key.name] = 1.0;
     }
   }
   return out;
