@@ -10,7 +10,6 @@
 #include "core/base/input/names.hpp"
 #include "core/base/parameters/registry.hpp"
 #include "core/model/bodies/scene_builder.hpp"
-#include "core/model/bodies/scene_checks.hpp"
 #include "core/model/mesh/bounds.hpp"
 #include "core/model/mesh/read_mesh.hpp"
 #include "experiments/config/films.hpp"

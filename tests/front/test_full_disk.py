@@ -32,6 +32,8 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
     ("scenes drape --write out.json", "out.json", 0),
     *((f"frames run out --format {kind}", f"out/{file}", 100)
       for kind, file in (("obj", "frame_000000.obj"), ("ply", "frame_000000.ply"), ("pc2", "frame.pc2"), ("vtu", "frame_000000.vtu"))),
+    ("film run out", "out/frame_000000.ply", 100),
+    ("archive run out.zip", "out.zip", 0),
     ("judge run --out out", "out", 0),
     ("judge run --out out", "a temporary file", 100),
     ("compare run run --json out.json", "a temporary file", 0),  # of scipy, when it is loaded
@@ -50,7 +52,7 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
     ("gap-map --quick --results out --runs out", "a temporary file", 0),
 ]
 PLANNED = set("match causes gate calibrate pareto work-precision figure stress claims ablation robust catalogue pictures matrix-corpus step-corpus".split())
-READ = set("status surface-gaps trend setup".split())  # which write nothing, or for the script ./bench
+READ = set("status surface-gaps trend setup verify".split())  # which write nothing, or for the script ./bench
 DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop"}
 IN_THE_TREE = set("demo engine accept readme".split())  # what they write is at a fixed place
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "core/model/bodies/scene_checks.hpp"
 #include "core/model/mesh/bounds.hpp"
 #include "core/model/mesh/topology.hpp"
 

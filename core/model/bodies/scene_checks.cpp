@@ -227,8 +227,6 @@ void check_room(const Scene& scene, const std::vector<int>& pin_of, const Compla
 
 }  // namespace
 
-bool within_bounds(const Positions& x) { return (x.array().abs() <= max_coordinate).all(); }
-
 void check_body(const BodySpec& spec, bool planar, const std::string& where, std::vector<Violation>& out) {
   const Complaints report{fmt::format("{}: body \"{}\"", where, spec.name), out};
   check_mesh(report, spec, planar);

@@ -1,5 +1,5 @@
 // What bodies, obstacles and finished scenes must satisfy. Each check appends what it finds, none throws.
-// Private to core/model/scene, but for within_bounds.
+// Private to core/model/bodies.
 #pragma once
 
 #include <string>
@@ -9,9 +9,6 @@
 #include "core/model/bodies/body_spec.hpp"
 
 namespace bb {
-
-/// Every coordinate is finite and at most max_coordinate (core/model/mesh/bounds.hpp) in magnitude.
-bool within_bounds(const Positions& x);
 
 void check_body(const BodySpec& spec, bool planar, const std::string& where, std::vector<Violation>& out);
 void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& where,
