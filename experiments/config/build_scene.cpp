@@ -12,6 +12,7 @@
 #include "core/model/bodies/scene_builder.hpp"
 #include "core/model/mesh/bounds.hpp"
 #include "core/model/mesh/read_mesh.hpp"
+#include "core/model/mesh/same_cells.hpp"
 #include "experiments/config/films.hpp"
 #include "experiments/config/hashed_file.hpp"
 #include "experiments/config/mesh_generators.hpp"
@@ -69,24 +70,14 @@ void apply(const TransformConfig& transform, Positions& x) {
 /// The rest shape takes the vertices of another mesh of the same elements; where the body was is where it starts.
 void take_rest_shape(const BodyConfig& body, const std::string& where, BodySpec& spec) {
   TriangleMesh rest = make_mesh(body.rest_mesh, where).mesh;
-  const auto require_same = [&](const char* what, auto& found, auto& allowed) {
-    if (found == allowed) return;
-    if (found.size() != allowed.size()) {
-      throw ConfigError(where, fmt::format("{} {}", found.size(), what),
-                        fmt::format("{}, as the mesh of the body has", allowed.size()));
-    }
-    const auto [other, own] = std::mismatch(found.begin(), found.end(), allowed.begin());
-    throw ConfigError(where, fmt::format("{} {} of other vertices", what, other - found.begin()),
-                      "the elements of the mesh of the body, in their order");
-  };
   if (rest.n_vertices() != spec.mesh.n_vertices()) {
     throw ConfigError(where, fmt::format("{} vertices", rest.n_vertices()),
                       fmt::format("{}, as the mesh of the body has", spec.mesh.n_vertices()));
   }
-  require_same("triangles", rest.triangles, spec.mesh.triangles);
-  require_same("faces of more than three corners", rest.fans, spec.mesh.fans);
-  require_same("lone edges", rest.segments, spec.mesh.segments);
-  require_same("tetrahedra", rest.tetrahedra, spec.mesh.tetrahedra);
+  require_same_cells(where, "triangles", rest.triangles, spec.mesh.triangles);
+  require_same_cells(where, "faces of more than three corners", rest.fans, spec.mesh.fans);
+  require_same_cells(where, "lone edges", rest.segments, spec.mesh.segments);
+  require_same_cells(where, "tetrahedra", rest.tetrahedra, spec.mesh.tetrahedra);
   apply(body.transform, rest.vertices);
   spec.start = std::exchange(spec.mesh.vertices, std::move(rest.vertices));
 }

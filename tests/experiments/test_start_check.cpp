@@ -165,7 +165,8 @@ TEST(StartCheck, ATimeLimitEndsItAndSaysWhere) {
   EXPECT_LT(now_s() - begin, 5);
   ASSERT_TRUE(late);
   EXPECT_EQ(late->outcome, Outcome::timeout);
-  EXPECT_NE(late->detail.find("limit of 0.2 s was reached in the prescribed motions, at step "), std::string::npos)
+  EXPECT_NE(late->detail.find("limit of 0.2 s was reached in the prescribed motions, at step "),
+            std::string::npos)
       << late->detail;
   EXPECT_EQ(late->detail.find("at step 0 of"), std::string::npos) << late->detail;
   const auto at_once = failure(turning, {nullptr, begin, 0.2});

@@ -12,6 +12,7 @@
 #include "core/math/error.hpp"
 #include "core/model/mesh/bounds.hpp"
 #include "core/model/mesh/frame_mesh.hpp"
+#include "core/model/mesh/same_cells.hpp"
 
 namespace bb {
 namespace {
@@ -70,18 +71,6 @@ void require_no_hole(const Sequence& files) {
                                   at->second.filename().string()),
                       fmt::format("numbers in even steps, here of {}", least));
   }
-}
-
-template <class Cells>
-void require_same(const std::string& name, const char* what, const Cells& found, const Cells& allowed) {
-  if (found == allowed) return;
-  if (found.size() != allowed.size()) {
-    throw ConfigError(name, fmt::format("{} {}", found.size(), what),
-                      fmt::format("{}, as the mesh of the body has", allowed.size()));
-  }
-  const auto [other, own] = std::mismatch(found.begin(), found.end(), allowed.begin());
-  throw ConfigError(name, fmt::format("{} {} of other vertices", what, other - found.begin()),
-                    "the cells of the mesh of the body, in their order");
 }
 
 }  // namespace
@@ -150,9 +139,9 @@ Positions parse_film_frame(const std::string& bytes, const std::string& name, co
   }
   // A face of more than three corners may be cut otherwise in another pose; of a solid a frame may have the surface.
   if (!frame.triangles.empty() && of.fans.empty() && of.tetrahedra.empty())
-    require_same(name, "triangles", frame.triangles, of.triangles);
-  if (!frame.segments.empty()) require_same(name, "lone edges", frame.segments, of.segments);
-  if (!frame.tetrahedra.empty()) require_same(name, "tetrahedra", frame.tetrahedra, of.tetrahedra);
+    require_same_cells(name, "triangles", frame.triangles, of.triangles);
+  if (!frame.segments.empty()) require_same_cells(name, "lone edges", frame.segments, of.segments);
+  if (!frame.tetrahedra.empty()) require_same_cells(name, "tetrahedra", frame.tetrahedra, of.tetrahedra);
   for (Eigen::Index v = 0; v < frame.vertices.cols(); ++v) {
     if ((frame.vertices.col(v).array().abs() <= max_coordinate).all()) continue;
     throw ConfigError(name,
