@@ -8,7 +8,7 @@ from pathlib import Path
 import jinja2
 
 from .. import input_file
-from . import methods, tables, verdict
+from . import apart, methods, tables, verdict
 from .figures import Figures
 from .gather import Folder
 from .players import Players
@@ -78,9 +78,9 @@ def page(folder: Folder, out: Path, figures: Figures, players: Players) -> str:
         sections=[(key, name) for key, name in SECTIONS if there.get(key, True)],
         verdict=verdict.verdict(folder),
         limits=verdict.limits(folder),
-        failures=tables.failures(folder, out),
-        reserved=tables.reserved(folder, out),
-        apart=tables.not_compared(folder, out),
+        failures=apart.failures(folder, out),
+        reserved=apart.reserved(folder, out),
+        apart=apart.not_compared(folder, out),
         comparison=tables.comparison(folder),
         figures=figures,
         players=players.shown,

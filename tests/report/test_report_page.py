@@ -11,7 +11,7 @@ from urllib.parse import unquote
 import pytest
 
 from analysis import fields
-from analysis.report import figures, methods, players, tables, verb, verdict, words
+from analysis.report import apart, figures, methods, players, tables, verb, verdict, words
 from analysis.report.comparison import compared, quotients
 from analysis.report.gather import gathered
 from report_runs import changed, conditions
@@ -219,7 +219,7 @@ def test_a_run_without_a_record_and_a_file_that_cannot_be_read_are_failures(runs
     assert [one.label for one in folder.absent] == ["never"] and folder.entries[0].run == "log"
     assert verdict.headline(folder).text == (
         "2 of 3 runs ended ok and are valid; 1 ended newton_stall; 1 run of the sweeps has no record yet; 1 file cannot be read.")
-    rows = [[cell.text for cell in row] for row in tables.failures(folder, runs / "report.html").rows]
+    rows = [[cell.text for cell in row] for row in apart.failures(folder, runs / "report.html").rows]
     assert [row[2] for row in rows] == ["newton_stall", "no record", "unreadable"]
     assert f"{runs / 'cubic/run.json'}: not JSON" in rows[2][4]
 
@@ -231,7 +231,7 @@ def test_a_lost_or_torn_trace_is_a_failure_on_the_page_and_on_stdout(runs, capsy
     text = page_of(runs)
     assert "every file could be read" not in text
     assert "4 of 4 runs ended ok and are valid; 2 files cannot be read." in capsys.readouterr().out
-    rows = [[cell.text for cell in row] for row in tables.failures(gathered(runs), runs / "report.html").rows]
+    rows = [[cell.text for cell in row] for row in apart.failures(gathered(runs), runs / "report.html").rows]
     assert [row[2] for row in rows] == ["unreadable"] * 2 and {row[0] for row in rows} == {"cubic", "log"}
     assert {row[4].split(": ")[0] for row in rows} == {str(runs / "cubic/trace.jsonl"), str(runs / "log/trace.jsonl")}
 
@@ -243,7 +243,7 @@ def test_a_record_of_an_earlier_form_of_the_sweep_is_in_no_number_and_named(runs
     assert folder.earlier == [runs / "quadratic/run.json"]
     assert verdict.headline(folder) == verdict.Sentence(
         "3 of 3 runs ended ok and are valid; 1 record of an earlier sweep file left out.", verdict.BAD)
-    (row,) = [[cell.text for cell in row] for row in tables.failures(folder, runs / "report.html").rows]
+    (row,) = [[cell.text for cell in row] for row in apart.failures(folder, runs / "report.html").rows]
     assert row[0] == "quadratic" and row[2] == "left out"
 
 

@@ -6,7 +6,7 @@ from analysis.figures import profiles
 from analysis.figures.drawing import Drawing
 from analysis.figures.subjects import SweepRecords
 from analysis.records import load
-from analysis.report import tables, verb, verdict, words
+from analysis.report import apart, tables, verb, verdict, words
 from analysis.report.gather import gathered
 from report_runs import changed
 
@@ -49,7 +49,7 @@ def test_a_run_that_does_not_count_has_its_own_word(runs):
 
 def test_the_page_has_them_with_the_detail_of_their_status(reserved, without_figures):
     folder = gathered(reserved)
-    table = tables.reserved(folder, reserved / "report.html")
+    table = apart.reserved(folder, reserved / "report.html")
     assert [row[3].text for row in table.rows] == [OVERLAP, POINTS] and [row[4].text for row in table.rows] == ["0.003", "-"]
     assert verb.main([str(reserved)]) == 0
     page = (reserved / "report.html").read_text()
