@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from ..frames import Frame, frame_of, frame_paths, frames_of, points_of_bodies, 
 from ..play.film import check_same_bodies, times_of
 from ..record_file import read_record
 from .binding import Binding, joined, refined, whole
+from .grid_splines import GridSplines
 from .obstacle_mesh import obstacle_mesh
 
 COUNTED = ("body",)  # fields that are numbers of something: not between their neighbours'
@@ -55,7 +57,15 @@ class Run:
     scene: dict
     steps: list[int]
     times_s: list[float]
-    start: Frame
+    recorded: Frame  # the first one, as its file has it
+    splines: GridSplines | None = None  # what frames are made finer with
+
+    @cached_property
+    def start(self) -> Frame:
+        return self._drawn(self.recorded)
+
+    def _drawn(self, frame: Frame) -> Frame:
+        return self.splines.finer(frame) if self.splines else frame
 
     def frames(self) -> Iterator[Frame]:
         """Errors: UserError, RecordError: a frame that is not the record's, or has other bodies than the
@@ -63,8 +73,8 @@ class Run:
         """
         paths = frame_paths(self.record, self.folder)
         for step, frame in zip(self.steps, frames_of(self.record, self.folder, self.steps)):
-            check_same_bodies(frame, self.start, paths[step])
-            yield frame
+            check_same_bodies(frame, self.recorded, paths[step])
+            yield self._drawn(frame)
 
     def body(self, name: str) -> int:
         names = self.scene["bodies"]
@@ -82,6 +92,14 @@ def opened(run: Path) -> Run:
     steps = list(frame_paths(record, run))
     start = frame_of(record, run, steps[0])
     return Run(run, record, read_scene(record, run), steps, times_of(record, steps, run), start)
+
+
+def on_splines(run: Run, counts: tuple[int, int]) -> Run:
+    """Bodies that are grids with `counts` points along columns and rows. Errors: UserError: a body that is no
+    grid, or has more.
+    """
+    splines = GridSplines(run.record, run.scene, run.recorded, counts)
+    return replace(run, scene=splines.scene(run.scene), splines=splines)
 
 
 def triangles_of(frame: Frame, body: int) -> np.ndarray:

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError, tells
-from ..front.arguments import parser_of
+from ..front.arguments import bicubic_argument, parser_of
 from ..mesh_arrays import SUFFIXES, read_frame_file
 from .binding import Binding, Fit, bound_mesh, refined
 from .formats import WRITERS, write
-from .sequence import Run, bodies, obstacles, opened, simulated, triangles_of
+from .sequence import Run, bodies, obstacles, on_splines, opened, simulated, triangles_of
 from .uv_binding import bound_by_uv
 
 REACH = 0.05  # of the diagonal of a body's box: how far a vertex may be from its surface
@@ -167,6 +167,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
         metavar="N",
         help=f"cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})",
     )
+    bicubic_argument(finer)
     parser.add_argument(
         "--bind",
         choices=("closest", "uv"),
@@ -213,6 +214,8 @@ def main(argv: list[str]) -> int:
     given = parse(argv)
     _check_together(given)
     run, note = opened(given.run), ""
+    if given.bicubic:
+        run = on_splines(run, tuple(given.bicubic))
     if given.render_mesh:
         parts, note = with_mesh(
             run, given.render_mesh, given.body, given.smooth, given.reach, given.bind == "uv"

@@ -2,6 +2,7 @@
 
 import json
 
+import meshio
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
@@ -9,6 +10,7 @@ from scipy.interpolate import CubicSpline
 from analysis import render
 from analysis.errors import UserError
 from analysis.frames import Frame
+from analysis.frames_out import verb
 from analysis.frames_out.grid_splines import GridSplines
 from analysis.play.film import filmed, opened
 from tests.falling_cloth import CLOTH_ON_BALL
@@ -110,3 +112,16 @@ def test_a_film_of_a_net_alone_has_the_points(program, tmp_path):
     assert film.positions.shape[1:] == (220, 3) and len(film.start.triangles) == 2 * 19 * 10
     assert film.stretch.shape == (len(film.steps), 2 * 19 * 10)
 
+
+def test_files_of_frames_of_a_net_alone_have_the_points(program, tmp_path, capsys):
+    cloth = json.dumps(CLOTH_ON_BALL["scene"]["bodies"][:1])
+    run = run_of(program, tmp_path / "net", f"/scene/bodies={cloth}")
+    assert verb.main([str(run), str(tmp_path / "out"), "--format", "obj", "--bicubic", "20", "11"]) == 0
+    made = [meshio.read(path) for path in sorted((tmp_path / "out").glob("frame_*.obj"))]
+    film = filmed(opened(run, (20, 11)))
+    assert len(made) == len(film.steps) > 1
+    for mesh, positions in zip(made, film.positions):
+        assert mesh.points.shape == (220, 3)
+        np.testing.assert_allclose(mesh.points, positions, atol=1e-6)
+    assert verb.main([str(run), str(tmp_path / "none"), "--format", "obj", "--bicubic", "5", "45"]) == 2
+    assert "--bicubic: found 5 45; allowed" in capsys.readouterr().err and not (tmp_path / "none").exists()
