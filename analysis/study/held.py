@@ -17,10 +17,11 @@ from ..record_file import RecordError, read_record, read_trace, sha256_of
 from ..sweeps.cases import read_cases
 from . import ids
 from .archive import LOCK, MANIFEST
-from .found import contradictions
+from .found import CUT, contradictions
 from .named import artifacts, inputs, leads_out, unlike_config
 
 MISSING, EXTRA, EDITED = "missing", "extra", "edited"
+CHECKPOINT = ("checkpoint.bin", "checkpoint.next.bin", "checkpoint.log")  # from which a cut run goes on
 
 
 @dataclass
@@ -107,6 +108,8 @@ def _check_files(record: dict, path: Path, root: Path, held: Held) -> None:
     for name in unlike_config(record):
         held.say(EDITED, path, root, f"{name}: its sha256 in the config is not that of scene/mesh_sha256")
     known = {path, path.with_name(LOCK), *(path.parent / name for name in named)}
+    if record["status"]["outcome"] in CUT:
+        known |= {path.with_name(name) for name in CHECKPOINT}
     for file in _own_files(path.parent):
         if file not in known:
             held.say(EXTRA, file, root, "the record beside it does not name it")

@@ -12,6 +12,7 @@
 #include "core/model/mesh/solid_generators.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
+#include "experiments/microbenchmarks/timed_family.hpp"
 
 namespace bb::bench {
 namespace {
@@ -26,16 +27,6 @@ void value(benchmark::State& state, ElementFamily& family, const Positions& x) {
   for (auto _ : state) {
     family.values(x.data(), energy.data());
     benchmark::DoNotOptimize(energy.data());
-    benchmark::ClobberMemory();
-  }
-  count_items(state, static_cast<std::size_t>(family.size()));
-}
-
-void derivatives(benchmark::State& state, ElementFamily& family, const Positions& x) {
-  LocalTerms terms;
-  for (auto _ : state) {
-    family.derivatives(x.data(), Projection::psd, terms);
-    benchmark::DoNotOptimize(terms.hess.data());
     benchmark::ClobberMemory();
   }
   count_items(state, static_cast<std::size_t>(family.size()));
@@ -86,6 +77,7 @@ void strain_limit(benchmark::State& state, bool with_derivatives) {
     benchmark::ClobberMemory();
   }
   count_items(state, part.width.size());
+  if (with_derivatives) report_gradient(state, terms, part.width.size());
   double active = 0;
   for (std::size_t e = 0; e < part.width.size(); ++e)
     active += limit->smallest_gap(e) < part.width[e] ? 1 : 0;

@@ -7,7 +7,6 @@
 #include "core/energy/families/families.hpp"
 #include "core/energy/friction.hpp"
 #include "core/energy/friction_law.hpp"
-#include "core/energy/local_terms.hpp"
 #include "core/energy/restitution.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/model/bodies/scene_builder.hpp"
@@ -15,6 +14,7 @@
 #include "core/model/mesh/strand_generators.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
+#include "experiments/microbenchmarks/timed_family.hpp"
 
 namespace bb::bench {
 namespace {
@@ -72,16 +72,7 @@ void family(benchmark::State& state, ElementFamily& elements, const Scene& scene
   step.dt = step.t_end = dt;
   elements.begin_step(step);
   const Positions x = moved(scene.x0, 4e-4, 2);  // away from the start, where soft pins and inertia pull
-  LocalTerms terms;
-  for (auto _ : state) {
-    elements.derivatives(x.data(), Projection::psd, terms);
-    benchmark::DoNotOptimize(terms.grad.data());
-    benchmark::ClobberMemory();
-  }
-  count_items(state, static_cast<std::size_t>(elements.size()));
-  double norm = 0;  // 0: the elements are at rest, and nothing was timed that a run has
-  for (const double g : terms.grad) norm += std::abs(g);
-  state.counters["gradient"] = norm / static_cast<double>(elements.size());
+  derivatives(state, elements, x);
 }
 
 using MakeKind = MadeFamily (*)(const FamilyPlace&, const Scene&);

@@ -52,9 +52,20 @@ def filmed(program: str, folder: Path, *words) -> Path:
     return ran(program, folder, config, *words)
 
 
-def made(program: str, folder: Path) -> Path:
-    """A run whose cloth is in a file of its own."""
+def of_a_patch(folder: Path) -> dict:
+    """A config of two steps whose cloth is in a file of its own."""
     (folder / "patch.obj").write_text(PATCH)
-    config = {"schema": "barrierbench.config/1", "time": {"dt_s": 0.01, "steps": 2}, "formulation": {"name": "log", "d_hat_m": 0.01}, "threads": 1,
-              "scene": {"name": "bodies", "bodies": [{"name": "cloth", "mesh": {"file": "patch.obj"}, "material": {"youngs_N_per_m": 50}}]}}
-    return ran(program, folder, config)
+    return {"schema": "barrierbench.config/1", "time": {"dt_s": 0.01, "steps": 2}, "formulation": {"name": "log", "d_hat_m": 0.01}, "threads": 1,
+            "scene": {"name": "bodies", "bodies": [{"name": "cloth", "mesh": {"file": "patch.obj"}, "material": {"youngs_N_per_m": 50}}]}}
+
+
+def made(program: str, folder: Path) -> Path:
+    return ran(program, folder, of_a_patch(folder))
+
+
+def cut(program: str, folder: Path) -> Path:
+    """The same, stopped after its first step."""
+    (folder / "config.json").write_text(json.dumps(of_a_patch(folder)))
+    bench(program, "run", folder / "config.json", "--out", folder / "run", "--step-limit", "1")
+    assert json.loads((folder / "run/run.json").read_text())["status"]["outcome"] == "timeout"
+    return folder / "run"

@@ -4,7 +4,7 @@ import json
 import shutil
 
 import pytest
-from study_files import edit, filmed, made
+from study_files import cut, edit, filmed, made
 
 from analysis.study import archive_verb, held, ids, verify
 from analysis.study.archive import packed
@@ -132,6 +132,15 @@ def test_a_file_among_kept_inputs_that_nothing_names_is_extra(program, tmp_path,
     (next((folder / "inputs").glob("film-*")) / "walk_11.obj").write_text("v 0 0 0\n")
     code, said = told(capsys, folder)
     assert code == 1 and "walk_11.obj" in said and "1 extra" in said.splitlines()[-1]
+
+
+def test_the_checkpoint_of_a_cut_run_is_its_own(program, tmp_path, capsys):
+    run = cut(program, tmp_path)
+    assert (run / "checkpoint.bin").is_file()
+    assert told(capsys, tmp_path)[0] == 0
+    (run / "checkpoint.txt").touch()
+    code, said = told(capsys, tmp_path)
+    assert code == 1 and "checkpoint.txt" in said and "checkpoint.bin" not in said
 
 
 def test_inputs_outside_an_archive_are_counted_and_not_missing(program, tmp_path, capsys, built):
