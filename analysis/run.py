@@ -15,8 +15,8 @@ from scipy import sparse
 
 from . import fields
 from .frames import Frame, frame_paths, frames_of
-from .gate.matrices import read_matrix
 from .json_file import read_object
+from .matrix_market import read_matrix
 from .record_file import bound_file, named_files, read_record, read_trace
 from .run_rows import run_row
 

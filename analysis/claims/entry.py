@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+from .. import places
 from ..digests import of_file
 from ..errors import UserError
 from ..json_file import read_object
@@ -22,7 +23,6 @@ REQUIRED = ("id", "source", "sentence", "dimension", "guarantee", "kind")
 SEEDS = "/seeds/main"
 SOLVER = "/step_solver/name"
 METHOD = "/method"
-METHODS = ROOT / "configs" / "methods"
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def method_set(name: str | None) -> dict:
     """Pointer -> value of a published method (configs/methods); of none, or one that the program does not
     know, nothing.
     """
-    file = METHODS / f"{name}.json"
+    file = places.METHODS / f"{name}.json"
     return read_object(file)["set"] if name and file.is_file() else {}
 
 

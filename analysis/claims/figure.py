@@ -13,8 +13,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from .. import style
 from .judge import Answer
-from .report import interval
 from .verdict import HOLDS, IN_PART, NOT, ONLY_IF, OPEN, Judged
+from .words import interval
 
 COLORS = {HOLDS: "#009E73", ONLY_IF: "#E69F00", IN_PART: "#0072B2", NOT: "#D55E00", OPEN: "#888888"}
 # kind of number -> label of its axis, whether it is logarithmic

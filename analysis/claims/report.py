@@ -12,28 +12,12 @@ from .judge import Answer
 from .metrics import METRICS
 from .table import Table
 from .verdict import IN_PART, ONLY_IF, OPEN, Judged
+from .words import interval, number
 
 WIDTH = 140
 MANY = 4  # parts: of more a table says how many hold
 SEVERAL = "../docs/results.md#one-quantity-several-studies"
 BY_SMALLEST = "; compared by smallest gaps"
-
-
-def number(x: float | None) -> str:
-    """Three digits, and more where these would make it 1."""
-    if x is None:
-        return "-"
-    return f"{x:.6g}" if x != 1 and f"{x:.3g}" == "1" else f"{x:.3g}"
-
-
-def interval(j: Judged) -> str:
-    if j.value is None:
-        return "-"
-    if j.lower is None:
-        return f"{number(j.value)} (one scene: no interval)"
-    if j.extremes:
-        return number(j.value) if j.lower == j.upper else f"{number(j.lower)} to {number(j.upper)}"
-    return f"{number(j.value)} [{number(j.lower)}, {number(j.upper)}]"
 
 
 def counts_of(groups: tuple[int, ...], parts: list[Judged]) -> str:

@@ -17,9 +17,9 @@ import pandas as pd
 from .. import input_file
 from ..digests import of_text
 from ..errors import UserError, passed_on
-from ..gate.matrices import read_matrix
 from ..json_file import read_object
 from ..matching.runs import Sweep, inputs_sha256
+from ..matrix_market import read_matrix
 from ..places import ROOT
 from ..program import run_sweep
 from ..records import load

@@ -10,8 +10,17 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..frames import Frame, frame_of, frame_paths, frames_of, points_of_bodies, read_scene, scene_at
-from ..play.film import check_same_bodies, times_of
+from ..frames import (
+    Frame,
+    check_same_bodies,
+    frame_of,
+    frame_paths,
+    frames_of,
+    points_of_bodies,
+    read_scene,
+    scene_at,
+    times_of,
+)
 from ..record_file import read_record
 from .binding import Binding, joined, refined, whole
 from .grid_splines import GridSplines

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..claims.table import seconds_of_run
 from ..errors import UserError
+from ..origin import seconds_of_run
 from ..program import evaluated
 from ..record_file import RecordError, read_record, read_trace
 from .spec import Cell, Spec

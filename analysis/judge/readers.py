@@ -11,9 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..frames import frame_paths, frames_of, read_scene
+from ..frames import frame_paths, frames_of, read_scene, times_of
 from ..mesh_arrays import SUFFIXES
-from ..play.film import times_of
 from ..record_file import read_record
 from .arrays import of_npz
 from .displacement import displaced

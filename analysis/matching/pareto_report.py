@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..claims.metrics import METRICS as MEANINGS
-from ..claims.report import number
+from ..claims.words import number
 from ..text_table import markdown as table_lines
 from .formulations import REFERENCE
 from .fronts import (

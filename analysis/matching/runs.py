@@ -9,8 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import input_file
-from ..claims import entry
+from .. import input_file, places
 from ..claims.metrics import METRICS
 from ..errors import UserError, passed_on
 from ..gate.configs import differences
@@ -84,7 +83,7 @@ def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
             yield from _inputs(one, folder, name)
     elif name == "formulation" and node in known():
         yield input_file.read_bytes(formulations.PRESETS / f"{node}.json")
-    elif name == "method" and isinstance(node, str) and (file := entry.METHODS / f"{node}.json").is_file():
+    elif name == "method" and isinstance(node, str) and (file := places.METHODS / f"{node}.json").is_file():
         yield input_file.read_bytes(file)
         yield from _inputs(read_object(file)["set"], folder)
     elif name in ("base", "extends", "file") and isinstance(node, str) and (folder / node).is_file():

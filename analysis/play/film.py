@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..frames import Frame, frame_of, frame_paths, frames_of, read_scene
+from ..frames import Frame, check_same_bodies, frame_of, frame_paths, frames_of, read_scene, times_of
 from ..frames_out.grid_splines import GridSplines
 from ..rasterizer import sharp_corners
 from ..record_file import read_record
@@ -46,36 +46,6 @@ def bytes_of_a_frame(frame: Frame) -> int:
 def kept(steps: list[int], every: int) -> list[int]:
     """Every so many frames, and always the first and the last one."""
     return [*steps[:-1:every], steps[-1]]
-
-
-def times_of(record: dict, steps: list[int], run: Path) -> list[float]:
-    """Simulated time (s) at the end of each step; 0 at the start. Errors: UserError for a step that the
-    record does not have.
-    """
-    ends = {step["step"]: float(step["t_s"]) for step in record["steps"]} | {-1: 0.0}
-    missing = [step for step in steps if step not in ends]
-    if missing:
-        raise UserError(
-            f"{run}/run.json#/steps: no step {missing[0]}, but a frame of it; allowed: a step for each frame"
-        )
-    return [ends[step] for step in steps]
-
-
-def check_same_bodies(frame: Frame, first: Frame, path: Path) -> None:
-    """Errors: UserError: other elements than in the first frame, or a position that is not finite."""
-    for name in ("triangles", "edges"):
-        if not np.array_equal(getattr(frame, name), getattr(first, name)):
-            raise UserError(
-                f"{path}: its {name} are not those of the first frame; allowed: the same in every frame"
-            )
-    if frame.vertices.shape != first.vertices.shape:
-        raise UserError(
-            f"{path}: found {len(frame.vertices)} vertices; allowed: {len(first.vertices)}, as in the first"
-            " frame"
-        )
-    if not np.isfinite(frame.vertices).all():
-        bad = int(np.argmax(~np.isfinite(frame.vertices).all(axis=1)))
-        raise UserError(f"{path}: the position of vertex {bad} is not finite; allowed: finite numbers")
 
 
 def _field(values: dict[str, np.ndarray], name: str, count: int) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import importlib
 import io
 import json
 import os
@@ -17,7 +18,7 @@ from pathlib import Path
 
 from .. import input_file
 from ..errors import UserError
-from ..front import door, verbs
+from ..front import verbs
 from ..places import ROOT
 from ..program import in_shell, started
 from ..spec_file import read_spec
@@ -79,12 +80,13 @@ def _missing_files(words: list[str]) -> list[str]:
 @functools.cache
 def _helped(verb: str) -> subprocess.CompletedProcess:
     """VERB --help, of the program or of this package."""
-    if not verbs.find(verb):
+    row = verbs.find(verb)
+    if not row:
         return started(verb, "--help", timeout=SECONDS)
     said, told = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
         try:
-            code = door.main([verb, "--help"])
+            code = importlib.import_module(f"analysis.{row.module}").main(["--help"]) if row.own_help else 0
         except SystemExit as ended:  # of argparse
             code = ended.code
     if said.getvalue() or told.getvalue():

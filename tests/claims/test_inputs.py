@@ -132,7 +132,7 @@ def test_what_the_program_fills_in_is_no_contradiction():
 def test_a_method_is_an_input_and_lies_under_what_the_sweep_sets(tmp_path, monkeypatch):
     methods = tmp_path / "methods"
     methods.mkdir()
-    monkeypatch.setattr("analysis.claims.entry.METHODS", methods)
+    monkeypatch.setattr("analysis.places.METHODS", methods)
     (methods / "m.json").write_text(json.dumps({"set": {"/formulation": {"name": "cubic"}, "/precision": "float", "/step_solver/name": "accumulated_toi", "/time/dt_s": 0.001}}))
     (tmp_path / "sweeps").mkdir()
     (tmp_path / "base.json").write_text(json.dumps({"formulation": "log", "time": {"dt_s": 0.01, "steps": 9}, "scene": {"name": "hang"}}))

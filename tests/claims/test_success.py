@@ -7,7 +7,8 @@ from made import runs
 
 from analysis.errors import UserError
 from analysis.claims import success
-from analysis.claims.entry import FOLDER, METHODS, ids, read_claim, read_sweep, settings_of
+from analysis.claims.entry import FOLDER, ids, read_claim, read_sweep, settings_of
+from analysis.places import METHODS
 from analysis.claims.frontiers import has_runs, trials
 from analysis.claims.inputs import asked
 from analysis.claims.metrics import METRICS

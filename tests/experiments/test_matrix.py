@@ -10,7 +10,7 @@ import scipy.io
 import scipy.linalg
 
 from analysis import matrix_corpus
-from analysis.gate.matrices import read_matrix
+from analysis.matrix_market import read_matrix
 
 ROOT = Path(__file__).resolve().parents[2]
 CORPUS = ROOT / "results/matrices"
