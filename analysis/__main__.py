@@ -3,10 +3,10 @@
 import sys
 from pathlib import Path
 
-sys.path[0] = str(Path(__file__).resolve().parents[1])
+sys.path[0] = str(Path(__file__).resolve().parent / "src")
 
-from analysis.front import streams  # noqa: E402  (the line above says where it is)
-from analysis.front.door import main  # noqa: E402
+from barrierbench_analysis.front.door import main  # noqa: E402  (the line above says where it is)
+from barrierbench_analysis.program import streams  # noqa: E402
 
 if __name__ == "__main__":
     streams.prepare()

@@ -51,14 +51,14 @@ json no_answer(std::string found) {
            "the environment that ./bench setup makes, or another with sympy named by BARRIERBENCH_PYTHON"}};
 }
 
-/// What analysis/formula answers; `found` and `allowed` where something is wrong.
+/// What analysis/src/barrierbench_analysis/program/formula answers; `found` and `allowed` where something is wrong.
 json asked(const json& question) {
   const std::string program = python();
   if (!std::filesystem::exists(program)) {
     return no_answer(fmt::format("a formula and no Python at \"{}\"", program));
   }
   const Finished done =
-      run_process({program, "-m", "analysis.formula"}, question.dump(), {{"PYTHONPATH", BB_SOURCE_DIR}});
+      run_process({program, "-m", "barrierbench_analysis.program.formula"}, question.dump(), {{"PYTHONPATH", BB_SOURCE_DIR "/analysis/src"}});
   const std::size_t end = done.out.find_last_not_of('\n');
   const std::string last =
       end == std::string::npos ? "" : done.out.substr(done.out.rfind('\n', end) + 1, end + 1);

@@ -1,4 +1,4 @@
-// Shapes and stiffnesses that a config gives as formulas (docs/design.md, Formulas). The Python of analysis/formula reads, checks and
+// Shapes and stiffnesses that a config gives as formulas (docs/design.md, Formulas). The Python of analysis/src/barrierbench_analysis/program/formula reads, checks and
 // compiles them into plugins; this file asks it, loads what it made and keeps it for the process.
 #pragma once
 
@@ -32,7 +32,7 @@ struct FormulaShape {
   FormulaLibrary library;
 };
 
-/// kappa (N/m) and d kappa/dd (N/m^2) at n gaps d (m) of a pair, d_hat in m, the others as analysis/formula/grammar.py has them.
+/// kappa (N/m) and d kappa/dd (N/m^2) at n gaps d (m) of a pair, d_hat in m, the others as analysis/src/barrierbench_analysis/program/formula/grammar.py has them.
 using FormulaInGap = void (*)(double m, double k, double h, double c, double d_hat, std::size_t n,
                               const double* d, double* kappa, double* slope);
 
@@ -55,7 +55,7 @@ bool is_formula(std::string_view shape_name);
 FormulaShape require_formula(std::string_view text, const std::optional<std::string>& at_zero,
                              std::string_view where);
 
-/// A stiffness, kappa in N/m of a contact, such as m/h^2 + k (analysis/formula/grammar.py has the symbols). Errors and cost as those
+/// A stiffness, kappa in N/m of a contact, such as m/h^2 + k (analysis/src/barrierbench_analysis/program/formula/grammar.py has the symbols). Errors and cost as those
 /// of require_formula.
 FormulaPolicy require_policy_formula(std::string_view text, std::string_view where);
 

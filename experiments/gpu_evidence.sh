@@ -21,7 +21,7 @@ usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER] [--only GRO
   --dry              a lease without a card: the host executor, tiny scenes; no record is made of its files
   --bundle FOLDER    builds, and puts all that the evidence needs into FOLDER, which is new or empty: this script, programs, their libraries,
                      configs. FOLDER/gpu_evidence.sh then runs on a machine that has a card and a driver and nothing else
-                     of ours; it leaves the raw files, and `python -m analysis.gpu_evidence RAW` makes the record here.
+                     of ours; it leaves the raw files, and `python -m barrierbench_analysis.studies.device.gpu_evidence RAW` makes the record here.
                      FOLDER.tar.xz is the same as one archive, below 64 MiB
   --before COMMIT    the program of that commit goes along, for runs before and after a change (default: the commit before this
                      one; none: without)
@@ -220,4 +220,4 @@ if [ "$root" = "$here" ]; then
   printf '%s\n' "$out"
   exit 0
 fi
-"$root/.venv/bin/python" -m barrierbench_analysis.gpu_evidence "$out" --records "$records"
+"$root/.venv/bin/python" -m barrierbench_analysis.studies.device.gpu_evidence "$out" --records "$records"

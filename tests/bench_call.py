@@ -5,7 +5,7 @@ import resource
 import subprocess
 import sys
 
-from analysis.places import ROOT
+from barrierbench_analysis.io.places import ROOT
 
 
 def bench(*words, program=sys.executable, environment=None, at_most=None, **options):

@@ -8,6 +8,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(ROOT / "analysis" / "src"))
 sys.path.insert(0, str(ROOT / "tests" / "analysis"))
 
 from tests.private import own_folders  # noqa: E402 (of this tree)

@@ -16,8 +16,8 @@ import warnings
 from collections.abc import Callable
 from pathlib import Path
 
-from analysis.front import streams, verbs
-from analysis.front.door import main
+from barrierbench_analysis.program import streams, verbs
+from barrierbench_analysis.front.door import main
 
 
 def _status(code: object) -> int:
@@ -53,7 +53,7 @@ def _child(words: list[str], cwd: Path, environment: dict[str, str], files: tupl
 def forked(words: list[str], cwd: Path, environment: dict[str, str], timeout: float, limits: Callable[[], None] = lambda: None) -> subprocess.CompletedProcess:
     """As subprocess.run of python analysis WORDS, with nothing to read. Errors: TimeoutExpired."""
     if row := verbs.find(words[0]):
-        importlib.import_module(f"analysis.{row.module}")
+        importlib.import_module(f"barrierbench_analysis.{row.module}")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, open(os.devnull) as nothing:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # threads of numpy wait for work, and are not asked in the child

@@ -1,5 +1,5 @@
 // What a trajectory consists of: topology, obstacles, thickness. One JSON file, which the front end
-// (analysis/judge) writes from the files of any program.
+// (analysis/src/barrierbench_analysis/studies/judge) writes from the files of any program.
 #pragma once
 
 #include <string>

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from barrierbench_analysis.records import Records
-    from barrierbench_analysis.run import Run
+    from barrierbench_analysis.tables.records import Records
+    from barrierbench_analysis.tables.run import Run
 
 
 def _missing(error: ImportError) -> ImportError:
@@ -20,7 +20,7 @@ def _missing(error: ImportError) -> ImportError:
 def load_run(folder: str | os.PathLike) -> Run:
     """The run of a folder: record, steps and trace as pandas tables, frames as arrays. Errors: RecordError."""
     try:
-        from barrierbench_analysis.run import Run
+        from barrierbench_analysis.tables.run import Run
     except ImportError as error:
         raise _missing(error) from None
     return Run(Path(folder))
@@ -29,7 +29,7 @@ def load_run(folder: str | os.PathLike) -> Run:
 def load(folder: str | os.PathLike) -> Records:
     """All records below a folder as tidy tables: runs, steps, trace, cond."""
     try:
-        from barrierbench_analysis.records import load as load_records
+        from barrierbench_analysis.tables.records import load as load_records
     except ImportError as error:
         raise _missing(error) from None
     return load_records(folder)
@@ -43,7 +43,7 @@ def judge(trajectory: str | os.PathLike, about: str | os.PathLike | None = None,
     Errors: UserError of analysis where it cannot be judged.
     """
     try:
-        from barrierbench_analysis.judge import verb
+        from barrierbench_analysis.studies.judge import verb
     except ImportError as error:
         raise _missing(error) from None
     words = [str(trajectory), *(["--about", str(about)] if about is not None else [])]
@@ -56,7 +56,7 @@ def judge(trajectory: str | os.PathLike, about: str | os.PathLike | None = None,
 def claims(*ids: str) -> int:
     """`bench claims`: runs what is missing and computes the verdicts on claims; the exit code. All of them: hours."""
     try:
-        from barrierbench_analysis.claims import verb
+        from barrierbench_analysis.pages.claims import verb
     except ImportError as error:
         raise _missing(error) from None
     return verb.main(list(ids))

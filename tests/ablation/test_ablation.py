@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.ablation import bound, construction, effects, factors, report, runs, table
-from analysis.ablation.design import drawn, seldom
-from analysis.errors import UserError
+from barrierbench_analysis.studies.ablation import bound, construction, effects, factors, report, runs, table
+from barrierbench_analysis.studies.ablation.design import drawn, seldom
+from barrierbench_analysis.io.errors import UserError
 
 ROOT = Path(__file__).resolve().parents[2]
 DEFAULT = ROOT / "configs/ablation/default.json"

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from motions import FIXED, run
 
-from analysis.frames import read_frame
-from analysis.mesh_arrays import MeshArrays
-from analysis.mesh_file import ply_bytes
+from barrierbench_analysis.io.frames import read_frame
+from barrierbench_analysis.program.mesh_arrays import MeshArrays
+from barrierbench_analysis.program.mesh_file import ply_bytes
 
 RADIUS, YOUNGS, POISSON = 0.1, 1e6, 0.3  # m, Pa
 CONTACT = RADIUS / 20  # m, radius of the contact: the theory is of a small one

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from analysis.accuracy.shapes import barrier
-from analysis.accuracy.state import Motion, read_motion
+from barrierbench_analysis.tables.accuracy.shapes import barrier
+from barrierbench_analysis.tables.accuracy.state import Motion, read_motion
 
 ROOT = Path(__file__).resolve().parents[2]
 G = 9.81

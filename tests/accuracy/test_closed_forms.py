@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from analysis.errors import UserError
-from analysis.accuracy.bounce import BarrierBounce, rigid_gap
-from analysis.accuracy.catenary import chain_nodes
-from analysis.accuracy.shapes import SHAPES, barrier, gap_of_load
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.tables.accuracy.bounce import BarrierBounce, rigid_gap
+from barrierbench_analysis.tables.accuracy.catenary import chain_nodes
+from barrierbench_analysis.tables.accuracy.shapes import SHAPES, barrier, gap_of_load
 
 D_HAT = 0.01
 

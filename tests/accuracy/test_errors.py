@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.accuracy import errors
+from barrierbench_analysis.tables.accuracy import errors
 
 
 def test_e_traj_is_the_largest_distance_over_the_size():

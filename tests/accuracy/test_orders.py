@@ -45,7 +45,7 @@ def swing_energies(motion) -> np.ndarray:
     """Of every step: energy above that of the place of rest, over the same at the start."""
     from scipy.optimize import minimize_scalar
 
-    from analysis.accuracy.shapes import barrier
+    from barrierbench_analysis.tables.accuracy.shapes import barrier
     from motions import KAPPA
 
     def potential(gap: float) -> float:

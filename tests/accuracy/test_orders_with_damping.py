@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.accuracy.shapes import barrier
+from barrierbench_analysis.tables.accuracy.shapes import barrier
 from motions import CHAIN_S, FIXED, G, chain_config, chain_exact, run
 from scipy.optimize import brentq
 

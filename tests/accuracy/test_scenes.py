@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from analysis.accuracy.bounce import BarrierBounce
-from analysis.accuracy.reference import CLOSED_FORMS, NoReference, measure, refined
-from analysis.accuracy.state import read_motion
+from barrierbench_analysis.tables.accuracy.bounce import BarrierBounce
+from barrierbench_analysis.tables.accuracy.reference import CLOSED_FORMS, NoReference, measure, refined
+from barrierbench_analysis.tables.accuracy.state import read_motion
 from motions import ROOT
 
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from analysis.accuracy.state import Motion
-from analysis.errors import UserError
+from barrierbench_analysis.tables.accuracy.state import Motion
+from barrierbench_analysis.io.errors import UserError
 
 
 def motion(frames, scene=None, **bodies) -> Motion:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.records import load
+from barrierbench_analysis.tables.records import load
 from synthetic import write_set
 
 

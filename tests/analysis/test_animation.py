@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from analysis import animation, render
+from barrierbench_analysis.figures.pictures import animation, render
 from tests.falling_cloth import CLOTH_ON_BALL
 
 SMALL = ["--size", "120", "90"]

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from analysis.frames_out.binding import bound_mesh, closest_triangles, joined, refined, whole
-from analysis.frames_out.obstacle_mesh import obstacle_mesh
-from analysis.obstacle_rays import signed_gap, triangle_distances
-from analysis.rasterizer import corner_normals, smoothed_corners
+from barrierbench_analysis.figures.surfaces.binding import bound_mesh, closest_triangles, joined, refined, whole
+from barrierbench_analysis.figures.surfaces.obstacle_mesh import obstacle_mesh
+from barrierbench_analysis.figures.surfaces.obstacle_rays import signed_gap, triangle_distances
+from barrierbench_analysis.figures.surfaces.rasterizer import corner_normals, smoothed_corners
 
 RANDOM = np.random.default_rng(11)
 

@@ -1,6 +1,6 @@
 """Captions say which series a setting is of."""
 
-from analysis.captions import caption
+from barrierbench_analysis.figures.captions import caption
 
 ROWS = [{"series": name, "dt_s": 0.01, "steps": 12, "d_hat_m": d_hat, "step_solver": "line_search"} for name, d_hat in (("log", 0.1), ("cubic", 0.2), ("quadratic", 0.3))]
 

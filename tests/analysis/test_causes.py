@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis import causes
-from analysis.program import RELEASE
+from barrierbench_analysis.tables import causes
+from barrierbench_analysis.program.start import RELEASE
 from synthetic import write_run
 
 ROOT = Path(__file__).resolve().parents[2]

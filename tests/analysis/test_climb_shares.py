@@ -1,7 +1,7 @@
 """The share of the strain limit in the climb of a condition number: it must not depend on which of limit and contact is added first."""
 
 import pytest
-from barrierbench_analysis.claims.metrics import METRICS
+from barrierbench_analysis.studies.kit.metrics import METRICS
 
 climb = METRICS["climb_of_limit"][3]
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis import condition_table as table
+from barrierbench_analysis.studies.matrices import condition_table as table
 
 
 def sample(cond=100.0, status="ok", method="spectra", solves=20, proof="both"):

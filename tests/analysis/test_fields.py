@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis import fields
+from barrierbench_analysis.io import fields
 
 
 @pytest.mark.parametrize(("table", "column", "place"), [

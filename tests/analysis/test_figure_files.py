@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import style
-from analysis.figures import barrier_shapes, condition, gaps, iterations, matrix_forms
-from analysis.records import load
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.figures.plots import barrier_shapes, condition, gaps, iterations, matrix_forms
+from barrierbench_analysis.tables.records import load
 from synthetic import bind, write_run, write_set
 
 

@@ -10,12 +10,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import run_words, style
-from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
-from analysis.figures import verb as figures_verb
-from analysis.records import load
-from analysis.record_file import sha256_of
-from analysis.table import as_text, summary_table
+from barrierbench_analysis.tables import run_words
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.figures.plots import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
+from barrierbench_analysis.figures.plots import verb as figures_verb
+from barrierbench_analysis.tables.records import load
+from barrierbench_analysis.io.record_file import sha256_of
+from barrierbench_analysis.tables.table import as_text, summary_table
 from synthetic import write_cycle, write_run, write_set
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -6,10 +6,10 @@ import subprocess
 import numpy as np
 import pytest
 
-from analysis.frames import frames_of
-from analysis.frames_out import film, formats, verb
-from analysis.mesh_arrays import read_frame_file
-from analysis.record_file import read_record
+from barrierbench_analysis.io.frames import frames_of
+from barrierbench_analysis.figures.frames_out import film, formats, verb
+from barrierbench_analysis.program.mesh_arrays import read_frame_file
+from barrierbench_analysis.io.record_file import read_record
 from tests.falling_cloth import CLOTH_ON_BALL
 
 POINTS = np.random.default_rng(7).normal(size=(4, 5, 3))  # frames, vertices

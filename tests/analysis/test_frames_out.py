@@ -9,9 +9,9 @@ import meshio
 import numpy as np
 import pytest
 
-from analysis.frames import frame_paths, read_frame
-from analysis.frames_out import formats, verb
-from analysis.record_file import read_record
+from barrierbench_analysis.io.frames import frame_paths, read_frame
+from barrierbench_analysis.figures.frames_out import formats, verb
+from barrierbench_analysis.io.record_file import read_record
 from tests.falling_cloth import CLOTH_ON_BALL
 
 

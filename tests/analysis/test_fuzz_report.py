@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from barrierbench_analysis import fuzz
+from barrierbench_analysis.front import fuzz
 
 LOG = """INFO: Seed: 1
 #2	INITED cov: 120 ft: 300 corp: 2/80b exec/s: 0 rss: 40Mb

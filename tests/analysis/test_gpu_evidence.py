@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis import gpu_evidence, gpu_model, gpu_report, gpu_tables
+from barrierbench_analysis.studies.device import gpu_evidence, gpu_model, gpu_report, gpu_tables
 
 ROOT = Path(__file__).resolve().parents[2]
 PRICES = {"currency": "USD", "cards": [

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from barrierbench_analysis import gpu_model
+from barrierbench_analysis.studies.device import gpu_model
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from analysis import render
-from analysis.errors import UserError
-from analysis.frames import Frame
-from analysis.frames_out import verb
-from analysis.frames_out.grid_splines import GridSplines
-from analysis.play.film import filmed, opened
+from barrierbench_analysis.figures.pictures import render
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.frames import Frame
+from barrierbench_analysis.figures.frames_out import verb
+from barrierbench_analysis.figures.surfaces.grid_splines import GridSplines
+from barrierbench_analysis.figures.pictures.film import filmed, opened
 from tests.falling_cloth import CLOTH_ON_BALL
 from tests.play.play_runs import run_of
 

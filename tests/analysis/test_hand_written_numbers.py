@@ -5,13 +5,14 @@ import statistics
 
 import pytest
 
-from analysis.claims import table as claims_table
-from analysis.claims.entry import read_claim
-from analysis.claims.judge import judge
-from analysis.claims.proofs import Eval
-from analysis.json_file import read_object
-from analysis.places import ROOT
-from analysis.readme import cost, numbers
+from barrierbench_analysis.studies.claims import table as claims_table
+from barrierbench_analysis.studies.claims.entry import read_claim
+from barrierbench_analysis.studies.claims.judge import judge
+from barrierbench_analysis.studies.claims.proofs import Eval
+from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.pages.stated import cost
+from barrierbench_analysis.pages.readme import numbers
 
 RUNS = {(row["group"], row["series"]): row for row in numbers.read()["runs"]}
 LOG, CUBIC, LAGGED = (RUNS["demo_drape", name] for name in ("log", "cubic", "cubic_dynamic_lagged"))

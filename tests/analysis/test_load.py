@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from analysis.figures import verb as figures
-from analysis.records import RecordError, load
-from analysis.whole_file import write_whole
+from barrierbench_analysis.figures.plots import verb as figures
+from barrierbench_analysis.tables.records import RecordError, load
+from barrierbench_analysis.io.whole_file import write_whole
 from synthetic import write_set
 
 

@@ -4,10 +4,10 @@ import json
 
 import pytest
 
-from analysis.figures import kappa_cycle
-from analysis.records import condition_of, load
-from analysis.run_words import name_of
-from analysis.table import as_text, summary_table
+from barrierbench_analysis.figures.plots import kappa_cycle
+from barrierbench_analysis.tables.records import condition_of, load
+from barrierbench_analysis.tables.run_words import name_of
+from barrierbench_analysis.tables.table import as_text, summary_table
 from synthetic import bind, digest, write_cycle, write_run, write_set
 
 

@@ -9,7 +9,7 @@ import meshio
 import numpy as np
 import pytest
 
-from analysis import mesh_file
+from barrierbench_analysis.program import mesh_file
 
 # Two tetrahedra on one face, one point between that belongs to nothing, a triangle and an edge beside them.
 POINTS = np.array(

@@ -5,8 +5,8 @@ import json
 import matplotlib.pyplot as plt
 import pytest
 
-from analysis import style
-from analysis.figures import newton_steps
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.figures.plots import newton_steps
 
 
 def data(**edit) -> dict:

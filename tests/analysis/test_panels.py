@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.figures import condition
-from analysis.records import load
-from analysis.panels import Panel, choose, constant, is_flat
+from barrierbench_analysis.figures.plots import condition
+from barrierbench_analysis.tables.records import load
+from barrierbench_analysis.figures.panels import Panel, choose, constant, is_flat
 from synthetic import write_set
 
 WAVE = pd.Series(np.geomspace(1, 1000, 40))

@@ -6,8 +6,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
-from analysis import pictures
-from analysis.errors import UserError
+from barrierbench_analysis.figures.pictures import pictures
+from barrierbench_analysis.io.errors import UserError
 
 ROOT = Path(__file__).resolve().parents[2]
 RECORD = {"labels": {"formulation": "cubic"}, "scene": {"vertices": 42}}

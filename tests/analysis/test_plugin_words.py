@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from analysis import causes
-from analysis.claims import verb as claims
-from analysis.matching import match, pareto
+from barrierbench_analysis.tables import causes
+from barrierbench_analysis.pages.claims import verb as claims
+from barrierbench_analysis.studies.matching import match, pareto
 
 ROOT = Path(__file__).resolve().parents[2]
 STAND_IN = """#!{python}

@@ -9,17 +9,17 @@ import re
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.readme import verb as readme
-from analysis.claims.entry import read_claim, read_sweep
-from analysis.claims.inputs import inputs_of
-from analysis.claims.table import Runs, Table
-from analysis.gap_map.rows import COLUMNS
-from analysis.gap_map.table import Map
-from analysis.readme import map as gap_map
-from analysis.readme import numbers, slices, snippets, templates
-from analysis.stated import sources
-from analysis.stated.number import OFF, OWN, SAME, Number
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.pages.readme import verb as readme
+from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
+from barrierbench_analysis.studies.claims.inputs import inputs_of
+from barrierbench_analysis.studies.claims.table import Runs, Table
+from barrierbench_analysis.studies.gap_map.rows import COLUMNS
+from barrierbench_analysis.studies.gap_map.table import Map
+from barrierbench_analysis.pages.readme import map as gap_map
+from barrierbench_analysis.pages.readme import numbers, slices, snippets, templates
+from barrierbench_analysis.pages.stated import sources
+from barrierbench_analysis.pages.stated.number import OFF, OWN, SAME, Number
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -236,7 +236,7 @@ def test_a_fence_that_nothing_checks_is_a_fault(fence):
 
 
 def test_numbers_are_gathered_from_records_of_the_program(program, tmp_path):
-    from analysis.records import load
+    from barrierbench_analysis.tables.records import load
     from small_sweep import sweep_of
 
     records = load(sweep_of(program, tmp_path))

@@ -1,6 +1,6 @@
 """Figures of the pages: what is shown is copied, and no caption names a figure that is not there."""
 
-from analysis.readme import figures
+from barrierbench_analysis.pages.readme import figures
 
 PAGE = "![a](docs/one.png) ![b](two.png) ![c](docs/elsewhere.png)"
 

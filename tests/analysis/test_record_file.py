@@ -5,15 +5,17 @@ import shutil
 
 import pytest
 
-from analysis.errors import UserError
-from analysis import causes, load, render, stills
-from analysis.figures import newton_steps
-from analysis.figures import verb as figures
-from analysis.gate import compare
-from analysis.matching.runs import read_strictly
-from analysis.record_file import CHANGED, RecordError, bound_file, other_meanings, read_record, read_trace
-from analysis.record_rule import RecordRule
-from analysis.run import Run
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.tables import causes
+from barrierbench_analysis import load
+from barrierbench_analysis.figures.pictures import render, stills
+from barrierbench_analysis.figures.plots import newton_steps
+from barrierbench_analysis.figures.plots import verb as figures
+from barrierbench_analysis.studies.gate import compare
+from barrierbench_analysis.studies.kit.runs import read_strictly
+from barrierbench_analysis.io.record_file import CHANGED, RecordError, bound_file, other_meanings, read_record, read_trace
+from barrierbench_analysis.io.record_rule import RecordRule
+from barrierbench_analysis.tables.run import Run
 from synthetic import bind, write_run, write_set
 
 

@@ -9,13 +9,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from analysis.errors import UserError
-from analysis import frame_pixels, render, still_picture
-from analysis.frames import Frame, frame_paths, read_frame, read_scene, without_bodies
-from analysis.obstacle_rays import hits, primitive_gaps, signed_gap
-from analysis.picture import picture
-from analysis.rasterizer import Camera, DepthBuffer
-from analysis.record_file import read_record
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.figures.pictures import frame_pixels, render, still_picture
+from barrierbench_analysis.io.frames import Frame, frame_paths, read_frame, read_scene, without_bodies
+from barrierbench_analysis.figures.surfaces.obstacle_rays import hits, primitive_gaps, signed_gap
+from barrierbench_analysis.figures.pictures.picture import picture
+from barrierbench_analysis.figures.surfaces.rasterizer import Camera, DepthBuffer
+from barrierbench_analysis.io.record_file import read_record
 from tests.falling_cloth import CLOTH_ON_BALL
 
 SMALL = (120, 90)

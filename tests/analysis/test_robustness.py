@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from analysis.robustness import Frontier, Trial, expected_cost, frontier, profile, success
+from barrierbench_analysis.tables.robustness import Frontier, Trial, expected_cost, frontier, profile, success
 
 
 def trial(value, ok=True, cost=10.0, seed=1):

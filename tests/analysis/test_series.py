@@ -3,9 +3,10 @@
 import pandas as pd
 import pytest
 
-from analysis import series, style
-from analysis.figures import condition, gaps, iterations
-from analysis.records import load
+from barrierbench_analysis.tables import series
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.figures.plots import condition, gaps, iterations
+from barrierbench_analysis.tables.records import load
 from synthetic import write_run
 
 NAMES = ("quadratic", "cubic x s", "cubic_dynamic_consistent", "cubic_dynamic_lagged", "cubic_dynamic", "cubic", "log", "ipc2020", "cubic_dynamic published")

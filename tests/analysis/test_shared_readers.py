@@ -5,11 +5,11 @@ import json
 
 import pytest
 
-from analysis.digests import BLOCK, of_file, of_text
-from analysis.errors import UserError
-from analysis.figure_files import copy_to_page
-from analysis.json_file import lines_of, read_object, read_of_schema, rows_of
-from analysis.origin import machine_of, origin, seconds_of_run
+from barrierbench_analysis.io.digests import BLOCK, of_file, of_text
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.figures.figure_files import copy_to_page
+from barrierbench_analysis.io.json_file import lines_of, read_object, read_of_schema, rows_of
+from barrierbench_analysis.io.origin import machine_of, origin, seconds_of_run
 
 REMEDY = "; ./bench made makes it"
 

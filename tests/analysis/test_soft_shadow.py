@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis.rod_tubes import SIDES, chains, rounded, tube, tubes
-from analysis.soft_shadow import LIGHT_SIZE, shadow_map
+from barrierbench_analysis.figures.surfaces.rod_tubes import SIDES, chains, rounded, tube, tubes
+from barrierbench_analysis.figures.pictures.soft_shadow import LIGHT_SIZE, shadow_map
 
 UP = np.array([0.0, 0, 1])
 

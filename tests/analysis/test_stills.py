@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from analysis import frame_pixels, still_picture, stills
-from analysis.places import ROOT
+from barrierbench_analysis.figures.pictures import frame_pixels, still_picture, stills
+from barrierbench_analysis.io.places import ROOT
 from tests.falling_cloth import CLOTH_ON_BALL
 
 SET_TITLE = Axes.set_title
@@ -67,7 +67,7 @@ def test_no_title_is_cut_off(runs, tmp_path, monkeypatch, note, columns):
 
 def test_what_cannot_be_drawn_is_named(runs, tmp_path):
     def told(*words):
-        done = subprocess.run([sys.executable, "-m", "analysis", "stills", *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False)
+        done = subprocess.run([sys.executable, ROOT / "analysis", "stills", *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False)
         assert done.returncode == 2
         return done.stderr
 

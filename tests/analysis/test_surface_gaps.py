@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from analysis import surface_gaps
+from barrierbench_analysis.tables import surface_gaps
 from synthetic import bind, write_run
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import style
-from analysis.figures import kappa_cycle, swings
-from analysis.records import load
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.figures.plots import kappa_cycle, swings
+from barrierbench_analysis.tables.records import load
 from synthetic import write_cycle, write_set
 
 CALM = np.linspace(1, 0.5, 20)

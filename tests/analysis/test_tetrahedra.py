@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from analysis import mesh_file, tetrahedra
-from analysis.mesh_file import read_cells
+from barrierbench_analysis.program import mesh_file, tetrahedra
+from barrierbench_analysis.program.mesh_file import read_cells
 
 needs_tetgen = pytest.mark.skipif(importlib.util.find_spec("tetgen") is None, reason=f"tetgen is not installed: {tetrahedra.INSTALL}")
 POINTS = np.random.default_rng(1).normal(size=(100, 3))

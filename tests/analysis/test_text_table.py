@@ -2,8 +2,8 @@
 
 import pytest
 
-from analysis.stated.statement import cells_of
-from analysis.text_table import aligned, markdown
+from barrierbench_analysis.pages.stated.statement import cells_of
+from barrierbench_analysis.io.text_table import aligned, markdown
 
 
 def test_columns_are_as_wide_as_their_widest_cell_and_numbers_end_at_their_right_edge():

@@ -5,8 +5,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import style
-from analysis.ticks import places, words
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.figures.ticks import places, words
 
 
 @pytest.mark.parametrize(("low", "high", "expected"), [

@@ -6,11 +6,11 @@ import subprocess
 import numpy as np
 import pytest
 
-from analysis.frames import frame_paths, read_frame
-from analysis.frames_out import verb
-from analysis.frames_out.uv_binding import located, uv_of_triangles, uv_of_vertices
-from analysis.mesh_arrays import read_frame_file
-from analysis.record_file import read_record
+from barrierbench_analysis.io.frames import frame_paths, read_frame
+from barrierbench_analysis.figures.frames_out import verb
+from barrierbench_analysis.figures.surfaces.uv_binding import located, uv_of_triangles, uv_of_vertices
+from barrierbench_analysis.program.mesh_arrays import read_frame_file
+from barrierbench_analysis.io.record_file import read_record
 
 # A cloth of 2 x 1 quads; its coordinates are (x/2, 1 - y), and those of the right quad lie apart, from u = 2 on.
 CLOTH = """v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0

@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 
-from analysis.catalogue import page, table
-from analysis.catalogue.entry import FOLDER, FULL, MINI, entries, names, read_entry
-from analysis.catalogue.layouts import house_of_cards, placed, row, spiral
-from analysis.catalogue.scenes import main
-from analysis.errors import UserError
+from barrierbench_analysis.studies.catalogue import page, table
+from barrierbench_analysis.studies.catalogue.entry import FOLDER, FULL, MINI, entries, names, read_entry
+from barrierbench_analysis.studies.catalogue.layouts import house_of_cards, placed, row, spiral
+from barrierbench_analysis.studies.catalogue.scenes import main
+from barrierbench_analysis.io.errors import UserError
 
 PAPER = (
     "belt cards codim curtain domino drape five-twist fishing-knot fitting friction-slope hang kick needle noodle ribbon roller stack"

@@ -4,7 +4,7 @@ import copy
 
 import pytest
 
-from analysis.catalogue.checks import CHECKS, judge
+from barrierbench_analysis.studies.catalogue.checks import CHECKS, judge
 
 STEP = {"t_s": 0.5, "contact_J": 0.1, "limit_J": 0.2, "kinetic_J": 2.0, "gravity_J": 5.0, "friction_sticking": 3, "friction_sliding": 0, "friction_dissipation_J": 0.01, "contact_load_sum_N": 4.2}
 RECORD = {

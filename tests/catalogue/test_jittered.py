@@ -4,9 +4,9 @@ half a minute, since ./bench test runs it; ./bench robust runs whole scenes.
 
 import pytest
 
-from analysis.catalogue import robust
-from analysis.catalogue.entry import read_entry
-from analysis.catalogue.runs import run_scene
+from barrierbench_analysis.studies.catalogue import robust
+from barrierbench_analysis.studies.catalogue.entry import read_entry
+from barrierbench_analysis.studies.catalogue.runs import run_scene
 
 SEEDS = list(range(1, 11))
 STEPS = {"domino": 40, "friction-slope": 25, "beam-on-wedge": 40}  # of them some are in contact

@@ -4,12 +4,12 @@ import json
 
 import pytest
 
-from analysis.catalogue import page, robust, table
-from analysis.catalogue.counts import counts_of
-from analysis.catalogue.entry import FULL, MINI, entries, read_entry, write_config
-from analysis.catalogue.runs import run_scene
-from analysis.catalogue.scenes import main
-from analysis.program import started
+from barrierbench_analysis.studies.catalogue import page, robust, table
+from barrierbench_analysis.studies.catalogue.counts import counts_of
+from barrierbench_analysis.studies.catalogue.entry import FULL, MINI, entries, read_entry, write_config
+from barrierbench_analysis.studies.catalogue.runs import run_scene
+from barrierbench_analysis.studies.catalogue.scenes import main
+from barrierbench_analysis.program.start import started
 
 REJECTED = {"intersect-1": "crosses triangle ball", "intersect-2": "left", "intersect-3": "crosses triangle torus"}
 FAST = ("domino", "friction-slope")
@@ -57,7 +57,7 @@ def test_a_full_scene_has_the_counts_of_its_source(name):
 
 
 def test_a_count_that_is_not_the_stated_one_is_told(capsys, monkeypatch):
-    from analysis.catalogue import scenes
+    from barrierbench_analysis.studies.catalogue import scenes
 
     def other(names):
         entry = read_entry("jaxls-drape")

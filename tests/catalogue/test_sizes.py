@@ -4,9 +4,9 @@ import copy
 
 import pytest
 
-from analysis.catalogue import sizes
-from analysis.catalogue.entry import FULL, entries, read_entry
-from analysis.catalogue.scenes import main
+from barrierbench_analysis.studies.catalogue import sizes
+from barrierbench_analysis.studies.catalogue.entry import FULL, entries, read_entry
+from barrierbench_analysis.studies.catalogue.scenes import main
 
 SMALL = ("cards", "domino", "friction-slope", "roller", "jaxls-drape", "trampoline", "two-points")
 

@@ -5,11 +5,11 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial import ConvexHull
 
-from analysis.accuracy.shapes import barrier
-from analysis.accuracy.state import read_motion
-from analysis.catalogue import table
-from analysis.catalogue.entry import read_entry
-from analysis.catalogue.runs import run_scene
+from barrierbench_analysis.tables.accuracy.shapes import barrier
+from barrierbench_analysis.tables.accuracy.state import read_motion
+from barrierbench_analysis.studies.catalogue import table
+from barrierbench_analysis.studies.catalogue.entry import read_entry
+from barrierbench_analysis.studies.catalogue.runs import run_scene
 
 G, DENSITY = 9.81, 1000.0
 

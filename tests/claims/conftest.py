@@ -1,7 +1,7 @@
 import pytest
 from registered import Repository
 
-from analysis.claims import registry
+from barrierbench_analysis.studies.claims import registry
 
 
 @pytest.fixture

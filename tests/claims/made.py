@@ -5,7 +5,7 @@ from pathlib import Path
 
 from synthetic import write_run
 
-from analysis.claims.table import Runs
+from barrierbench_analysis.studies.claims.table import Runs
 
 SCENES, LEVELS, SEEDS = ("a", "b", "c"), ("1", "2", "4"), (1, 2, 3, 4, 5)
 

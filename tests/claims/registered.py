@@ -6,10 +6,10 @@ import subprocess
 
 from made import runs
 
-from analysis.claims import registry
-from analysis.claims.entry import ROOT, read_claim, read_sweep
-from analysis.claims.inputs import inputs_of
-from analysis.claims.table import Table
+from barrierbench_analysis.studies.claims import registry
+from barrierbench_analysis.studies.claims.entry import ROOT, read_claim, read_sweep
+from barrierbench_analysis.studies.claims.inputs import inputs_of
+from barrierbench_analysis.studies.claims.table import Table
 
 NAME, FILE = "shells_modes", "claims/confirmation/registry.json"
 CLAIM = read_claim("K12")

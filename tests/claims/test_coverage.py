@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis.claims import coverage
-from analysis.claims.coverage import SCENES, by_scene, floor, share_covered, simulations
+from barrierbench_analysis.studies.claims import coverage
+from barrierbench_analysis.studies.claims.coverage import SCENES, by_scene, floor, share_covered, simulations
 
 DRAWS, OLD_RUNS = 400, 400
 
@@ -58,6 +58,6 @@ def test_levels_correlate_and_starts_are_alike(drawn):
 
 
 def test_the_page_is_made_of_the_simulation():
-    from analysis.claims.entry import ROOT
+    from barrierbench_analysis.studies.claims.entry import ROOT
 
     assert (ROOT / "results/COVERAGE.md").read_text() == coverage.markdown()

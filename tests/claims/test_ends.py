@@ -7,13 +7,14 @@ import pandas as pd
 from made import runs
 from synthetic import write_run
 
-from analysis import run_words
-from analysis.claims import figure, frontiers, report
-from analysis.claims.ends import end_of_case, ends_of_part
-from analysis.claims.entry import read_claim, read_sweep
-from analysis.claims.judge import judge
-from analysis.claims.proofs import Eval
-from analysis.claims.table import Runs, Table, collect
+from barrierbench_analysis.tables import run_words
+from barrierbench_analysis.studies.claims import figure, frontiers
+from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.studies.claims.ends import end_of_case, ends_of_part
+from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
+from barrierbench_analysis.studies.claims.judge import judge
+from barrierbench_analysis.studies.claims.proofs import Eval
+from barrierbench_analysis.studies.claims.table import Runs, Table, collect
 
 SWEEP = read_sweep("tight_limits")
 WORD = "not asked to converge, residual 3 tolerances"
@@ -61,7 +62,7 @@ def test_a_record_says_it(tmp_path):
 
 def test_page_and_figure_of_a_claim_say_it(tmp_path, monkeypatch):
     claim, table = replace(read_claim("K1"), parts=read_claim("K1").parts[:1]), Table({"tight_limits": made()})
-    monkeypatch.setattr("analysis.claims.judge.missing", lambda *_: [])
+    monkeypatch.setattr("barrierbench_analysis.studies.claims.judge.missing", lambda *_: [])
     judged = judge(claim, table, Eval(None))
     page = report.markdown([judged], table)
     assert f"Ends of steps: published: {WORD}." in page and f"(published: {WORD})" in page

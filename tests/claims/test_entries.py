@@ -5,18 +5,19 @@ import json
 import pytest
 from made import record
 
-from analysis.errors import UserError
-from analysis.claims import verb
-from analysis.claims import fresh, report
-from analysis.claims.entry import FOLDER, ROOT, ids, read_claim, read_sweep
-from analysis.claims.judge import RULES, judge, missing
-from analysis.claims.metrics import METRICS
-from analysis.claims.parts import KEYS, THRESHOLDS, check
-from analysis.claims.proofs import PROOFS, Eval
-from analysis.claims.registry import confirmable, confirmed_parts
-from analysis.claims.slices import slice_of
-from analysis.claims.success import read_for
-from analysis.claims.table import FILE, Table, collect, read, used_metrics, write
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.pages.claims import verb
+from barrierbench_analysis.studies.claims import fresh
+from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.studies.claims.entry import FOLDER, ROOT, ids, read_claim, read_sweep
+from barrierbench_analysis.studies.claims.judge import RULES, judge, missing
+from barrierbench_analysis.studies.kit.metrics import METRICS
+from barrierbench_analysis.studies.claims.parts import KEYS, THRESHOLDS, check
+from barrierbench_analysis.studies.claims.proofs import PROOFS, Eval
+from barrierbench_analysis.studies.claims.registry import confirmable, confirmed_parts
+from barrierbench_analysis.studies.claims.slices import slice_of
+from barrierbench_analysis.studies.kit.success import read_for
+from barrierbench_analysis.studies.claims.table import FILE, Table, collect, read, used_metrics, write
 
 WANTED = {*(f"K{k}" for k in range(1, 19)), *(f"H{k}" for k in range(1, 10)), "N1", "N2"}
 

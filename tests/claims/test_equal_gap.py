@@ -3,9 +3,9 @@
 import pytest
 from made import runs
 
-from analysis.errors import UserError
-from analysis.claims.equal_gap import at_equal_gap
-from analysis.claims.verdict import HOLDS, NOT, OPEN
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims.equal_gap import at_equal_gap
+from barrierbench_analysis.studies.claims.verdict import HOLDS, NOT, OPEN
 
 SCALES = ("0.01", "0.1", "1", "10", "100")
 CASES = tuple(f"{name} x{scale}" for name in ("log", "cubic") for scale in SCALES)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from analysis.claims.estimate import intraclass, of_scenes, sign_test, student, wilson
+from barrierbench_analysis.tables.estimate import intraclass, of_scenes, sign_test, student, wilson
 
 
 def test_a_scene_is_the_mean_of_its_levels_whatever_starts_they_have():

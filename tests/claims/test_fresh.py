@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.claims import fresh
-from analysis.claims.entry import ROOT, read_sweep
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims import fresh
+from barrierbench_analysis.studies.claims.entry import ROOT, read_sweep
 
 SWEEP = read_sweep("shells_contact")
 

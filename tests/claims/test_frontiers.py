@@ -6,13 +6,13 @@ from dataclasses import replace
 import pytest
 from made import runs
 
-from analysis.errors import UserError
-from analysis.claims import frontiers
-from analysis.claims.entry import FOLDER, read_claim
-from analysis.claims.metrics import FOLDER as PLACE
-from analysis.claims.metrics import METRICS, longest_run
-from analysis.claims.outcomes import outcomes
-from analysis.claims.table import Table, used_metrics
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims import frontiers
+from barrierbench_analysis.studies.claims.entry import FOLDER, read_claim
+from barrierbench_analysis.studies.kit.metrics import FOLDER as PLACE
+from barrierbench_analysis.studies.kit.metrics import METRICS, longest_run
+from barrierbench_analysis.studies.claims.outcomes import outcomes
+from barrierbench_analysis.studies.claims.table import Table, used_metrics
 
 LEVELS = ("nominal", "E0.1", "E10", "E100", "v2", "v8")
 CLAIM = replace(read_claim("K4"), frontier={"sweep": "policies", "cost": "factorizations", "axes": {"E": 1, "v": 1}})

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.gap_rule import MAX_RATIO, Apart, farthest, gaps_of
+from barrierbench_analysis.tables.gap_rule import MAX_RATIO, Apart, farthest, gaps_of
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = {"log": {"/formulation": "log"}, "soft": {"/formulation": "log", "/formulation/stiffness_policy/scale": 0.02}, "cubic": {"/formulation": "cubic"},

@@ -6,17 +6,17 @@ import shutil
 import pytest
 from made import record
 
-from analysis.errors import UserError
-from analysis.claims import inputs
-from analysis.claims import judge as judging
-from analysis.claims.entry import FOLDER, ROOT, ids, read_claim, read_sweep
-from analysis.claims.judge import missing
-from analysis.claims.merged import base_of, merged, put
-from analysis.claims.table import Runs, Table, collect
-from analysis.gate.cases import read_set
-from analysis.matching import formulations
-from analysis.matching.runs import Sweep as Made
-from analysis.matching.runs import inputs_sha256
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims import inputs
+from barrierbench_analysis.studies.claims import judge as judging
+from barrierbench_analysis.studies.claims.entry import FOLDER, ROOT, ids, read_claim, read_sweep
+from barrierbench_analysis.studies.claims.judge import missing
+from barrierbench_analysis.studies.claims.merged import base_of, merged, put
+from barrierbench_analysis.studies.claims.table import Runs, Table, collect
+from barrierbench_analysis.studies.gate.cases import read_set
+from barrierbench_analysis.studies.kit import formulations
+from barrierbench_analysis.studies.kit.runs import Sweep as Made
+from barrierbench_analysis.studies.kit.runs import inputs_sha256
 
 NOTES = [f"s: strip {level} {case} main=1" for level in (4, 6) for case in ("log", "cubic")]
 
@@ -67,7 +67,7 @@ def test_inputs_that_changed_after_the_runs(sweep, tmp_path, monkeypatch, capsys
     """The records are none of the sweep, and neither are the numbers that were kept of them."""
     shutil.copytree(formulations.PRESETS, tmp_path / "presets")
     monkeypatch.setattr(formulations, "PRESETS", tmp_path / "presets")
-    monkeypatch.setattr("analysis.claims.merged.PRESETS", tmp_path / "presets")
+    monkeypatch.setattr("barrierbench_analysis.studies.claims.merged.PRESETS", tmp_path / "presets")
     monkeypatch.setattr(judging, "read_sweep", lambda name: sweep)
     made, claim = run(sweep, tmp_path / "runs"), read_claim("K12")
     claim = type(claim)(*[getattr(claim, name) for name in ("id", "source", "sentence", "dimension", "guarantee", "kind")], parts=({"sweep": "s"},))
@@ -132,7 +132,7 @@ def test_what_the_program_fills_in_is_no_contradiction():
 def test_a_method_is_an_input_and_lies_under_what_the_sweep_sets(tmp_path, monkeypatch):
     methods = tmp_path / "methods"
     methods.mkdir()
-    monkeypatch.setattr("analysis.places.METHODS", methods)
+    monkeypatch.setattr("barrierbench_analysis.io.places.METHODS", methods)
     (methods / "m.json").write_text(json.dumps({"set": {"/formulation": {"name": "cubic"}, "/precision": "float", "/step_solver/name": "accumulated_toi", "/time/dt_s": 0.001}}))
     (tmp_path / "sweeps").mkdir()
     (tmp_path / "base.json").write_text(json.dumps({"formulation": "log", "time": {"dt_s": 0.01, "steps": 9}, "scene": {"name": "hang"}}))

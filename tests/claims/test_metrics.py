@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.claims.metrics import FOLDER, METRICS
+from barrierbench_analysis.studies.kit.metrics import FOLDER, METRICS
 
 MATRICES = ("full/none", "full/block_jacobi", "without_contact/none", "without_contact_and_limit/none", "without_limit/none")
 
@@ -50,7 +50,7 @@ def test_a_front_is_as_fast_as_neighbours_touch():
 
 def test_a_bound_counts_where_contact_stops_an_iteration(monkeypatch):
     lines = [{"alpha_ccd": 1.0}, {"alpha_ccd": 0.25}, {"alpha_ccd": 1e-6}, {"alpha_ccd": 1.0}, {"alpha_ccd": None}]
-    monkeypatch.setattr("analysis.claims.locking.read_trace", lambda record, folder: iter(lines))
+    monkeypatch.setattr("barrierbench_analysis.studies.kit.locking.read_trace", lambda record, folder: iter(lines))
     read = METRICS["bound_share"][3]
     assert read(record()) is None  # no folder, no trace
     assert read(record() | {FOLDER: "somewhere"}) == 0.5

@@ -3,14 +3,14 @@
 import pytest
 from made import SCENES, runs
 
-from analysis.errors import UserError
-from analysis.claims.entry import read_sweep
-from analysis.claims.judge import judge_part
-from analysis.claims.numbers import _line, level, ratio, slope
-from analysis.claims.parts import check
-from analysis.claims.table import DIGITS, Table, _rounded
-from analysis.claims.threshold import Threshold
-from analysis.claims.verdict import HOLDS, NOT, ONLY_IF, OPEN
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims.entry import read_sweep
+from barrierbench_analysis.studies.claims.judge import judge_part
+from barrierbench_analysis.studies.claims.numbers import _line, level, ratio, slope
+from barrierbench_analysis.studies.claims.parts import check
+from barrierbench_analysis.studies.claims.table import DIGITS, Table, _rounded
+from barrierbench_analysis.studies.claims.threshold import Threshold
+from barrierbench_analysis.studies.claims.verdict import HOLDS, NOT, ONLY_IF, OPEN
 
 PART = {"says": "x takes more", "sweep": "s", "metric": "newton", "case": "x", "over": "y", "above": 1.5}
 

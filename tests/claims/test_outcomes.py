@@ -3,9 +3,9 @@
 import pytest
 from made import runs
 
-from analysis.errors import UserError
-from analysis.claims.outcomes import outcomes
-from analysis.claims.verdict import HOLDS, IN_PART, NOT, ONLY_IF, OPEN, Judged, together
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims.outcomes import outcomes
+from barrierbench_analysis.studies.claims.verdict import HOLDS, IN_PART, NOT, ONLY_IF, OPEN, Judged, together
 
 PART = {"says": "x gets through", "sweep": "s", "case": "x", "over": "y"}
 SIX = ("a", "b", "c", "d", "e", "f")  # fewer scenes cannot decide a sign test

@@ -2,9 +2,9 @@
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.claims.proofs import Eval, force_falls, light_touch, rho_above, unit_change
-from analysis.claims.verdict import HOLDS, NOT, ONLY_IF
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims.proofs import Eval, force_falls, light_touch, rho_above, unit_change
+from barrierbench_analysis.studies.claims.verdict import HOLDS, NOT, ONLY_IF
 
 
 @pytest.fixture

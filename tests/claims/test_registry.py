@@ -9,15 +9,16 @@ from dataclasses import replace
 import pytest
 from registered import CLAIM, FILE, NAME
 
-from analysis.errors import UserError
-from analysis.claims import verb
-from analysis.claims import registry, report
-from analysis.claims.entry import read_claim, read_sweep
-from analysis.claims.inputs import inputs_of
-from analysis.claims.judge import judge
-from analysis.claims.metrics import METRICS
-from analysis.claims.proofs import Eval
-from analysis.claims.table import Table
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.pages.claims import verb
+from barrierbench_analysis.studies.claims import registry
+from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
+from barrierbench_analysis.studies.claims.inputs import inputs_of
+from barrierbench_analysis.studies.claims.judge import judge
+from barrierbench_analysis.studies.kit.metrics import METRICS
+from barrierbench_analysis.studies.claims.proofs import Eval
+from barrierbench_analysis.studies.claims.table import Table
 
 
 def test_the_code_of_the_common_success_is_in_the_rule(repository, monkeypatch):
@@ -43,8 +44,8 @@ def test_registered_committed_and_run(repository):
 
 
 def test_the_confirmed_verdict_is_that_of_the_confirmation_scenes(repository, monkeypatch):
-    from analysis.claims.table import FILE as KEPT
-    from analysis.claims.table import read
+    from barrierbench_analysis.studies.claims.table import FILE as KEPT
+    from barrierbench_analysis.studies.claims.table import read
 
     repository.register()
     repository.commit()

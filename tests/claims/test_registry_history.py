@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 from registered import CLAIM, FILE
 
-from analysis.errors import UserError
-from analysis.claims import registry
-from analysis.claims.entry import read_claim
-from analysis.claims.table import Table
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims import registry
+from barrierbench_analysis.studies.claims.entry import read_claim
+from barrierbench_analysis.studies.claims.table import Table
 
 
 def test_an_earlier_run_of_the_scenes_is_said(repository):

@@ -5,14 +5,15 @@ from dataclasses import replace
 
 from made import runs
 
-from analysis.claims import figure, report
-from analysis.claims.entry import read_claim
-from analysis.claims.judge import Answer
-from analysis.claims.numbers import level, ratio, slope
-from analysis.claims.outcomes import outcomes
-from analysis.claims.registry import State
-from analysis.claims.table import Table
-from analysis.claims.verdict import Judged, together
+from barrierbench_analysis.studies.claims import figure
+from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.studies.claims.entry import read_claim
+from barrierbench_analysis.studies.claims.judge import Answer
+from barrierbench_analysis.studies.claims.numbers import level, ratio, slope
+from barrierbench_analysis.studies.claims.outcomes import outcomes
+from barrierbench_analysis.studies.claims.registry import State
+from barrierbench_analysis.studies.claims.table import Table
+from barrierbench_analysis.studies.claims.verdict import Judged, together
 
 OF = {"a": 18.0, "b": 20.0, "c": 25.0}
 

@@ -2,15 +2,16 @@
 
 from dataclasses import replace
 
-from barrierbench_analysis.claims import outcomes, registry, report
-from barrierbench_analysis.claims import table as claims_table
-from barrierbench_analysis.claims.entry import read_claim, read_sweep
-from barrierbench_analysis.claims.judge import judge
-from barrierbench_analysis.claims.proofs import Eval
-from barrierbench_analysis.claims.rests import rests_on
-from barrierbench_analysis.claims.success import FAILURES
-from barrierbench_analysis.claims.table import Runs
-from barrierbench_analysis.claims.verdict import HOLDS, IN_PART, Judged
+from barrierbench_analysis.studies.claims import outcomes, registry
+from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.studies.claims import table as claims_table
+from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
+from barrierbench_analysis.studies.claims.judge import judge
+from barrierbench_analysis.studies.claims.proofs import Eval
+from barrierbench_analysis.studies.claims.rests import rests_on
+from barrierbench_analysis.studies.kit.success import FAILURES
+from barrierbench_analysis.studies.claims.table import Runs
+from barrierbench_analysis.studies.claims.verdict import HOLDS, IN_PART, Judged
 
 PART = {"says": "more", "rule": "outcomes", "sweep": "made", "case": "mine", "over": "other", "bad": "common"}
 

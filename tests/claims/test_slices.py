@@ -6,13 +6,13 @@ import re
 import pytest
 from made import record, row
 
-from analysis.errors import UserError
-from analysis.claims import judge as judging
-from analysis.claims.entry import ROOT, read_claim, read_sweep
-from analysis.claims.merged import WITHOUT_LIMIT, limit_of, theta_of
-from analysis.claims.proofs import Eval
-from analysis.claims.slices import rows_of, slice_of
-from analysis.claims.table import Runs, Table, collect, read, write
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.claims import judge as judging
+from barrierbench_analysis.studies.claims.entry import ROOT, read_claim, read_sweep
+from barrierbench_analysis.studies.claims.merged import WITHOUT_LIMIT, limit_of, theta_of
+from barrierbench_analysis.studies.claims.proofs import Eval
+from barrierbench_analysis.studies.claims.slices import rows_of, slice_of
+from barrierbench_analysis.studies.claims.table import Runs, Table, collect, read, write
 
 THETA, LIMIT, SEEDS = ({"pointer": "/matching/theta", "values": [0.1, 0.01]}, {"pointer": "/strain_limit/enabled", "values": [True, False]}, {"pointer": "/seeds/main", "values": [1, 2]})
 

@@ -5,18 +5,18 @@ import json
 import pytest
 from made import runs
 
-from analysis.errors import UserError
-from analysis.claims import success
-from analysis.claims.entry import FOLDER, ids, read_claim, read_sweep, settings_of
-from analysis.places import METHODS
-from analysis.claims.frontiers import has_runs, trials
-from analysis.claims.inputs import asked
-from analysis.claims.metrics import METRICS
-from analysis.claims.outcomes import hopeless, outcomes
-from analysis.claims.registry import rule_of
-from analysis.claims.success import COMMON, FAILURES, RESIDUAL, TIME
-from analysis.claims.table import Table, used_metrics
-from analysis.claims.verdict import HOLDS, NOT
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.kit import success
+from barrierbench_analysis.studies.claims.entry import FOLDER, ids, read_claim, read_sweep, settings_of
+from barrierbench_analysis.io.places import METHODS
+from barrierbench_analysis.studies.claims.frontiers import has_runs, trials
+from barrierbench_analysis.studies.claims.inputs import asked
+from barrierbench_analysis.studies.kit.metrics import METRICS
+from barrierbench_analysis.studies.claims.outcomes import hopeless, outcomes
+from barrierbench_analysis.studies.claims.registry import rule_of
+from barrierbench_analysis.studies.kit.success import COMMON, FAILURES, RESIDUAL, TIME
+from barrierbench_analysis.studies.claims.table import Table, used_metrics
+from barrierbench_analysis.studies.claims.verdict import HOLDS, NOT
 
 PART = {"says": "x gets through", "sweep": "s", "case": "x", "over": "y", "bad": COMMON}
 SIX = ("a", "b", "c", "d", "e", "f")

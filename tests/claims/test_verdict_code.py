@@ -4,13 +4,15 @@ import inspect
 
 import pytest
 
-from analysis import gap_rule
-from analysis.claims import estimate, numbers, report, verdict_code
-from analysis.claims.table import Table
+from barrierbench_analysis.tables import gap_rule
+from barrierbench_analysis.tables import estimate
+from barrierbench_analysis.studies.claims import numbers, verdict_code
+from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.studies.claims.table import Table
 
 
 def test_the_code_of_verdicts_is_the_last_of_the_list():
-    """Red: add an entry to analysis/claims/verdict_code.json with the new hash and what it means for verdicts that are registered."""
+    """Red: add an entry to analysis/src/barrierbench_analysis/studies/claims/verdict_code.json with the new hash and what it means for verdicts that are registered."""
     found = verdict_code.changes()
     assert found and found[-1].code == verdict_code.code_now(), f"the code is {verdict_code.code_now()}"
     assert [one.date for one in found] == sorted(one.date for one in found) and all(len(one.what) > 20 for one in found)

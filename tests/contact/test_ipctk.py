@@ -13,7 +13,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from analysis import toolkit_meshes
+from barrierbench_analysis.studies.toolkit import toolkit_meshes
 
 ipctk = pytest.importorskip("ipctk", reason="the oracle ipctk is not installed")
 

@@ -8,7 +8,7 @@ import os
 
 import numpy as np
 import pytest
-from analysis import toolkit_meshes
+from barrierbench_analysis.studies.toolkit import toolkit_meshes
 from test_ipctk import PROBE, collision_mesh, ipctk, probe
 
 pytestmark = pytest.mark.skipif(not os.access(PROBE, os.X_OK), reason="contact_probe is not built")

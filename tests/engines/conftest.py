@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from analysis.engines import environment
+from barrierbench_analysis.studies.engines import environment
 
 
 @pytest.fixture

@@ -8,16 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis import input_file
-from analysis.catalogue import table
-from analysis.catalogue.entry import read_entry, write_config
-from analysis.engines import card as cards
-from analysis.engines import compare, environment, figure, launch, level, matching, scene, verb
-from analysis.engines.judged import energy_of, error_of, judge
-from analysis.engines.report import text_of
-from analysis.errors import UserError
-from analysis.judge.arrays import of_npz
-from analysis.places import ROOT
+from barrierbench_analysis.io import input_file
+from barrierbench_analysis.studies.catalogue import table
+from barrierbench_analysis.studies.catalogue.entry import read_entry, write_config
+from barrierbench_analysis.studies.engines import card as cards
+from barrierbench_analysis.studies.engines import compare, environment, figure, launch, level, matching, scene, verb
+from barrierbench_analysis.studies.engines.judged import energy_of, error_of, judge
+from barrierbench_analysis.studies.engines.report import text_of
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.program.trajectories.arrays import of_npz
+from barrierbench_analysis.io.places import ROOT
 
 HANG = ROOT / "configs/scenes/hang.json"
 SMALL = ["/scene/n=5", "/strain_limit/enabled=false", "/time/steps=6"]

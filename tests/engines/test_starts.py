@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from test_engines_of_others import HANG
 
-from analysis.engines import compare, figure, scatter, starts, verb
-from analysis.engines.report import text_of
-from analysis.errors import UserError
+from barrierbench_analysis.studies.engines import compare, figure, scatter, starts, verb
+from barrierbench_analysis.studies.engines.report import text_of
+from barrierbench_analysis.io.errors import UserError
 
 
 def small_study(tmp_path, starts):

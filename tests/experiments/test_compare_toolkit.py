@@ -6,7 +6,7 @@ import re
 import subprocess
 
 import pytest
-from analysis import compare_toolkit
+from barrierbench_analysis.studies.toolkit import compare_toolkit
 
 pytest.importorskip("ipctk", reason="the toolkit (Python package ipctk) is not installed")
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from test_cli import bench
 
-from analysis.frames import frame_of
-from analysis.record_file import read_record
+from barrierbench_analysis.io.frames import frame_of
+from barrierbench_analysis.io.record_file import read_record
 
 SCENES = Path(__file__).resolve().parents[2] / "configs/scenes"
 G = 9.81  # m/s^2

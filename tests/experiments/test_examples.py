@@ -28,7 +28,7 @@ def test_the_scene_ends_ok_and_everything_in_it_touches(run):
 
 
 def test_the_pins_follow_their_motion(run):
-    from analysis.frames import read_frame
+    from barrierbench_analysis.io.frames import read_frame
 
     start, end = (read_frame(run / "frames" / name).vertices for name in ("start.ply", "step_000025.ply"))
     low, high = json.loads(SCENE.read_text())["scene"]["bodies"][0]["pins"][0]["box_m"]

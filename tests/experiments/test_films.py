@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from test_cli import bench, refused, write
 
-from analysis.frames import frame_of, frame_paths
-from analysis.record_file import read_record
+from barrierbench_analysis.io.frames import frame_of, frame_paths
+from barrierbench_analysis.io.record_file import read_record
 
 BOX = {"generator": "box", "n": 2, "size_x_m": 0.2, "size_y_m": 0.2, "size_z_m": 0.1}
 SHEET = {"generator": "grid", "n_x": 7, "n_y": 7, "size_x_m": 0.3, "size_y_m": 0.3}

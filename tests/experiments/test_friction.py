@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from test_cli import bench, refused
 
-from analysis import step_corpus_page as page
-from analysis.catalogue.scenes import main as catalogue
+from barrierbench_analysis.studies.steps import step_corpus_page as page
+from barrierbench_analysis.studies.catalogue.scenes import main as catalogue
 
 ROOT = Path(__file__).resolve().parents[2]
 SLOPE = ROOT / "configs/scenes/friction_slope.json"

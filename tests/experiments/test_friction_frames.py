@@ -8,7 +8,7 @@ import pytest
 from test_cli import bench
 from test_friction import ANGLE, G, MASS, SLOPE
 
-from analysis.frames import frame_paths, read_frame
+from barrierbench_analysis.io.frames import frame_paths, read_frame
 
 DT, STEPS = 0.005, 60
 DOWN = np.array([2, 0, -1]) / math.sqrt(5)  # along the slope

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis import gpu_evidence
+from barrierbench_analysis.studies.device import gpu_evidence
 
 ROOT = Path(__file__).resolve().parents[2]
 STAGES = ["tests", "dense_500k", "contact_82k", "dense_1m", "kernels", "counters", "growth", "sanitizer"]

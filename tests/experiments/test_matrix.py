@@ -9,8 +9,8 @@ import pytest
 import scipy.io
 import scipy.linalg
 
-from analysis import matrix_corpus
-from analysis.matrix_market import read_matrix
+from barrierbench_analysis.studies.matrices import matrix_corpus
+from barrierbench_analysis.io.matrix_market import read_matrix
 
 ROOT = Path(__file__).resolve().parents[2]
 CORPUS = ROOT / "results/matrices"

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from test_cli import bench, write
 
-from analysis.frames import frame_of, frame_paths, read_scene, scene_at
-from analysis.record_file import read_record
+from barrierbench_analysis.io.frames import frame_of, frame_paths, read_scene, scene_at
+from barrierbench_analysis.io.record_file import read_record
 from tests.falling_cloth import CLOTH_ON_BALL
 
 UP = [0.1, 0, 0.6]  # m/s

@@ -4,7 +4,7 @@ import pytest
 from test_cli import bench, refused
 from test_step_solver_baselines import run, shot
 
-from analysis.record_file import read_record
+from barrierbench_analysis.io.record_file import read_record
 
 SOFT = [word for one in ("/formulation/name=log", "/formulation/stiffness_policy/kappa_N_per_m=1", "/step_solver/max_iterations=2000",
                          "/scene/bodies/0/transform/translate_m=[0.1,0.1,0.0525]") for word in ("--set", one)]  # fmt: skip

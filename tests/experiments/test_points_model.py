@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-from analysis.catalogue.entry import FULL, MINI, read_entry, write_config
+from barrierbench_analysis.studies.catalogue.entry import FULL, MINI, read_entry, write_config
 
 BALL = {"name": "ball", "kind": "sphere", "point_m": [0.0, 0.0, -0.042], "radius_m": 0.04}
 
@@ -120,8 +120,8 @@ def full_run(program, tmp_path, seed):
 
 def test_the_cloth_of_jaxls_ends_where_jaxls_does(program, tmp_path):
     """results/jaxls_drape.json: jaxls itself, from eleven starts (examples/jaxls)."""
-    from analysis.frames import frame_of
-    from analysis.places import ROOT
+    from barrierbench_analysis.io.frames import frame_of
+    from barrierbench_analysis.io.places import ROOT
 
     known = json.loads((ROOT / "results" / "jaxls_drape.json").read_text())["runs"]
     record = full_run(program, tmp_path, 0)
@@ -151,7 +151,7 @@ def test_the_two_sizes_are_the_example_and_a_scene_for_barriers():
 
 
 def test_the_page_has_the_numbers_of_jaxls():
-    from analysis.places import ROOT
+    from barrierbench_analysis.io.places import ROOT
 
     runs = json.loads((ROOT / "results" / "jaxls_drape.json").read_text())["runs"]
     rows = {line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]]

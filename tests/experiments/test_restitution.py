@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import pytest
 
-from analysis.accuracy.state import read_motion
+from barrierbench_analysis.tables.accuracy.state import read_motion
 
 SCENE = Path(__file__).resolve().parents[2] / "configs" / "scenes" / "half_bounce.json"
 

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 from processes import started, wait_until
 
-from analysis.errors import UserError
-from analysis import step_corpus
-from analysis import step_corpus_figure as figure
-from analysis import step_corpus_page as page
-from analysis import step_corpus_states as make
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.steps import step_corpus
+from barrierbench_analysis.studies.steps import step_corpus_figure as figure
+from barrierbench_analysis.studies.steps import step_corpus_page as page
+from barrierbench_analysis.studies.steps import step_corpus_states as make
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = [str(ROOT / "configs/scenes/drape.json"), "--set", "/scene/layers=2", "--set", "/scene/n=6", "--set", "/threads=1",

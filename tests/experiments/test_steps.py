@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from barrierbench_analysis.figures import newton_steps
+from barrierbench_analysis.figures.plots import newton_steps
 
 ROOT = Path(__file__).resolve().parents[2]
 HANG = str(ROOT / "configs/scenes/hang.json")

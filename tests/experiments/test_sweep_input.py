@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from analysis import load
-from analysis.table import as_text, summary_table
+from barrierbench_analysis import load
+from barrierbench_analysis.tables.table import as_text, summary_table
 from test_cli import BLOCK, bench, refused, write
 
 STEPS = {"pointer": "/time/steps", "values": [1, 2]}

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from test_cli import bench, refused, write
 
-from analysis.frames import frame_of, frame_paths
-from analysis.record_file import read_record
+from barrierbench_analysis.io.frames import frame_of, frame_paths
+from barrierbench_analysis.io.record_file import read_record
 
 SHEET = {"generator": "grid", "n_x": 3, "n_y": 3, "size_x_m": 0.2, "size_y_m": 0.2}
 

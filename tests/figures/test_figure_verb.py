@@ -8,15 +8,16 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from analysis.captions import Facts
-from analysis.errors import UserError
-from analysis.figures import heat_map, newton_condition, phase_times, preconditioned, profiles, rebuild, scaling, sources, step_front, step_lengths, success_frontier, trend
-from analysis.figures.drawing import Drawing
-from analysis.figures.kinds import KINDS
-from analysis.figures.spec import FOLDER, chosen, known, read_spec
-from analysis.figures.subjects import Place, SweepRecords, Wanted
-from analysis.records import Records
-from analysis.style import SUFFIXES
+from barrierbench_analysis.figures.captions import Facts
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.figures.plots import heat_map, newton_condition, phase_times, preconditioned, profiles, scaling, step_front, step_lengths, success_frontier, trend
+from barrierbench_analysis.studies.comparison import rebuild, sources
+from barrierbench_analysis.figures.plots.drawing import Drawing
+from barrierbench_analysis.studies.comparison.kinds import KINDS
+from barrierbench_analysis.studies.comparison.spec import FOLDER, chosen, known, read_spec
+from barrierbench_analysis.figures.plots.subjects import Place, SweepRecords, Wanted
+from barrierbench_analysis.tables.records import Records
+from barrierbench_analysis.figures.style import SUFFIXES
 
 ROOT = Path(__file__).resolve().parents[2]
 

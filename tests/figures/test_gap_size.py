@@ -1,9 +1,9 @@
 """The log over the cubic against unknowns: from the kept rows, to the same bytes, with the caption of the page."""
 
-from analysis.figures import spec
-from analysis.figures.drawing import Drawing
-from analysis.gap_map import size, size_figure, table
-from analysis.places import ROOT
+from barrierbench_analysis.studies.comparison import spec
+from barrierbench_analysis.figures.plots.drawing import Drawing
+from barrierbench_analysis.studies.gap_map import size, size_figure, table
+from barrierbench_analysis.io.places import ROOT
 
 KEPT = ROOT / "results" / "gap_map.json"
 

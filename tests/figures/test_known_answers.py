@@ -8,12 +8,11 @@ import pandas as pd
 import pytest
 from matplotlib.colors import LogNorm
 
-from analysis import pgfplots
-from analysis.captions import Facts
-from analysis.errors import UserError
-from analysis.figures import (eigenvalues, friction_slope, gap_ridge, heat_map, newton_condition, one_step, phase_times, preconditioned, profiles, resolution, scaling,
-                              slopes, step_front, success_frontier, trend)
-from analysis.records import load
+from barrierbench_analysis.figures import pgfplots
+from barrierbench_analysis.figures.captions import Facts
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.figures.plots import eigenvalues, friction_slope, gap_ridge, heat_map, newton_condition, one_step, phase_times, preconditioned, profiles, resolution, scaling, slopes, step_front, success_frontier, trend
+from barrierbench_analysis.tables.records import load
 from synthetic import write_set
 
 
@@ -213,7 +212,7 @@ def test_phase_times_are_sums_of_phases_over_iterations():
 
 
 def test_no_phase_of_a_record_is_left_out():
-    from analysis import fields
+    from barrierbench_analysis.io import fields
 
     known = {column.removeprefix("time_").removesuffix("_s") for column in fields.columns("steps") if column.startswith("time_")}
     drawn = {column for columns, _, _ in phase_times.PHASES.values() for column in columns}

@@ -9,8 +9,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
-from analysis import style
-from analysis.own_math import is_ours
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.figures.own_math import is_ours
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = ("$x", "a$b^c^d$", "$a_{$", "100%", "#1", "a_b^c", "$$", "_private", "$ $", "$\\frac{$", "a$b$c$d", "\\$x$", "$^$")

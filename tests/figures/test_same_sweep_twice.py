@@ -2,8 +2,8 @@
 
 import shutil
 
-from analysis.figures import verb as figures
-from analysis.report import verb as report
+from barrierbench_analysis.figures.plots import verb as figures
+from barrierbench_analysis.pages.report import verb as report
 from small_sweep import sweep_of
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis.formula import checks, device, source, symbolic
-from analysis.formula.grammar import FormulaError, read
+from barrierbench_analysis.program.formula import checks, device, source, symbolic
+from barrierbench_analysis.program.formula.grammar import FormulaError, read
 
 ROOT = Path(__file__).resolve().parents[2]
 LOG = "-(d - d_hat)^2*log(d/d_hat)"

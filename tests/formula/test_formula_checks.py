@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from analysis.formula import checks, symbolic
-from analysis.formula.grammar import FormulaError, read
+from barrierbench_analysis.program.formula import checks, symbolic
+from barrierbench_analysis.program.formula.grammar import FormulaError, read
 
 
 def judged(text, declared=None):
@@ -91,8 +91,8 @@ def test_bounds_hold_the_values():
     import mpmath
     import sympy as sp
 
-    from analysis.formula import signs
-    from analysis.formula.grammar import FUNCTIONS
+    from barrierbench_analysis.program.formula import signs
+    from barrierbench_analysis.program.formula.grammar import FUNCTIONS
 
     seeded = random.Random(7)
     assert len(FUNCTIONS) == 10

@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.formula.grammar import MOST_CHARACTERS, FormulaError, read
+from barrierbench_analysis.program.formula.grammar import MOST_CHARACTERS, FormulaError, read
 
 LOG = "-(d - d_hat)^2*log(d/d_hat)"
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis.formula.compiled import compiled_policy
-from analysis.formula.grammar import FormulaError
+from barrierbench_analysis.program.formula.compiled import compiled_policy
+from barrierbench_analysis.program.formula.grammar import FormulaError
 
 ROOT = Path(__file__).resolve().parents[2]
 STRIP = str(ROOT / "configs/scenes/strip_on_disk.json")
@@ -98,7 +98,7 @@ def test_a_difference_that_double_precision_loses():
 
 
 def test_the_verb_says_what_a_policy_reads():
-    done = subprocess.run([sys.executable, "-m", "analysis", "formula", "--policy", "m/h^2 + k"], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, ROOT / "analysis", "formula", "--policy", "m/h^2 + k"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0 and "reads m, k, h" in done.stdout, done.stderr
-    done = subprocess.run([sys.executable, "-m", "analysis", "formula", "--policy", "--at-zero", "finite", "k"], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, ROOT / "analysis", "formula", "--policy", "--at-zero", "finite", "k"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "--at-zero" in done.stderr

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.formula.compiled import compiled_policy
+from barrierbench_analysis.program.formula.compiled import compiled_policy
 
 ROOT = Path(__file__).resolve().parents[2]
 STRIP = str(ROOT / "configs/scenes/strip_on_disk.json")

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis.formula import cache as kept
-from analysis.formula import device
-from analysis.formula.compiled import compiled
-from analysis.formula.grammar import FormulaError
+from barrierbench_analysis.program.formula import cache as kept
+from barrierbench_analysis.program.formula import device
+from barrierbench_analysis.program.formula.compiled import compiled
+from barrierbench_analysis.program.formula.grammar import FormulaError
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = str(ROOT / "configs/scenes/resting_block_1d.json")

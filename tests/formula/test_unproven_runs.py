@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from analysis.formula.compiled import compiled, signs_of
+from barrierbench_analysis.program.formula.compiled import compiled, signs_of
 from test_program import BLOCK, bench, setting
 
 # b'' meets 0 within the interval, and is not below it

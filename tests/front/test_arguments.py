@@ -5,14 +5,17 @@ import re
 import pytest
 from bench_call import bench
 
-from analysis.errors import UserError
-from analysis import causes, render, text_table
-from analysis.formula import verb as formula
-from analysis.front import door, verbs
-from analysis.matching import match
-from analysis.places import ROOT
-from analysis.play import verb as play
-from analysis.score import verb as score
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.tables import causes
+from barrierbench_analysis.figures.pictures import render
+from barrierbench_analysis.io import text_table
+from barrierbench_analysis.program.formula import verb as formula
+from barrierbench_analysis.front import door
+from barrierbench_analysis.program import verbs
+from barrierbench_analysis.studies.matching import match
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.pages.play import verb as play
+from barrierbench_analysis.studies.score import verb as score
 
 COMPACT = ["-(d-d_hat)^2*log(d/d_hat)", "-d_hat^2*log(d/d_hat)", "-log(d/d_hat)*(d-d_hat)^2", "(d_hat-d)^3/d"]
 

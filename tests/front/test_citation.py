@@ -6,8 +6,8 @@ import jsonschema
 import pytest
 import yaml
 
-from analysis.front.version import version
-from analysis.places import ROOT
+from barrierbench_analysis.front.version import version
+from barrierbench_analysis.io.places import ROOT
 
 FILE = ROOT / "CITATION.cff"
 # What version 1.2.0 of the format asks of the keys that are used here; any other key is a mistake.

@@ -7,11 +7,11 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from analysis.figures import demo as figures
-from analysis.front import demo
-from analysis.places import ROOT
-from analysis.readme.numbers import GROUPS
-from analysis.report import verb as report
+from barrierbench_analysis.figures.plots import demo as figures
+from barrierbench_analysis.front import demo
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.pages.readme.numbers import GROUPS
+from barrierbench_analysis.pages.report import verb as report
 
 
 @pytest.fixture

@@ -7,9 +7,9 @@ import shutil
 
 import pytest
 
-from analysis import errors, whole_file
-from analysis.front import verbs
-from analysis.places import ROOT
+from barrierbench_analysis.io import errors, whole_file
+from barrierbench_analysis.program import verbs
+from barrierbench_analysis.io.places import ROOT
 from tests.bench_call import bench, python
 
 TRIANGLE = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
@@ -110,9 +110,9 @@ WRITERS = """
 from pathlib import Path
 from matplotlib.figure import Figure
 from analysis import figure_files, matrix_corpus, whole_file
-from analysis.engines import ours
-from analysis.gate import trend
-from analysis.readme import figures
+from barrierbench_analysis.studies.engines import ours
+from barrierbench_analysis.studies.gate import trend
+from barrierbench_analysis.pages.readme import figures
 
 ours.read_scene = lambda *_: {"obstacles": []}
 ours.frames_of = lambda *_: []

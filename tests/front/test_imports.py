@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from analysis.places import ROOT
+from barrierbench_analysis.io.places import ROOT
 
 TABLES, DRAWING, SHAPES = ("pandas",), ("matplotlib.pyplot",), ("scipy", "jsonschema")
 UNUSED = {
@@ -22,7 +22,7 @@ UNUSED = {
 
 @pytest.mark.parametrize("module, unused", UNUSED.items())
 def test_a_verb_does_not_load_what_it_does_not_need_at_its_start(module, unused):
-    asked = f"import sys; sys.path.insert(0, {str(ROOT)!r}); import analysis.{module}; print(*sys.modules)"
+    asked = f"import sys; sys.path.insert(0, {str(ROOT / "analysis" / "src")!r}); import barrierbench_analysis.{module}; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True).stdout.split()
-    assert f"analysis.{module}" in loaded
+    assert f"barrierbench_analysis.{module}" in loaded
     assert not [name for name in unused if name in loaded]

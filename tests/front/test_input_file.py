@@ -1,4 +1,4 @@
-"""Files that a user names are opened in one place, analysis/input_file.py, which refuses what can be waited for or read for ever."""
+"""Files that a user names are opened in one place, analysis/src/barrierbench_analysis/io/input_file.py, which refuses what can be waited for or read for ever."""
 
 import ast
 import os
@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.input_file import opened, read_bytes, read_text
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.input_file import opened, read_bytes, read_text
 
 ROOT = Path(__file__).resolve().parents[2]
 READERS = {"open", "read_text", "read_bytes", "load", "loadtxt", "genfromtxt", "fromfile", "memmap", "mmread", "mminfo", "read_csv", "parse", "ZipFile", "ElementTree"}

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.gate import cases
-from analysis.matrix_corpus import read_corpus
-from analysis.spec_file import read_spec
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.gate import cases
+from barrierbench_analysis.studies.matrices.matrix_corpus import read_corpus
+from barrierbench_analysis.io.spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMITTED = {"pareto": "configs/pareto/*.json", "gap_map": "configs/gap_map/*.json", "gates": "configs/gates/*.json",

@@ -1,6 +1,6 @@
 """What the summary of `bench test` reads from ctest's log."""
 
-from analysis.front.test import not_passed_cpp, ptx_share, without_passed
+from barrierbench_analysis.front.test import not_passed_cpp, ptx_share, without_passed
 
 LOG = """\
  1/4 Test  #1: Accd.StopsAtItsLevel ..............   Passed    0.50 sec

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-import analysis
-from analysis.front import building, door, verbs
+import barrierbench_analysis as analysis
+from barrierbench_analysis.program import building, verbs
+from barrierbench_analysis.front import door
 
 ROOT = Path(__file__).resolve().parents[2]
 CLI = ROOT / "experiments/cli"
@@ -86,7 +87,7 @@ def test_setup_by_the_front_door_is_that_of_the_script(monkeypatch):
 def test_every_row_of_python_has_its_file_with_a_main():
     for verb in verbs.TABLE:
         if verb.module:
-            found = importlib.util.find_spec(f"analysis.{verb.module}")
+            found = importlib.util.find_spec(f"barrierbench_analysis.{verb.module}")
             assert found is not None, verb
             assert re.search(r"^def main\(", Path(found.origin).read_text(), re.MULTILINE), verb
 
@@ -132,7 +133,7 @@ def rows_with_a_parser() -> list[verbs.Verb]:
 
 @pytest.mark.parametrize("verb", rows_with_a_parser(), ids=lambda verb: verb.name)
 def test_the_help_of_a_verb_in_python_is_made_of_its_row(verb, capsys):
-    main = importlib.import_module(f"analysis.{verb.module}").main
+    main = importlib.import_module(f"barrierbench_analysis.{verb.module}").main
     with pytest.raises(SystemExit) as ended:
         main(["--help"])
     said = capsys.readouterr().out
@@ -147,7 +148,7 @@ def test_one_place_makes_parsers_of_verbs():
     """gpu_evidence is no verb: a script of experiments/ calls it."""
     assert len(rows_with_a_parser()) > 20
     makers = {path.relative_to(ROOT).as_posix() for path in (ROOT / "analysis").rglob("*.py") if "ArgumentParser(" in path.read_text()}
-    assert makers == {"analysis/gpu_evidence.py"}
+    assert makers == {"analysis/src/barrierbench_analysis/studies/device/gpu_evidence.py"}
 
 
 @pytest.mark.parametrize(("word", "meant"), [("claim", "claims"), ("swep", "sweep"), ("gapmap", "gap-map"), ("buidl", "build")])
@@ -167,8 +168,8 @@ def test_what_judges_kept_numbers_needs_no_built_program(verb, arguments, needed
 
 def test_the_front_door_starts_without_numpy(tmp_path):
     """It stands before `eval`, which answers line by line."""
-    text = "import sys; sys.path[0] = sys.argv[1]\nfrom analysis.front import building, door\ndoor.usage()\nprint(*sorted({'numpy', 'pandas', 'matplotlib'} & set(sys.modules)))"
-    done = subprocess.run([sys.executable, "-c", text, str(ROOT)], capture_output=True, text=True, check=True, cwd=tmp_path)
+    text = "import sys; sys.path[0] = sys.argv[1]\nfrom barrierbench_analysis.front import building, door\ndoor.usage()\nprint(*sorted({'numpy', 'pandas', 'matplotlib'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", text, str(ROOT / "analysis" / "src")], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert done.stdout.strip() == ""
 
 
@@ -177,7 +178,7 @@ def test_the_program_takes_the_place_of_the_front_door(tmp_path, monkeypatch):
     stand_in = tmp_path / "program"
     stand_in.write_text('#!/bin/sh\necho "$BENCH_VERBS" | tr " " "\\n" | grep -c .\nread line; echo "$line $*"; exit 75\n')
     stand_in.chmod(0o755)
-    text = (f"import sys; sys.path[0] = {str(ROOT)!r}\nfrom pathlib import Path\nfrom analysis.front import building, door\n"
+    text = (f"import sys; sys.path[0] = {str(ROOT / "analysis" / "src")!r}\nfrom pathlib import Path\nfrom barrierbench_analysis.front import building, door\n"
             f"building.ensure_program = lambda: Path({str(stand_in)!r})\nsys.exit(door.main(['eval', '-']))")
     environment = {name: value for name, value in os.environ.items() if name != "BARRIERBENCH_PROGRAM"}
     done = subprocess.run([sys.executable, "-c", text], input="hello\n", capture_output=True, text=True, check=False, cwd=tmp_path, env=environment)

@@ -10,9 +10,9 @@ import sys
 
 import pytest
 
-from analysis.front import streams
-from analysis.front.arguments import finite_number
-from analysis.places import ROOT
+from barrierbench_analysis.program import streams
+from barrierbench_analysis.program.arguments import finite_number
+from barrierbench_analysis.io.places import ROOT
 from tests.bench_call import bench
 
 SCENE = {"schema": "barrierbench.config/1", "scene": {"name": "drape2d"}, "formulation": "log", "time": {"steps": 2}, "output": {"frames_every": 1}}
@@ -48,7 +48,7 @@ def test_a_stream_passes_everything_else(capsys):
 
 SAYS = """
 import sys, warnings
-from analysis.front import streams
+from barrierbench_analysis.front import streams
 def say(text):
     print(text, file=sys.stderr, flush=True)
     warnings.warn(text)
@@ -56,7 +56,7 @@ def say(text):
 PROCESSES = """
 import multiprocessing, said
 from analysis import processes
-from analysis.front import streams
+from barrierbench_analysis.front import streams
 if __name__ == "__main__":
     streams.prepare()
     with processes.pool(1, multiprocessing.get_context({kind!r})) as pool:
@@ -78,7 +78,7 @@ def test_pools_are_made_in_one_place():
 
 
 def test_a_line_of_progress_is_erased_on_a_terminal(tmp_path):
-    code = "from analysis.front import streams; streams.prepare()\nfrom analysis.progress import counted\nfor _ in counted('ab', 2, 'film\\x07'): pass"
+    code = "from barrierbench_analysis.front import streams; streams.prepare()\nfrom barrierbench_analysis.program.progress import counted\nfor _ in counted('ab', 2, 'film\\x07'): pass"
     ours, theirs = pty.openpty()
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, stderr=theirs, check=True)
     os.close(theirs)
@@ -93,7 +93,7 @@ def test_a_line_of_progress_is_erased_on_a_terminal(tmp_path):
 
 def test_a_letter_that_the_locale_has_not_is_written_as_its_number(tmp_path):
     plain = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONIOENCODING": "ascii"}
-    code = "import sys\nfrom analysis.front import door, streams\nstreams.prepare(); door.open_streams(); print('\\u4e2d')"
+    code = "import sys\nfrom barrierbench_analysis.front import door, streams\nstreams.prepare(); door.open_streams(); print('\\u4e2d')"
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**plain, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("\\u4e2d\n", "")
 

@@ -4,9 +4,9 @@ import math
 import re
 
 import pytest
-from barrierbench_analysis.gap_map import compare, judge, plan, report, rows, size, size_page
-from barrierbench_analysis.gap_map.spec import Cell
-from barrierbench_analysis.gap_map.table import Map
+from barrierbench_analysis.studies.gap_map import compare, judge, plan, report, rows, size, size_page
+from barrierbench_analysis.studies.gap_map.spec import Cell
+from barrierbench_analysis.studies.gap_map.table import Map
 
 
 def made(shape="log", theta=0.1, gap=0.1, scene="s", resolution="1", limit="off", **more):

@@ -5,9 +5,9 @@ import re
 from pathlib import Path
 
 import pytest
-from barrierbench_analysis.errors import UserError
-from barrierbench_analysis.gap_map import entry, kept, report, runs, table
-from barrierbench_analysis.gap_map.spec import cells, limit_settings, make_sweep, part, read_spec
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.gap_map import entry, kept, report, runs, table
+from barrierbench_analysis.studies.gap_map.spec import cells, limit_settings, make_sweep, part, read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 

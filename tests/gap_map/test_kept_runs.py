@@ -6,11 +6,11 @@ import re
 
 import pytest
 
-from analysis import fields
-from analysis.gap_map import entry, kept, report, rows, table
-from analysis.gap_map.spec import read_spec
-from analysis.places import ROOT
-from analysis.record_file import OURS
+from barrierbench_analysis.io import fields
+from barrierbench_analysis.studies.gap_map import entry, kept, report, rows, table
+from barrierbench_analysis.studies.gap_map.spec import read_spec
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.record_file import OURS
 
 KEPT = ROOT / "results/gap_map.json"
 

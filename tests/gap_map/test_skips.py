@@ -8,9 +8,9 @@ import shutil
 import pytest
 from test_gap_map_verb import ROOT, small
 
-from analysis.gap_map import entry, kept, report, runs, skips, table
-from analysis.gap_map.rows import CANNOT, COLUMNS, NOT_RUN, PLACE
-from analysis.gap_map.spec import cells, read_spec
+from barrierbench_analysis.studies.gap_map import entry, kept, report, runs, skips, table
+from barrierbench_analysis.studies.gap_map.rows import CANNOT, COLUMNS, NOT_RUN, PLACE
+from barrierbench_analysis.studies.gap_map.spec import cells, read_spec
 
 
 def rows_of(*ends: tuple) -> list[dict]:

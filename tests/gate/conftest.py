@@ -43,7 +43,7 @@ def gate(program, monkeypatch, tmp_path):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
 
     def call(verb: str, *arguments) -> int:
-        from analysis.gate import accept, calibrate, compare, gate, trend
+        from barrierbench_analysis.studies.gate import accept, calibrate, compare, gate, trend
 
         verbs = {"accept": accept, "calibrate": calibrate, "compare": compare, "gate": gate, "trend": trend}
         more = ["--out", str(tmp_path / "gate")] if verb == "gate" and "--out" not in arguments else []
@@ -80,7 +80,7 @@ def answer(tmp_path):
 @pytest.fixture(scope="session")
 def block(program, tmp_path_factory) -> Path:
     """The folder of one honest run of the block, to be copied and edited."""
-    from analysis.gate import cases
+    from barrierbench_analysis.studies.gate import cases
 
     out = tmp_path_factory.mktemp("gate") / "block"
     with pytest.MonkeyPatch.context() as patch:

@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from analysis.gate import baseline
+from barrierbench_analysis.studies.gate import baseline
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def edit(folder, change, name="block-log"):
 
 
 def test_every_case_has_a_baseline_and_every_baseline_a_case():
-    from analysis.gate.cases import read_set, sets
+    from barrierbench_analysis.studies.gate.cases import read_set, sets
 
     names = {case.name for name in sets() for case in read_set(name)}
     assert names == {path.stem for path in baseline.FOLDER.glob("*.json")} and len(names) >= 12

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from analysis.gate import baseline, invariants, judge, metrics, shares
-from analysis.gate import calibrate as calibration
-from analysis.gate.baseline import Kept
-from analysis.gate.drift import First
-from analysis.gate.envelope import Envelope, calibrate, holm, ks_p_value
-from analysis.gate.finding import without_subject
-from analysis.gate.metrics import COND, COST, GAP, LOWER_BETTER, NEWTON, PCG, PHYSICS, TWO_SIDED, Metric
-from analysis.gate.records import Run
+from barrierbench_analysis.studies.gate import baseline, invariants, judge, metrics, shares
+from barrierbench_analysis.studies.gate import calibrate as calibration
+from barrierbench_analysis.studies.gate.baseline import Kept
+from barrierbench_analysis.studies.gate.drift import First
+from barrierbench_analysis.studies.gate.envelope import Envelope, calibrate, holm, ks_p_value
+from barrierbench_analysis.studies.gate.finding import without_subject
+from barrierbench_analysis.studies.gate.metrics import COND, COST, GAP, LOWER_BETTER, NEWTON, PCG, PHYSICS, TWO_SIDED, Metric
+from barrierbench_analysis.studies.gate.records import Run
 
 COND_METRIC = Metric("log10_cond full/none median", "III", "log10", LOWER_BETTER, COND)
 ITERATIONS = Metric("newton_iterations", "III", "1", LOWER_BETTER, NEWTON)

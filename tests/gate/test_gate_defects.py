@@ -7,9 +7,9 @@ tests/mutation/gate.toml too, which `./bench mutate --only 'gate/*'` builds and 
 
 import pytest
 
-from analysis.gate import baseline, cases, judge
-from analysis.gate.finding import failures
-from analysis.gate.measure import measure
+from barrierbench_analysis.studies.gate import baseline, cases, judge
+from barrierbench_analysis.studies.gate.finding import failures
+from barrierbench_analysis.studies.gate.measure import measure
 
 
 def red(answer) -> dict[str, set]:

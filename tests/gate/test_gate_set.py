@@ -3,7 +3,7 @@
 import re
 import subprocess
 
-from analysis.gate import baseline, build_checks, cases
+from barrierbench_analysis.studies.gate import baseline, build_checks, cases
 
 
 def test_cases_of_the_small_set_are_green(gate, answer):

@@ -5,8 +5,8 @@ import shutil
 
 import pytest
 
-from analysis.gate import baseline, cases, instructions
-from analysis.gate.baseline import Baseline
+from barrierbench_analysis.studies.gate import baseline, cases, instructions
+from barrierbench_analysis.studies.gate.baseline import Baseline
 
 CASE = "block-log"
 

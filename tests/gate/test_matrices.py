@@ -5,7 +5,7 @@ import pytest
 import scipy.io
 import scipy.sparse as sparse
 
-from analysis.gate import matrices
+from barrierbench_analysis.studies.gate import matrices
 
 
 def write(path, matrix):

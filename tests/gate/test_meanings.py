@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.gate import accept, baseline, calibrate, compare, gate, meanings
-from analysis.gate.finding import failures
-from analysis.gate.records import Run
-from analysis.record_file import CHANGED
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.gate import accept, baseline, calibrate, compare, gate, meanings
+from barrierbench_analysis.studies.gate.finding import failures
+from barrierbench_analysis.studies.gate.records import Run
+from barrierbench_analysis.io.record_file import CHANGED
 
 
 def run(version: str, number: int, iterations: int = 20, last: str = "bound") -> Run:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.gate import accept, compare, gate
+from barrierbench_analysis.studies.gate import accept, compare, gate
 
 ROOT = Path(__file__).resolve().parents[2]
 ABSENT = object()

@@ -5,8 +5,8 @@ import random
 
 import pytest
 
-from analysis.gate import trend
-from analysis.gate.finding import Finding
+from barrierbench_analysis.studies.gate import trend
+from barrierbench_analysis.studies.gate.finding import Finding
 
 
 def noisy(levels, seed=3, noise=0.01):

@@ -10,9 +10,9 @@ from itertools import product
 import numpy as np
 import pytest
 
-from analysis.judge.ask import audited
-from analysis.judge.trajectory import Topology, Trajectory, no_cells
-from analysis.judge.verdict import verdict_of
+from barrierbench_analysis.studies.judge.ask import audited
+from barrierbench_analysis.program.trajectories.trajectory import Topology, Trajectory, no_cells
+from barrierbench_analysis.studies.judge.verdict import verdict_of
 
 PAIRS = int(os.environ.get("JUDGE_PAIRS", 30000))
 GRID = 2.0**-50  # all coordinates are multiples of it below 4 m, so that an integer times it is exact

@@ -8,8 +8,8 @@ import meshio
 import numpy as np
 import pytest
 
-from analysis.frames_out.verb import main as write_frames
-from analysis.judge import verb
+from barrierbench_analysis.figures.frames_out.verb import main as write_frames
+from barrierbench_analysis.studies.judge import verb
 from tests.judge.test_judge_verb import CLEAN, INTO, about, judge, write_obj, written
 
 FLOOR = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])

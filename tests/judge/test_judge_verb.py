@@ -7,9 +7,9 @@ import meshio
 import numpy as np
 import pytest
 
-from analysis.judge.verdict import meaning
-from analysis.judge import verb
-from analysis.mesh_arrays import SUFFIXES
+from barrierbench_analysis.studies.judge.verdict import meaning
+from barrierbench_analysis.studies.judge import verb
+from barrierbench_analysis.program.mesh_arrays import SUFFIXES
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 CUBE_TRIANGLES = [[0, 1, 3], [4, 6, 7], [0, 4, 5], [2, 3, 7], [0, 2, 6], [1, 5, 7], [0, 3, 2], [4, 7, 5], [0, 5, 1], [2, 7, 6], [0, 6, 4], [1, 7, 3]]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from analysis.judge.about import About
-from analysis.judge.physics import Physics
-from analysis.judge.trajectory import Topology
+from barrierbench_analysis.studies.judge.about import About
+from barrierbench_analysis.studies.judge.physics import Physics
+from barrierbench_analysis.program.trajectories.trajectory import Topology
 
 BLOCK = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1.0]])  # two tetrahedra, of 1/6 and 1/3 m^3
 TETRAHEDRA = np.array([[0, 1, 2, 3], [1, 2, 3, 4]])

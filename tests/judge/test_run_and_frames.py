@@ -9,10 +9,10 @@ import subprocess
 import numpy as np
 import pytest
 
-from analysis.frames import frame_paths, frames_of
-from analysis.frames_out import verb as frames_out
-from analysis.judge import verb
-from analysis.record_file import read_record
+from barrierbench_analysis.io.frames import frame_paths, frames_of
+from barrierbench_analysis.figures.frames_out import verb as frames_out
+from barrierbench_analysis.studies.judge import verb
+from barrierbench_analysis.io.record_file import read_record
 
 AXIS = [0.6, 0.0, 0.8]
 CASES = {

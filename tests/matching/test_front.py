@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from analysis.matching.front import Point, log_ratio, reached, segments, shared, value_at
+from barrierbench_analysis.studies.kit.front import Point, log_ratio, reached, segments, shared, value_at
 
 
 def power(scales, factor=1.0, exponent=1.0):

@@ -4,11 +4,11 @@ fronts, on their page and figure, in claims at equal gap and in the gap map. All
 
 import pytest
 
-from analysis.gap_map import compare as gap_map
-from analysis.matching import pareto
-from analysis.matching.fronts import Runs, at_gap, failures, over_shared, range_of, unreached
-from analysis.matching.pareto_figure import _means, failure_sentence
-from analysis.matching.pareto_report import markdown
+from barrierbench_analysis.studies.gap_map import compare as gap_map
+from barrierbench_analysis.studies.matching import pareto
+from barrierbench_analysis.studies.matching.fronts import Runs, at_gap, failures, over_shared, range_of, unreached
+from barrierbench_analysis.studies.matching.pareto_figure import _means, failure_sentence
+from barrierbench_analysis.studies.matching.pareto_report import markdown
 
 SCALES = (0.01, 0.1, 1.0, 10.0, 100.0)
 HOLES = SCALES[1:-1]

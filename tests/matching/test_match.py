@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from analysis.places import ROOT
+from barrierbench_analysis.io.places import ROOT
 from made_records import install
 
-from analysis.errors import UserError
-from analysis.matching import runs as make_runs
-from analysis.matching.formulations import settings
-from analysis.matching.match import main, make_sweep
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.kit import runs as make_runs
+from barrierbench_analysis.studies.kit.formulations import settings
+from barrierbench_analysis.studies.matching.match import main, make_sweep
 
 BLOCK = Path(__file__).resolve().parents[2] / "configs" / "scenes" / "resting_block_1d.json"
 
@@ -96,7 +96,8 @@ def test_a_folder_with_runs_of_other_settings(match, monkeypatch, tmp_path, caps
 
 def test_a_changed_base_has_a_folder_of_its_own(monkeypatch, tmp_path, capsys):
     """What the sweep is made of: the base config, a mesh it names, a preset."""
-    from analysis.matching import formulations, match
+    from barrierbench_analysis.studies.kit import formulations
+    from barrierbench_analysis.studies.matching import match
     install(tmp_path, monkeypatch, {})
     presets = tmp_path / "presets"
     shutil.copytree(formulations.PRESETS, presets)

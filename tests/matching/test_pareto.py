@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from made_records import install
 
-from analysis.errors import UserError
-from analysis.matching import pareto
-from analysis.matching.fronts import Runs, at_gap, failures, over_scenes, over_shared, unreached
-from analysis.matching.pareto_report import markdown
-from analysis.matching.runs import inputs_sha256
-from analysis.matching.spec import make_sweep, read_spec
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.matching import pareto
+from barrierbench_analysis.studies.matching.fronts import Runs, at_gap, failures, over_scenes, over_shared, unreached
+from barrierbench_analysis.studies.matching.pareto_report import markdown
+from barrierbench_analysis.studies.kit.runs import inputs_sha256
+from barrierbench_analysis.studies.matching.spec import make_sweep, read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 BASE = {"schema": "barrierbench.pareto/1", "name": "made", "doc": "made up", "base": str(ROOT / "configs/scenes/resting_block_1d.json"), "formulations": ["log", "cubic"],

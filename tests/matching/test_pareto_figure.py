@@ -6,9 +6,9 @@ import matplotlib.pyplot as plt
 import pandas as pd
 import pytest
 
-from analysis import style
-from analysis.matching import pareto_figure
-from analysis.matching.fronts import METRICS, Runs
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.studies.matching import pareto_figure
+from barrierbench_analysis.studies.matching.fronts import METRICS, Runs
 
 SCALES = (0.01, 0.1, 1.0, 10.0, 100.0)
 NAMES = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent", "two_stage")

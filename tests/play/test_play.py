@@ -8,11 +8,11 @@ import zlib
 import numpy as np
 import pytest
 
-from analysis.errors import UserError
-from analysis.frames import Frame, read_frame
-from analysis.play import page as pages
-from analysis.play import scales, verb
-from analysis.play.film import bytes_of_a_frame, filmed, kept, opened, shaded_mesh
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.frames import Frame, read_frame
+from barrierbench_analysis.pages.play import page as pages
+from barrierbench_analysis.pages.play import scales, verb
+from barrierbench_analysis.figures.pictures.film import bytes_of_a_frame, filmed, kept, opened, shaded_mesh
 from play_runs import put, run_of
 
 LAST = "frames/step_000004.ply"

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from analysis.play import verb
+from barrierbench_analysis.pages.play import verb
 from tests.browser import needs_browser, opened_browser
 
 DARK_GROUND = np.array([0x14, 0x17, 0x1C]) / 255

@@ -1,7 +1,7 @@
 """A test sees the clone and its own folders: what it reads or writes elsewhere, and what it leaves there, fails it.
 
 However pytest is started, tests run with a private home, temporary folder and cache, and with few variables of this machine's
-environment (analysis/front/private.py). Programs that are no Python are watched by what they leave; what they read, .ci/run keeps from them.
+environment (analysis/src/barrierbench_analysis/front/private.py). Programs that are no Python are watched by what they leave; what they read, .ci/run keeps from them.
 """
 
 import atexit
@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.front.private import compiler_cache, left_over, variables
+from barrierbench_analysis.front.private import compiler_cache, left_over, variables
 from tests.private import outside
 
 PLACE = "BARRIERBENCH_TESTS_PLACE"  # the variable with the folder of this run of pytest, which its workers share

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from analysis.front.private import left_over, variables
+from barrierbench_analysis.front.private import left_over, variables
 from tests import browser
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.report import figures
+from barrierbench_analysis.pages.report import figures
 from report_runs import write_records
 
 

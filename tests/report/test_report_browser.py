@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis.report import diff_page, figures, players, verb
-from analysis.report.diff import diff_of
-from analysis.report.figures import figure_of
-from analysis.report.gather import gathered
-from analysis.report.page import page
+from barrierbench_analysis.pages.report import diff_page, figures, players, verb
+from barrierbench_analysis.pages.report.diff import diff_of
+from barrierbench_analysis.pages.report.figures import figure_of
+from barrierbench_analysis.pages.report.gather import gathered
+from barrierbench_analysis.pages.report.page import page
 from report_runs import changed, conditions, write_records
 from tests.browser import needs_browser, opened_browser
 from tests.play.play_runs import run_of

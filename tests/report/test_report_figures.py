@@ -2,8 +2,8 @@
 
 import base64
 
-from analysis.report import figures
-from analysis.report.gather import gathered
+from barrierbench_analysis.pages.report import figures
+from barrierbench_analysis.pages.report.gather import gathered
 
 
 def test_few_runs_are_drawn_over_time_and_each_picture_has_its_caption(runs):

@@ -5,9 +5,9 @@ import shutil
 
 import pytest
 
-from analysis.report import diff_page, verb
-from analysis.report.diff import changes, diff_of
-from analysis.report.gather import gathered
+from barrierbench_analysis.pages.report import diff_page, verb
+from barrierbench_analysis.pages.report.diff import changes, diff_of
+from barrierbench_analysis.pages.report.gather import gathered
 from report_runs import changed, conditions
 
 A_B = {"ids": {"build_id": "b" * 64}}

@@ -10,10 +10,11 @@ from urllib.parse import unquote
 
 import pytest
 
-from analysis import fields
-from analysis.report import apart, figures, methods, players, tables, verb, verdict, words
-from analysis.report.comparison import compared, quotients
-from analysis.report.gather import gathered
+from barrierbench_analysis.io import fields
+from barrierbench_analysis.pages.report import apart, figures, methods, players, tables, verb, verdict
+from barrierbench_analysis.tables import words
+from barrierbench_analysis.pages.report.comparison import compared, quotients
+from barrierbench_analysis.pages.report.gather import gathered
 from report_runs import changed, conditions
 
 pytestmark = pytest.mark.usefixtures("without_figures")

@@ -2,12 +2,13 @@
 
 import pytest
 
-from analysis.figures import profiles
-from analysis.figures.drawing import Drawing
-from analysis.figures.subjects import SweepRecords
-from analysis.records import load
-from analysis.report import apart, tables, verb, verdict, words
-from analysis.report.gather import gathered
+from barrierbench_analysis.figures.plots import profiles
+from barrierbench_analysis.figures.plots.drawing import Drawing
+from barrierbench_analysis.figures.plots.subjects import SweepRecords
+from barrierbench_analysis.tables.records import load
+from barrierbench_analysis.pages.report import apart, tables, verb, verdict
+from barrierbench_analysis.tables import words
+from barrierbench_analysis.pages.report.gather import gathered
 from report_runs import changed
 
 POINTS = "audit: points only: vertices were judged at obstacles; the surface between them is at most 0.004 m deep in one"

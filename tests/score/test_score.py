@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.score import judge
-from analysis.score.candidate import RIVALS, candidate
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.score import judge
+from barrierbench_analysis.studies.score.candidate import RIVALS, candidate
 
 ROOT = Path(__file__).resolve().parents[2]
 

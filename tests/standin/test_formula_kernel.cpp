@@ -1,4 +1,4 @@
-// A shape whose kernel came after the program was built: PTX that nvcc made of formula_log.cu or formula_functions.cu, which analysis/formula wrote,
+// A shape whose kernel came after the program was built: PTX that nvcc made of formula_log.cu or formula_functions.cu, which analysis/src/barrierbench_analysis/program/formula wrote,
 // loaded and launched by the device executor. Linked once with the stand-in for the CUDA run time, once with CUDA's own, where
 // it needs a card.
 #include <gtest/gtest.h>
@@ -137,7 +137,7 @@ std::string kernel_in(const std::string& ptx) {
   return begin < end ? ptx.substr(begin, end - begin) : "no kernel in " + ptx;
 }
 
-/// From the text on: the program asks analysis/formula for the library and for the kernel, which is that of the sample.
+/// From the text on: the program asks analysis/src/barrierbench_analysis/program/formula for the library and for the kernel, which is that of the sample.
 using KernelOfAText = FormulaKernel;
 TEST_P(KernelOfAText, IsMadeWhenItIsAskedFor) {
   try {

@@ -7,9 +7,9 @@ import re
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.places import ROOT
-from analysis.stated import check, counted, kept, pages, whole_page
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.pages.stated import check, counted, kept, pages, whole_page
 
 
 def other(number: str) -> str:

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.places import ROOT
-from analysis.readme import slices, verb
-from analysis.stated import check, pages, several
-from analysis.stated.statement import tables
-from analysis.stated.number import OFF, OWN, SAME, Number, strongest
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.pages.readme import slices, verb
+from barrierbench_analysis.pages.stated import check, pages, several
+from barrierbench_analysis.pages.stated.statement import tables
+from barrierbench_analysis.pages.stated.number import OFF, OWN, SAME, Number, strongest
 
 ONE = Number("cond_p95", "log", "cubic", 0.01, OFF, "H1", False, 5, (9, 576), 7.3, 3.95, 13.5, True, "", "contact_slices")
 CONFIRMED = replace(ONE, confirmed=True, scenes=10, unknowns=(108, 600), value=1.95, lower=1.10, upper=3.47, sweep="shells_slices")

@@ -4,11 +4,11 @@ import json
 
 import pytest
 
-from analysis.errors import UserError
-from analysis.stress.verb import main
-from analysis.stress.entry import FOLDER, Expected, ids, left_out, read_test
-from analysis.stress.relations import check
-from analysis.stress.run import known
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.stress.verb import main
+from barrierbench_analysis.studies.stress.entry import FOLDER, Expected, ids, left_out, read_test
+from barrierbench_analysis.studies.stress.relations import check
+from barrierbench_analysis.studies.stress.run import known
 
 PRESETS = FOLDER.parent / "formulations"
 

@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from analysis.stress.verb import main
-from analysis.stress.entry import read_test
-from analysis.stress.run import run_case, run_test
+from barrierbench_analysis.studies.stress.verb import main
+from barrierbench_analysis.studies.stress.entry import read_test
+from barrierbench_analysis.studies.stress.run import run_case, run_test
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def test_the_quick_cases_end_as_expected(built, tmp_path, capsys):
 
 
 def test_another_outcome_than_expected_ends_with_1(built, tmp_path, monkeypatch, capsys):
-    from analysis.stress import verb
+    from barrierbench_analysis.studies.stress import verb
     def other(name, **more):
         test = read_test(name, **more)
         test.data["expect"][0]["outcomes"] = ["stall_overload"]

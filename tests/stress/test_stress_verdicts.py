@@ -6,16 +6,16 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from analysis.errors import UserError
-from analysis.stress import verb
-from analysis.stress import exact
-from analysis.stress.entry import ROOT, ids, read_test
-from analysis.stress.geometry import Count, _judge_ccd
-from analysis.stress.geometry import judge as judge_count
-from analysis.stress.relations import relations
-from analysis.stress.report import markdown, text
-from analysis.stress.run import Row, judge
-from analysis.stress.table import FILE, Result, read, write
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.stress import verb
+from barrierbench_analysis.studies.stress import exact
+from barrierbench_analysis.studies.stress.entry import ROOT, ids, read_test
+from barrierbench_analysis.studies.stress.geometry import Count, _judge_ccd
+from barrierbench_analysis.studies.stress.geometry import judge as judge_count
+from barrierbench_analysis.studies.stress.relations import relations
+from barrierbench_analysis.studies.stress.report import markdown, text
+from barrierbench_analysis.studies.stress.run import Row, judge
+from barrierbench_analysis.studies.stress.table import FILE, Result, read, write
 
 CASES = ("d_hat", "one ulp less", "one ulp more")
 

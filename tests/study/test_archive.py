@@ -14,13 +14,14 @@ from urllib.parse import unquote
 import pytest
 from study_files import edit
 
-from analysis.errors import UserError
-from analysis.figures import verb as figures
-from analysis.gate import compare
-from analysis.report import verb as report
-from analysis.study import archive, archive_verb, verify
-from analysis.study.archive import MANIFEST, SCHEMA, packed, study
-from analysis.sweeps import collect
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.figures.plots import verb as figures
+from barrierbench_analysis.studies.gate import compare
+from barrierbench_analysis.pages.report import verb as report
+from barrierbench_analysis.tables import archive
+from barrierbench_analysis.studies.archives import archive_verb, verify
+from barrierbench_analysis.tables.archive import MANIFEST, SCHEMA, packed, study
+from barrierbench_analysis.tables.sweeps import collect
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import shutil
 import pytest
 from study_files import cut, edit, filmed, made
 
-from analysis.study import archive_verb, held, ids, verify
-from analysis.study.archive import packed
+from barrierbench_analysis.studies.archives import archive_verb, held, ids, verify
+from barrierbench_analysis.tables.archive import packed
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 from sweep_files import SHAPES, STEPS, bench, records, refused, verb, write_sweep
 
-from analysis.sweeps.collect import as_frame, write
-from analysis.sweeps.dictionary import unit_of
+from barrierbench_analysis.tables.sweeps.collect import as_frame, write
+from barrierbench_analysis.tables.sweeps.dictionary import unit_of
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sweep_files import ROOT, bench
 
-from analysis import RecordError, Run
+from barrierbench_analysis import RecordError, Run
 
 HANG = ROOT / "configs/scenes/hang.json"
 

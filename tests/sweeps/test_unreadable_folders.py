@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis import surface_gaps
-from analysis.figures import verb as figures
-from analysis.gate import compare
-from analysis.report import verb as report
-from analysis.sweeps import collect
+from barrierbench_analysis.tables import surface_gaps
+from barrierbench_analysis.figures.plots import verb as figures
+from barrierbench_analysis.studies.gate import compare
+from barrierbench_analysis.pages.report import verb as report
+from barrierbench_analysis.tables.sweeps import collect
 
 VERBS = {"collect": (collect, ["{out}/t.csv"]), "figures": (figures, ["{out}/f"]), "report": (report, ["--out", "{out}/r.html"]), "compare": (compare, ["{runs}"]), "surface_gaps": (surface_gaps, [])}
 

@@ -4,8 +4,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from analysis import style
-from analysis.work_precision import figure
+from barrierbench_analysis.figures import style
+from barrierbench_analysis.studies.work_precision import figure
 
 NAMES = ("log", "log_squared", "quadratic", "cubic", "two_stage", "ipc2020", "cubic_dynamic")
 COSTS = np.geomspace(10, 400, 9)

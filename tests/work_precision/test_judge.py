@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from analysis.work_precision.judge import aside, band_of, cheapest, cost_to, formulations, front, points, profile, smallest_error, standing
-from analysis.work_precision.figure import draw, draw_profile
-from analysis.work_precision.report import intervals, markdown, text
+from barrierbench_analysis.studies.work_precision.judge import aside, band_of, cheapest, cost_to, formulations, front, points, profile, smallest_error, standing
+from barrierbench_analysis.studies.work_precision.figure import draw, draw_profile
+from barrierbench_analysis.studies.work_precision.report import intervals, markdown, text
 
 
 def row(formulation, axis, factor, newton, error, outcome="ok", solver="direct"):

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from analysis.accuracy.errors import NAMES
-from analysis.accuracy.reference import CLOSED_FORMS
-from analysis.errors import UserError
-from analysis.record_file import RecordError
-from analysis.work_precision import figure, report, verb
-from analysis.places import ROOT, SCHEMAS
-from analysis.work_precision.spec import ANCHOR, AXES, read_spec
+from barrierbench_analysis.tables.accuracy.errors import NAMES
+from barrierbench_analysis.tables.accuracy.reference import CLOSED_FORMS
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.record_file import RecordError
+from barrierbench_analysis.studies.work_precision import figure, report, verb
+from barrierbench_analysis.io.places import ROOT, SCHEMAS
+from barrierbench_analysis.studies.work_precision.spec import ANCHOR, AXES, read_spec
 
 SCENE = {"name": "stack", "base": str(ROOT / "configs/scenes/stack.json"), "set": {"/matching/rule": "equal_force", "/matching/load_N": 10}, "duration_s": 2, "samples": 1,
          "anchor": {"dt_s": 0.1, "d_hat_m": 0.004, "tolerance": 0.01}, "vary": {"d_hat_m": [0.25], "kappa": [0.001]}, "reference": {"closed_form": "rigid_stack"},

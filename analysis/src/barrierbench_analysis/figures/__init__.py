@@ -1,0 +1,1 @@
+"""Figures and pictures: one look, one module a figure."""

@@ -1,0 +1,1 @@
+"""Geometry of frames: triangles and rays to pixels, finer meshes that follow a coarse one."""

@@ -1,0 +1,24 @@
+"""The verb rooms: the graph of the rooms as CMake knows it, checked against the #include lines."""
+
+from __future__ import annotations
+
+import subprocess
+
+from barrierbench_analysis.io.errors import tells
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.program.building import folder, regenerate
+
+
+@tells("rooms")
+def main(argv: list[str]) -> int:
+    regenerate("release")
+    rooms = folder("release") / "rooms.txt"
+    words = [
+        "cmake",
+        f"-DROOMS={rooms}",
+        f"-DSOURCE_DIR={ROOT}",
+        "-DPRINT=ON",
+        "-P",
+        str(ROOT / "cmake/RoomCheck.cmake"),
+    ]
+    return subprocess.run(words, check=False).returncode

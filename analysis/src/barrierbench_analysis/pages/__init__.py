@@ -1,0 +1,1 @@
+"""Pages that people read: reports, players, README, and whether their statements agree."""

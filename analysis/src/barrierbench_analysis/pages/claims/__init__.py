@@ -1,0 +1,1 @@
+"""The verb claims and its page."""

@@ -1,0 +1,177 @@
+"""Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every
+verdict from the records by the rule of its claim, and writes results/CLAIMS.md, results/claims.json (the
+numbers used), docs/claims.png and the table of docs/results.md. With names of claims it runs the sweeps of
+these alone. Confirmation sweeps are run for claims that are registered (--register ID, then commit
+claims/confirmation/registry.json).
+
+Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them;
+a bad entry; no program), or calls itself confirmed and is not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from barrierbench_analysis.figures.figure_files import copy_to_page
+from barrierbench_analysis.io import input_file
+from barrierbench_analysis.io.errors import UserError, passed_on, tells
+from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.program.arguments import parser_of, plugin_argument
+from barrierbench_analysis.program.start import built_program, run_sweep
+from barrierbench_analysis.studies.claims import coverage, figure, frontiers, registry
+from barrierbench_analysis.studies.claims.entry import ROOT, Claim, ids, read_claim, read_sweep
+from barrierbench_analysis.studies.claims.judge import judge, missing
+from barrierbench_analysis.studies.claims.proofs import Eval
+from barrierbench_analysis.studies.claims.table import FILE, RUNS, Table, collect, read, used_metrics, write
+
+from . import report
+
+
+def program(needed: bool = True) -> str | None:
+    """None where it is not needed and not built."""
+    try:
+        return str(built_program("; --no-run judges the numbers that are kept"))
+    except UserError:
+        if needed:
+            raise
+        return None
+
+
+def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
+    entries = registry.read()
+    for claim in claims:
+        if claim.id in entries:
+            registry.ready(claim, entries)
+    for name in dict.fromkeys(
+        name
+        for claim in claims
+        for name in claim.sweeps + (claim.confirmation_sweeps if claim.id in entries else [])
+    ):
+        sweep, start = read_sweep(name), time.monotonic()
+        print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
+        done = run_sweep(ROOT / sweep.file, runs / name, plugins=plugins, stdout=subprocess.DEVNULL)
+        if done.returncode != 0:
+            raise UserError(
+                f"{sweep.file}: the program ended with {done.returncode}", passed_on(done.returncode)
+            )
+        print(f"claims: {name}: {time.monotonic() - start:.0f} s", file=sys.stderr)
+
+
+def gather(claims: list[Claim], runs: Path, kept: Table) -> Table:
+    """Records where a sweep has any, else the numbers that are kept. Metrics are those of all claims."""
+    everything = [read_claim(name) for name in ids()]
+    metrics, table = used_metrics(everything), Table(dict(kept.sweeps), dict(kept.answers))
+    for name in dict.fromkeys(name for claim in claims for name in claim.sweeps + claim.confirmation_sweeps):
+        if any((runs / name).glob("*/run.json")):
+            table.sweeps[name] = collect(read_sweep(name), runs / name, metrics[name])
+    return table
+
+
+def arguments(argv: list[str]) -> argparse.Namespace:
+    parser = parser_of(
+        "claims", __doc__, "./bench claims", "./bench claims --no-run", "./bench claims --register K3"
+    )
+    parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
+    parser.add_argument(
+        "--no-run",
+        action="store_true",
+        help="run nothing: judge the records that are there, or the numbers in results/claims.json",
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=RUNS,
+        metavar="DIR",
+        help="folder of the sweeps (default: results/runs/claims)",
+    )
+    parser.add_argument(
+        "--register",
+        action="store_true",
+        help=(
+            "run nothing: write rule and confirmation sweeps of these claims to"
+            " claims/confirmation/registry.json; commit it before the first run"
+        ),
+    )
+    parser.add_argument(
+        "--run-before",
+        default="",
+        metavar="TEXT",
+        help="with --register, where the scenes were run before: when, and by which rule; the page says so",
+    )
+    parser.add_argument(
+        "--coverage",
+        action="store_true",
+        help="run nothing: simulate how often the intervals cover, and write results/COVERAGE.md",
+    )
+    plugin_argument(parser)
+    return parser.parse_args(argv)
+
+
+@tells("claims")
+def main(argv: list[str]) -> int:
+    args = arguments(argv)
+    if args.coverage:
+        return write_coverage()
+    claims = [read_claim(name) for name in args.ids or ids()]
+    if args.register:
+        return register(claims if args.ids else [], args.runs, args.run_before)
+    return judge_all(claims, args)
+
+
+def judge_all(claims: list[Claim], args: argparse.Namespace) -> int:
+    if not args.no_run:
+        run_sweeps(claims, args.runs, args.plugin)
+    table = gather(claims, args.runs, read(FILE))
+    if absent := [line for claim in claims for line in missing(claim, table)]:
+        raise UserError("\n".join(absent))
+    asker = Eval(program(not args.no_run), table.answers, fresh=not args.no_run, plugins=tuple(args.plugin))
+    answers = [judge(claim, table, asker) for claim in claims]
+    print(report.text(answers))
+    write_all(table, asker)
+    if refused := [
+        f"{a.claim.id} calls itself confirmed and is not: {a.state.why}" for a in answers if a.state.refused
+    ]:
+        raise UserError("\n".join(refused))
+    return 0
+
+
+def write_coverage() -> int:
+    text = coverage.markdown()
+    write_whole(ROOT / "results" / "COVERAGE.md", text)
+    print(text)
+    return 0
+
+
+def register(claims: list[Claim], runs: Path, run_before: str) -> int:
+    if not claims:
+        raise UserError("--register needs the claims to register, e.g. --register K3")
+    table = gather(claims, runs, read(FILE))
+    for claim in claims:
+        entry = registry.register(claim, table, run_before=run_before)
+        print(
+            f"{claim.id}: registered on {entry['date']}, rule {entry['rule_sha256'][:12]}, sweeps"
+            f" {', '.join(entry['sweeps'])}. Commit claims/confirmation/registry.json before ./bench claims"
+            f" {claim.id}"
+        )
+    return 0
+
+
+def write_all(table: Table, asker: Eval) -> None:
+    """The table, the page and the figure, of all claims."""
+    answers = [judge(read_claim(name), table, asker) for name in ids()]
+    if not set(ids()) - {a.claim.id for a in answers if a.parts or a.claim.waits_for}:
+        table.answers = {text: table.answers[text] for text in asker.asked}
+    write(table, FILE)
+    write_whole(ROOT / "results" / "CLAIMS.md", report.markdown(answers, table))
+    drawn = figure.draw(answers, RUNS / "figure" / "claims")
+    for claim in (a.claim for a in answers if frontiers.has_runs(a.claim, table)):
+        drawn += frontiers.draw(
+            claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}"
+        )
+    copy_to_page(drawn, ROOT / "docs")
+    page = ROOT / "docs" / "results.md"
+    write_whole(page, report.in_page(input_file.read_text(page), answers))

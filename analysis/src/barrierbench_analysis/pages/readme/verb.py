@@ -1,0 +1,157 @@
+"""Makes the numbers of README.md and docs/results.md from the records of ./bench demo and the kept numbers of
+./bench claims, and checks them and every snippet of these pages, docs/jobs and the other pages of docs.
+
+Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 there is nothing to make it
+from.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from barrierbench_analysis.io import input_file
+from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.pages.stated import several
+from barrierbench_analysis.pages.stated.check import faults as disagreements
+from barrierbench_analysis.pages.stated.cost import gather as gather_cost
+from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.start import built_program
+from barrierbench_analysis.studies.ablation import table as ablation_table
+from barrierbench_analysis.studies.ablation.factors import read_factorial
+from barrierbench_analysis.studies.claims import table as claims_table
+from barrierbench_analysis.studies.gap_map import table as map_table
+
+from . import figures
+from .map import gather as gather_map
+from .numbers import FILE, RUNS, gather, read, write
+from .slices import MAP
+from .slices import gather as gather_slices
+from .snippets import faults
+from .templates import PARTS, filled, lacking
+
+PAGES = tuple(PARTS)
+ABLATION = ROOT / "configs" / "ablation" / "default.json"
+# Pages whose snippets are checked and which have no generated numbers.
+MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
+
+
+def kept() -> dict:
+    """The numbers of the demo, those of the claims' slices, the sentences of the gap map, what several
+    studies say of one quantity, and what studies take. Errors: UserError where one is missing.
+    """
+    claims, found = claims_table.read(claims_table.FILE), map_table.read(MAP)
+    studies = {
+        "slices": gather_slices(claims, found),
+        "gap_map": gather_map(),
+        "several": several.gather(claims, found, read_factorial(ABLATION), ablation_table.read()),
+    }
+    return read() | studies | {"cost": gather_cost()}
+
+
+def pages_with_snippets(root: Path) -> list[str]:
+    """From the root, the generated ones first."""
+    found = sorted(str(path.relative_to(root)) for pattern in MORE for path in root.glob(pattern))
+    return [*PAGES, *(page for page in found if page not in PAGES)]
+
+
+def stale(root: Path, numbers: dict) -> list[str]:
+    """Pages whose generated parts are not there, or not what the templates make of the kept numbers."""
+    texts = {page: input_file.read_text(root / page) for page in PAGES}
+    absent = [line for page, text in texts.items() for line in lacking(text, page)]
+    return absent + [
+        f"{page}: its numbers are not those of results/demo.json and of the other results; ./bench"
+        " readme --fill writes them"
+        for page, text in texts.items()
+        if filled(text, numbers, page) != text
+    ]
+
+
+def write_pages(root: Path, numbers: dict) -> list[str]:
+    """Errors: UserError for a page without the marks of its parts."""
+    changed = []
+    for page in PAGES:
+        text = input_file.read_text(root / page)
+        if absent := lacking(text, page):
+            raise UserError("\n".join(absent))
+        if (made := filled(text, numbers, page)) != text:
+            write_whole(root / page, made)
+            changed.append(page)
+    return changed
+
+
+def arguments(argv: list[str]) -> argparse.Namespace:
+    parser = parser_of(
+        "readme", __doc__, "./bench demo && ./bench readme --write", "./bench claims && ./bench readme --fill"
+    )
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument(
+        "--write",
+        action="store_true",
+        help=(
+            "keep the numbers of the records in results/demo.json, fill the pages with them, and copy the"
+            " figures that they show"
+        ),
+    )
+    what.add_argument(
+        "--fill",
+        action="store_true",
+        help=(
+            "fill the pages with the numbers that are kept in results/: after ./bench claims, without records"
+            " of the demo"
+        ),
+    )
+    what.add_argument(
+        "--check",
+        action="store_true",
+        help=(
+            "run or parse every snippet, compare the pages with the kept numbers, and look for two statements"
+            " on one thing that disagree"
+        ),
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=RUNS,
+        metavar="DIR",
+        help="folder of the demo's records (default: results/runs/demo)",
+    )
+    return parser.parse_args(argv)
+
+
+def keep_demo(runs: Path) -> None:
+    """Keeps the numbers of the demo's records, copies the figures that the pages show, and says which."""
+    write(gather(runs))
+    copied = figures.copy(
+        [input_file.read_text(ROOT / page) for page in PAGES], runs / "figures", ROOT / "docs"
+    )
+    print(f"docs: {', '.join(copied) or 'no figure'}")
+
+
+@tells("readme")
+def main(argv: list[str]) -> int:
+    args = arguments(argv)
+    if args.write:
+        keep_demo(args.runs)
+    if args.write or args.fill:
+        print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
+        return 0
+    built_program()
+    numbers = kept()
+    found = (
+        [
+            fault
+            for page in pages_with_snippets(ROOT)
+            for fault in faults(input_file.read_text(ROOT / page), page)
+        ]
+        + stale(ROOT, numbers)
+        + disagreements(ROOT, numbers["several"])
+        + figures.absent(ROOT / "docs")
+    )
+    print(
+        "\n".join(found)
+        or "every snippet works, and the numbers are those of results/demo.json and results/claims.json"
+    )
+    return 1 if found else 0

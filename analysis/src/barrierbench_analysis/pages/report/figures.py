@@ -1,0 +1,121 @@
+"""The figures of a report as data URIs: those of ./bench figures for groups whose runs one figure can hold,
+and for larger groups one that puts a mark for each run.
+"""
+
+from __future__ import annotations
+
+import base64
+import glob
+import struct
+import tempfile
+import textwrap
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from barrierbench_analysis.figures.plots import condition, gaps, iterations
+from barrierbench_analysis.io import input_file
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.tables import series
+from barrierbench_analysis.tables.records import Records, load
+from barrierbench_analysis.tables.words import counted, listed
+
+from . import marks
+from .gather import Folder
+
+OVER_TIME = (condition, iterations, gaps)
+MOST_RUNS = 12  # of a group whose runs are drawn over time: three figures of series.MOST
+MOST_GROUPS = 6
+
+
+@dataclass(frozen=True)
+class Figure:
+    group: str
+    uri: str
+    width: int  # pixels
+    height: int
+    caption: str  # what is shown; the text for those who do not see it, too
+    settings: str  # of its runs, machine and day
+
+    @property
+    def first(self) -> str:
+        """The first sentence of the caption."""
+        return self.caption.split(". ", 1)[0].rstrip(".") + "."
+
+    @property
+    def rest(self) -> str:
+        return self.caption.partition(". ")[2]
+
+
+@dataclass
+class Figures:
+    shown: list[Figure] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  # what is left out, and why
+
+
+def figure_of(group: str, png: Path) -> Figure:
+    """A picture and the caption beside it (style.save). Errors: OSError."""
+    data = input_file.read_bytes(png)
+    width, height = struct.unpack(">II", data[16:24])  # of IHDR, the first chunk of every PNG
+    shown, _, settings = input_file.read_text(png.with_suffix(".txt")).partition("\n\n")
+    uri = f"data:image/png;base64,{base64.b64encode(data).decode('ascii')}"
+    return Figure(group, uri, width, height, " ".join(shown.split()), " ".join(settings.split()))
+
+
+def _pictures(paths: list[Path]) -> list[Path]:
+    """Those that a page shows: eigenvalues stay with ./bench figures."""
+    return [path for path in paths if path.suffix == ".png" and not path.stem.endswith(condition.EIGENVALUES)]
+
+
+def _over_time(records: Records, group: str, out: Path) -> list[Path]:
+    return _pictures([path for module in OVER_TIME for path in module.figure(records, group, out)])
+
+
+def _kept(group: str, where: Path) -> list[Path]:
+    """What ./bench figures has drawn of a group, in the order of OVER_TIME."""
+    names = [f"{module.__name__.rsplit('.', 1)[1]}_{group}" for module in OVER_TIME]
+    return _pictures(
+        [
+            path
+            for name in names
+            for path in sorted(where.glob(f"{glob.escape(name)}*.png"))
+            if path.stem == name or path.stem.startswith(name + series.MORE)
+        ]
+    )
+
+
+def drawn(folder: Folder, kept: Path | None = None) -> Figures:
+    """kept: a folder where the figures of these very records have just been drawn. A trace that is not its
+    record's leaves its group without figures, which is said. Cost: 1 to 5 s a group.
+    """
+    found = Figures()
+    small = [group for group, entries in folder.groups.items() if len(entries) <= MOST_RUNS]
+    large = [group for group in folder.groups if group not in small]
+    with tempfile.TemporaryDirectory() as scratch:
+        for group in small[:MOST_GROUPS]:
+            try:
+                paths = _kept(group, kept) if kept else []
+                if not paths:
+                    files = [entry.path for entry in folder.groups[group]]
+                    paths = _over_time(load(folder.root, files), group, Path(scratch))
+            except UserError as error:
+                found.notes.append(
+                    f"{group} has no figures: {textwrap.shorten(folder.told(str(error)), 300)}"
+                )
+                continue
+            found.shown += [figure_of(group, path) for path in paths]
+        for group in large[:MOST_GROUPS]:
+            for path in marks.figure(folder.groups[group], group, Path(scratch)):
+                found.shown.append(figure_of(group, path))
+    for some, what in ((small, "groups"), (large, "larger groups")):
+        if left := some[MOST_GROUPS:]:
+            found.notes.append(
+                f"Left out to keep the page small: figures of {counted(len(left), what[:-1], what)}"
+                f" ({listed(left)}); ./bench figures draws them."
+            )
+    if large:
+        found.notes.append(
+            f"Groups of more than {MOST_RUNS} runs ({listed(large)}) have a mark for each run instead of"
+            f" lines"
+            " over time."
+        )
+    return found

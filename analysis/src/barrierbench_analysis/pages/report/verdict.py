@@ -1,0 +1,262 @@
+"""What the records say in plain words, and what they do not say. Every sentence is computed from them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+from barrierbench_analysis.tables.run_words import earlier_rule
+from barrierbench_analysis.tables.words import counted, listed, number
+
+from .comparison import METRICS, Beside, Factor, compared
+from .gather import Entry, Folder
+
+GOOD, BAD, PLAIN = "good", "bad", "plain"
+IN_SENTENCES = ("cond_raw", "newton", "pcg")  # times are in the tables alone
+CLAIM_SCENES = 3  # docs/laboratory.md, Claims: fewer decide nothing
+MOST_GROUPS = 8
+
+
+@dataclass(frozen=True)
+class Sentence:
+    text: str
+    tone: str = PLAIN
+
+
+def _are(count: int) -> str:
+    return "is" if count == 1 else "are"
+
+
+def headline(folder: Folder) -> Sentence:
+    runs = folder.entries
+    bad = [run for run in runs if not run.good]
+    lost = len(folder.lost) + len(folder.absent) + len(folder.earlier)
+    if not bad and not lost:
+        all_of = "The run" if len(runs) == 1 else f"All {len(runs)} runs"
+        return Sentence(f"{all_of} ended ok and {_are(len(runs))} valid.", GOOD)
+    good = len(runs) - len(bad)
+    text = f"{good} of {counted(len(runs), 'run')} ended ok and {_are(good)} valid"
+    words = Counter(run.row["outcome"] if run.row["outcome"] != "ok" else "ok but not valid" for run in bad)
+    if bad:
+        text += "; " + listed([f"{n} ended {word}" for word, n in words.most_common()])
+    parts = [
+        f"{counted(len(folder.absent), 'run')} of the sweeps"
+        f" {'has' if len(folder.absent) == 1 else 'have'} no"
+        " record yet"
+    ] * bool(folder.absent)
+    parts += [f"{counted(len(folder.lost), 'file')} cannot be read"] * bool(folder.lost)
+    parts += [f"{counted(len(folder.earlier), 'record')} of an earlier sweep file left out"] * bool(
+        folder.earlier
+    )
+    return Sentence("; ".join([text, *parts]) + ".", BAD)
+
+
+def reserved(folder: Folder) -> list[Sentence]:
+    """Runs that ended ok with less than others promise."""
+    runs = [run for run in folder.entries if run.reserved]
+    if not runs:
+        return []
+    names = listed([f"{run.name} ({', '.join(run.reserved)})" for run in runs])
+    return [
+        Sentence(
+            f"{counted(len(runs), 'run').capitalize()} of these {_are(len(runs))} ok with a reservation:"
+            f" {names}. What each of them means stands under Failures.",
+            BAD,
+        )
+    ]
+
+
+def crossings(folder: Folder) -> list[Sentence]:
+    audited = [run for run in folder.entries if run.faults is not None]
+    through = [run for run in audited if run.faults]
+    unproven = [run for run in audited if not run.faults and run.row.get("audit_unproven")]
+    said = []
+    if through:
+        said.append(
+            Sentence(
+                f"In {len(through)} of {counted(len(audited), 'audited run')} a surface passes through"
+                f" another:"
+                f" {listed([f'{run.name} ({run.faults})' for run in through])}.",
+                BAD,
+            )
+        )
+    elif audited:
+        judged = sum(run.row["audit_judged"] for run in audited)
+        all_of = "the audited run" if len(audited) == 1 else f"all {len(audited)} audited runs"
+        said.append(
+            Sentence(
+                f"In {all_of} no surface passes through another: {judged:.3g} primitives were compared, in"
+                " every accepted state and along every motion.",
+                GOOD,
+            )
+        )
+    if unproven:
+        names = listed([run.name for run in unproven])
+        said.append(Sentence(f"Not every motion could be certified in {names}.", BAD))
+    if dark := len(folder.entries) - len(audited):
+        said.append(
+            Sentence(f"Of {counted(dark, 'run')} nothing is known about crossings: not audited.", BAD)
+        )
+    return said
+
+
+def comparability(folder: Folder) -> list[Sentence]:
+    others = [run for run in folder.entries if folder.reference_of(run) is not run]
+    words = Counter(run.row.get("comparability_verdict") for run in others)
+    judged = words["comparable"] + words["not_comparable"]
+    if not judged:
+        return [
+            Sentence(
+                "No record names a reference, so nothing here is compared with anything: a sweep names it"
+                " when it ends."
+            )
+        ]
+    ratios = {run.row["comparability_max_ratio"] for run in others if run.row.get("comparability_max_ratio")}
+    within = listed([f"{ratio:g}" for ratio in sorted(ratios)])
+    text = (
+        f"Of {counted(judged, 'run')} that the program compared with a reference {words['comparable']}"
+        f" {_are(words['comparable'])} comparable with it (contacts of every pair of bodies rest at gaps"
+        f" within"
+        f" a factor {within} of the reference's)"
+    )
+    if words["not_comparable"]:
+        apart = [run.name for run in others if run.row.get("comparability_verdict") == "not_comparable"]
+        text += f"; {len(apart)} {_are(len(apart))} not, and no factor is given for them: {listed(apart)}"
+    rules = [rule for run in others if (rule := earlier_rule(run.row))]
+    if rules:
+        text += f"; {len(rules)} were judged by the rule before {rules[0]['since']}"
+    return [Sentence(f"{text}.")]
+
+
+def _times(factor: Factor) -> str:
+    mean = number(factor.mean, 2)
+    if factor.n == 1:
+        return f"{mean} times"
+    return f"{mean} times ({number(factor.low, 2)} to {number(factor.high, 2)} in {factor.n} pairs)"
+
+
+def _slice(entries: list[Entry]) -> str:
+    """Scene, matching and limit of these runs."""
+    scenes = dict.fromkeys(run.row["scene"] for run in entries)
+    rules = dict.fromkeys(
+        f"{run.row['matching_rule']} at theta {run.row['matching_theta']:g}"
+        if run.row.get("matching_theta") is not None and run.row["matching_rule"] != "as_given"
+        else str(run.row["matching_rule"])
+        for run in entries
+        if run.row.get("matching_rule")
+    )
+    limits = {run.settings.get("/strain_limit/enabled") for run in entries}
+    limit = {frozenset([True]): ", strain limit on", frozenset([False]): ", no strain limit"}
+    return (
+        f"scene {listed(list(scenes))}, stiffness by {listed(list(rules)) or 'no rule'}"
+        f"{limit.get(frozenset(limits), '')}"
+    )
+
+
+def _beside_words(one: Beside) -> str:
+    parts = [
+        f"{metric.words} {_times(one.factors[metric.key])}"
+        for metric in METRICS
+        if metric.key in IN_SENTENCES and metric.key in one.factors
+    ]
+    return f"{one.contender}: {', '.join(parts)}" if parts else ""
+
+
+def ratios(folder: Folder) -> list[Sentence]:
+    """A sentence a group: its slice, its reference, and the factors of who may be compared with it."""
+    said, rows = [], compared(folder)
+    for group, entries in folder.groups.items():
+        mine = [one for one in rows if one.group == group and one.factors]
+        for reference in dict.fromkeys(one.reference for one in mine):
+            words = [text for one in mine if one.reference == reference and (text := _beside_words(one))]
+            if words:
+                said.append(
+                    Sentence(
+                        f"{group} ({_slice(entries)}), over the reference {reference}: {'; '.join(words)}."
+                    )
+                )
+    if len(said) > MOST_GROUPS:
+        rest = len(said) - MOST_GROUPS
+        said = [*said[:MOST_GROUPS], Sentence(f"{counted(rest, 'more group')} of factors: in Comparison.")]
+    return said
+
+
+def _one_of(folder: Folder, what: str) -> list:
+    return list(dict.fromkeys(value for run in folder.entries if (value := run.row.get(what)) is not None))
+
+
+def _about_scenes(folder: Folder) -> list[str]:
+    scenes: dict[str, set] = {}
+    for run in folder.entries:
+        scenes.setdefault(run.row["scene"], set()).add(run.row.get("scene_vertices"))
+    said = []
+    if len(scenes) < CLAIM_SCENES:
+        count = "One scene" if len(scenes) == 1 else f"{len(scenes)} scenes"
+        said.append(
+            f"{count} ({listed(list(scenes))}): nothing is said about others; a claim of this project needs"
+            f" {CLAIM_SCENES} (./bench claims)."
+        )
+    single = [
+        f"{name}: {next(iter(sizes))} vertices"
+        for name, sizes in scenes.items()
+        if len(sizes) == 1 and None not in sizes
+    ]
+    if single:
+        said.append(f"One mesh a scene ({listed(single)}): nothing is said about finer or coarser ones.")
+    return said
+
+
+def _about_slices(folder: Folder) -> list[str]:
+    said = []
+    for column, what in (("matching_theta", "theta"), ("dt_s", "time step (s)"), ("d_hat_m", "d_hat (m)")):
+        values = _one_of(folder, column)
+        if len(values) == 1:
+            said.append(f"{what} {values[0]:g}")
+    text = [f"One slice: {listed(said)}; at others the factors may be other ones."] if said else []
+    starts = {
+        (run.settings.get("/seeds/main"), run.settings.get("/seeds/jitter_m")) for run in folder.entries
+    }
+    if len(starts) == 1:
+        text.append("Every case ran from one start: how much its numbers scatter is not known.")
+    friction = {run.settings.get("/friction/mu") for run in folder.entries}
+    if friction == {0.0} or friction == {0}:
+        text.append("The coefficient of friction is 0 in every config.")
+    return text
+
+
+def _about_costs(folder: Folder) -> list[str]:
+    said = ["A condition number or a count of iterations says nothing about seconds."]
+    timed = [run for run in folder.entries if run.wall_s is not None]
+    machines, builds = (len(_one_of(folder, name)) for name in ("machine_id", "build_id"))
+    if timed:
+        most = Counter(run.row["config_id"] for run in timed).most_common(1)[0][1]
+        said.append(
+            f"Times are of {counted(most, 'repetition')} a case on {counted(machines, 'machine')}: they are"
+            " shown and not judged."
+        )
+    else:
+        said.append("Nothing was timed in a run that counts.")
+    if machines == 1:
+        said.append("One class of processors: on another rounding differs, and counts of iterations with it.")
+    if machines > 1 or builds > 1:
+        said.append(
+            f"Records of {counted(builds, 'build')} and {counted(machines, 'machine')} are side by side."
+        )
+    loose = [run for run in folder.entries if run.row.get("convergence") == "not_asked"]
+    if loose:
+        said.append(
+            f"{counted(len(loose), 'run').capitalize()} {_are(len(loose))} not asked to converge in a"
+            f" step, so"
+            f" fewer iterations there are not the same work: {listed([run.name for run in loose])}."
+        )
+    return said
+
+
+def limits(folder: Folder) -> list[str]:
+    """What a reader might take from the page and must not."""
+    return [*_about_scenes(folder), *_about_slices(folder), *_about_costs(folder)]
+
+
+def verdict(folder: Folder) -> list[Sentence]:
+    """The headline first."""
+    return [headline(folder), *reserved(folder), *crossings(folder), *comparability(folder), *ratios(folder)]

@@ -1,0 +1,174 @@
+"""The statements of the pages of results/ and docs/, read back from their text: what, under which conditions,
+which number, and what its study decides of it. A number that stands on two pages is compared as it stands
+there, whatever made it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from barrierbench_analysis.io import input_file
+from barrierbench_analysis.io.errors import UserError
+
+from .counted import (
+    catalogue,
+    cluster,
+    engines,
+    engines_in_words,
+    gap_map,
+    mentions,
+    stress,
+    work_precision,
+    work_precision_caption,
+)
+from .statement import Statement, tables
+from .whole_page import everything
+
+PART = re.compile(
+    r"^- (?P<says>.+?): \*\*(?P<verdict>.+)\*\*.*?\. (?P<measures>[^.]*?(?:\d\.\d[^.]*?)?)"
+    r"(?: \(depends on the machine\))?: (?P<number>[\d.e+-]+ \[[^\]]+\]), asked: [^;]*; (?P<counted>.*)\.$"
+)
+SLICE = re.compile(r"^  Slice: (.+?)\.(?: Samples:.*)?$")
+OF_SCENE = re.compile(r"[:;] ([\w-]+) [\d.e+-]+ \(")
+NUMBER = re.compile(r"(?P<number>[\d.e+-]+ \[[\d.e+inf-]+, [\d.e+inf-]+\])")
+LAW = re.compile(
+    r"(Raw|Block Jacobi): (the law, [^:]+): (\d+) of (\d+) pairs, (ln\(measured/predicted\) \S+ in the mean"
+    r" with standard deviation \S+ \(a factor \S+\)); (the law with [^:]+): (\d+) of (\d+) pairs,"
+    r" (ln\(measured/predicted\) \S+ in the mean with standard deviation \S+ \(a factor [^)]+\))"
+)
+
+
+def _slice(below: list[str]) -> str:
+    """Theta, limit and the scenes, of the lines below a part."""
+    theta = next((found[1] for line in below if (found := SLICE.match(line))), "")
+    scenes = next((line for line in below if line.startswith("  By scene ")), "")
+    return "; ".join(filter(None, [theta, ", ".join(OF_SCENE.findall(scenes))]))
+
+
+def _claims(text: str, page: str) -> Iterator[Statement]:
+    """Parts of results/CLAIMS.md, each with the line of its slice below it."""
+    claim, evidence, lines = "", "exploratory", text.splitlines()
+    for k, line in enumerate(lines):
+        if line.startswith("## "):
+            claim, evidence = line[3:].partition(":")[0], "exploratory"
+        elif line.startswith("Confirmed: "):
+            evidence = "confirmed"
+        elif found := PART.match(line):
+            yield Statement(
+                f"{page}, {claim}, {evidence}",
+                found["measures"],
+                f"{_slice(lines[k + 1 : k + 3])}; {found['counted']}",
+                found["number"],
+                found["verdict"].partition(":")[0].partition(" (")[0],
+            )
+
+
+def _law(text: str, page: str) -> Iterator[Statement]:
+    """The scatter of the area law, on the page and in captions."""
+    for found in LAW.finditer(" ".join(text.split())):
+        for form, n, of, scatter in (found.group(2, 3, 4, 5), found.group(6, 7, 8, 9)):
+            yield Statement(page, f"scatter of {form} ({found[1]})", "", f"{n} of {of}: {scatter}")
+
+
+def _map(text: str, page: str) -> Iterator[Statement]:
+    """Ratios of the gap map, over the log's."""
+    for title, heads, cells in tables(text):
+        for head, cell in zip(heads, cells):
+            if head.endswith(" over the log's") and NUMBER.fullmatch(cell):
+                conditions = f"{title}, {heads[0]} {cells[0]}; {cells[-1]}"
+                yield Statement(page, f"{head.split(' over')[0]}: {cells[1]} / `log`", conditions, cell)
+
+
+def pair(text: str, page: str) -> Iterator[Statement]:
+    """The log over the cubic alone: by target and limit, by size, and the slopes against size."""
+    for title, heads, cells in tables(text):
+        for head, cell in zip(heads, cells):
+            if "log over " in head and NUMBER.fullmatch(cell):
+                conditions = "; ".join(c for h, c in zip(heads, cells) if "log over " not in h)
+                yield Statement(page, f"{title}: {head}", conditions, cell)
+
+
+def _pareto(text: str, page: str) -> Iterator[Statement]:
+    """Ratios over all scenes at equal reached gap."""
+    for title, heads, cells in tables(text):
+        for head, cell in zip(heads, cells):
+            if heads[0] == "number" and (found := NUMBER.match(cell)):
+                yield Statement(page, f"{title}: {cells[0]} of {cells[1]}", head, found["number"])
+
+
+def _ablation(text: str, page: str) -> Iterator[Statement]:
+    """Main effects, with what is decided of them."""
+    for title, heads, cells in tables(text):
+        if heads[0] == "factor" and len(cells) == 6:
+            yield Statement(page, f"{title}: {cells[1]}", "ablation", cells[2], cells[5].strip("*"))
+
+
+def _verdicts(text: str, page: str) -> Iterator[Statement]:
+    """The number of a claim in a table of verdicts: that of the part of which results/CLAIMS.md has more."""
+    for _, heads, cells in tables(text):
+        if heads[0] == "claim" and (found := NUMBER.search(cells[-1])):
+            confirmed = "confirmed" if cells[-1].endswith("confirmed scenes") else "exploratory"
+            measures = cells[-1][: found.start()].rstrip(": ")
+            yield Statement(page, f"{cells[0]}, {confirmed}: {measures}", "first part", found["number"])
+
+
+def _firsts(text: str, page: str) -> Iterator[Statement]:
+    """The same of the sections of the claims."""
+    seen: set[str] = set()
+    for one in _claims(text, page):
+        _, claim, evidence = one.page.split(", ")
+        if f"{claim} {evidence}" not in seen:
+            seen.add(f"{claim} {evidence}")
+            yield Statement(one.page, f"{claim}, {evidence}: {one.quantity}", "first part", one.number)
+
+
+# Page -> its readers. Each has to find something: a page that is written otherwise would be read as silent.
+READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
+    "results/CLAIMS.md": (_claims, _firsts, _verdicts),
+    "results/GAP_MAP.md": (_map, pair, _law, gap_map),
+    "results/PARETO.md": (_pareto,),
+    "results/ABLATION.md": (_ablation,),
+    "results/STRESS.md": (stress,),
+    "results/CATALOGUE.md": (catalogue,),
+    "results/WORK_PRECISION.md": (work_precision,),
+    "results/ENGINES.md": (engines,),
+    "results/ENGINES_SIZE.md": (engines,),
+    "docs/results.md": (_verdicts, gap_map),
+    "docs/engines.md": (engines_in_words,),
+    "docs/verbs.md": (mentions,),
+    "docs/jobs/cluster.md": (cluster,),
+    "docs/gap_law.txt": (_law, gap_map),
+    "docs/gap_law_more.txt": (_law, gap_map),
+    "docs/gap_map.txt": (gap_map,),
+    "docs/gap_map_more.txt": (gap_map,),
+}
+CAPTIONS = {"docs/work_precision_*.txt": work_precision_caption}
+NO_NUMBERS = ()  # pages that state none, so that nothing can be read in them
+EVERY = ("README.md", "docs/*.md", "docs/*/*.md", "docs/*.txt", "results/*.md")
+
+
+def pages_of(root: Path) -> list[str]:
+    """All pages, from the root, whether a reader is made for them or not."""
+    return [path.relative_to(root).as_posix() for pattern in EVERY for path in sorted(root.glob(pattern))]
+
+
+def _readers(page: str) -> list[Callable[[str, str], Iterator[Statement]]]:
+    return [*READERS.get(page, ()), *(reader for of, reader in CAPTIONS.items() if Path(page).match(of))]
+
+
+def by_page(root: Path) -> dict[str, list[Statement]]:
+    """Of every page, what is read by its own readers and by the one of all pages. Errors: UserError for a
+    page in which a reader that is made for it finds nothing, and for one that is not there.
+    """
+    found: dict[str, list[Statement]] = {}
+    for page in dict.fromkeys([*READERS, *pages_of(root)]):
+        text = input_file.read_text(root / page)
+        found[page] = list(everything(text, page))
+        for reader in _readers(page):
+            mine = list(reader(text, page))
+            if not mine:
+                raise UserError(f"{page}: no statement is found of the kind {reader.__name__.strip('_')}")
+            found[page] += mine
+    return found

@@ -1,0 +1,166 @@
+"""The compiled formulas of this user: made once, found by the hash of all that makes them. A library is put
+in place by renaming, and its JSON, which says that it is whole, after it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import subprocess
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from barrierbench_analysis.io import digests, input_file
+from barrierbench_analysis.io.errors import code_of
+from barrierbench_analysis.io.places import ROOT
+
+from .grammar import Formula, FormulaError
+
+HEADERS = (
+    "barriers/shapes/builtin_shape.hpp",
+    "core/barrier/shape_potential.hpp",
+    "barriers/shapes/lane_batch.hpp",
+    "core/barrier/normalized_gap.hpp",
+    "barriers/shapes/shape_family.hpp",
+    "core/barrier/shape.hpp",
+    "core/barrier/stiffness_sums.hpp",
+    "core/math/atan2.hpp",
+    "core/math/device_code.hpp",
+    "core/math/exp.hpp",
+    "core/math/host_device.hpp",
+    "core/math/lanes.hpp",
+    "core/math/lanes_log.hpp",
+    "core/math/log.hpp",
+    "core/math/scale.hpp",
+    "core/math/select.hpp",
+    "core/math/types.hpp",
+    "core/model/plugin/barrierbench_plugin.h",
+)
+EIGEN = "/usr/include/eigen3"
+SECONDS_TO_COMPILE = 120
+HOST_COMPILER = "a C++ compiler as c++, or named by the variable CXX (Debian: apt-get install g++)"
+
+
+class Compiled(NamedTuple):
+    """A library in the cache, and what is known of its formula."""
+
+    library: Path
+    about: dict  # formula, label, at_zero, smoothness, library_sha256, ...
+
+
+def folder() -> Path:
+    """BARRIERBENCH_CACHE, else barrierbench in the user's cache folder."""
+    own = os.environ.get("BARRIERBENCH_CACHE")
+    if own:
+        return Path(own) / "formulas"
+    base = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    return Path(base) / "barrierbench" / "formulas"
+
+
+def label_of(formula: Formula) -> str:
+    """The short name, for folders and legends."""
+    return f"formula-{digests.of_text(formula.text)[:8]}"
+
+
+def command() -> list[str]:
+    """The compiler of the system and its flags: those of the program, which decide bits and speed."""
+    compiler = shlex.split(os.environ.get("CXX") or "c++")
+    flags = (
+        "-std=c++20 -O2 -DNDEBUG -ffp-contract=off -fno-tree-vectorize -fno-math-errno -fno-trapping-math"
+        " -DEIGEN_DONT_VECTORIZE"
+    )
+    march = ["-march=x86-64-v3"] if _runs_v3() else []
+    return [*compiler, *flags.split(), *march, "-shared", "-fPIC", "-s", f"-I{ROOT}", "-isystem", EIGEN]
+
+
+def _runs_v3() -> bool:
+    try:
+        words = set(input_file.read_text(Path("/proc/cpuinfo")).split("flags", 2)[1].split("\n")[0].split())
+    except (ValueError, IndexError):
+        return False
+    return {"avx2", "bmi1", "bmi2", "fma", "f16c", "movbe", "abm"} <= words
+
+
+def key_of(formula: Formula, words: list[str]) -> str:
+    """Of the formula, this code, the headers, the command, and the compiler's own version. Errors:
+    FormulaError where there is no compiler.
+    """
+    code = sorted(Path(__file__).parent.glob("*.py"))
+    files = [digests.of_file(path) for path in [*code, *(ROOT / header for header in HEADERS)]]
+    return digests.of_text("\n".join([formula.text, version_of(words[0]), *words, *files]))
+
+
+def version_of(compiler: str, allowed: str = HOST_COMPILER) -> str:
+    try:
+        return subprocess.run(
+            [compiler, "--version"], check=True, capture_output=True, text=True, timeout=30
+        ).stdout
+    except (OSError, subprocess.SubprocessError) as error:
+        raise FormulaError(f'no compiler "{compiler}" ({error})', allowed) from None
+
+
+def find(key: str) -> Compiled | None:
+    """Nothing where it was not made yet, or is not what its JSON says."""
+    library, about = folder() / f"{key}.so", folder() / f"{key}.json"
+    try:
+        known = json.loads(input_file.read_text(about))
+        whole = known["library_sha256"] == digests.of_file(library)
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return Compiled(library, known) if whole else None
+
+
+def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[Path], dict]) -> Compiled:
+    """Compiles and keeps, with all that `judge` says of the library. Errors: FormulaError with what the
+    compiler said, where nothing can be written, and of `judge`.
+    """
+    place = folder()
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=place, prefix="making-") as name:
+            there = Path(name)
+            (there / "formula.cpp").write_text(source)
+            refusal = f"a compiler of C++20 ({shlex.join(words)})"
+            compile_there([*words, "-o", "formula.so", "formula.cpp"], there, refusal)
+            about = {
+                **about,
+                **judge(there / "formula.so"),
+                "library_sha256": digests.of_file(there / "formula.so"),
+            }
+            (there / "formula.json").write_text(json.dumps(about, indent=1) + "\n")
+            for suffix in ("cpp", "so", "json"):  # the JSON last: it says that the others are there
+                (there / f"formula.{suffix}").replace(place / f"{key}.{suffix}")
+    except OSError as error:
+        raise not_written(place, error) from None
+    return Compiled(place / f"{key}.so", about)
+
+
+def not_written(place: Path, error: OSError) -> FormulaError:
+    return FormulaError(
+        f"the folder {place} ({error.strerror})",
+        "a folder to write to, or another in BARRIERBENCH_CACHE",
+        code_of(error),
+    )
+
+
+def compile_there(words: list[str], there: Path, allowed: str) -> None:
+    """Runs a compiler in a folder. allowed: what would do. Errors: FormulaError with the compiler's words."""
+    try:
+        done = subprocess.run(
+            words,
+            check=False,
+            cwd=there,
+            capture_output=True,
+            text=True,
+            timeout=SECONDS_TO_COMPILE,
+        )
+    except subprocess.TimeoutExpired:
+        raise FormulaError(
+            f"a compiler that takes more than {SECONDS_TO_COMPILE} s", "a shorter formula"
+        ) from None
+    if done.returncode != 0:
+        first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[:200])
+        raise FormulaError(f"a compiler that refuses the formula: {first}", allowed)

@@ -1,0 +1,298 @@
+"""A stiffness as a formula: kappa in N/m of a contact, checked on a grid of what it may be asked at, printed
+as C++ (a plugin with one policy) and compared with 40 digits.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import mpmath
+import sympy as sp
+
+from .accuracy import MOST_ERROR
+from .checks import DIGITS
+from .grammar import POLICY, Formula, FormulaError
+from .source import Printer, with_constants
+from .symbolic import expression
+
+SYMBOLS = {name: sp.Symbol(name, positive=True) for name in POLICY.symbols}
+ORDER = tuple(SYMBOLS)  # m, k, h, c, d, d_hat: the arguments of kappa_of in the library
+UNITS = {"m": "kg", "k": "N/m", "h": "s", "c": "", "d": "m", "d_hat": "m"}
+# What a run may ask at: decades of masses and stiffnesses, of steps and lengths; d as a part of d_hat.
+GRID = {
+    "m": ("1e-8", "1e-5", "1e-2", "10"),
+    "k": ("0", "1e-3", "1", "1e4", "1e8"),
+    "h": ("1e-5", "1e-3", "0.1"),
+    "c": ("0.25", "1"),
+    "d": ("1e-6", "1e-3", "0.05", "0.2", "0.5", "0.7", "0.9", "0.99", "1"),
+    "d_hat": ("1e-5", "1e-3", "0.1"),
+}
+EVERY = 7  # points that the compiled library is asked at
+
+TEMPLATE = """\
+// kappa = {formula}
+// Made by analysis/src/barrierbench_analysis/program/formula; not edited.
+#include <cmath>
+
+#include "core/barrier/stiffness_sums.hpp"
+#include "core/math/atan2.hpp"
+#include "core/math/exp.hpp"
+#include "core/math/log.hpp"
+#include "core/model/plugin/barrierbench_plugin.h"
+
+namespace {{
+
+using T = double;
+
+double kappa_of({arguments}) {{
+  using std::cos, std::cosh, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+{common}  return {kappa};
+}}
+
+double slope_of({slope_arguments}) {{
+  using std::cos, std::cosh, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+{slope_common}  return {slope};
+}}
+
+void fill(void*, const bb_plugin_rows* rows, double* kappa) {{
+  for (size_t r = 0; r < rows->n; ++r) {{
+    const double* hessian = rows->hessian ? rows->hessian + 144 * r : nullptr;
+    const auto sums = bb::contact_sums<double>(rows->n_free[r], rows->weight + 4 * r, rows->normal + 3 * r,
+                                               rows->mass + 4 * r, bb::ColumnMajor<double>{{hessian, 12}},
+                                               hessian != nullptr);
+    kappa[r] = kappa_of(sums.mass / sums.w_sq, sums.elastic / sums.w_sq, rows->h, rows->c, rows->d[r],
+                        rows->d_hat[r]);
+  }}
+}}
+
+constexpr bb_plugin_policy policies[] = {{{{.name = "{name}",
+                                           .doc = "{formula}",
+                                           .needs_hessian = {hessian},
+                                           .self = nullptr,
+                                           .fill = fill}}}};
+constexpr bb_plugin plugin = {{.abi_version = BB_PLUGIN_ABI_VERSION,
+                              .name = "{name}",
+                              .n_shapes = 0,
+                              .shapes = nullptr,
+                              .n_policies = 1,
+                              .policies = policies,
+                              .n_integrators = 0,
+                              .integrators = nullptr}};
+
+}}  // namespace
+
+extern "C" const bb_plugin* barrierbench_plugin(void) {{ return &plugin; }}
+
+// kappa and d kappa/dd at n gaps of one pair (barriers/formulas.hpp).
+extern "C" __attribute__((visibility("default"))) void barrierbench_formula_in_gap(
+    double m, double k, double h, double c, double d_hat, size_t n, const double* d, double* kappa,
+    double* slope) {{
+  for (size_t i = 0; i < n; ++i) {{
+    kappa[i] = kappa_of(m, k, h, c, d[i], d_hat);
+    slope[i] = slope_of(m, k, h, c, d[i], d_hat);
+  }}
+}}
+"""
+
+
+def kappa_of(formula: Formula) -> sp.Expr:
+    return expression(formula.tree, {**SYMBOLS, "pi": sp.pi})
+
+
+def slope_of(kappa: sp.Expr) -> sp.Expr:
+    """d kappa/dd, N/m^2."""
+    return sp.diff(kappa, SYMBOLS["d"])
+
+
+def symbols_of(kappa: sp.Expr) -> list[str]:
+    """What it reads, in the order of the arguments."""
+    return [name for name in ORDER if SYMBOLS[name] in kappa.free_symbols]
+
+
+def points(kappa: sp.Expr) -> Iterator[dict[str, mpmath.mpf]]:
+    """All combinations of what it reads; one value of what it does not."""
+    read = symbols_of(kappa)
+    values = [GRID[name] if name in read else GRID[name][-1:] for name in ORDER]
+    with mpmath.workdps(DIGITS):
+        for one in itertools.product(*values):
+            point = {name: mpmath.mpf(text) for name, text in zip(ORDER, one, strict=True)}
+            point["d"] *= point["d_hat"]
+            yield point
+
+
+def check(kappa: sp.Expr) -> int:
+    """The number of points of the grid. Errors: FormulaError with the first where kappa is no number, not
+    real or negative, and where it is 0 at all of them.
+    """
+    value = sp.lambdify(list(SYMBOLS.values()), kappa, "mpmath")
+    count = positive = 0
+    with mpmath.workdps(DIGITS):
+        for point in points(kappa):
+            y, wrong = _value(value, point)
+            if wrong:
+                read = [f"{name} = {mpmath.nstr(point[name], 6)} {UNITS[name]}" for name in symbols_of(kappa)]
+                raise FormulaError(
+                    f"{wrong} at {', '.join(map(str.rstrip, read))}", "a finite kappa >= 0 for 0 < d <= d_hat"
+                )
+            count += 1
+            positive += y > 0
+    if positive == 0:
+        raise FormulaError(f"kappa = 0 at all {count} points that it was asked at", "a kappa that is not 0")
+    return count
+
+
+def _value(value, point: dict[str, mpmath.mpf]) -> tuple[mpmath.mpf, str]:
+    """kappa, and what is wrong with it."""
+    try:
+        y = value(*point.values())
+    except (ZeroDivisionError, ValueError, OverflowError):
+        return mpmath.nan, "no kappa"
+    if not mpmath.isfinite(y):
+        return y, "an infinite kappa"
+    if mpmath.im(y) != 0:
+        return y, "no real kappa"
+    y = mpmath.re(y)
+    return y, f"kappa = {mpmath.nstr(y, 6)} N/m" if y < 0 else ""
+
+
+def cpp(name: str, formula: str, kappa: sp.Expr) -> str:
+    """The source of the plugin whose policy is called `name`."""
+    common, value = _statements(kappa)
+    slope = slope_of(kappa)
+    slope_common, slope_value = _statements(slope)
+    return TEMPLATE.format(
+        formula=formula,
+        name=name,
+        arguments=_arguments(kappa),
+        common=common,
+        kappa=value,
+        slope_arguments=_arguments(slope),
+        slope_common=slope_common,
+        slope=slope_value,
+        hessian=int("k" in symbols_of(kappa)),
+    )
+
+
+def _arguments(x: sp.Expr) -> str:
+    read = symbols_of(x)
+    return ", ".join(f"{'' if one in read else '[[maybe_unused]] '}double {one}" for one in ORDER)
+
+
+def _statements(x: sp.Expr) -> tuple[str, str]:
+    """Common subexpressions as constants, a line each, and the value in terms of them."""
+    common, (last,) = sp.cse(with_constants([x]), symbols=sp.numbered_symbols("x"), optimizations="basic")
+    printer = Printer()
+    lines = (f"  const double {symbol} = {printer.doprint(y)};\n" for symbol, y in common)
+    return "".join(lines), printer.doprint(last)
+
+
+def judge(library: Path, kappa: sp.Expr) -> dict[str, float]:
+    """Largest errors of the library at points of the grid: error_rel of kappa, and slope_error_rel of d
+    kappa/dd as a part of kappa/d, which is asked by who derives a potential. Errors: FormulaError where the
+    first is above MOST_ERROR.
+    """
+    call, value = _call(library), sp.lambdify(list(SYMBOLS.values()), kappa, "mpmath")
+    worst = 0.0
+    with mpmath.workdps(DIGITS):
+        for point in itertools.islice(points(kappa), 0, None, EVERY):
+            numbers = {name: float(x) for name, x in point.items()}
+            exact = value(*(mpmath.mpf(x) for x in numbers.values()))
+            found = call(numbers)
+            error = float(abs((mpmath.mpf(found) - exact) / exact)) if exact != 0 else abs(found)
+            worst = max(worst, error)
+            if not error <= MOST_ERROR:
+                raise FormulaError(
+                    f"kappa off by a factor of {error:.1g} in double precision at {numbers}",
+                    f"a formula that keeps {MOST_ERROR:g}: without differences of near numbers",
+                )
+    return {"error_rel": worst, "slope_error_rel": _slope_error(library, kappa)}
+
+
+def _slope_error(library: Path, kappa: sp.Expr) -> float:
+    """Below d_hat, where a slope may be infinite."""
+    in_gap = ctypes.CDLL(str(library)).barrierbench_formula_in_gap
+    in_gap.restype = None
+    numbers = [ctypes.c_double] * 5 + [ctypes.c_size_t] + [ctypes.POINTER(ctypes.c_double)] * 3
+    in_gap.argtypes = numbers
+    symbols = list(SYMBOLS.values())
+    value, slope = (sp.lambdify(symbols, x, "mpmath") for x in (kappa, slope_of(kappa)))
+    worst = 0.0
+    with mpmath.workdps(DIGITS):
+        for point in itertools.islice(points(kappa), 0, None, EVERY):
+            m, k, h, c, d, d_hat = (float(x) for x in point.values())
+            if d >= d_hat:
+                continue
+            exact = [f(*map(mpmath.mpf, (m, k, h, c, d, d_hat))) for f in (value, slope)]
+            found = [ctypes.c_double(), ctypes.c_double()]
+            in_gap(m, k, h, c, d_hat, 1, ctypes.c_double(d), *found)
+            scale = max(abs(exact[0]) / d, abs(exact[1]))
+            if not math.isfinite(found[1].value):
+                raise FormulaError(
+                    f"d kappa/dd = {found[1].value} at d = {d / d_hat:.6g} d_hat", "a finite number"
+                )
+            error = float(abs(found[1].value - exact[1]) / scale) if scale != 0 else abs(found[1].value)
+            worst = max(worst, error)
+    return worst
+
+
+class _Rows(ctypes.Structure):  # bb_plugin_rows
+    _fields_ = [
+        ("n", ctypes.c_size_t),
+        ("n_free", ctypes.POINTER(ctypes.c_int32)),
+        *(
+            (name, ctypes.POINTER(ctypes.c_double))
+            for name in ("weight", "normal", "d", "d_hat", "mass", "hessian")
+        ),
+        ("h", ctypes.c_double),
+        ("c", ctypes.c_double),
+    ]
+
+
+class _Policy(ctypes.Structure):  # bb_plugin_policy
+    _fields_ = [
+        ("name", ctypes.c_char_p),
+        ("doc", ctypes.c_char_p),
+        ("needs_hessian", ctypes.c_int32),
+        ("self", ctypes.c_void_p),
+        (
+            "fill",
+            ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.POINTER(_Rows), ctypes.POINTER(ctypes.c_double)),
+        ),
+    ]
+
+
+class _Plugin(ctypes.Structure):  # bb_plugin
+    _fields_ = [
+        ("abi_version", ctypes.c_uint32),
+        ("name", ctypes.c_char_p),
+        ("n_shapes", ctypes.c_size_t),
+        ("shapes", ctypes.c_void_p),
+        ("n_policies", ctypes.c_size_t),
+        ("policies", ctypes.POINTER(_Policy)),
+    ]
+
+
+def _call(library: Path):
+    """kappa for one free vertex of weight 1: m is its mass, k the first number of its Hessian."""
+    entry = ctypes.CDLL(str(library)).barrierbench_plugin
+    entry.restype = ctypes.POINTER(_Plugin)
+    policy = entry().contents.policies[0]
+
+    def at(numbers: dict[str, float]) -> float:
+        def column(*values: float):
+            return (ctypes.c_double * len(values))(*values)
+
+        hessian = column(numbers["k"], *([0.0] * 143))
+        free, kappa = (ctypes.c_int32 * 1)(1), column(0.0)
+        rows = _Rows(
+            1, free, column(1, 0, 0, 0), column(1, 0, 0), column(numbers["d"]), column(numbers["d_hat"]),
+            column(numbers["m"], 0, 0, 0), hessian, numbers["h"], numbers["c"],
+        )  # fmt: skip
+        policy.fill(policy.self, ctypes.byref(rows), kappa)
+        return kappa[0]
+
+    return at

@@ -1,0 +1,1 @@
+"""Trajectories of any program: one reader a format."""

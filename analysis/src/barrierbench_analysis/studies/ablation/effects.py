@@ -1,0 +1,203 @@
+"""Main effects and interactions of the factors, with the scenes as samples (docs/laboratory.md, Ablation).
+
+In a scene, numbers are fitted by least squares with one column a level that is not the first of its factor;
+an interaction adds the products of the columns of two factors. What the runs of a scene do not tell apart
+has no value there: its column is no combination of rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+
+import numpy as np
+
+from barrierbench_analysis.tables.estimate import sign_test, student
+
+from .bound import Contexts, Part, contexts, direct, is_bound, left_out, told_by
+from .factors import Factorial
+from .flips import sign_flip
+from .table import METRICS, Table, got_through, levels_of
+
+LEAST_SCENES = 10  # with fewer no effect out of 19 can be decided: 19 * 2^(1 - 9) = 0.074
+LEAST_FREEDOM = 10  # of the residual of a scene: with few its value hangs on one or two runs
+LEVEL = 0.05
+SHARES = {"ok": got_through, "common": lambda row: not row["failed"]}
+TESTED = 1e-8  # of a column: how much of it the rows may leave undetermined
+NOTHING = 1e-9  # an effect below is the rounding of a fit, and no sign of anything
+
+
+@dataclass(frozen=True)
+class Term:
+    """One column: (factor, level), or two of them for an interaction."""
+
+    parts: tuple[tuple[int, int], ...]
+
+    def column(self, levels: np.ndarray) -> np.ndarray:
+        """levels: [runs, factors]; 1 where a run has the levels of the term, else 0."""
+        return np.logical_and.reduce([levels[:, f] == level for f, level in self.parts]).astype(float)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """scenes: name -> logarithm of a ratio, or difference of shares. p: of the sign-flip test of their mean.
+    holm: p times Holm's factor among the effects of its number; None below LEAST_SCENES scenes. direct: of
+    the runs without the levels `without`, the first that does not agree; None where all agree (bound.py).
+    """
+
+    metric: str
+    term: Term
+    scenes: dict[str, float]
+    mean: float | None = None
+    low: float | None = None
+    high: float | None = None
+    p: float | None = None
+    holm: float | None = None
+    direct: Effect | None = None
+    without: tuple[Part, ...] = ()
+
+    @property
+    def passes(self) -> bool:
+        """The test, whatever the direct effect says."""
+        return self.holm is not None and self.holm < LEVEL
+
+    def same(self, one: Effect) -> bool:
+        """Whether another has its sign, and p < LEVEL by itself."""
+        return one.p is not None and one.p < LEVEL and one.mean * self.mean > 0
+
+    @property
+    def decided(self) -> bool:
+        return self.passes and self.direct is None
+
+    @property
+    def signs(self) -> tuple[int, int]:
+        """Scenes in which it is above and below nothing."""
+        values = self.scenes.values()
+        return sum(v > 0 for v in values), sum(v < 0 for v in values)
+
+    @property
+    def sign_p(self) -> float:
+        return sign_test(*self.signs)
+
+
+@dataclass
+class Study:
+    """main and pairs: metric -> effects, in the order of the factors."""
+
+    main: dict[str, list[Effect]] = field(default_factory=dict)
+    pairs: dict[str, list[Effect]] = field(default_factory=dict)
+
+
+def main_terms(factorial: Factorial) -> list[Term]:
+    return [Term(((f, level),)) for f, n in enumerate(factorial.sizes) for level in range(1, n)]
+
+
+def pair_terms(factorial: Factorial, a: int, b: int) -> list[Term]:
+    sizes = factorial.sizes
+    return [Term(((a, i), (b, j))) for i in range(1, sizes[a]) for j in range(1, sizes[b])]
+
+
+def values_of(table: Table, scene: str, metric: str) -> list[tuple[dict, float]]:
+    """Rows that have the number: its logarithm; of a share 0 or 1, of every run."""
+    rows = [row for row in table.rows if row["scene"] == scene]
+    if metric in SHARES:
+        return [(row, float(SHARES[metric](row))) for row in rows]
+    return [(row, float(np.log(row[metric]))) for row in rows if got_through(row) and row[metric]]
+
+
+def fitted(
+    levels: list[tuple[int, ...]],
+    y: list[float],
+    terms: list[Term],
+    wanted: list[Term],
+    freedom: int = LEAST_FREEDOM,
+) -> dict[Term, float]:
+    """Coefficients of `wanted` that the rows determine, with a constant. Empty where fewer than `freedom`
+    degrees are left for the residual.
+    """
+    if not y:
+        return {}
+    array = np.asarray(levels)
+    x = np.column_stack([np.ones(len(y)), *(term.column(array) for term in terms)])
+    inverse = np.linalg.pinv(x, rcond=1e-10)
+    resolution = inverse @ x  # of columns: the identity where all are determined
+    if len(y) - round(float(np.trace(resolution))) < freedom:
+        return {}
+    solution = inverse @ np.asarray(y)
+    off = np.abs(resolution - np.eye(x.shape[1])).max(axis=1)
+    return {
+        term: float(solution[k + 1]) for k, term in enumerate(terms) if term in wanted and off[k + 1] < TESTED
+    }
+
+
+def over_scenes(metric: str, term: Term, scenes: dict[str, float]) -> Effect:
+    """Mean, Student's interval and p of the scene values, where rounding is taken for nothing."""
+    scenes = {scene: value if abs(value) > NOTHING else 0.0 for scene, value in scenes.items()}
+    values = np.array(list(scenes.values()))
+    if len(values) < 2:
+        return Effect(metric, term, scenes, float(values[0]) if len(values) else None)
+    low, high = student(values)
+    p = sign_flip(values) if len(values) >= LEAST_SCENES else None
+    return Effect(metric, term, scenes, float(values.mean()), float(low), float(high), p)
+
+
+def with_holm(effects: list[Effect]) -> list[Effect]:
+    """p times the number of effects not yet passed, from the smallest one on, never falling."""
+    tested = sorted((e for e in effects if e.p is not None), key=lambda e: e.p)
+    holm, least = {}, 0.0
+    for k, effect in enumerate(tested):
+        least = max(least, min(1.0, effect.p * (len(tested) - k)))
+        holm[effect.term] = least
+    return [replace(effect, holm=holm.get(effect.term)) for effect in effects]
+
+
+def _of(factorial: Factorial, table: Table, metric: str, wanted: list[Term]) -> list[Effect]:
+    mains = main_terms(factorial)
+    terms = mains + [term for term in wanted if term not in mains]
+    found: dict[Term, dict[str, float]] = {term: {} for term in wanted}
+    for scene in factorial.scenes.labels:
+        pairs = values_of(table, scene, metric)
+        levels = [levels_of(factorial, row) for row, _ in pairs]
+        for term, value in fitted(levels, [y for _, y in pairs], terms, wanted).items():
+            found[term][scene] = value
+    return [over_scenes(metric, term, scenes) for term, scenes in found.items()]
+
+
+def _beside(factorial: Factorial, table: Table, allowed: Contexts, effect: Effect) -> Effect:
+    """With the first direct effect that does not agree. Without some levels fewer scenes tell it: fewer than
+    LEAST_SCENES say nothing, but where nothing is left out, and exclusions bind the level, they do not agree.
+    """
+    part, mains = effect.term.parts[0], main_terms(factorial)
+    scenes = {}
+    for scene in effect.scenes:
+        pairs = values_of(table, scene, effect.metric)
+        levels, y = [levels_of(factorial, row) for row, _ in pairs], [value for _, value in pairs]
+        others = {term.parts[0]: value for term, value in fitted(levels, y, mains, mains).items()}
+        scenes[scene] = told_by(allowed, part, levels, y, None if effect.metric in SHARES else others)
+    for out in left_out(factorial, part[0], is_bound(allowed, part)):
+        found = {scene: direct(part, of, out) for scene, of in scenes.items()}
+        told = {scene: value for scene, value in found.items() if value is not None}
+        one = over_scenes(effect.metric, effect.term, told)
+        if not effect.same(one) and (one.p is not None or not out):
+            return replace(effect, direct=one, without=out)
+    return effect
+
+
+def main_effects(factorial: Factorial, table: Table, metric: str) -> list[Effect]:
+    """In the order of the factors; of those that pass the test, what takes them back beside them."""
+    mains, allowed = with_holm(_of(factorial, table, metric, main_terms(factorial))), contexts(factorial)
+    return [_beside(factorial, table, allowed, effect) if effect.passes else effect for effect in mains]
+
+
+def study(factorial: Factorial, table: Table) -> Study:
+    """Every number's main effects, and its interactions pair of factors by pair."""
+    out = Study()
+    for metric in (*METRICS, *SHARES):
+        out.main[metric] = main_effects(factorial, table, metric)
+        pairs = [
+            effect
+            for a, b in combinations(range(len(factorial.factors)), 2)
+            for effect in _of(factorial, table, metric, pair_terms(factorial, a, b))
+        ]
+        out.pairs[metric] = with_holm(pairs)
+    return out

@@ -1,0 +1,88 @@
+"""What is kept of the runs of the catalogue: results/catalogue.json. Scenes that were not run keep what
+they had.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from barrierbench_analysis.io.json_file import read_of_schema
+from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.whole_file import write_whole
+
+from .checks import judge
+from .entry import Entry
+from .runs import Done
+
+FILE = ROOT / "results" / "catalogue.json"
+NAME = "barrierbench.catalogue_results/1"
+
+
+@dataclass
+class Row:
+    """A run, and its checks that are red: name and what it saw."""
+
+    formulation: str
+    outcome: str
+    detail: str
+    seconds: float
+    newton: int
+    red: list = field(default_factory=list)
+    seen: list = field(default_factory=list)  # of checks that hold
+    run: str = ""
+
+
+def row_of(entry: Entry, done: Done) -> Row:
+    """The outcome, and every expectation held against the record; that it ends `ok` is one of every scene
+    that starts.
+    """
+    record = done.record
+    status, found = record["status"], judge(record, entry.data["expect"])
+    outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
+    ends = [] if outcome == "ok" or entry.is_rejected else [f"ends_ok: {outcome}"]
+    return Row(
+        done.formulation,
+        outcome,
+        status["detail"],
+        round(seconds_of_run(record), 1),
+        record["summary"]["newton_iterations"],
+        [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
+        [f"{name}: {finding.saw}" for name, finding in found if not finding.red],
+        record["ids"]["run_id"][:ID_DIGITS],
+    )
+
+
+def origin_of(record: dict) -> dict:
+    machine = record["machine"]
+    return {
+        "date": record["status"]["started_utc"][:10],
+        "machine": f"{machine['cpu_model']}, {machine['cores']} cores",
+        "commit": record["provenance"].get("git_commit", "")[:10],
+        "vertices": record["scene"]["vertices"],
+        "triangles": record["scene"]["triangles"],
+    }
+
+
+def read(file: Path = FILE) -> dict[str, dict]:
+    """Scene -> {"about", "rows"}; empty where nothing is kept."""
+    return read_of_schema(file, NAME)["scenes"] if file.is_file() else {}
+
+
+def write(scenes: dict[str, dict], file: Path = FILE) -> None:
+    lines = [
+        f'  {json.dumps(name)}: {{"about": {json.dumps(kept["about"])},\n   "rows": [\n    '
+        + ",\n    ".join(json.dumps(one) for one in kept["rows"])
+        + "]}"
+        for name, kept in sorted(scenes.items())
+    ]
+    write_whole(file, f'{{\n "schema": "{NAME}",\n "scenes": {{\n' + ",\n".join(lines) + "\n }\n}\n")
+
+
+def kept_of(entry: Entry, runs: list[Done], before: dict | None) -> dict:
+    """Rows of these runs, and of other formulations that were kept before."""
+    rows = {row["formulation"]: row for row in (before or {}).get("rows", [])}
+    rows |= {done.formulation: asdict(row_of(entry, done)) for done in runs}
+    return {"about": origin_of(runs[0].record), "rows": list(rows.values())}

@@ -1,0 +1,69 @@
+"""The registry of figures: a kind is a function that draws, what it is drawn of, and its options."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from barrierbench_analysis.figures.plots import (
+    barrier_shapes,
+    eigenvalues,
+    friction_slope,
+    gap_ridge,
+    heat_map,
+    newton_condition,
+    phase_times,
+    precision,
+    preconditioned,
+    profiles,
+    resolution,
+    runs,
+    scaling,
+    step_front,
+    step_lengths,
+    success_frontier,
+    trend,
+)
+from barrierbench_analysis.figures.plots.drawing import Drawing
+
+from . import studies
+
+
+@dataclass(frozen=True)
+class Kind:
+    """draw(subject, drawing) -> the files that it wrote; it raises UserError where there is nothing to draw.
+    source: one of subjects.SOURCES; options: name -> default.
+    """
+
+    draw: Callable[[object, Drawing], list[Path]]
+    source: str
+    options: dict = field(default_factory=dict)
+
+
+KINDS = {
+    "barrier_shapes": Kind(barrier_shapes.of_shapes, "shapes"),
+    "condition": Kind(runs.condition, "sweep"),
+    "data_profile": Kind(profiles.data_profile, "sweep", profiles.OPTIONS),
+    "eigenvalues": Kind(eigenvalues.figure, "matrices"),
+    "friction_slope": Kind(friction_slope.figure, "sweep"),
+    "gap_map": Kind(studies.gap_maps, "study"),
+    "gap_ridge": Kind(gap_ridge.figure, "sweep"),
+    "gap_size": Kind(studies.gap_sizes, "study"),
+    "gaps": Kind(runs.gaps, "sweep"),
+    "heat_map": Kind(heat_map.figure, "sweep", heat_map.OPTIONS),
+    "iterations": Kind(runs.iterations, "sweep"),
+    "newton_condition": Kind(newton_condition.figure, "sweep"),
+    "pareto": Kind(studies.pareto_fronts, "study"),
+    "performance_profile": Kind(profiles.performance_profile, "sweep", profiles.OPTIONS),
+    "phase_times": Kind(phase_times.figure, "sweep", phase_times.OPTIONS),
+    "precision": Kind(precision.figure, "sweep", precision.OPTIONS),
+    "preconditioned": Kind(preconditioned.figure, "sweep"),
+    "resolution": Kind(resolution.figure, "sweep"),
+    "scaling": Kind(scaling.figure, "sweep"),
+    "step_front": Kind(step_front.figure, "sweep"),
+    "step_lengths": Kind(step_lengths.figure, "sweep"),
+    "success_frontier": Kind(success_frontier.figure, "sweep", success_frontier.OPTIONS),
+    "trend": Kind(trend.figure, "baselines", trend.OPTIONS),
+    "work_precision": Kind(studies.work_precisions, "study"),
+}

@@ -1,0 +1,184 @@
+"""Studies with a verb of their own (./bench pareto, gap-map, work-precision) as subjects of figures: their
+kept numbers, which are made where that is allowed, and their figures in one column width.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from barrierbench_analysis.figures.captions import Facts
+from barrierbench_analysis.figures.plots.drawing import Drawing
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.studies.gap_map import entry as gap_map
+from barrierbench_analysis.studies.gap_map import figure as gap_figure
+from barrierbench_analysis.studies.gap_map import kept as gap_kept
+from barrierbench_analysis.studies.gap_map import size_figure
+from barrierbench_analysis.studies.gap_map.judge import counts
+from barrierbench_analysis.studies.gap_map.size import drawn_sizes
+from barrierbench_analysis.studies.gap_map.spec import read_spec as read_gap_map
+from barrierbench_analysis.studies.kit.runs import inputs_sha256
+from barrierbench_analysis.studies.matching import pareto, pareto_figure
+from barrierbench_analysis.studies.matching.spec import make_sweep
+from barrierbench_analysis.studies.matching.spec import read_spec as read_pareto
+from barrierbench_analysis.studies.work_precision import figure as work_figure
+from barrierbench_analysis.studies.work_precision import verb as work_precision
+from barrierbench_analysis.studies.work_precision.spec import read_spec as read_work
+
+
+@dataclass(frozen=True)
+class Study:
+    """One of the studies. read: a spec; table: the kept file as its figures take it, after a look whether it
+    is of this spec; make: runs what is missing and writes the kept file.
+    """
+
+    verb: str
+    kept: str
+    default: Path
+    read: Callable
+    table: Callable
+    make: Callable
+
+
+def _pareto_table(spec, kept: Path):
+    runs = pareto.from_json(kept)
+    inputs = inputs_sha256(make_sweep(spec))
+    if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
+        raise UserError(f"{kept}: its numbers are of another {spec.path}, base config or preset")
+    return runs
+
+
+def _pareto_make(spec, kept: Path, _: int) -> None:
+    runs = pareto.make(spec, f"./bench pareto {spec.path}", kept.parent / "records", True, [])
+    write_whole(kept, pareto.to_json(runs))
+
+
+def _gap_make(spec, kept: Path, jobs: int) -> None:
+    words = [str(spec.path), "--runs", str(kept.parent / "records"), "--jobs", str(jobs)]
+    gap_map.make_map(gap_map.arguments(words), spec, kept)
+
+
+def _work_table(spec, kept: Path):
+    table = work_precision.read_table(kept)
+    if table.get("spec_sha256") != spec.sha256:
+        raise UserError(f"{kept}: its numbers are of another {spec.file}")
+    return table
+
+
+def _work_make(spec, kept: Path, _: int) -> None:
+    made = work_precision.made(spec, kept.parent / "records")
+    write_whole(kept, work_precision.table_text(work_precision.rounded(made)))
+
+
+STUDIES = {
+    "barrierbench.pareto/1": Study(
+        "pareto", "pareto.json", pareto.DEFAULT, read_pareto, _pareto_table, _pareto_make
+    ),
+    "barrierbench.gap_map/1": Study(
+        "gap-map",
+        "gap_map.json",
+        gap_map.DEFAULT,
+        read_gap_map,
+        lambda spec, kept: gap_kept.read_for(kept, spec),
+        _gap_make,
+    ),
+    "barrierbench.work_precision/1": Study(
+        "work-precision",
+        "work_precision.json",
+        work_precision.DEFAULT,
+        read_work,
+        _work_table,
+        _work_make,
+    ),
+}
+
+
+def of_file(file: Path, runs: Path, may_run: bool, jobs: int):
+    """The table of a study from its kept numbers: of the default spec those in results/, of another those
+    below `runs`, made where they are missing and may be. Errors: UserError with the command.
+    """
+    named = read_object(file).get("schema")
+    if named not in STUDIES:
+        raise UserError(f"{file}#/schema: found {named!r}; one of {', '.join(STUDIES)} is needed")
+    study = STUDIES[named]
+    spec, is_default = study.read(file), file == study.default.resolve()
+    folder = ROOT / "results" if is_default else runs / f"{study.verb}-{file.stem}"
+    kept = folder / study.kept
+    again = f"; this makes them: ./bench {study.verb} {file}" + (
+        "" if is_default else f" {'--out' if study.verb == 'work-precision' else '--results'} {folder}"
+    )
+    try:
+        if kept.is_file():
+            return study.table(spec, kept)
+        missing = f"{kept}: not there"
+    except UserError as error:
+        missing = str(error)
+    if not may_run or is_default:
+        raise UserError(f"{missing}{again}")
+    study.make(spec, kept, jobs)
+    return study.table(spec, kept)
+
+
+def pareto_fronts(runs, drawing: Drawing) -> list[Path]:
+    paths = []
+    for scene in runs.scenes:
+        rows = [row for row in runs.rows if row["scene"] == scene]
+        try:
+            stem = drawing.stem.with_name(f"{drawing.stem.name}_{scene}")
+            drawn = pareto_figure.draw(runs, scene, stem, drawing.width_in)
+        except ValueError as error:
+            raise drawing.nothing(str(error)) from None
+        facts = Facts(
+            f"{len(rows)} runs, of which {sum(row['outcome'] != 'ok' for row in rows)} failed;"
+            f" {runs.about['starts']} starts",
+            "geometric mean over starts",
+            "none; compare along a vertical line",
+            f"scene {scene}, {runs.about['unknowns']} unknowns, {runs.about['rule']},"
+            f" vary {runs.about['vary']}",
+        )
+        paths += drawing.state(drawn, facts)
+    return paths
+
+
+def gap_maps(found, drawing: Drawing) -> list[Path]:
+    seen = counts(found.rows)
+    if not any(row["outcome"] == "ok" for row in found.rows):
+        raise drawing.nothing("no run of the map reached a gap")
+    facts = Facts(
+        f"{len(found.rows)} cells: " + ", ".join(f"{n} {word}" for word, n in seen.items() if n),
+        "geometric mean over scenes, resolutions averaged first",
+        "the log at its first target in the same place",
+        f"scenes {', '.join(found.about['scenes'])}; {found.about['unknowns'][0]} to"
+        f" {found.about['unknowns'][1]} unknowns; limit {', '.join(found.limits)}",
+    )
+    return drawing.state(gap_figure.draw_all(found, drawing.stem.parent, drawing.width_in), facts)
+
+
+def gap_sizes(found, drawing: Drawing) -> list[Path]:
+    if not drawn_sizes(found.rows):
+        raise drawing.nothing(
+            "no place of the map has a run of the log and one of the cubic that got through"
+        )
+    return size_figure.draw(found, drawing.stem, drawing.width_in, drawing.title)
+
+
+def work_precisions(table: dict, drawing: Drawing) -> list[Path]:
+    scenes = table["scenes"]
+    ranks, paths = work_figure.by_rank(scenes), []
+    for scene in scenes:
+        rows = scene["rows"]
+        if all(row["error"] is None for row in rows):
+            raise drawing.nothing(f"no run of {scene['name']} counts")
+        facts = Facts(
+            f"{len(rows)} runs, of which {sum(row['error'] is None for row in rows)} do not count",
+            "of single runs; lines: those that no cheaper run of the same formulation equals",
+            scene["references"][0]["name"],
+            f"scene {scene['name']}, {scene['about']['unknowns']} unknowns",
+        )
+        stem = drawing.stem.with_name(f"{drawing.stem.name}_{scene['name']}")
+        paths += drawing.state(work_figure.draw(scene, stem, ranks), facts)
+    return paths

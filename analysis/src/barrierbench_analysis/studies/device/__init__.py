@@ -1,0 +1,1 @@
+"""Records of cards, and the model that predicts them."""

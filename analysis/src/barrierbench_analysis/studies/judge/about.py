@@ -1,0 +1,146 @@
+"""What the frames of another program do not say: --about FILE (configs/schema/judge.schema.json)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.spec_file import read_spec, refused
+from barrierbench_analysis.program.trajectories.trajectory import MOST_METRES, Topology, Trajectory, checked
+
+
+@dataclass(frozen=True)
+class About:
+    """Densities of a body: kg/m^3 of tetrahedra, kg/m^2 of triangles, kg/m of segments."""
+
+    given: np.ndarray  # vertices that the scene moves
+    half_thickness_m: np.ndarray | None  # [n_vertices]
+    density: dict[str, float] = field(default_factory=dict)
+    dt_s: float | None = None
+    gravity_m_s2: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+def _cells(data: dict, path: Path, key: str, topology: Topology) -> np.ndarray:
+    """Those of the frames, and those of the file."""
+    own, n, rows = getattr(topology, key), topology.n_vertices, data.get(key, [])
+    for k, row in enumerate(rows):
+        if max(row) >= n or len(set(row)) < len(row):
+            raise refused(path, f"{key}/{k}", row, f"a list of different numbers from 0 to {n - 1}")
+    return np.concatenate([own, np.array(rows, np.int64).reshape(-1, own.shape[1])])
+
+
+def _check_obstacle(one: dict, path: Path, place: str) -> None:
+    """What the schema does not say. Errors: UserError."""
+    point, axis, radius = one.get("point_m", [0]), one.get("axis", [1]), one.get("radius_m", 0.0)
+    if not np.isfinite(axis).all():
+        raise refused(path, f"{place}/axis", axis, "a direction of finite numbers")
+    for key, numbers in (("point_m", point), ("radius_m", [radius])):
+        if max(map(abs, numbers)) > MOST_METRES:
+            raise refused(path, f"{place}/{key}", one[key], f"at most {MOST_METRES:g} in size")
+    if not any(axis):
+        raise refused(path, f"{place}/axis", axis, "a direction, a vector that is not zero,")
+    if one["kind"] != "plane" and "radius_m" not in one:
+        raise UserError(f"{path}#/{place}/radius_m: is missing; a {one['kind']} needs a number > 0 in m")
+
+
+def _check_whole_cells(path: Path, topology: Topology) -> None:
+    """Errors: UserError with the first cell that has vertices of two bodies."""
+    body = topology.body_of_vertices()
+    for key in ("triangles", "segments", "tetrahedra"):
+        cells = getattr(topology, key)
+        split = np.flatnonzero((body[cells] != body[cells[:, :1]]).any(axis=1))
+        if len(split):
+            cell = cells[split[0]]
+            first, other = (topology.names[k] for k in np.unique(body[cell])[:2])
+            raise refused(
+                path,
+                "bodies",
+                f"the cell {cell.tolist()} of `{key}` (one of {len(split)}) with vertices of {first!r} and"
+                f" of {other!r}",
+                "a list of bodies of which each has all vertices of its cells",
+            )
+
+
+def _with_bodies(data: dict, path: Path, trajectory: Trajectory) -> Trajectory:
+    """Bodies by their numbers of vertices, in order."""
+    if "bodies" not in data:
+        return trajectory
+    counts = [body["vertices"] for body in data["bodies"]]
+    names = [body["name"] for body in data["bodies"]]
+    n = trajectory.topology.n_vertices
+    if sum(counts) != n:
+        raise refused(path, "bodies", sum(counts), f"a sum of {n} vertices")
+    if len(set(names)) != len(names):
+        raise refused(path, "bodies", names, "a name for each body")
+    first = tuple(np.cumsum([0, *counts[:-1]]).tolist())
+    topology = replace(trajectory.topology, names=tuple(names), first_vertex=first)
+    _check_whole_cells(path, topology)
+    return replace(trajectory, topology=topology)
+
+
+def _body(name: str, path: Path, place: str, trajectory: Trajectory) -> np.ndarray:
+    """Its vertices."""
+    t = trajectory.topology
+    if name not in t.names:
+        raise refused(path, place, name, f"one of {', '.join(t.names)}")
+    return np.flatnonzero(t.body_of_vertices() == t.names.index(name))
+
+
+def with_cells(trajectory: Trajectory, path: Path | None) -> tuple[dict, Trajectory]:
+    """The file's keys, and the trajectory with its cells, bodies and obstacles."""
+    if path is None:
+        return {}, trajectory
+    data = read_spec(path, "judge")
+    t = trajectory.topology
+    topology = replace(
+        t,
+        **{name: _cells(data, path, name, t) for name in ("triangles", "segments", "tetrahedra")},
+    )
+    for k, one in enumerate(data.get("obstacles", [])):
+        _check_obstacle(one, path, f"obstacles/{k}")
+    more = replace(
+        trajectory,
+        topology=topology,
+        obstacles=trajectory.obstacles + data.get("obstacles", []),
+        planar=data.get("planar", trajectory.planar),
+    )
+    return data, _with_bodies(data, path, checked(more))
+
+
+def _half_thickness(data: dict, path: Path, trajectory: Trajectory) -> np.ndarray | None:
+    if "thickness_m" not in data:
+        return trajectory.half_thickness_m
+    said, n = data["thickness_m"], trajectory.topology.n_vertices
+    by_body = said if isinstance(said, dict) else {}
+    half = np.full(n, 0.0 if isinstance(said, dict) else said / 2)
+    for name, value in by_body.items():
+        half[_body(name, path, f"thickness_m/{name}", trajectory)] = value / 2
+    if half.max() > MOST_METRES:
+        raise refused(path, "thickness_m", said, f"at most {2 * MOST_METRES:g} m")
+    return half
+
+
+def about_of(data: dict, path: Path | None, trajectory: Trajectory) -> About:
+    """What refers to bodies by name. Errors: UserError with the place in the file."""
+    n = trajectory.topology.n_vertices
+    given = [_body(name, path, f"given/{k}", trajectory) for k, name in enumerate(data.get("given", []))]
+    vertices = data.get("given_vertices", [])
+    for k, vertex in enumerate(vertices):
+        if vertex >= n:
+            raise refused(path, f"given_vertices/{k}", vertex, f"a number below {n}")
+    for name in data.get("density", {}):
+        _body(name, path, f"density/{name}", trajectory)
+    if "density" in data and data.get("dt_s") is None and trajectory.times_s is None:
+        raise UserError(f"{path}#/density: needs times of the frames for velocities: dt_s")
+    if not np.isfinite(data.get("dt_s", 0.0) * len(trajectory.labels)):
+        raise refused(path, "dt_s", data["dt_s"], "a step with which all times are finite")
+    return About(
+        np.unique(np.concatenate([*given, np.array(vertices, int)]).astype(int)),
+        _half_thickness(data, path, trajectory),
+        data.get("density", {}),
+        data.get("dt_s"),
+        tuple(data.get("gravity_m_s2", (0.0, 0.0, 0.0))),
+    )

@@ -1,0 +1,101 @@
+"""Frames through the verb `audit` of the program: its answers, one a frame, and the total."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.program.start import piped
+from barrierbench_analysis.program.trajectories.trajectory import MOST_METRES, Trajectory, surface_of
+
+from .about import About
+
+CROSSED, CLEAN = 1, 0  # exit codes of the program that are answers
+REACH_SHARE = 0.1  # of the mean edge of the first frame: gaps above it are not measured
+
+
+def _reach_of(first: np.ndarray, sides: np.ndarray) -> float:
+    """0 without edges, and where their ends are not finite."""
+    if not len(sides) or not np.isfinite(first[sides]).all():
+        return 0.0
+    with np.errstate(over="ignore"):
+        length = np.linalg.norm(first[sides[:, 1]] - first[sides[:, 0]], axis=1)
+        return min(float(length.mean()) * REACH_SHARE, MOST_METRES)
+
+
+def subject_of(trajectory: Trajectory, about: About, first: np.ndarray, reach_m: float | None) -> dict:
+    """barrierbench.subject/1."""
+    t = trajectory.topology
+    triangles = surface_of(t)
+    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]], t.segments])
+    subject = {
+        "schema": "barrierbench.subject/1",
+        "n_vertices": t.n_vertices,
+        "reach_m": _reach_of(first, sides) if reach_m is None else reach_m,
+        "planar": trajectory.planar,
+        "bodies": [{"name": name, "first_vertex": first} for name, first in zip(t.names, t.first_vertex)],
+        "triangles": triangles.tolist(),
+        "segments": t.segments.tolist(),
+        "given": about.given.tolist(),
+        "obstacles": trajectory.obstacles,
+    }
+    if about.half_thickness_m is not None:
+        subject["half_thickness_m"] = about.half_thickness_m.tolist()
+    return subject
+
+
+def audited(
+    trajectory: Trajectory, subject: dict, each: Callable[[int, np.ndarray], None]
+) -> tuple[list[dict], dict, float]:
+    """Answers of all frames, the total, and seconds that reading took. each: called with every frame as it is
+    handed on. Errors: UserError of the trajectory, or with what the program says.
+    """
+    with tempfile.TemporaryDirectory(prefix="barrierbench-judge-") as folder:
+        path = Path(folder) / "subject.json"
+        path.write_text(json.dumps(subject, allow_nan=False))
+        with piped("audit", str(path)) as child:
+            said: dict[str, bytes] = {}
+            threads = [
+                threading.Thread(target=lambda name=name: said.update({name: getattr(child, name).read()}))
+                for name in ("stdout", "stderr")
+            ]
+            for thread in threads:
+                thread.start()
+            try:
+                reading = _hand_on(trajectory.frames(), child, each)
+            except BaseException:
+                child.kill()
+                raise
+            finally:
+                for thread in threads:
+                    thread.join()
+    if child.returncode not in (CLEAN, CROSSED):
+        why = said["stderr"].decode().strip().replace(str(path), f"what was handed on of {trajectory.source}")
+        raise UserError(
+            f"the program's audit ended with {child.returncode}: {why}", passed_on(child.returncode)
+        )
+    lines = [json.loads(line) for line in said["stdout"].splitlines()]
+    return lines[:-1], lines[-1]["total"], reading
+
+
+def _hand_on(frames: Iterator[np.ndarray], child: subprocess.Popen, each: Callable) -> float:
+    """Seconds that reading took. A program that no longer listens has said why, and its exit code tells."""
+    reading, number = 0.0, 0
+    start = time.perf_counter()
+    with suppress(BrokenPipeError), child.stdin:
+        for x in frames:
+            reading += time.perf_counter() - start
+            child.stdin.write(np.ascontiguousarray(x, "<f8").data)
+            each(number, x)
+            number += 1
+            start = time.perf_counter()
+    return reading

@@ -1,0 +1,185 @@
+"""Sweep files that are made here, the program that runs them, and their records, read strictly."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from barrierbench_analysis.io import input_file, places
+from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.record_file import RecordError, read_record
+from barrierbench_analysis.program.start import run_sweep
+from barrierbench_analysis.studies.gate.configs import differences
+
+from . import formulations
+from .formulations import known
+from .metrics import METRICS
+
+# What formulations may differ in; everything else of two configs has to be equal.
+OF_A_FORMULATION = (
+    "/formulation/name",
+    "/formulation/shape",
+    "/formulation/argument",
+    "/formulation/stiffness_policy/",
+    "/strain_limit/shape",
+    "/strain_limit/argument",
+    "/strain_limit/stiffness_policy/",
+    "/matching/",
+)
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A sweep file: its text, and the labels of its cases in their order."""
+
+    name: str
+    text: str
+    notes: tuple[str, ...]  # labels.note of the records
+
+    @property
+    def digest(self) -> str:
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+
+def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[int] | None = None) -> Sweep:
+    """One axis of cases {label, set}, and one of seeds where they are given."""
+    axes: list[dict] = [{"cases": cases}]
+    notes = [f"{name}: {case['label']}" for case in cases]
+    if seeds:
+        axes.append({"pointer": "/seeds/main", "values": seeds})
+        notes = [f"{note} main={seed}" for note in notes for seed in seeds]
+    data = {
+        "schema": "barrierbench.sweep/1",
+        "name": name,
+        "base": str(base.resolve()),
+        "set": common,
+        "axes": axes,
+    }
+    return Sweep(name, json.dumps(data, indent=1) + "\n", tuple(notes))
+
+
+def _last(key: str, above: str) -> str:
+    """The last key of a way; of the name of a formulation `formulation`, since a name alone is a formulation
+    too.
+    """
+    *before, last = [above, *key.strip("/").split("/")]
+    return "formulation" if last == "name" and before[-1] == "formulation" else last
+
+
+def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
+    """Contents of the files that settings name: configs under configs, meshes, presets, methods. name: the
+    last key of the way to the node.
+    """
+    if isinstance(node, dict):
+        for key in sorted(node):
+            of_axis = key == "values" and isinstance(node.get("pointer"), str)
+            yield from _inputs(node[key], folder, _last(node["pointer"] if of_axis else key, name))
+    elif isinstance(node, list):
+        for one in node:
+            yield from _inputs(one, folder, name)
+    elif name == "formulation" and node in known():
+        yield input_file.read_bytes(formulations.PRESETS / f"{node}.json")
+    elif name == "method" and isinstance(node, str) and (file := places.METHODS / f"{node}.json").is_file():
+        yield input_file.read_bytes(file)
+        yield from _inputs(read_object(file)["set"], folder)
+    elif name in ("base", "extends", "file") and isinstance(node, str) and (folder / node).is_file():
+        yield input_file.read_bytes(folder / node)
+        if name != "file":
+            yield from _inputs(read_object(folder / node), (folder / node).parent)
+
+
+def inputs_sha256(made: Sweep, overrides: list[str] | None = None, plugins: list[str] | None = None) -> str:
+    """Of the contents, not the places, of all files that the runs of a sweep are made from. A base or a
+    plugin that is missing adds nothing: the program refuses it.
+    """
+    data = json.loads(made.text)
+    found = hashlib.sha256()
+    for part in _inputs(
+        [data, dict(text.partition("=")[::2] for text in overrides or [])], Path(data["base"]).parent
+    ):
+        found.update(hashlib.sha256(part).digest())
+    for plugin in plugins or []:
+        found.update(
+            hashlib.sha256(input_file.read_bytes(Path(plugin)) if Path(plugin).is_file() else b"").digest()
+        )
+    return found.hexdigest()
+
+
+def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: list[str] | None = None) -> None:
+    """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: UserError
+    with the first line of what the program said; input that it refuses leaves nothing.
+    """
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / f"{made.name}.json"
+        file.write_text(made.text)
+        words = ["--progress", "none"]
+        for override in overrides or []:
+            words += ["--set", override]
+        done = run_sweep(file, out, *words, plugins=plugins or [])
+    if done.returncode != 0:
+        first, *more = (done.stderr.strip() or done.stdout.strip()).splitlines() or ["it said nothing"]
+        first = first.removeprefix(f"{file} ")
+        raise UserError(
+            f"the program ended with {done.returncode}: {first}"
+            + (f" (and {len(more)} more lines)" if more else ""),
+            passed_on(done.returncode),
+        )
+
+
+def read_strictly(path: Path) -> dict:
+    """A record. Errors: UserError."""
+    try:
+        return read_record(path)
+    except RecordError as error:
+        raise UserError(str(error)) from None
+
+
+def collect(made: Sweep, out: Path) -> dict[str, dict]:
+    """note -> record, of every case of the sweep. Errors: UserError when one is missing or there twice."""
+    found: dict[str, dict] = {}
+    for path in sorted(out.glob("*/run.json")):
+        record = read_strictly(path)
+        note = record["labels"].get("note", "")
+        if note not in made.notes:
+            continue
+        if note in found:
+            raise UserError(
+                f"{path}: a second record of {note!r}: {out} holds runs with other settings; name another"
+                " folder with --out"
+            )
+        found[note] = record
+    if missing := [note for note in made.notes if note not in found]:
+        raise UserError(
+            f"{out}: {len(missing)} of {len(made.notes)} records are missing, the first {missing[0]!r}"
+        )
+    return found
+
+
+def check_equal(records: dict[str, dict]) -> None:
+    """Refuses records whose configs differ in more than a formulation."""
+    notes = list(records)
+    for note in notes[1:]:
+        found = differences(records[notes[0]]["config"], records[note]["config"])
+        if unlike := [line for line in found if not line.startswith(OF_A_FORMULATION)]:
+            raise UserError(f"{notes[0]!r} and {note!r} are not runs of the same config: {unlike[0]}")
+
+
+def check_varied(record: dict, vary: str, place: str) -> None:
+    """Refuses to vary a strain limit that the run does not have: all formulations would be the same run."""
+    if vary == "limit" and record["matching"].get("limit_load_N_per_m") is None:
+        raise UserError(
+            f"{place}: no strain limit acts in scene {record['labels']['scene']!r}, so that nothing varies;"
+            " contact or both, or a limit: /strain_limit/limit"
+        )
+
+
+def metric(record: dict, name: str) -> float | None:
+    """A number of metrics.py; None where the record has none."""
+    if name not in METRICS:
+        raise UserError(f"metric {name!r}: one of {', '.join(METRICS)}")
+    return METRICS[name][3](record)

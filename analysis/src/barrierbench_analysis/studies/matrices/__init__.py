@@ -1,0 +1,1 @@
+"""The corpus of hard systems, and who finds their condition numbers."""

@@ -1,0 +1,159 @@
+"""Where a barrier is better and where worse than others, from rows at equal target, starts and hard cases.
+One number decides nothing: a barrier that does not come to the end somewhere is said first.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from statistics import median
+
+from barrierbench_analysis.studies.gap_map.compare import Ratio, at_gap
+
+from .candidate import RIVALS
+
+SAME = 1.10  # a ratio of means within this factor is no difference
+METRICS = {
+    "newton": "Newton iterations of the run",
+    "pcg": "PCG iterations of a solve, median in contact",
+    "cond_p95": "condition number in contact, 95th percentile",
+    "bj_p95": "the same after block-Jacobi scaling",
+    "off_target": "reached gap off its target, as a factor",
+    "spread": "median gap over that of the deepest 5 % of the load",
+}  # the smaller the better
+COSTS = ("newton", "pcg", "cond_p95", "bj_p95")
+GAPS = (0.8, 0.5, 0.2, 0.1, 0.05)  # over d_hat, at which it is held against the log
+BETTER, WORSE, EVEN, OPEN = "better", "worse", "even", "not judged"
+LEAST_SCENES = 2  # scenes are the samples: one of them tells nothing of others
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Of one metric at one target beside one rival: geometric mean over scenes of candidate over rival."""
+
+    metric: str
+    theta: float
+    rival: str
+    ratio: float
+    low: float
+    high: float
+    scenes: int
+
+    @property
+    def verdict(self) -> str:
+        """Beyond SAME, and in the same direction in every scene, of which there are LEAST_SCENES."""
+        if self.scenes < LEAST_SCENES:
+            return OPEN
+        if self.ratio <= 1 / SAME and self.high <= 1:
+            return BETTER
+        return WORSE if self.ratio >= SAME and self.low >= 1 else EVEN
+
+
+def value(row: dict, metric: str) -> float | None:
+    """A number of a row that ended ok; None where there is none."""
+    if row["outcome"] != "ok":
+        return None
+    if metric == "off_target":
+        return max(row["gap"] / row["theta"], row["theta"] / row["gap"]) if row["gap"] else None
+    if metric == "spread":
+        return row["gap"] / row["gap_p05"] if row["gap"] and row["gap_p05"] else None
+    return row[metric]
+
+
+def comparisons(rows: list[dict], label: str) -> list[Comparison]:
+    """Where at least one scene has both numbers."""
+    found = []
+    for metric in METRICS:
+        for theta in sorted({row["theta"] for row in rows}, reverse=True):
+            for rival in RIVALS:
+                logs = _logs(rows, metric, theta, label, rival)
+                if logs:
+                    mean = math.exp(sum(logs) / len(logs))
+                    found.append(
+                        Comparison(
+                            metric, theta, rival, mean, math.exp(min(logs)), math.exp(max(logs)), len(logs)
+                        )
+                    )
+    return found
+
+
+def _logs(rows: list[dict], metric: str, theta: float, label: str, rival: str) -> list[float]:
+    by = {
+        (row["scene"], row["resolution"], row["shape"]): value(row, metric)
+        for row in rows
+        if row["theta"] == theta
+    }
+    places = dict.fromkeys((scene, resolution) for scene, resolution, _ in by)
+    both = [(by.get((*place, label)), by.get((*place, rival))) for place in places]
+    return [math.log(mine / theirs) for mine, theirs in both if mine and theirs]
+
+
+def at_equal_gap(rows: list[dict], label: str) -> list[tuple[str, float, Ratio]]:
+    """metric, gap over d_hat, candidate over log, each along its own path over theta: geometric mean over
+    the scenes in which both come down to that gap.
+    """
+    ratios = {gap: at_gap(rows, "off", gap, [label]).ratios.get(label, {}) for gap in GAPS}
+    return [(metric, gap, of[metric]) for metric in COSTS for gap, of in ratios.items() if metric in of]
+
+
+def row_times(rows: list[dict]) -> dict[str, tuple[float, int]]:
+    """method -> median over its runs of the nanoseconds of a contact row, and of how many runs. No verdict: a
+    machine that does something else beside it makes a single run many times slower.
+    """
+    found: dict[str, list[float]] = {}
+    for row in rows:
+        if row["row_ns"] is not None:
+            found.setdefault(row["shape"], []).append(row["row_ns"])
+    return {method: (median(of), len(of)) for method, of in found.items()}
+
+
+def failed(rows: list[dict], label: str) -> list[str]:
+    """Matched runs that did not end ok."""
+    return [
+        f"{row['scene']}, theta {row['theta']:g}: {row['outcome']}"
+        for row in rows
+        if row["shape"] == label and row["outcome"] != "ok"
+    ]
+
+
+def lost(cases: list[dict], label: str) -> dict[str, list[str]]:
+    """Hard cases that others end ok and the candidate does not ("lost"), and the other way round ("won")."""
+    by: dict[tuple[str, str], dict[str, str]] = {}
+    for case in cases:
+        by.setdefault((case["test"], case["case"]), {})[case["method"]] = case["outcome"]
+    out: dict[str, list[str]] = {"lost": [], "won": []}
+    for (test, case), ends in by.items():
+        mine, others = ends[label], [end for method, end in ends.items() if method != label]
+        if mine != "ok" and "ok" in others:
+            out["lost"].append(f"{test} {case}: {mine}")
+        if mine == "ok" and any(end != "ok" for end in others):
+            out["won"].append(
+                f"{test} {case}: {', '.join(m for m, end in ends.items() if end != 'ok')} not ok"
+            )
+    return out
+
+
+def decides(rows: list[dict], starts: list[dict], cases: list[dict], label: str) -> list[str]:
+    """Sentences, what weighs most first: outcomes, then starts, then costs with the largest ratio."""
+    said = []
+    if ends := failed(rows, label):
+        said.append(f"It does not reach every target: {'; '.join(ends)}.")
+    hard = lost(cases, label)
+    if hard["lost"]:
+        said.append(f"It fails where another comes to the end: {'; '.join(hard['lost'])}.")
+    if hard["won"]:
+        said.append(f"It comes to the end where another fails: {'; '.join(hard['won'])}.")
+    mine = next(one for one in starts if one["method"] == label)
+    if mine["ok"] < mine["of"]:
+        said.append(
+            f"{mine['of'] - mine['ok']} of {mine['of']} jittered starts do not end ok:"
+            f" {', '.join(mine['others'])}."
+        )
+    found = [one for one in comparisons(rows, label) if one.verdict in (BETTER, WORSE)]
+    for one in sorted(found, key=lambda one: -abs(math.log(one.ratio)))[:4]:
+        said.append(
+            f"{METRICS[one.metric].capitalize()}: {one.ratio:.2f} times those of {one.rival} at theta"
+            f" {one.theta:g}"
+            f" ({one.low:.2f} to {one.high:.2f} over {one.scenes} scenes): {one.verdict}."
+        )
+    return said or ["Nothing here tells it from the others by more than 10 % in every scene."]

@@ -1,0 +1,1 @@
+"""Hard time steps as data: results/steps and their page."""

@@ -1,0 +1,1 @@
+"""The contact pipeline beside the IPC Toolkit."""

@@ -1,0 +1,1 @@
+"""Records as tidy tables, and the statistics of them."""
