@@ -109,7 +109,9 @@ def test_nothing_is_at_issue_without_the_limit(program, inputs, tmp_path):
 WRITERS = """
 from pathlib import Path
 from matplotlib.figure import Figure
-from analysis import figure_files, matrix_corpus, whole_file
+from barrierbench_analysis.figures import figure_files
+from barrierbench_analysis.io import whole_file
+from barrierbench_analysis.studies.matrices import matrix_corpus
 from barrierbench_analysis.studies.engines import ours
 from barrierbench_analysis.studies.gate import trend
 from barrierbench_analysis.pages.readme import figures
@@ -178,7 +180,7 @@ def test_a_full_disk_without_a_folder_for_temporary_files_is_said_as_such(progra
     done = bench("render", "a.json", cwd=tmp_path, program=program, at_most=0)
     said = done.stderr.splitlines()[-1]  # matplotlib, too, says that it cannot write
     assert done.returncode == 75 and re.fullmatch(r"bench render: a temporary file \([^)]*\): File too large", said), done.stderr
-    unnamed = "from analysis import errors; print(errors.text_of(OSError(28, 'No space left on device')))"
+    unnamed = "from barrierbench_analysis.io import errors; print(errors.text_of(OSError(28, 'No space left on device')))"
     done = python(unnamed, tmp_path, at_most=0)
     assert done.returncode == 0 and re.fullmatch(r"a temporary file \([^)]*\) or a stream: No space left on device\n", done.stdout), done.stderr
 

@@ -1,4 +1,4 @@
-"""Files that a user names are opened in one place, analysis/src/barrierbench_analysis/io/input_file.py, which refuses what can be waited for or read for ever."""
+"""Files that a user names are opened in one place, io/input_file.py, which refuses what can be waited for or read for ever."""
 
 import ast
 import os
@@ -10,19 +10,19 @@ import pytest
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import opened, read_bytes, read_text
 
-ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = Path(__file__).resolve().parents[2] / "analysis/src/barrierbench_analysis"
 READERS = {"open", "read_text", "read_bytes", "load", "loadtxt", "genfromtxt", "fromfile", "memmap", "mmread", "mminfo", "read_csv", "parse", "ZipFile", "ElementTree"}
 # What these open is no file that a user names, or is opened by the place above: file -> calls.
 KNOWN = {
-    "input_file.py": {"open", "read_bytes"},
-    "judge/arrays.py": {"load"},  # of a file that was opened there
-    "gpu_evidence.py": {"open"},  # an archive, of a file that was opened there
-    "gate/matrices.py": {"mmread", "mminfo"}, "engines/launch.py": {"load", "open"},  # of bytes that were read there; a log that is written
-    "gate/trend.py": {"open"}, "engines/environment.py": {"open"}, "frames_out/formats.py": {"open"}, "front/test.py": {"open"}, "front/building.py": {"open"},
-    "study/archive.py": {"ZipFile", "open"},  # of a file that was opened there; files that it unpacks
-    "toolkit_meshes.py": {"open"}, "animation.py": {"open"}, "whole_file.py": {"open"},  # written
+    "io/input_file.py": {"open", "read_bytes"},
+    "program/trajectories/arrays.py": {"load"},  # of a file that was opened there
+    "studies/device/gpu_evidence.py": {"open"},  # an archive, of a file that was opened there
+    "io/matrix_market.py": {"mmread", "mminfo"}, "studies/engines/launch.py": {"load", "open"},  # of bytes that were read there; a log that is written
+    "studies/gate/trend.py": {"open"}, "studies/engines/environment.py": {"open"}, "figures/frames_out/formats.py": {"open"}, "front/test.py": {"open"}, "program/building.py": {"open"},
+    "tables/archive.py": {"ZipFile", "open"},  # of a file that was opened there; files that it unpacks
+    "studies/toolkit/toolkit_meshes.py": {"open"}, "figures/pictures/animation.py": {"open"}, "io/whole_file.py": {"open"},  # written
     "front/door.py": {"open"},  # /dev/null
-    "formula/__main__.py": {"load"},  # of the standard input
+    "program/formula/__main__.py": {"load"},  # of the standard input
 }
 
 
@@ -40,8 +40,8 @@ def calls_in(path: Path) -> set[str]:
 
 
 def test_no_other_place_opens_a_file():
-    found = {str(path.relative_to(ROOT / "analysis")): calls for path in sorted((ROOT / "analysis").rglob("*.py")) if (calls := calls_in(path))}
-    assert len(found) >= 5 and "input_file.py" in found
+    found = {str(path.relative_to(PACKAGE)): calls for path in sorted(PACKAGE.rglob("*.py")) if (calls := calls_in(path))}
+    assert len(found) >= 5 and "io/input_file.py" in found
     assert {name: calls - KNOWN.get(name, set()) for name, calls in found.items() if calls - KNOWN.get(name, set())} == {}
 
 

@@ -178,7 +178,7 @@ def test_the_program_takes_the_place_of_the_front_door(tmp_path, monkeypatch):
     stand_in = tmp_path / "program"
     stand_in.write_text('#!/bin/sh\necho "$BENCH_VERBS" | tr " " "\\n" | grep -c .\nread line; echo "$line $*"; exit 75\n')
     stand_in.chmod(0o755)
-    text = (f"import sys; sys.path[0] = {str(ROOT / "analysis" / "src")!r}\nfrom pathlib import Path\nfrom barrierbench_analysis.front import building, door\n"
+    text = (f"import sys; sys.path[0] = {str(ROOT / 'analysis/src')!r}\nfrom pathlib import Path\nfrom barrierbench_analysis.front import building, door\n"
             f"building.ensure_program = lambda: Path({str(stand_in)!r})\nsys.exit(door.main(['eval', '-']))")
     environment = {name: value for name, value in os.environ.items() if name != "BARRIERBENCH_PROGRAM"}
     done = subprocess.run([sys.executable, "-c", text], input="hello\n", capture_output=True, text=True, check=False, cwd=tmp_path, env=environment)

@@ -48,15 +48,15 @@ def test_a_stream_passes_everything_else(capsys):
 
 SAYS = """
 import sys, warnings
-from barrierbench_analysis.front import streams
+from barrierbench_analysis.program import streams
 def say(text):
     print(text, file=sys.stderr, flush=True)
     warnings.warn(text)
 """
 PROCESSES = """
 import multiprocessing, said
-from analysis import processes
-from barrierbench_analysis.front import streams
+from barrierbench_analysis.program import processes
+from barrierbench_analysis.program import streams
 if __name__ == "__main__":
     streams.prepare()
     with processes.pool(1, multiprocessing.get_context({kind!r})) as pool:
@@ -68,7 +68,7 @@ if __name__ == "__main__":
 def test_processes_that_verbs_start_speak_as_they_do(tmp_path, kind):
     (tmp_path / "said.py").write_text(SAYS)
     (tmp_path / "pools.py").write_text(PROCESSES.format(kind=kind))
-    done = subprocess.run([sys.executable, "pools.py"], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, "pools.py"], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis/src")}, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "a\\x1bb\nbench: warning: a\\x1bb\n")
 
 
@@ -78,9 +78,9 @@ def test_pools_are_made_in_one_place():
 
 
 def test_a_line_of_progress_is_erased_on_a_terminal(tmp_path):
-    code = "from barrierbench_analysis.front import streams; streams.prepare()\nfrom barrierbench_analysis.program.progress import counted\nfor _ in counted('ab', 2, 'film\\x07'): pass"
+    code = "from barrierbench_analysis.program import streams; streams.prepare()\nfrom barrierbench_analysis.program.progress import counted\nfor _ in counted('ab', 2, 'film\\x07'): pass"
     ours, theirs = pty.openpty()
-    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, stderr=theirs, check=True)
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis/src")}, stderr=theirs, check=True)
     os.close(theirs)
     said = os.read(ours, 10000).decode()
     os.close(ours)
@@ -94,7 +94,7 @@ def test_a_line_of_progress_is_erased_on_a_terminal(tmp_path):
 def test_a_letter_that_the_locale_has_not_is_written_as_its_number(tmp_path):
     plain = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONIOENCODING": "ascii"}
     code = "import sys\nfrom barrierbench_analysis.front import door, streams\nstreams.prepare(); door.open_streams(); print('\\u4e2d')"
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**plain, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**plain, "PYTHONPATH": str(ROOT / "analysis/src")}, capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("\\u4e2d\n", "")
 
 

@@ -1,5 +1,5 @@
 // (d_hat - d)^2 * (exp(1 - d / d_hat) + cosh(1 - d / d_hat) + atan(1 - d / d_hat)) + (d_hat - d)^(5 / 2) / d_hat^(1 / 2)
-// Made by analysis/formula; not edited. e = 1 - u, u = d/d_hat, l = -ln u, r = 1/u.
+// Made by ./bench formula; not edited. e = 1 - u, u = d/d_hat, l = -ln u, r = 1/u.
 // clang-format off
 #include <cmath>
 #include <limits>

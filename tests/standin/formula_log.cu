@@ -1,5 +1,5 @@
 // -(d - d_hat)^2 * log(d / d_hat)
-// Made by analysis/formula; not edited. e = 1 - u, u = d/d_hat, l = -ln u, r = 1/u.
+// Made by ./bench formula; not edited. e = 1 - u, u = d/d_hat, l = -ln u, r = 1/u.
 // clang-format off
 #include <cmath>
 #include <limits>

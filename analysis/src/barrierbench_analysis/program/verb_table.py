@@ -16,7 +16,7 @@ class Verb(NamedTuple):
     name: str
     group: str  # one of GROUPS
     needs: str  # ENVIRONMENT, PROGRAM, or a target of the release build
-    module: str  # below analysis/; empty: a verb of the program, or of the script ./bench itself
+    module: str  # below barrierbench_analysis; empty: a verb of the program, or of the script ./bench itself
     arguments: str
     help: str
     example: str

@@ -35,7 +35,7 @@ EVERY = 7  # points that the compiled library is asked at
 
 TEMPLATE = """\
 // kappa = {formula}
-// Made by analysis/src/barrierbench_analysis/program/formula; not edited.
+// Made by ./bench formula; not edited.
 #include <cmath>
 
 #include "core/barrier/stiffness_sums.hpp"

@@ -23,7 +23,7 @@ ELEMENTARY = {
 
 HEAD = """\
 // {formula}
-// Made by analysis/src/barrierbench_analysis/program/formula; not edited. e = 1 - u, u = d/d_hat, l = -ln u, r = 1/u.
+// Made by ./bench formula; not edited. e = 1 - u, u = d/d_hat, l = -ln u, r = 1/u.
 // clang-format off
 """
 STRUCT = """\
