@@ -66,7 +66,7 @@ def test_color_has_one_spelling_in_help_and_two_on_the_command_line(parse, capsy
 
 def test_set_is_declared_in_one_place(capsys):
     """All verbs take it from there; --set of the gate names a set of cases."""
-    declared = {path.relative_to((ROOT / "analysis/src/barrierbench_analysis")).as_posix() for path in (ROOT / "analysis/src/barrierbench_analysis").rglob("*.py") if re.search(r'add_argument\(\s*"--set"', path.read_text())}
+    declared = {path.relative_to(ROOT / "analysis/src/barrierbench_analysis").as_posix() for path in (ROOT / "analysis/src/barrierbench_analysis").rglob("*.py") if re.search(r'add_argument\(\s*"--set"', path.read_text())}
     assert declared == {"program/arguments.py", "studies/gate/cases.py"}
     assert render.parse(["run", "--set", "/scene/n=8", "--set", "/time/steps=2"]).overrides == ["/scene/n=8", "/time/steps=2"]
     assert match.arguments(["config", "--set", "/scene/n=8"]).overrides == ["/scene/n=8"]

@@ -128,7 +128,7 @@ def test_the_program_has_the_verbs_and_groups_of_the_table(program):
 
 def rows_with_a_parser() -> list[verbs.Verb]:
     """The verbs in Python that take their arguments by themselves."""
-    return [verb for verb in verbs.TABLE if verb.module and "parser_of(" in (ROOT / f"analysis/{verb.module.replace('.', '/')}.py").read_text()]
+    return [verb for verb in verbs.TABLE if verb.module and "parser_of(" in (ROOT / f"analysis/src/barrierbench_analysis/{verb.module.replace('.', '/')}.py").read_text()]
 
 
 @pytest.mark.parametrize("verb", rows_with_a_parser(), ids=lambda verb: verb.name)
@@ -168,7 +168,7 @@ def test_what_judges_kept_numbers_needs_no_built_program(verb, arguments, needed
 
 def test_the_front_door_starts_without_numpy(tmp_path):
     """It stands before `eval`, which answers line by line."""
-    text = "import sys; sys.path[0] = sys.argv[1]\nfrom barrierbench_analysis.front import building, door\ndoor.usage()\nprint(*sorted({'numpy', 'pandas', 'matplotlib'} & set(sys.modules)))"
+    text = "import sys; sys.path[0] = sys.argv[1]\nfrom barrierbench_analysis.front import door\nfrom barrierbench_analysis.program import building\ndoor.usage()\nprint(*sorted({'numpy', 'pandas', 'matplotlib'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", text, str(ROOT / "analysis" / "src")], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert done.stdout.strip() == ""
 
@@ -178,7 +178,7 @@ def test_the_program_takes_the_place_of_the_front_door(tmp_path, monkeypatch):
     stand_in = tmp_path / "program"
     stand_in.write_text('#!/bin/sh\necho "$BENCH_VERBS" | tr " " "\\n" | grep -c .\nread line; echo "$line $*"; exit 75\n')
     stand_in.chmod(0o755)
-    text = (f"import sys; sys.path[0] = {str(ROOT / 'analysis/src')!r}\nfrom pathlib import Path\nfrom barrierbench_analysis.front import building, door\n"
+    text = (f"import sys; sys.path[0] = {str(ROOT / 'analysis/src')!r}\nfrom pathlib import Path\nfrom barrierbench_analysis.front import door\nfrom barrierbench_analysis.program import building\n"
             f"building.ensure_program = lambda: Path({str(stand_in)!r})\nsys.exit(door.main(['eval', '-']))")
     environment = {name: value for name, value in os.environ.items() if name != "BARRIERBENCH_PROGRAM"}
     done = subprocess.run([sys.executable, "-c", text], input="hello\n", capture_output=True, text=True, check=False, cwd=tmp_path, env=environment)

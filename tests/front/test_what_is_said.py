@@ -93,7 +93,7 @@ def test_a_line_of_progress_is_erased_on_a_terminal(tmp_path):
 
 def test_a_letter_that_the_locale_has_not_is_written_as_its_number(tmp_path):
     plain = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONIOENCODING": "ascii"}
-    code = "import sys\nfrom barrierbench_analysis.front import door, streams\nstreams.prepare(); door.open_streams(); print('\\u4e2d')"
+    code = "import sys\nfrom barrierbench_analysis.front import door\nfrom barrierbench_analysis.program import streams\nstreams.prepare(); door.open_streams(); print('\\u4e2d')"
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**plain, "PYTHONPATH": str(ROOT / "analysis/src")}, capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("\\u4e2d\n", "")
 
