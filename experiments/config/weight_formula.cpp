@@ -56,10 +56,11 @@ class Formula {
             fmt::format("the name \"{}\" at position {} of \"{}\"", error.GetToken(), error.GetPos(), text_),
             names);
       }
-      throw ConfigError(where_,
-                        fmt::format("\"{}\", position {}, token \"{}\": {}", text_, error.GetPos(),
-                                    error.GetToken(), error.GetMsg()),
-                        fmt::format("a formula in {}", names));
+      const std::string token =
+          error.GetToken().empty() ? "" : fmt::format(", token \"{}\"", error.GetToken());
+      throw ConfigError(
+          where_, fmt::format("\"{}\", position {}{}: {}", text_, error.GetPos(), token, error.GetMsg()),
+          fmt::format("a formula in {}", names));
     }
   }
 

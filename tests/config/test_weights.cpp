@@ -134,8 +134,9 @@ TEST(WeightSettings, of_a_formula_are_refused_with_its_position_or_the_vertex) {
   };
   const std::string at = "a.json#/scene/bodies/0/weights/0/formula: found ";
   for (const auto& [formula, found, allowed] :
-       {std::tuple{"x +", "\"x +\", position 3, token \"", "a formula in x, y, z (m)"},
-        {"min(x, ", "\"min(x, \", position 7, token", "a formula in x, y, z (m)"},
+       {std::tuple{"x +", "\"x +\", position 4: Unexpected end", "a formula in x, y, z (m)"},
+        {"min(x, ", "\"min(x, \", position 8: Unexpected end", "a formula in x, y, z (m)"},
+        {"x + * y", "\"x + * y\", position 4, token \"*\": Unexpected", "a formula in x, y, z (m)"},
         {"x < r ? 1 : 0", "the name \"r\" at position 4 of \"x < r ? 1 : 0\"", "x, y, z (m), numbers, _pi"},
         {"x = 0 ? 1 : 0", "an assignment at position 2 of \"x = 0 ? 1 : 0\"", "== for a comparison"},
         {"0.5, 1", "2 values of \"0.5, 1\"", "one value"},
