@@ -213,12 +213,12 @@ def draw_state(axis, made: Cut, tear: Tear, step: int) -> None:
     x = tear.x[step]
     half = SPEED * tear.t[-1]
     axis.plot_trisurf(
-        *x.T, triangles=made.mesh.triangles, color="0.85", edgecolor="0.45", linewidth=0.2, shade=False
+        *x.T, triangles=made.mesh.triangles, color="0.85", edgecolor="0.45", linewidth=0.1, shade=False
     )
     for pair in np.stack([made.upper, made.lower], 1)[~tear.broken[step]]:
         axis.plot(*x[pair].T, color="tab:red", linewidth=2)
     axis.set(title=f"t = {tear.t[step]:.2f} s", xlim=(-0.1, 0.1), ylim=(-0.05, 0.05), zlim=(-half, half))
-    axis.set_box_aspect((0.2, 0.1, 2 * half), zoom=1.4)
+    axis.set_box_aspect((0.2, 0.1, 2 * half), zoom=1.15)
     axis.view_init(elev=20, azim=-60)
     axis.set_axis_off()
 
@@ -229,8 +229,8 @@ def draw(made: Cut, tear: Tear, path: Path) -> None:
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
 
-    figure = plt.figure(figsize=(10, 8))
-    grid_of = figure.add_gridspec(2, 4, height_ratios=(1, 1.4))
+    figure = plt.figure(figsize=(10, 6.5))
+    grid_of = figure.add_gridspec(2, 4, height_ratios=(1.2, 1))
     through = int(np.argmax(tear.broken.all(axis=1))) or len(tear.t) - 1
     for i, (values, label) in enumerate(
         [

@@ -58,6 +58,8 @@ def test_the_line_tears_through_stitch_by_stitch(program, tmp_path):
     assert len(set(counts)) > COLUMNS // 2  # not all at once
     found = tear.read_tear(made(), tmp_path / "run")
     assert (np.diff(found.front(made())) >= 0).all() and found.front(made())[-1] == pytest.approx(tear.SIZE[0])
+    through = found.t[np.argmax(found.broken.all(axis=1))]
+    assert through * tear.SPEED == pytest.approx(tear.SIZE[0], rel=0.1)  # legs that do not stretch: the front goes as far as they do
     assert abs(found.force[-1]) < 0.05 * found.force.max()  # nothing is left to pull at
     assert record["audit"]["crossings"] == 0
     assert (tmp_path / "tearing.png").stat().st_size > 10000

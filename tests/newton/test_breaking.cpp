@@ -86,6 +86,29 @@ TEST(Breaking, goes_through_archives_bit_for_bit) {
   }
 }
 
+TEST(Breaking, lets_go_with_the_acceleration_of_what_is_left) {
+  Scene scene = chain(1e-6);  // the first stitch alone, which the weight breaks in the first step
+  scene.mass[1] = 1;
+  scene.gravity = Vec3d(10, 0, 0);
+  scene.pins.pop_back();
+  scene.mass[2] = 1;
+  for (auto* column : {&scene.stitches.stiffness, &scene.stitches.rest_length, &scene.stitches.strength})
+    column->pop_back();
+  scene.stitches.pairs.pop_back();
+  scene.stitches.stiffness[0] = 1000;
+  Method method = test::fixed_method("log", 1, "newmark");
+  method.step_solver.tol_velocity = 1e-11;
+  Simulation run(scene, method, dt, 20);
+  StepObserver nobody;
+  ASSERT_EQ(run.step(nobody).broken_stitches, 1);
+  const double x = run.history().x(0, 1), v = run.history().v(0, 1);
+  ASSERT_LT(v, 0.95 * 10 * dt) << "it held";
+  for (int i = 1; i < 20; ++i) {
+    ASSERT_EQ(run.step(nobody).status, StepStatus::converged);
+    EXPECT_NEAR(run.history().x(0, 1), x + v * i * dt + 5 * i * i * dt * dt, 1e-9) << i;
+  }
+}
+
 TEST(Breaking, is_seen_by_the_next_step_alone) {
   const Scene scene = chain();
   test::HostFamily family([&](const FamilyPlace& place) { return stitch_family(place, scene.stitches); });
