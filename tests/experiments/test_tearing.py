@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_cli import bench, refused
 
 from analysis.record_file import read_record
 
@@ -75,3 +76,22 @@ def test_the_tear_waits_where_the_line_is_stronger(program, tmp_path):
     passed, strong = (int(np.argmax(which)) for which in (found.broken[:, weak].all(axis=1), found.broken[:, ~weak].any(axis=1)))
     assert 0 < passed and passed + 20 < strong
     assert found.force[passed:].max() > 2 * found.force[: passed + 1].max()
+
+
+def test_the_device_executor_breaks_the_same_stitches(program, tmp_path):
+    counts = []
+    for words in ([], ["/device=host", "/linear_solver/name=pcg_resident"]):
+        config = tear.write_scene(made(), tmp_path / str(len(counts)), 60)
+        sets = [word for setting in words for word in ("--set", setting)]
+        done = bench(program, "run", config, "--out", config.parent / "run", *sets)
+        assert done.returncode == 0, done.stderr
+        counts.append([step["broken_stitches"] for step in read_record(config.parent / "run/run.json")["steps"]])
+    assert counts[0] == counts[1] and counts[0][-1] > 1
+
+
+def test_other_engines_are_refused(program, tmp_path):
+    config = tear.write_scene(made(), tmp_path, 1)
+    content = json.loads(config.read_text())
+    content["scene"]["bodies"][0]["pins"] = []  # pulls are refused, too
+    config.write_text(json.dumps(content))
+    refused(bench(program, "neutral", config), f"found stitch ({COLUMNS} stitches)")
