@@ -111,7 +111,8 @@ bool Simulation::other_pulls() const {
                      [&](const Pull& pull) { return pull.span.holds(now) != pull.span.holds(before); });
 }
 
-// Forces jump where vertices are let go or held, where pulls begin or end and where stitches break: an acceleration of before is not theirs.
+// Forces jump where vertices are let go or held, where pulls begin or end and where stitches break: an acceleration of
+// before is not theirs.
 void Simulation::begin_anew() {
   history_.anew = true;
   if (!method_.integrator->needs_acceleration()) return;

@@ -1,5 +1,6 @@
-"""examples/tearing: a cloth is cut along its weak edges, every stitch of the line breaks one after the other, and the tear waits where
-the line is stronger. The frames say which stitches are broken; the script itself compares them with what records count.
+"""examples/tearing: a cloth is cut along its weak edges, every stitch of the line breaks one after the other, and
+the tear waits where the line is stronger. The frames say which stitches are broken; the script itself compares
+them with what records count.
 """
 
 import json
@@ -55,12 +56,16 @@ def test_the_line_tears_through_stitch_by_stitch(program, tmp_path):
     assert f"{COLUMNS} of {COLUMNS} stitches are broken" in said.stdout
     record = read_record(tmp_path / "run/run.json")
     counts = [step["broken_stitches"] for step in record["steps"]]
-    assert counts == sorted(counts) and counts[0] == 0 and counts[-1] == COLUMNS == record["summary"]["broken_stitches"]
+    assert counts == sorted(counts) and counts[0] == 0
+    assert counts[-1] == COLUMNS == record["summary"]["broken_stitches"]
     assert len(set(counts)) > COLUMNS // 2  # not all at once
     found = tear.read_tear(made(), tmp_path / "run")
-    assert (np.diff(found.front(made())) >= 0).all() and found.front(made())[-1] == pytest.approx(tear.SIZE[0])
-    through = found.t[np.argmax(found.broken.all(axis=1))]
-    assert through * tear.SPEED == pytest.approx(tear.SIZE[0], rel=0.1)  # legs that do not stretch: the front goes as far as they do
+    front = found.front(made())
+    assert (np.diff(front) >= 0).all() and front[-1] == pytest.approx(tear.SIZE[0])
+    through = found.t[
+        np.argmax(found.broken.all(axis=1))
+    ]  # the front goes as far as legs that do not stretch
+    assert through * tear.SPEED == pytest.approx(tear.SIZE[0], rel=0.1)
     assert abs(found.force[-1]) < 0.05 * found.force.max()  # nothing is left to pull at
     assert record["audit"]["crossings"] == 0
     assert (tmp_path / "tearing.png").stat().st_size > 10000
@@ -73,7 +78,8 @@ def test_the_tear_waits_where_the_line_is_stronger(program, tmp_path):
     found = tear.read_tear(cut, tmp_path / "run")
     weak = cut.weight < 0.5
     assert 3 < weak.sum() < COLUMNS - 3
-    passed, strong = (int(np.argmax(which)) for which in (found.broken[:, weak].all(axis=1), found.broken[:, ~weak].any(axis=1)))
+    passed = int(np.argmax(found.broken[:, weak].all(axis=1)))
+    strong = int(np.argmax(found.broken[:, ~weak].any(axis=1)))
     assert 0 < passed and passed + 20 < strong
     assert found.force[passed:].max() > 2 * found.force[: passed + 1].max()
 
@@ -85,7 +91,9 @@ def test_the_device_executor_breaks_the_same_stitches(program, tmp_path):
         sets = [word for setting in words for word in ("--set", setting)]
         done = bench(program, "run", config, "--out", config.parent / "run", *sets)
         assert done.returncode == 0, done.stderr
-        counts.append([step["broken_stitches"] for step in read_record(config.parent / "run/run.json")["steps"]])
+        counts.append(
+            [step["broken_stitches"] for step in read_record(config.parent / "run/run.json")["steps"]]
+        )
     assert counts[0] == counts[1] and counts[0][-1] > 1
 
 

@@ -1,4 +1,5 @@
-// Stitches that break: in the step in which their tension passes their strength and never before, for good, and through archives.
+// Stitches that break: in the step in which their tension passes their strength and never before, for good, and
+// through archives.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,8 @@ constexpr double increment = stiffness * speed * dt / 2;  // N, of the tension o
 constexpr double weak = 10.5 * increment, strong = 20 * increment;
 constexpr int broken_in = 10;  // step in which the tension becomes 11 increments
 
-/// A light particle between one that is held and one that is led away, at rest at the start; the stitch of the first has that strength.
+/// A light particle between one that is held and one that is led away, at rest at the start. strength: of the stitch to
+/// the first, N.
 Scene chain(double strength = weak) {
   Scene scene;
   scene.name = "chain";
