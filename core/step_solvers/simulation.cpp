@@ -70,6 +70,7 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
     throw std::logic_error("the method has step_needs of another step solver than " + entry_.name);
   }
   if (entry_.settings.unmoved) require_unmoved(scene, entry_.name);
+  if (entry_.settings.own_stiffness) require_unbreakable(scene, entry_.name);
   make_system();
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
@@ -110,7 +111,8 @@ bool Simulation::other_pulls() const {
                      [&](const Pull& pull) { return pull.span.holds(now) != pull.span.holds(before); });
 }
 
-// Forces jump where vertices are let go or held, and where pulls begin or end: an acceleration of before is not theirs.
+// Forces jump where vertices are let go or held, where pulls begin or end and where stitches break: an acceleration of
+// before is not theirs.
 void Simulation::begin_anew() {
   history_.anew = true;
   if (!method_.integrator->needs_acceleration()) return;
@@ -126,6 +128,7 @@ void Simulation::keep_motion(Archive& archive) {
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
           history_.v_prev, history_.t, history_.anew, step_, nominal_, nominal_start_, parts_);
   if (size_.adaptive()) archive(size_);
+  if (scene_.stitches.first_breakable()) archive(broken_, broke_);
   if (held_.changes()) {
     std::vector<int> holding = held_.holding();
     archive(holding);
@@ -155,7 +158,7 @@ StepReport Simulation::step(StepObserver& observer) {
   clock.restart(Phase::step_control);
   ChargedObserver charged(observer, clock);
   if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
-  if (others || other_pulls()) begin_anew();
+  if (others || other_pulls() || broke_) begin_anew();
   StepReport report = attempt_until_converged(charged);
 
   const int halvings = parts_.halvings();
@@ -163,6 +166,8 @@ StepReport Simulation::step(StepObserver& observer) {
   if (size_.adaptive()) choose_length(report, halvings);
   report.t_s = history_.t;
   measure_end(*system_, report);
+  broke_ = report.broken_stitches > broken_;
+  broken_ = report.broken_stitches;
   if (end_residual_ && report.status == StepStatus::converged) measure_residual(report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
     report.kinetic_J += 0.5 * held_.now().mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();

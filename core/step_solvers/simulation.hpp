@@ -66,6 +66,8 @@ class Simulation {
   int n_steps_ = 0, step_ = 0, nominal_ = 0;  // step_: every part counts
   double nominal_start_ = 0;                  // s
   double load_factor_ = 1;                    // of the last attempt
+  long long broken_ = 0;                      // stitches, once the last step is over
+  bool broke_ = false;                        // whether any of them broke in it
   StepSize size_;
   StepParts parts_;
   std::unique_ptr<NewtonSystem> system_;

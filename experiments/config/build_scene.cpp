@@ -122,7 +122,7 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     if (body.rest_mesh.given()) {
       take_rest_shape(body, where + "/rest_mesh", spec);
     }
-    spec.weights = make_weights(body.weights, spec.start ? *spec.start : spec.mesh.vertices);
+    spec.weights = make_weights(body.weights, spec.start ? *spec.start : spec.mesh.vertices, where);
     if (body.limited) spec.material.limit = limit;
     spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);
     builder.add_body(spec);

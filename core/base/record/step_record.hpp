@@ -68,6 +68,8 @@ struct StepRecord : WorkCounts {
   BB_FIELD(Number, restitution_dissipation_J,
            "sum over contacts of what restitution takes of the speed of their gaps, force times way",
            "no_restitution");
+  BB_FIELD(long long, broken_stitches,
+           "stitches that are broken once it is over, those of earlier steps too") = 0;
   BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma of triangles at its end",
            "no_limit");
   BB_FIELD(Number, solid_limit_load_max_Pa, "largest (1/volume) dS_e/dsigma of tetrahedra at its end",

@@ -71,6 +71,8 @@ struct StitchSpec {
   std::vector<int> a_vertices, b_vertices;  // of their own meshes
   double stiffness = 0;                     // N/m, of each spring, > 0
   double rest_length = 0;                   // m, >= 0
+  std::optional<double> strength = {};  // N, > 0: the tension beyond which a spring breaks; absent: none does
+  std::string weights = {};             // a group of a, factors on strength by a_vertices; empty: 1
 };
 
 /// What is asked of a pair: a CollisionKind, or the one that follows from whether the two surfaces close.

@@ -58,6 +58,7 @@ class SceneBuilder {
   void append_surface(const BodySpec& spec, int first);
   void append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface, int first);
   std::vector<int> stitched(const std::string& body, const std::vector<int>& own, const std::string& where);
+  std::vector<double> strengths(const StitchSpec& stitch, const std::string& where);
   void append_obstacle_vertices();
   void append_groups();
   void append_collisions();
@@ -70,10 +71,11 @@ class SceneBuilder {
   Scene scene_;
   std::string where_;
   std::vector<std::string> names_;
-  std::vector<int> pin_of_;          // [n_vertices] index into scene_.pins, -1 free
-  std::vector<int> held_;            // the same of pins that hold for the whole run
-  std::vector<char> closed_;         // [bodies] whether the surface closes
-  std::vector<std::string> groups_;  // [bodies]
+  std::vector<int> pin_of_;                        // [n_vertices] index into scene_.pins, -1 free
+  std::vector<int> held_;                          // the same of pins that hold for the whole run
+  std::vector<char> closed_;                       // [bodies] whether the surface closes
+  std::vector<std::string> groups_;                // [bodies]
+  std::vector<std::vector<WeightGroup>> weights_;  // [bodies]
   std::vector<CollisionSpec> collisions_;
   std::vector<std::string> collisions_at_;  // where each is
   std::vector<Violation> violations_;
