@@ -96,7 +96,8 @@ struct Summary : WorkCounts {
            "body|body or body|obstacle -> step at whose end they first had an active contact row");
   BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element over step ends", "no_limit");
   BB_FIELD(Number, contact_load_max_N, "largest of the steps", "no_contacts");
-  BB_FIELD(long long, broken_stitches, "stitches that are broken at the end of the run") = 0;
+  BB_FIELD(long long, broken_stitches,
+           "stitches that are broken at the end of the run, the largest of the steps") = 0;
   BB_FIELD(Number, limit_load_max_N_per_m, "largest of the steps", "no_limit");
   BB_FIELD(Number, solid_limit_load_max_Pa, "largest of the steps", "no_limit");
   BB_FIELD(StiffnessRecord, stiffness, "policies with one global kappa");
