@@ -18,19 +18,19 @@ AuditMesh late_triangles(bool all = false) {
   return mesh;
 }
 
-/// The second triangle, smaller, at height z over the first.
+/// The second triangle, smaller, at height z over the first, which rises to 0.6 and is at 0.27 to 0.33 there.
 Positions at(double z) {
   Positions x(3, 6);
   x << -1, 1, 0, -0.1, 0.1, 0,     //
       -1, -1, 1, -0.1, -0.1, 0.1,  //
-      0, 0, 0, z, z, z;
+      0, 0, 0.6, z, z, z;
   return x;
 }
 
-/// Upright, half of it below.
+/// On both sides of it.
 Positions across() {
   Positions x = at(0);
-  x(2, 3) = x(2, 4) = 0.1, x(2, 5) = -0.1;
+  x(2, 3) = x(2, 4) = 0.4, x(2, 5) = 0.1;
   return x;
 }
 
@@ -67,12 +67,12 @@ TEST(JudgedPairs, WhatIsThroughWithinAStepAndBackAtItsEndIsClean) {
 }
 
 TEST(JudgedPairs, TheStraightMotionOfAStepCounts) {
-  const AuditLedger through = judged(late_triangles(), {{{at(0.5), at(0.3), at(-0.5)}}});
+  const AuditLedger through = judged(late_triangles(), {{{at(0.5), at(0.45), at(-0.5)}}});
   EXPECT_GT(through.violations, 0);
   EXPECT_TRUE(through.penetrated());
   EXPECT_EQ(through.first_bad_step, 0);
   ASSERT_TRUE(through.first_bad);
-  const AuditLedger two = judged(late_triangles(), {{{at(0.5), at(0.3)}}, {{at(0.3), at(-0.5)}}});
+  const AuditLedger two = judged(late_triangles(), {{{at(0.5), at(0.45)}}, {{at(0.45), at(-0.5)}}});
   EXPECT_EQ(two.first_bad_step, 1);
 }
 
@@ -123,7 +123,7 @@ TEST(JudgedPairs, ObstaclesAreOwnersToo) {
   const AuditLedger late = judged(mesh, dips);
   EXPECT_TRUE(late.ok());
   EXPECT_GT(late.obstacle_judged.total(), 0);
-  EXPECT_GT(judged(mesh, {{{at(0.5), at(0.3), at(0.9)}}}).obstacle_violations, 0);
+  EXPECT_GT(judged(mesh, {{{at(0.5), at(0.45), at(0.9)}}}).obstacle_violations, 0);
   EXPECT_GT(judged(mesh, {{{at(0.5), at(1.6)}}}).obstacle_violations, 0) << "through it in one step";
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/audit/audit.hpp"
@@ -14,7 +15,7 @@
 namespace bb::audited_test {
 namespace {
 
-constexpr double dt = 0.01, d_hat = 0.01, fast = -20, slow = -0.2;
+constexpr double dt = 0.01, d_hat = 0.01, fast = -20, slow = -1.5;
 
 /// A small cloth above a closed ball that stands still, or above a large cloth with pinned corners; nothing has a weight.
 Scene thrown(CollisionChoice choice, double speed, bool at_ball = false, double height = 0.05) {
@@ -29,10 +30,12 @@ Scene thrown(CollisionChoice choice, double speed, bool at_ball = false, double 
   other.name = "other";
   if (at_ball) {
     other.kind = BodyKind::rigid;
-    other.mesh = icosphere_mesh(1, 0.03);
-    other.mesh.vertices.row(2).array() -= 0.03;
+    other.mesh = icosphere_mesh(1, 0.3);
+    other.mesh.vertices.row(2).array() -= 0.3;
   } else {
-    for (const int corner : {0, 3, 12, 15}) other.pins.push_back({.indices = {corner}});
+    PinSpec corners;
+    corners.indices = {0, 3, 12, 15};
+    other.pins.push_back(corners);
   }
   builder.add_body(other);
   builder.add_collision({"small", "other", choice}, "/collisions/0");
@@ -59,7 +62,7 @@ class Watch final : public StepObserver {
   int retries = 0, redone = 0;
 };
 
-struct Run {
+struct Course {
   std::vector<StepReport> steps;
   std::vector<Positions> x;  // the start first
   Watch watch;
@@ -87,9 +90,9 @@ struct Run {
   }
 };
 
-Run run(const Scene& scene, Method method, int nominal_steps, StepStatus all = StepStatus::converged) {
+Course course(const Scene& scene, Method method, int nominal_steps, StepStatus all = StepStatus::converged) {
   Simulation simulation(scene, method, dt, nominal_steps);
-  Run out;
+  Course out;
   out.x.push_back(simulation.history().x);
   while (simulation.nominal_steps() < nominal_steps) {
     out.steps.push_back(simulation.step(out.watch));
@@ -113,13 +116,13 @@ bool passes(const Scene& scene, const Positions& x0, const Positions& x1) {
 }
 
 /// Of a step that was done again every motion counts, of others their straight motion.
-bool passes(const Scene& scene, const Run& run) {
+bool passes(const Scene& scene, const Course& of) {
   bool out = false;
-  if (run.redone() > 0) {
-    for (const auto& [x0, x1] : run.watch.motions) out = out || passes(scene, x0, x1);
+  if (of.redone() > 0) {
+    for (const auto& [x0, x1] : of.watch.motions) out = out || passes(scene, x0, x1);
     return out;
   }
-  for (std::size_t k = 1; k < run.x.size(); ++k) out = out || passes(scene, run.x[k - 1], run.x[k]);
+  for (std::size_t k = 1; k < of.x.size(); ++k) out = out || passes(scene, of.x[k - 1], of.x[k]);
   return out;
 }
 
@@ -127,17 +130,17 @@ double height_of_small(const Positions& x) { return x.leftCols(9).row(2).mean();
 
 TEST(Audited, AStepThatPassesThroughIsDoneAgainAndEndsAsWithCcd) {
   for (const bool ball : {false, true}) {
-    const Run through = run(thrown(CollisionChoice::proximity, fast, ball), method_of(), 1);
+    const Course through = course(thrown(CollisionChoice::proximity, fast, ball), method_of(), 1);
     EXPECT_LT(height_of_small(through.x[1]), -0.05) << "nothing passes through";
     EXPECT_TRUE(passes(thrown(CollisionChoice::proximity, fast, ball), through));
     const Scene scene = thrown(CollisionChoice::audited, fast, ball);
-    const Run audited = run(scene, method_of(), 1);
-    const Run ccd = run(thrown(CollisionChoice::ccd, fast, ball), method_of(), 1);
+    const Course audited = course(scene, method_of(), 1);
+    const Course ccd = course(thrown(CollisionChoice::ccd, fast, ball), method_of(), 1);
     EXPECT_EQ(audited.redone(), 1) << ball;
     EXPECT_EQ(audited.watch.redone, 1);
     EXPECT_EQ(audited.retries(), 0) << "the length stays";
     EXPECT_EQ(audited.steps[0].dt_s, dt);
-    EXPECT_GT(audited.contacts(), 0U);
+    EXPECT_GT(audited.contacts(), 0U) << ball;
     EXPECT_EQ(audited.x[1], ccd.x[1]) << ball;
     EXPECT_FALSE(passes(scene, audited)) << ball;
     EXPECT_EQ(audited.steps[0].newton_iterations,
@@ -149,11 +152,10 @@ TEST(Audited, AStepThatPassesThroughIsDoneAgainAndEndsAsWithCcd) {
 
 TEST(Audited, ASlowSceneIsProvenAtOnceWithFewerQueries) {
   const Scene scene = thrown(CollisionChoice::audited, slow, false, 0.012);
-  const Run audited = run(scene, method_of(), 8);
-  const Run ccd = run(thrown(CollisionChoice::ccd, slow, false, 0.012), method_of(), 8);
+  const Course audited = course(scene, method_of(), 8);
+  const Course ccd = course(thrown(CollisionChoice::ccd, slow, false, 0.012), method_of(), 8);
   EXPECT_EQ(audited.redone(), 0);
   EXPECT_GT(audited.contacts(), 0U);
-  EXPECT_GT(audited.queries(), 0);
   EXPECT_LT(audited.queries(), ccd.queries());
   EXPECT_FALSE(passes(scene, audited));
   EXPECT_LT((audited.x.back() - ccd.x.back()).cwiseAbs().maxCoeff(), 8 * dt * 1e-4);
@@ -166,10 +168,10 @@ TEST(Audited, EveryStepSolverHasItRightOrRefusesIt) {
     Method method = method_of(entry.name);
     method.step_solver.saddle = SaddleRule::ignore;
     try {
-      const Run of = run(scene, method, 2);
+      const Course of = course(scene, std::move(method), 2);
       EXPECT_GT(of.redone(), 0) << entry.name;
       EXPECT_FALSE(passes(scene, of)) << entry.name;
-      EXPECT_GT(height_of_small(of.x.back()), -0.03) << entry.name;
+      EXPECT_GT(height_of_small(of.x.back()), -0.05) << entry.name;
       ++right;
     } catch (const ConfigError& error) {
       EXPECT_NE(std::string(error.what()).find(entry.name), std::string::npos) << error.what();
@@ -185,12 +187,12 @@ TEST(Audited, EveryStepSolverHasItRightOrRefusesIt) {
 
 TEST(Audited, PartsOfAStepThatWasDoneAgainAreBounded) {
   const Scene scene = thrown(CollisionChoice::audited, fast);
-  const Run whole = run(scene, method_of(), 1);
+  const Course whole = course(scene, method_of(), 1);
   Method capped = method_of();
   capped.step_solver.max_iterations = whole.steps[0].newton_iterations - whole.steps[0].iterations_before - 1;
   ASSERT_GE(capped.step_solver.max_iterations, whole.steps[0].iterations_before);
   capped.step_solver.retries = 8;
-  const Run of = run(scene, capped, 1);
+  const Course of = course(scene, std::move(capped), 1);
   EXPECT_GT(of.redone(), 0);
   EXPECT_GT(of.retries(), 0);
   EXPECT_EQ(of.steps[0].dt_s, dt / (1 << of.steps[0].retries));
@@ -201,29 +203,34 @@ TEST(Audited, PartsOfAStepThatWasDoneAgainAreBounded) {
 }
 
 TEST(Audited, AStepThatEndsTheRunIsProvenToo) {
-  Method method = method_of();
-  method.step_solver.max_iterations = 1;
-  const Scene scene = thrown(CollisionChoice::audited, fast);
-  const Run of = run(scene, method, 1, StepStatus::iteration_cap);
+  const auto cut_off = [](const Scene& scene) {
+    Method method = method_of();
+    method.step_solver.max_iterations = 1;
+    return course(scene, std::move(method), 1, StepStatus::iteration_cap);
+  };
+  const Scene scene = thrown(CollisionChoice::audited, fast), open = thrown(CollisionChoice::proximity, fast);
+  const Course of = cut_off(scene);
   EXPECT_EQ(of.redone(), 1);
   EXPECT_FALSE(passes(scene, of));
-  const Scene open = thrown(CollisionChoice::proximity, fast);
-  EXPECT_TRUE(passes(open, run(open, method, 1, StepStatus::iteration_cap)));
+  EXPECT_TRUE(passes(open, cut_off(open)));
 }
 
 TEST(Audited, StepsOfChosenLengthAndBoundsOfEachVertex) {
   const Scene scene = thrown(CollisionChoice::audited, fast);
   Method adaptive = method_of();
   adaptive.step_size.rule = StepSizeRule::adaptive;
-  const Run parts = run(scene, adaptive, 3);
+  const Course parts = course(scene, std::move(adaptive), 3);
   EXPECT_GT(parts.redone(), 0);
   EXPECT_GT(parts.steps.size(), 3U) << "no step was cut";
   EXPECT_FALSE(passes(scene, parts));
-  Method each = method_of();
-  each.contact_options.step_bound = StepBoundRule::planar_balanced;
-  const Run of = run(scene, each, 1);
-  EXPECT_EQ(of.redone(), 1);
-  EXPECT_EQ(of.x[1], run(thrown(CollisionChoice::ccd, fast), each, 1).x[1]);
+  const auto by_vertex = [](const Scene& of) {
+    Method method = method_of();
+    method.contact_options.step_bound = StepBoundRule::planar_balanced;
+    return course(of, std::move(method), 1);
+  };
+  const Course each = by_vertex(scene);
+  EXPECT_EQ(each.redone(), 1);
+  EXPECT_EQ(each.x[1], by_vertex(thrown(CollisionChoice::ccd, fast)).x[1]);
 }
 
 TEST(Audited, AnArchiveBetweenStepsIsTheWholeRun) {
@@ -270,12 +277,12 @@ TEST(Audited, ABodyAndItselfUnderAuto) {
   };
   const Scene scene = strip(CollisionChoice::automatic);
   ASSERT_EQ(scene.collisions.kind(0, 0), CollisionKind::audited);
-  const Run audited = run(scene, method_of(), 1);
+  const Course audited = course(scene, method_of(), 1);
   EXPECT_EQ(audited.redone(), 1);
   EXPECT_GT(audited.contacts(), 0U);
-  EXPECT_EQ(audited.x[1], run(strip(CollisionChoice::ccd), method_of(), 1).x[1]);
+  EXPECT_EQ(audited.x[1], course(strip(CollisionChoice::ccd), method_of(), 1).x[1]);
   EXPECT_FALSE(passes(scene, audited));
-  EXPECT_TRUE(passes(scene, run(strip(CollisionChoice::proximity), method_of(), 1)));
+  EXPECT_TRUE(passes(scene, course(strip(CollisionChoice::proximity), method_of(), 1)));
 }
 
 }  // namespace
