@@ -26,12 +26,13 @@ class Audit {
   /// the park distance. Returns what this motion adds to the ledger.
   MotionAudit check_motion(const Positions& x0, const Positions& x1, int step, double tolerance);
 
-  /// Judges a step from x0 to x1, m: the obstacles, where there is a promise, and the pairs of the mesh that are judged at the ends of steps
-  /// alone (JudgedPairs::late), in the state x1 and in the straight motion, with the tolerance of check_motion. x0 is the end of the step
-  /// before, or x1 at the start.
+  /// Judges a step from x0 to x1, m: the obstacles, where there is a promise, and the pairs of the mesh that
+  /// are judged at the ends of steps alone (JudgedPairs::late), in the state x1 and in the straight motion,
+  /// with the tolerance of check_motion. x0 is the end of the step before, or x1 at the start.
   void check_step_end(const Positions& x0, const Positions& x1, int step, double tolerance);
 
-  /// Whether those pairs are judged as all others in the motions and states from here on, and not at the ends of steps.
+  /// Whether those pairs are judged as all others in the motions and states from here on, and not at the ends
+  /// of steps.
   void judge_all_motions(bool all) { all_motions_ = all; }
 
   /// Tells of a state that the run reached and that is not the end of the last judged motion: an audit with

@@ -78,7 +78,8 @@ struct AuditLedger {
     ++motions;
     add_found(m, step);
   }
-  /// Of the pairs that are judged at the ends of steps alone: the state there, which add() counts, and the motion of the step.
+  /// Of the pairs that are judged at the ends of steps alone: the state there, which add() counts, and the
+  /// motion of the step.
   void add_late(const StateAudit& end, const MotionAudit& way, int step) {
     add_found(end, step);
     add_found(way, step);

@@ -7,8 +7,8 @@
 
 namespace bb::audit {
 
-/// What a judge looks at: all pairs, or those that it has to judge in the states and motions within steps, or those in the state at the
-/// end of a step and in the straight motion of the whole step.
+/// What a judge looks at: all pairs, or those that it has to judge in the states and motions within steps, or
+/// those in the state at the end of a step and in the straight motion of the whole step.
 enum class Scope { all, within_steps, at_step_ends };
 
 /// Plain data. An owner is a body by its number or, behind all bodies, an obstacle.

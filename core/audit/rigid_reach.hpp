@@ -23,7 +23,8 @@ class RigidReach {
     for (const auto& t : mesh.triangles.colwise()) add(t);
   }
 
-  /// False only if every primitive that this one may meet is of its own rigid body, or of a body that is out of scope with its own.
+  /// False only if every primitive that this one may meet is of its own rigid body, or of a body that is out
+  /// of scope with its own.
   template <class Column>
   bool may_meet_others(const Column& ids) const {
     if (!mesh_) return true;

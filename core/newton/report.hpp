@@ -92,7 +92,8 @@ class StepObserver {
   virtual void on_motion(const Positions& /*x0*/, const Positions& /*x1*/, int /*step*/) {}
   /// The step failed and begins again from its start, shorter: what it was is no part of the run.
   virtual void on_retry(int /*step*/) {}
-  /// The step was not proven to pass through nothing and begins again from its start, as long, with every motion bounded until it is over.
+  /// The step was not proven to pass through nothing and begins again from its start, as long, with every
+  /// motion bounded until it is over.
   virtual void on_redo(int step) { on_retry(step); }
   /// A finished step; `system` holds the contact table of its end state.
   virtual void on_step(StepSystem&, const StepReport&, const Positions& /*x*/) {}

@@ -214,8 +214,9 @@ StepReport Simulation::attempt(StepObserver& observer) {
   return report;
 }
 
-// Every attempt but the first begins as a run that goes on from an archive of the start would. One whose motion is not proven is
-// made again as long as it was; from there on all motions of the step are bounded, and nothing is left to prove.
+// Every attempt but the first begins as a run that goes on from an archive of the start would. One whose
+// motion is not proven is made again as long as it was; from there on all motions of the step are bounded,
+// and nothing is left to prove.
 StepReport Simulation::attempt_until_converged(StepObserver& observer) {
   Archive start;
   if (parts_.can_halve() || proves_steps_) keep(start);

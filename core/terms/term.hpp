@@ -100,7 +100,8 @@ class Term {
   // --- a step that is proven when it is over (docs/design.md, Collision choice)
   /// Whether bound() holds for pairs too that a step is proven for when it is over.
   virtual void bound_audited(bool /*bound*/) {}
-  /// How far the straight motion of the whole step, x_n to the iterate x, is proven free of what passes through in these pairs.
+  /// How far the straight motion of the whole step, x_n to the iterate x, is proven free of what passes
+  /// through in these pairs.
   virtual StepBound prove_step(const PositionsView& /*x_n*/, const PositionsView& /*x*/, PhaseClock&) {
     return {};
   }

@@ -10,7 +10,8 @@
 namespace bb {
 namespace {
 
-/// Of pairs that no motion is bounded for at first. Only solvers with a step bound refuse states by their gaps.
+/// Of pairs that no motion is bounded for at first. Only solvers with a step bound refuse states by their
+/// gaps.
 std::string promise_of(CollisionKind kind, const StepSolverEntry& solver) {
   const bool judges_states = solver.needs.step_bound;
   switch (kind) {

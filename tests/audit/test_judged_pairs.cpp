@@ -1,5 +1,5 @@
-// Pairs of bodies that are judged at the ends of steps alone: what happens within a step is none of their business, its end and its
-// straight motion are.
+// Pairs of bodies that are judged at the ends of steps alone: what happens within a step is none of their
+// business, its end and its straight motion are.
 #include <gtest/gtest.h>
 
 #include "core/audit/audit.hpp"

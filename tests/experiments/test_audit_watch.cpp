@@ -205,7 +205,8 @@ TEST(AuditWatch, AfterAFailedAttemptTheMotionStartsWhereTheStepDid) {
   EXPECT_NE(watch.verdict().detail.find("no judged motion"), std::string::npos) << watch.verdict().detail;
 }
 
-/// Of a pair that a step is proven for when it is over, what happens within the step counts only where the step is done again.
+/// Of a pair that a step is proven for when it is over, what happens within the step counts only where the
+/// step is done again.
 TEST(AuditWatch, OfAuditedPairsTheEndOfAStepCountsAndAllOfOneThatIsDoneAgain) {
   Scene scene = sheet_over_ball();
   scene.collisions.pairs = {{0, 1, CollisionKind::audited, "as given"}};

@@ -85,6 +85,8 @@ json thrown_at_a_sheet(const Method& method) {
   config["scene"]["bodies"] = {plate("plate", 0.015, -10), plate("sheet", 0)};
   config["scene"]["bodies"][0]["transform"]["translate_m"] = {0.011, 0.007, 0.015};
   config["scene"]["bodies"][1]["pins"] = {{{"all", true}}};
+  config["scene"]["bodies"][1]["transform"]["scale"] = 2;
+  if (!method.solver.needs.overlap) config["formulation"]["shape"] = "log";  // a bounded one cannot carry it
   config["scene"]["collisions"] = {{{"a", "plate"}, {"b", "sheet"}, {"kind", "audited"}}};
   config["formulation"]["d_hat_m"] = 2e-3;
   config["formulation"]["stiffness_policy"]["kappa_N_per_m"] = 1e5;

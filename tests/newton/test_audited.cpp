@@ -1,5 +1,5 @@
-// Pairs that collide as `audited`: no motion is bounded, the straight motion of a step is proven free of contact when it is over, and a
-// step for which it is not is done again as with `ccd`.
+// Pairs that collide as `audited`: no motion is bounded, the straight motion of a step is proven free of
+// contact when it is over, and a step for which it is not is done again as with `ccd`.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,8 @@ namespace {
 
 constexpr double dt = 0.01, d_hat = 0.01, fast = -20, slow = -1.5;
 
-/// A small cloth above a closed ball that stands still, or above a large cloth with pinned corners; nothing has a weight.
+/// A small cloth above a closed ball that stands still, or above a large cloth with pinned corners; nothing
+/// has a weight.
 Scene thrown(CollisionChoice choice, double speed, bool at_ball = false, double height = 0.05) {
   SceneBuilder builder("thrown", false, Vec3d::Zero(), "test");
   BodySpec small = test::cloth_spec(3, height, d_hat);
@@ -102,7 +103,8 @@ Course course(const Scene& scene, Method method, int nominal_steps, StepStatus a
   return out;
 }
 
-/// Whether the surfaces have passed through each other in a straight motion or intersect at its end, as the audit says.
+/// Whether the surfaces have passed through each other in a straight motion or intersect at its end, as the
+/// audit says.
 bool passes(const Scene& scene, const Positions& x0, const Positions& x1) {
   audit::AuditMesh mesh;
   audit::set_edges(scene.surface_triangles, scene.surface_edges, mesh);

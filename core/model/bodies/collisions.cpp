@@ -70,8 +70,8 @@ bool SceneBuilder::has_triangles(int owner) const {
 }
 
 /// Two closed surfaces of which one passes wholly through the other intersect on the way for as long as a body is thick; an open one
-/// may be on either side of another in two states without having intersected it in either. Whether it passed shows in the motion
-/// of a step, once it is over.
+/// may be on either side of another in two states without having intersected it in either. Whether it passed
+/// shows in the motion of a step, once it is over.
 CollisionPair SceneBuilder::decide(const CollisionSpec& spec, int a, int b) const {
   const auto [first, second] = std::minmax(a, b);
   if (const auto kind = given_kind(spec.choice)) return {first, second, *kind, "as given"};
