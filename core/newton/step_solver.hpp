@@ -54,6 +54,8 @@ struct StepSettings {
   bool vertex_steps =
       false;             // it can go another part of a step at each vertex, so bounds of vertices are allowed
   std::string protocol;  // of a scene that no other solver follows, and that it follows alone; empty: none
+  /// Whether a setting takes the step bound away that it needs otherwise; null: none does.
+  bool (*unbounded)(const ParameterMap& complete) = nullptr;
   /// The first of its own settings that contradicts another; where: its name.
   std::optional<Violation> (*contradiction)(const ParameterMap& complete, int max_iterations) = nullptr;
 };

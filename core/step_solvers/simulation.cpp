@@ -33,6 +33,10 @@ class ChargedObserver final : public StepObserver {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_retry(step);
   }
+  void on_redo(int step) override {
+    const ScopedPhase timer(clock_, Phase::output);
+    observer_.on_redo(step);
+  }
   void on_step(StepSystem& system, const StepReport& report, const Positions& x) override {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_step(system, report, x);
@@ -65,12 +69,17 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       size_(method.step_size),
       parts_(method.step_solver.retries + size_.most_halvings()),
       entry_(step_solvers().require(method.step_solver.name, "/step_solver/name")),
+      proves_steps_(scene.collisions.has(CollisionKind::audited)),
       solver_(make_step_solver(method.step_solver)) {
   if (method.step_needs != entry_.needs) {
     throw std::logic_error("the method has step_needs of another step solver than " + entry_.name);
   }
   if (entry_.settings.unmoved) require_unmoved(scene, entry_.name);
   if (entry_.settings.own_stiffness) require_unbreakable(scene, entry_.name);
+  if (proves_steps_ && !bounds_motions(method.step_solver)) {
+    throw ConfigError("/scene/collisions", "a pair that collides as audited",
+                      "none: the step solver " + entry_.name + " bounds no motion");
+  }
   make_system();
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
@@ -210,23 +219,41 @@ StepReport Simulation::attempt(StepObserver& observer) {
   return report;
 }
 
-// Every attempt but the first begins as a run that goes on from an archive of the start would.
+// Every attempt but the first begins as a run that goes on from an archive of the start would. One whose
+// motion is not proven is made again as long as it was; from there on all motions of the step are bounded,
+// and nothing is left to prove.
 StepReport Simulation::attempt_until_converged(StepObserver& observer) {
   Archive start;
-  if (parts_.can_halve()) keep(start);
+  if (parts_.can_halve() || proves_steps_) keep(start);
+  bool bounded = !proves_steps_;
   StepReport report = attempt(observer);
-  while (report.status != StepStatus::converged && parts_.can_halve()) {
-    const StepParts failed = parts_;
-    Archive again(start.bytes());
-    keep(again);
-    parts_ = failed;
-    parts_.halve();
-    observer.on_retry(step_);
-    StepReport shorter = attempt(observer);
-    shorter.add_attempt(report, entry_.counters);
-    report = std::move(shorter);
+  for (;;) {
+    const bool halve = report.status != StepStatus::converged && parts_.can_halve();
+    if (!halve && (bounded || is_proven(report))) break;
+    bounded = bounded || !halve;
+    go_back(start, halve, proves_steps_ && bounded);
+    halve ? observer.on_retry(step_) : observer.on_redo(step_);
+    StepReport again = attempt(observer);
+    halve ? again.add_attempt(report, entry_.counters) : again.add_unproven(report, entry_.counters);
+    report = std::move(again);
   }
+  if (proves_steps_) system_->bound_audited(false);
   return report;
+}
+
+bool Simulation::is_proven(StepReport& report) {
+  const StepBound proof = system_->prove_step();
+  report.audited_queries += proof.queries;
+  return proof.alpha == 1;
+}
+
+void Simulation::go_back(const Archive& start, bool halve, bool bound_audited) {
+  const StepParts parts = parts_;
+  Archive again(start.bytes());
+  keep(again);
+  parts_ = parts;
+  if (halve) parts_.halve();
+  if (bound_audited) system_->bound_audited(true);
 }
 
 // a_0 = M^-1 (f - grad(Psi + B + S)) at the start, of vertices that do not move against the air or a contact; 0 at prescribed

@@ -19,6 +19,8 @@ void summarize_steps(const std::vector<SolverCounter>& counters, RunRecord& reco
     keep_smaller(summary.gap_min_ulps, step.gap_min_ulps);
     keep_smaller(summary.dt_min_s, step.dt_s);
     summary.retries += step.retries;
+    summary.redone_audited += step.redone_audited;
+    summary.audited_queries += step.audited_queries;
     if (step.status == StepStatus::converged) ++summary.end_proofs[std::string(to_string(step.end_proof))];
     if (step.end_error_tolerances.finite()) errors.push_back(step.end_error_tolerances.value);
     keep_smaller(summary.saddle_curvature_N_per_m, step.saddle_curvature_N_per_m);

@@ -76,7 +76,7 @@ struct StitchSpec {
 };
 
 /// What is asked of a pair: a CollisionKind, or the one that follows from whether the two surfaces close.
-enum class CollisionChoice { automatic, ccd, static_test, proximity, off };
+enum class CollisionChoice { automatic, ccd, audited, static_test, proximity, off };
 
 /// What contact does with two bodies, a body and an obstacle, or a body with itself.
 struct CollisionSpec {

@@ -33,6 +33,8 @@ class SceneBuilder {
   void add_stitch(const StitchSpec& stitch, const std::string& where);
   /// Of bodies and obstacles that may come later: finish() looks for them. where: as of add_stitch.
   void add_collision(const CollisionSpec& collision, const std::string& where);
+  /// The step solver of that name bounds no motion: collisions cannot be `audited`, and `auto` makes none so.
+  void set_unbounded_motions(const std::string& step_solver) { unbounded_by_ = step_solver; }
   /// One with a motion gets a vertex that stands for its point, behind those of all bodies, and is a body of that vertex
   /// alone. Its `vertex` is set here.
   void add_obstacle(const Obstacle& obstacle);
@@ -67,6 +69,8 @@ class SceneBuilder {
   bool has_triangles(int owner) const;
   std::string owner_name(int owner) const;
   CollisionPair decide(const CollisionSpec& spec, int a, int b) const;
+  CollisionPair decide_open(int first, int second, const std::string& why) const;
+  bool allows(const CollisionPair& pair, const std::string& where);
 
   Scene scene_;
   std::string where_;
@@ -78,6 +82,7 @@ class SceneBuilder {
   std::vector<std::vector<WeightGroup>> weights_;  // [bodies]
   std::vector<CollisionSpec> collisions_;
   std::vector<std::string> collisions_at_;  // where each is
+  std::string unbounded_by_;  // the step solver that bounds no motion; empty: motions are bounded
   std::vector<Violation> violations_;
 };
 
