@@ -7,8 +7,9 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
-find_package(pugixml REQUIRED)  # VTU, VTP
-find_package(ZLIB REQUIRED)     # and what they compress
+find_package(muparser REQUIRED)  # weights as formulas
+find_package(pugixml REQUIRED)   # VTU, VTP
+find_package(ZLIB REQUIRED)      # and what they compress
 
 find_path(SPECTRA_INCLUDE_DIR Spectra/SymEigsSolver.h REQUIRED)
 find_path(METIS_INCLUDE_DIR metis.h REQUIRED)

@@ -38,8 +38,8 @@ void require_indices(const AuditMesh& mesh, const std::vector<int>& vertices) {
     throw ConfigError("audit mesh", "a negative vertex index", "indices >= 0");
   }
   const int top = vertices.empty() ? highest : std::max(highest, vertices.back());
-  for (const std::size_t n :
-       {mesh.fixed.size(), mesh.prescribed.size(), mesh.motion.size(), mesh.thickness.size()}) {
+  for (const std::size_t n : {mesh.judged.owner.size(), mesh.fixed.size(), mesh.prescribed.size(),
+                              mesh.motion.size(), mesh.thickness.size()}) {
     if (n > 0 && static_cast<std::size_t>(top) >= n) {
       throw ConfigError("audit mesh", "vertex " + std::to_string(top), "below the number of flags");
     }
@@ -61,26 +61,37 @@ Audit::Audit(AuditMesh mesh, double promised_overlap)
   primitives_ = obstacle_primitives(mesh_);
   ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()),
                       static_cast<long>(mesh_.obstacles.size()), primitives_.needed(mesh_)};
-  if (!(promised_overlap > 0) || mesh_.obstacles.empty()) return;
-  ends_.emplace(mesh_, promised_overlap);
-  pairs_ = mesh_;
-  pairs_.obstacles.clear();
+  if (promised_overlap > 0 && !mesh_.obstacles.empty()) {
+    ends_.emplace(mesh_, promised_overlap);
+    pairs_ = mesh_;
+    pairs_.obstacles.clear();
+  }
+  if (mesh_.judged.late.empty()) return;
+  late_ = early_ = ends_ ? pairs_ : mesh_;
+  late_->judged = mesh_.judged.in(Scope::at_step_ends, vertices_);
+  early_.judged = mesh_.judged.in(Scope::within_steps, vertices_);
 }
 
 StateAudit Audit::check_state(const Positions& x, int step) {
-  const StateAudit found = audit_state(ends_ ? pairs_ : mesh_, primitives_, x, ledger_.states == 0);
+  const bool first = ledger_.states == 0;
+  const AuditMesh& all = ends_ ? pairs_ : mesh_;
+  const StateAudit found = audit_state(first ? all : in_motions(), primitives_, x, first);
   ledger_.add(found, step);
   return found;
 }
 
 MotionAudit Audit::check_motion(const Positions& x0, const Positions& x1, int step, double tolerance) {
-  const MotionAudit found = audit_motion(ends_ ? pairs_ : mesh_, vertices_, primitives_, x0, x1, tolerance);
+  const MotionAudit found = audit_motion(in_motions(), vertices_, primitives_, x0, x1, tolerance);
   ledger_.add(found, step);
   return found;
 }
 
-void Audit::check_step_end(const Positions& x0, const Positions& x1, int step) {
-  if (ends_ && x0.allFinite() && x1.allFinite()) ledger_.add(ends_->judge(primitives_, x0, x1), step);
+void Audit::check_step_end(const Positions& x0, const Positions& x1, int step, double tolerance) {
+  if (!x0.allFinite() || !x1.allFinite()) return;
+  if (ends_) ledger_.add(ends_->judge(primitives_, x0, x1), step);
+  if (!late_ || all_motions_) return;
+  const StateAudit end = audit_state(*late_, primitives_, x1, false);
+  ledger_.add_late(end, audit_motion(*late_, vertices_, primitives_, x0, x1, tolerance), step);
 }
 
 }  // namespace bb::audit

@@ -26,8 +26,14 @@ class Audit {
   /// the park distance. Returns what this motion adds to the ledger.
   MotionAudit check_motion(const Positions& x0, const Positions& x1, int step, double tolerance);
 
-  /// Judges the obstacles in a step from x0 to x1, m, where there is a promise; x0 is the end of the step before, or x1 at the start.
-  void check_step_end(const Positions& x0, const Positions& x1, int step);
+  /// Judges a step from x0 to x1, m: the obstacles, where there is a promise, and the pairs of the mesh that
+  /// are judged at the ends of steps alone (JudgedPairs::late), in the state x1 and in the straight motion,
+  /// with the tolerance of check_motion. x0 is the end of the step before, or x1 at the start.
+  void check_step_end(const Positions& x0, const Positions& x1, int step, double tolerance);
+
+  /// Whether those pairs are judged as all others in the motions and states from here on, and not at the ends
+  /// of steps.
+  void judge_all_motions(bool all) { all_motions_ = all; }
 
   /// Tells of a state that the run reached and that is not the end of the last judged motion: an audit with
   /// such a hole is never ok.
@@ -45,11 +51,17 @@ class Audit {
   void restore(const AuditLedger& earlier) { ledger_ = earlier; }
 
  private:
+  /// What is judged within steps.
+  const AuditMesh& in_motions() const { return late_ && !all_motions_ ? early_ : ends_ ? pairs_ : mesh_; }
+
   AuditMesh mesh_;
   std::vector<int> vertices_;
   ObstaclePrimitives primitives_;
-  std::optional<StepEnds> ends_;  // where there is a promise
-  AuditMesh pairs_;               // then: the mesh without obstacles, for states and motions
+  std::optional<StepEnds> ends_;   // where there is a promise
+  AuditMesh pairs_;                // then: the mesh without obstacles
+  std::optional<AuditMesh> late_;  // where some pairs are judged at the ends of steps: with these
+  AuditMesh early_;                // then: with the others
+  bool all_motions_ = false;
   AuditLedger ledger_;
 };
 

@@ -72,24 +72,17 @@ struct AuditLedger {
 
   void add(const StateAudit& s, int step) {
     ++states;
-    state_pairs += s.pairs, pair_queries += s.queries;
-    obstacle_judged.add(s.obstacle_judged);
-    crossings += s.crossings, touches += s.touches, inverted += s.inverted;
-    obstacle_by_vertex += s.obstacle_by_vertex;
-    obstacle_violations += s.obstacle_violations, scene_faults += s.scene_faults;
-    non_finite += s.finite ? 0 : 1;
-    note(step, s.first_bad, s.first_fault);
+    add_found(s, step);
   }
   void add(const MotionAudit& m, int step) {
     ++motions;
-    motion_pairs += m.pairs, pair_queries += m.queries;
-    obstacle_judged.add(m.obstacle_judged);
-    violations += m.violations, unproven += m.unproven + m.obstacle_unproven;
-    obstacle_unproven += m.obstacle_unproven;
-    obstacle_by_vertex += m.obstacle_by_vertex;
-    obstacle_violations += m.obstacle_violations, scene_faults += m.scene_faults;
-    non_finite += m.finite ? 0 : 1;
-    note(step, m.first_bad, m.first_fault);
+    add_found(m, step);
+  }
+  /// Of the pairs that are judged at the ends of steps alone: the state there, which add() counts, and the
+  /// motion of the step.
+  void add_late(const StateAudit& end, const MotionAudit& way, int step) {
+    add_found(end, step);
+    add_found(way, step);
   }
   void add(const StepEndAudit& e, int step) {
     obstacle_judged.add(e.obstacles.judged);
@@ -109,6 +102,25 @@ struct AuditLedger {
   }
 
  private:
+  void add_found(const StateAudit& s, int step) {
+    state_pairs += s.pairs, pair_queries += s.queries;
+    obstacle_judged.add(s.obstacle_judged);
+    crossings += s.crossings, touches += s.touches, inverted += s.inverted;
+    obstacle_by_vertex += s.obstacle_by_vertex;
+    obstacle_violations += s.obstacle_violations, scene_faults += s.scene_faults;
+    non_finite += s.finite ? 0 : 1;
+    note(step, s.first_bad, s.first_fault);
+  }
+  void add_found(const MotionAudit& m, int step) {
+    motion_pairs += m.pairs, pair_queries += m.queries;
+    obstacle_judged.add(m.obstacle_judged);
+    violations += m.violations, unproven += m.unproven + m.obstacle_unproven;
+    obstacle_unproven += m.obstacle_unproven;
+    obstacle_by_vertex += m.obstacle_by_vertex;
+    obstacle_violations += m.obstacle_violations, scene_faults += m.scene_faults;
+    non_finite += m.finite ? 0 : 1;
+    note(step, m.first_bad, m.first_fault);
+  }
   void note(int step, const std::optional<PairName>& bad, const std::optional<PairName>& fault) {
     if (!first_fault && fault) first_fault = fault, first_fault_step = step;
     if (clean()) return;

@@ -40,7 +40,7 @@ class MotionJudge {
         pair<EdgeEdge>({a[0], a[1], b[0], b[1]}, {PairKind::edge_edge, e, f}, sum);
       });
     });
-    out.queries += mesh_.edges.cols();
+    out.queries += reach_.n_asked(mesh_.edges);
     return out;
   }
 
@@ -52,7 +52,7 @@ class MotionJudge {
     const long against = all.cols() > 0;
     return tally_over<MotionAudit>(vertices_.size(), [&](std::size_t i, MotionAudit& sum) {
       const int v = vertices_[i];
-      sum.queries += against;
+      sum.queries += against && mesh_.judged.asks(v);
       const Eigen::Matrix<int, 1, 1> alone(v);
       if (!reach_.may_meet_others(alone)) return;
       tree.query(box(alone), [&](int found) {
@@ -71,7 +71,7 @@ class MotionJudge {
   template <class Pair>
   void pair(const std::array<int, Pair::n_points>& ids, const PairName& name, MotionAudit& sum) const {
     if (std::none_of(ids.begin(), ids.end(), [this](int v) { return moves(v); })) return;
-    if (mesh_.common_rigid_body(ids) >= 0) return;
+    if (mesh_.common_rigid_body(ids) >= 0 || !mesh_.judged.of_vertices(ids.front(), ids.back())) return;
     PairMotion<Pair> motion;
     for (std::size_t k = 0; k < ids.size(); ++k) {
       motion.x0[k] = x0_.col(ids[k]).template head<Pair::dim>();

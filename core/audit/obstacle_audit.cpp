@@ -67,6 +67,7 @@ class ObstacleJudge {
     const bool still = poses.begin.point == poses.end.point;
     return tally_over<ObstacleAudit>(list.size(), [&](std::size_t i, ObstacleAudit& sum) {
       const std::array<int, N> ids = ids_of(list[i]);
+      if (!mesh_.judged.at_obstacle(ids[0], o)) return;
       if (moving_ && still && std::none_of(ids.begin(), ids.end(), [this](int v) { return moves(v); }))
         return;
       ++(sum.judged.*count);

@@ -1,7 +1,8 @@
 // What moves as one rigid body cannot cross itself: only what may come near another body, or near a primitive with a free
-// vertex, has to be looked at.
+// vertex, has to be looked at, and of that what the judge has in its scope.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/audit/box_tree.hpp"
@@ -22,10 +23,12 @@ class RigidReach {
     for (const auto& t : mesh.triangles.colwise()) add(t);
   }
 
-  /// False only if every primitive that this one may meet is of its own rigid body.
+  /// False only if every primitive that this one may meet is of its own rigid body, or of a body that is out
+  /// of scope with its own.
   template <class Column>
   bool may_meet_others(const Column& ids) const {
     if (!mesh_) return true;
+    if (!mesh_->judged.asks(*ids.begin())) return false;
     const int body = mesh_->common_rigid_body(ids);
     if (body < 0) return true;
     const Box mine = box_of(ids);
@@ -47,11 +50,21 @@ class RigidReach {
     return out;
   }
 
-  /// True if the two may be skipped: one rigid body has all their vertices.
+  /// True if the two may be skipped: one rigid body has all their vertices, or their bodies are out of scope.
   template <class A, class B>
-  bool rigid_together(const A& a, const B& b) const {
-    return mesh_ && mesh_->common_rigid_body(a) >= 0 &&
-           mesh_->common_rigid_body(a) == mesh_->common_rigid_body(b);
+  bool skips(const A& a, const B& b) const {
+    if (!mesh_) return false;
+    if (!mesh_->judged.of_vertices(*a.begin(), *b.begin())) return true;
+    const int body = mesh_->common_rigid_body(a);
+    return body >= 0 && body == mesh_->common_rigid_body(b);
+  }
+  /// How many of the primitives have a pair in scope.
+  template <class Ids>
+  long n_asked(const Ids& primitives) const {
+    if (!mesh_ || mesh_->judged.scope == Scope::all) return primitives.cols();
+    const auto columns = primitives.colwise();
+    return std::count_if(columns.begin(), columns.end(),
+                         [this](const auto& ids) { return mesh_->judged.asks(ids[0]); });
   }
 
  private:

@@ -28,7 +28,7 @@ class StateJudge {
       tree.query(box(mesh_.edges, edges[i]),
                  [&](int t) { edge_triangle(edges[i], triangles[static_cast<std::size_t>(t)], sum); });
     });
-    if (mesh_.triangles.cols() > 0) out.queries += mesh_.edges.cols();
+    if (mesh_.triangles.cols() > 0) out.queries += reach_.n_asked(mesh_.edges);
     return out;
   }
 
@@ -41,7 +41,7 @@ class StateJudge {
         if (other > edges[i]) edge_edge_2d(edges[i], other, sum);
       });
     });
-    out.queries += mesh_.edges.cols();
+    out.queries += reach_.n_asked(mesh_.edges);
     return out;
   }
 
@@ -75,7 +75,7 @@ class StateJudge {
     for (int v : a) {
       if (std::find(b.begin(), b.end(), v) != b.end()) return true;
     }
-    return reach_.rigid_together(a, b);
+    return reach_.skips(a, b);
   }
   Vec2d flat(int v) const { return x_.col(v).head<2>(); }
 
@@ -165,7 +165,7 @@ StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitiv
   out.merge(mesh.planar ? judge.boundary_edges() : judge.edges_and_triangles());
   heed_stop();
   judge.decide_touches(out);
-  if (mesh.planar) out.merge(judge.inversions());
+  if (mesh.planar && mesh.judged.scope != Scope::at_step_ends) out.merge(judge.inversions());
   if (mesh.obstacles.empty()) return out;
   add_obstacles(audit_obstacles(mesh, primitives, x), out);
   return out;

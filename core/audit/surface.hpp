@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/audit/judged_pairs.hpp"
 #include "core/math/types.hpp"
 
 namespace bb::audit {
@@ -46,6 +47,7 @@ struct AuditMesh {
                             // body, -1: any other. Empty: fixed vertices are such a body
   std::vector<double> thickness;  // [n_vertices] or empty: half thickness, m; only surface_gap reads it
   std::vector<AuditObstacle> obstacles;
+  JudgedPairs judged;
   bool only_points = false;  // vertices at obstacles alone are judged; the rest is counted
   bool planar = false;       // the scene lives in x and y; z is ignored
 

@@ -271,11 +271,12 @@ void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positio
     out.insert(out.end(), near_obstacles_[chunk].begin(), near_obstacles_[chunk].end());
 }
 
-void select_swept(const Surface& surface, const Candidates& all, Candidates& out) {
-  const auto copy = [](const std::vector<IndexPair>& from, std::vector<IndexPair>& to, const auto& kind) {
+void select_kinds(const Surface& surface, const Candidates& all, CollisionKinds kinds, Candidates& out) {
+  const auto copy = [kinds](const std::vector<IndexPair>& from, std::vector<IndexPair>& to,
+                            const auto& kind) {
     to.clear();
     std::copy_if(from.begin(), from.end(), std::back_inserter(to),
-                 [&kind](IndexPair pair) { return kind(pair) == CollisionKind::ccd; });
+                 [&](IndexPair pair) { return kinds.has(kind(pair)); });
   };
   const auto first_of = [](const auto& primitives, int i) {
     return primitives.vertices[static_cast<std::size_t>(i)][0];

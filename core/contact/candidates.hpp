@@ -29,8 +29,8 @@ void for_each_obstacle_list(const Surface& surface, CandidateLists& c, const F& 
   f.template operator()<3>(surface.triangles, c.obstacle_triangle);
 }
 
-/// Into `out` those of pairs that bound motions (CollisionKind::ccd).
-void select_swept(const Surface& surface, const Candidates& all, Candidates& out);
+/// Into `out` those of pairs of some kinds; of states nothing.
+void select_kinds(const Surface& surface, const Candidates& all, CollisionKinds kinds, Candidates& out);
 
 /// Whether all vertices are the same part of a motion on their way, or each at its own.
 enum class Pace { common, own };

@@ -19,6 +19,12 @@ std::vector<AnalyticSurface<double>> analytic_surfaces(const Scene& scene) {
   return out;
 }
 
+StepBound no_motion() {
+  StepBound stop;
+  stop.alpha = 0;
+  return stop;
+}
+
 Scene points_of(const Scene& scene) {
   Scene out = scene;
   out.surface_edges.clear();
@@ -55,7 +61,9 @@ struct ContactSystem::Data {
   const std::vector<AnalyticSurface<double>> obstacles;
   BroadPhase broad_phase;
   Candidates candidates;
-  Candidates swept;      // of them those that bound motions, where not all do
+  Candidates swept;    // of them those that bound motions, where not all do
+  Candidates of_step;  // of the motion of a whole step
+  bool audited_bound = false;
   Candidates near;       // pairs of the last rows
   Positions stop;        // where they stop a motion
   StepBound near_asked;  // its counters are part of those of the next bound
@@ -65,7 +73,11 @@ struct ContactSystem::Data {
 
   const Candidates& bounding(const Candidates& all) {
     if (!surface.collisions.chosen()) return all;
-    select_swept(surface, all, swept);
+    return select(all, audited_bound ? CollisionKinds{CollisionKind::ccd, CollisionKind::audited}
+                                     : CollisionKinds{CollisionKind::ccd});
+  }
+  const Candidates& select(const Candidates& all, CollisionKinds kinds) {
+    select_kinds(surface, all, kinds, swept);
     return swept;
   }
 };
@@ -104,15 +116,21 @@ double ContactSystem::find_rows(const PositionsView& x, ContactTable& rows, Moll
 }
 
 StepBound ContactSystem::step_bound(const PositionsView& x0, const PositionsView& x1) const {
-  if (!(x0.allFinite() && x1.allFinite())) {
-    StepBound stop;
-    stop.alpha = 0;
-    return stop;
-  }
+  if (!(x0.allFinite() && x1.allFinite())) return no_motion();
   StepBound bound = data_->bound.find(data_->bounding(data_->candidates), x0, x1);
   bound.queries += data_->near_asked.queries;
   bound.probes += data_->near_asked.probes;
   return bound;
+}
+
+void ContactSystem::bound_audited(bool bound) { data_->audited_bound = bound; }
+
+StepBound ContactSystem::prove_step(const PositionsView& x0, const PositionsView& x1) {
+  if (!active()) return {};
+  if (!(x0.allFinite() && x1.allFinite())) return no_motion();
+  Data& data = *data_;
+  data.broad_phase.update(x0, x1, data.of_step);
+  return data.bound.find(data.select(data.of_step, {CollisionKind::audited}), x0, x1);
 }
 
 void ContactSystem::update_candidates_of_each(const PositionsView& x0, const PositionsView& x1) {

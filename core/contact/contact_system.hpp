@@ -87,9 +87,15 @@ class ContactSystem {
   /// [n_vertices] of the last vertex_bounds().
   std::span<const double> vertex_parts() const;
 
-  /// All non-adjacent pairs of bodies that collide as `ccd`, whatever rule keeps them from having a row. A motion that
-  /// is not finite: alpha 0.
+  /// All non-adjacent pairs of bodies that collide as `ccd`, whatever rule keeps them from having a row, and
+  /// as `audited` where bound_audited() says so. A motion that is not finite: alpha 0.
   StepBound step_bound(const PositionsView& x0, const PositionsView& x1) const;
+
+  /// Whether motions are bounded for pairs that collide as `audited` too, as they are not at first.
+  void bound_audited(bool bound);
+  /// How far the straight motion x0 -> x1 of a whole step is proven free of contact of the pairs that collide
+  /// as `audited`. The candidates stay. A motion that is not finite: alpha 0.
+  StepBound prove_step(const PositionsView& x0, const PositionsView& x1);
 
   /// Where pairs are weighted by area; else null.
   const PairAreas* areas() const;

@@ -82,6 +82,22 @@ double IncrementalPotential::smallest_bound(const Motion& motion, IterationRepor
   return smallest;
 }
 
+void IncrementalPotential::bound_audited(bool bound) {
+  for (Term* term : terms_) term->bound_audited(bound);
+}
+
+StepBound IncrementalPotential::prove_step(const Column& x_n, const Column& x) {
+  StepBound smallest;
+  long long queries = 0;
+  for (Term* term : terms_) {
+    const StepBound said = term->prove_step(x_n, x, clock_);
+    queries += said.queries;
+    if (said.alpha < smallest.alpha) smallest = said;
+  }
+  smallest.queries = queries;
+  return smallest;
+}
+
 bool IncrementalPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {
   force.fill_zero();
   bool held = false;

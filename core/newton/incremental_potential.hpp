@@ -91,6 +91,10 @@ class IncrementalPotential {
   double bound_truncated(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
     return smallest_bound({x0, x1, dx}, report, true);
   }
+  /// As Term::bound_audited, of all terms.
+  void bound_audited(bool bound);
+  /// As Term::prove_step: the smallest of all terms, with the queries of all.
+  StepBound prove_step(const Column& x_n, const Column& x);
   std::string describe_bound() const { return holder_ ? holder_->describe_bound() : std::string(); }
   /// force (N) becomes what makes room for gaps that are curved along dx, of a motion that bound() ends at `bound`. Whether
   /// curvature is what holds it. The matrix is that of the last fill_matrix() again, whatever was filled since.

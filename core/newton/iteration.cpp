@@ -85,6 +85,17 @@ void require_unmoved(const Scene& scene, std::string_view solver) {
   }
 }
 
+void require_unbreakable(const Scene& scene, std::string_view solver) {
+  const auto first = scene.stitches.first_breakable();
+  if (!first) return;
+  throw ConfigError(
+      "/scene/stitches",
+      fmt::format("a stitch that breaks at strength_N = {:g}", scene.stitches.strength[*first]),
+      fmt::format("stitches without strength_N: the step solver {} pulls ends together by another stiffness "
+                  "than theirs, so that their tension is not known",
+                  solver));
+}
+
 void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report) {
   step.status = status;
   if (status == StepStatus::non_finite) step.detail = system.view().describe_non_finite();

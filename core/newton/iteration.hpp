@@ -15,6 +15,8 @@ void require_on_host(const StepSystem& system, std::string_view solver);
 /// For step solvers that lead no vertex to a prescribed place: nothing prescribed may move, and no pin may begin to hold in the
 /// run, when its vertex is elsewhere. Errors: ConfigError, which names the solver.
 void require_unmoved(const Scene& scene, std::string_view solver);
+/// Errors: ConfigError for stitches that break, of a step solver that has no tension of them.
+void require_unbreakable(const Scene& scene, std::string_view solver);
 /// Predicts and hands the step to the system, with the poses at its end as the target. The report says iteration_cap
 /// until something better is known.
 StepReport start_step(StepSystem& system, const StepTask& task, Prediction& used);

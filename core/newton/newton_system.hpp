@@ -57,6 +57,11 @@ class NewtonSystem : public StepSystem {
   NewtonSystem& on_host() override;
   bool is_on_host() const override;
 
+  // --- a step that is proven when it is over
+  void bound_audited(bool bound) { state_.potential->bound_audited(bound); }
+  /// Of the motion from the start of the step to the iterate.
+  StepBound prove_step() { return state_.potential->prove_step(state_.x_n, state_.x); }
+
   // --- states from elsewhere
   /// dx [3 x n] m, in the place of a Newton direction.
   void set_direction(const Positions& dx);

@@ -50,9 +50,22 @@ struct StepReport : StepNumbers {
   bool still_falling = false;       // |dx| was, when the cap on iterations was reached
   long long ccd_capped_before = 0;  // of ccd_capped, those of attempts before the last
   int iterations_before = 0;        // of newton_iterations
-  /// Counts what an attempt before this one cost.
+  /// Counts what an attempt before this one cost, which was twice as long and failed.
   void add_attempt(const StepReport& failed, const std::vector<SolverCounter>& counters = {}) {
+    add_work(failed, counters);
     retries = failed.retries + 1;
+    redone_audited = failed.redone_audited;
+  }
+  /// The same of one as long, whose motion was not proven.
+  void add_unproven(const StepReport& attempt, const std::vector<SolverCounter>& counters = {}) {
+    add_work(attempt, counters);
+    retries = attempt.retries;
+    redone_audited = attempt.redone_audited + 1;
+  }
+
+ private:
+  void add_work(const StepReport& failed, const std::vector<SolverCounter>& counters) {
+    audited_queries += failed.audited_queries;
     ccd_capped_before = failed.ccd_capped;
     iterations_before = failed.newton_iterations;
     newton_iterations += failed.newton_iterations;
@@ -79,6 +92,9 @@ class StepObserver {
   virtual void on_motion(const Positions& /*x0*/, const Positions& /*x1*/, int /*step*/) {}
   /// The step failed and begins again from its start, shorter: what it was is no part of the run.
   virtual void on_retry(int /*step*/) {}
+  /// The step was not proven to pass through nothing and begins again from its start, as long, with every
+  /// motion bounded until it is over.
+  virtual void on_redo(int step) { on_retry(step); }
   /// A finished step; `system` holds the contact table of its end state.
   virtual void on_step(StepSystem&, const StepReport&, const Positions& /*x*/) {}
 };

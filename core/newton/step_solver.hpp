@@ -49,9 +49,13 @@ struct StepSettings {
   bool velocity_of_step = false;
   bool clamped = false;  // every Hessian clamped
   bool unmoved = false;  // what is prescribed stays where it starts, and is so from the start
+  bool own_stiffness =
+      false;  // springs resist by another stiffness than theirs, so that none breaks by tension
   bool vertex_steps =
       false;             // it can go another part of a step at each vertex, so bounds of vertices are allowed
   std::string protocol;  // of a scene that no other solver follows, and that it follows alone; empty: none
+  /// Whether a setting takes the step bound away that it needs otherwise; null: none does.
+  bool (*unbounded)(const ParameterMap& complete) = nullptr;
   /// The first of its own settings that contradicts another; where: its name.
   std::optional<Violation> (*contradiction)(const ParameterMap& complete, int max_iterations) = nullptr;
 };

@@ -196,6 +196,9 @@ StepSolverEntry step_solver_pncg() {
   entry.needs.minimum = false;
   entry.asked_to_converge = false;
   entry.settings.clamped = entry.settings.unmoved = true;
+  entry.settings.unbounded = [](const ParameterMap& complete) {
+    return text(complete, "pncg_bound") != by_ccd;
+  };
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<Pncg>(options);
   };

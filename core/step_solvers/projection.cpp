@@ -74,6 +74,7 @@ StepSolverEntry step_solver_projection() {
   };
   entry.needs = {.matrix = false, .energies = false, .minimum = false, .step_bound = false};
   entry.settings.implicit_euler = true;
+  entry.settings.own_stiffness = true;
   entry.asked_to_converge = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<ProjectionSteps>(options);

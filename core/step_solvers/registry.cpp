@@ -55,6 +55,12 @@ void fit_terms(Method& method) {
   if (entry.set_terms) entry.set_terms(completed(entry, method.step_solver), method);
 }
 
+bool bounds_motions(const StepSolverOptions& options) {
+  const StepSolverEntry& entry = step_solvers().require(options.name, "/step_solver/name");
+  if (!entry.needs.step_bound || !entry.settings.unbounded) return entry.needs.step_bound;
+  return !entry.settings.unbounded(completed(entry, options).parameters);
+}
+
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options) {
   const StepSolverEntry& entry = step_solvers().require(options.name, "/step_solver/name");
   return entry.make(completed(entry, options));

@@ -18,6 +18,8 @@ std::vector<SolverCounter> step_solver_counters();
 void fit_terms(Method& method);
 /// Names the method's step solver and says what it needs; its settings and the terms stay. Errors: ConfigError for an unknown name.
 void choose_step_solver(Method& method, std::string_view name);
+/// Whether no motion of an iteration goes beyond the step bound. Errors: ConfigError for an unknown name.
+bool bounds_motions(const StepSolverOptions& options);
 /// Errors: ConfigError for an unknown name. Ranges are checked where a config is read.
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
 

@@ -33,6 +33,10 @@ class ChargedObserver final : public StepObserver {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_retry(step);
   }
+  void on_redo(int step) override {
+    const ScopedPhase timer(clock_, Phase::output);
+    observer_.on_redo(step);
+  }
   void on_step(StepSystem& system, const StepReport& report, const Positions& x) override {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_step(system, report, x);
@@ -65,11 +69,17 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       size_(method.step_size),
       parts_(method.step_solver.retries + size_.most_halvings()),
       entry_(step_solvers().require(method.step_solver.name, "/step_solver/name")),
+      proves_steps_(scene.collisions.has(CollisionKind::audited)),
       solver_(make_step_solver(method.step_solver)) {
   if (method.step_needs != entry_.needs) {
     throw std::logic_error("the method has step_needs of another step solver than " + entry_.name);
   }
   if (entry_.settings.unmoved) require_unmoved(scene, entry_.name);
+  if (entry_.settings.own_stiffness) require_unbreakable(scene, entry_.name);
+  if (proves_steps_ && !bounds_motions(method.step_solver)) {
+    throw ConfigError("/scene/collisions", "a pair that collides as audited",
+                      "none: the step solver " + entry_.name + " bounds no motion");
+  }
   make_system();
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
@@ -110,7 +120,8 @@ bool Simulation::other_pulls() const {
                      [&](const Pull& pull) { return pull.span.holds(now) != pull.span.holds(before); });
 }
 
-// Forces jump where vertices are let go or held, and where pulls begin or end: an acceleration of before is not theirs.
+// Forces jump where vertices are let go or held, where pulls begin or end and where stitches break: an acceleration of
+// before is not theirs.
 void Simulation::begin_anew() {
   history_.anew = true;
   if (!method_.integrator->needs_acceleration()) return;
@@ -126,6 +137,7 @@ void Simulation::keep_motion(Archive& archive) {
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
           history_.v_prev, history_.t, history_.anew, step_, nominal_, nominal_start_, parts_);
   if (size_.adaptive()) archive(size_);
+  if (scene_.stitches.first_breakable()) archive(broken_, broke_);
   if (held_.changes()) {
     std::vector<int> holding = held_.holding();
     archive(holding);
@@ -155,7 +167,7 @@ StepReport Simulation::step(StepObserver& observer) {
   clock.restart(Phase::step_control);
   ChargedObserver charged(observer, clock);
   if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
-  if (others || other_pulls()) begin_anew();
+  if (others || other_pulls() || broke_) begin_anew();
   StepReport report = attempt_until_converged(charged);
 
   const int halvings = parts_.halvings();
@@ -163,6 +175,8 @@ StepReport Simulation::step(StepObserver& observer) {
   if (size_.adaptive()) choose_length(report, halvings);
   report.t_s = history_.t;
   measure_end(*system_, report);
+  broke_ = report.broken_stitches > broken_;
+  broken_ = report.broken_stitches;
   if (end_residual_ && report.status == StepStatus::converged) measure_residual(report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
     report.kinetic_J += 0.5 * held_.now().mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
@@ -205,23 +219,41 @@ StepReport Simulation::attempt(StepObserver& observer) {
   return report;
 }
 
-// Every attempt but the first begins as a run that goes on from an archive of the start would.
+// Every attempt but the first begins as a run that goes on from an archive of the start would. One whose
+// motion is not proven is made again as long as it was; from there on all motions of the step are bounded,
+// and nothing is left to prove.
 StepReport Simulation::attempt_until_converged(StepObserver& observer) {
   Archive start;
-  if (parts_.can_halve()) keep(start);
+  if (parts_.can_halve() || proves_steps_) keep(start);
+  bool bounded = !proves_steps_;
   StepReport report = attempt(observer);
-  while (report.status != StepStatus::converged && parts_.can_halve()) {
-    const StepParts failed = parts_;
-    Archive again(start.bytes());
-    keep(again);
-    parts_ = failed;
-    parts_.halve();
-    observer.on_retry(step_);
-    StepReport shorter = attempt(observer);
-    shorter.add_attempt(report, entry_.counters);
-    report = std::move(shorter);
+  for (;;) {
+    const bool halve = report.status != StepStatus::converged && parts_.can_halve();
+    if (!halve && (bounded || is_proven(report))) break;
+    bounded = bounded || !halve;
+    go_back(start, halve, proves_steps_ && bounded);
+    halve ? observer.on_retry(step_) : observer.on_redo(step_);
+    StepReport again = attempt(observer);
+    halve ? again.add_attempt(report, entry_.counters) : again.add_unproven(report, entry_.counters);
+    report = std::move(again);
   }
+  if (proves_steps_) system_->bound_audited(false);
   return report;
+}
+
+bool Simulation::is_proven(StepReport& report) {
+  const StepBound proof = system_->prove_step();
+  report.audited_queries += proof.queries;
+  return proof.alpha == 1;
+}
+
+void Simulation::go_back(const Archive& start, bool halve, bool bound_audited) {
+  const StepParts parts = parts_;
+  Archive again(start.bytes());
+  keep(again);
+  parts_ = parts;
+  if (halve) parts_.halve();
+  if (bound_audited) system_->bound_audited(true);
 }
 
 // a_0 = M^-1 (f - grad(Psi + B + S)) at the start, of vertices that do not move against the air or a contact; 0 at prescribed

@@ -24,7 +24,9 @@ class Simulation {
 
   /// Advances one time step. One that fails is tried again from its start with half the length, as often as the
   /// options of the step solver say; the rest of the nominal step is done in steps of that length by the next
-  /// calls (docs/design.md, Outcomes, retries, resume). A status other than converged, after the last attempt,
+  /// calls (docs/design.md, Outcomes, retries, resume). One that ends in a state to which pairs that collide
+  /// as `audited` may have passed through each other is done again from its start with every motion bounded.
+  /// A status other than converged, after the last attempt,
   /// keeps the feasible state that was reached. Counters and times of the report are those of all attempts,
   /// everything else is of the last one.
   StepReport step(StepObserver& observer);
@@ -52,6 +54,8 @@ class Simulation {
   bool other_pulls() const;
   StepReport attempt(StepObserver& observer);
   StepReport attempt_until_converged(StepObserver& observer);
+  bool is_proven(StepReport& report);
+  void go_back(const Archive& start, bool halve, bool bound_audited);
   void measure_residual(StepReport& report);
   void choose_length(const StepReport& report, int halvings);
   void remember(const PositionsView& x, double dt_used);
@@ -66,10 +70,13 @@ class Simulation {
   int n_steps_ = 0, step_ = 0, nominal_ = 0;  // step_: every part counts
   double nominal_start_ = 0;                  // s
   double load_factor_ = 1;                    // of the last attempt
+  long long broken_ = 0;                      // stitches, once the last step is over
+  bool broke_ = false;                        // whether any of them broke in it
   StepSize size_;
   StepParts parts_;
   std::unique_ptr<NewtonSystem> system_;
   const StepSolverEntry entry_;  // a copy: the registry may get others while it runs
+  const bool proves_steps_;      // of pairs that collide as `audited`
   std::unique_ptr<StepSolver> solver_;
   std::unique_ptr<EndResidual> end_residual_;  // of a step solver that is not asked to converge
   History history_;

@@ -193,6 +193,11 @@ StepBound ContactTerm::find_bound(const Motion& motion) {
              : contacts_.step_bound(motion.x0, motion.x1);
 }
 
+StepBound ContactTerm::prove_step(const PositionsView& x_n, const PositionsView& x, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::step_bound);
+  return contacts_.prove_step(x_n, x);
+}
+
 bool ContactTerm::add_detour(const PositionsView& x, const PositionsView& dx, double bound,
                              PositionsSpan force) {
   return bb::add_detour(state_.rows, x, dx, force).by_curvature(bound);

@@ -62,6 +62,8 @@ class ContactTerm final : public ContactSteps<HostTerm> {
   void add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) override;
   void add_loads(const PositionsView& x, ContactLoads& out) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
+  void bound_audited(bool bound) override { contacts_.bound_audited(bound); }
+  StepBound prove_step(const PositionsView& x_n, const PositionsView& x, PhaseClock& clock) override;
   std::span<const double> vertex_parts() const override;
   bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
                   PositionsSpan force) override;

@@ -97,6 +97,15 @@ class Term {
   /// What held the last bound() below 1.
   virtual std::string describe_bound() const { return {}; }
 
+  // --- a step that is proven when it is over (docs/design.md, Collision choice)
+  /// Whether bound() holds for pairs too that a step is proven for when it is over.
+  virtual void bound_audited(bool /*bound*/) {}
+  /// How far the straight motion of the whole step, x_n to the iterate x, is proven free of what passes
+  /// through in these pairs.
+  virtual StepBound prove_step(const PositionsView& /*x_n*/, const PositionsView& /*x*/, PhaseClock&) {
+    return {};
+  }
+
   // --- a trial state, of the iterate x
   /// Whether admits() refuses a trial with a number that is not finite.
   virtual bool sees_non_finite() const { return false; }

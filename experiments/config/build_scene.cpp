@@ -17,6 +17,7 @@
 #include "experiments/config/hashed_file.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/config/step_promise.hpp"
 #include "experiments/config/weights.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
@@ -122,7 +123,7 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     if (body.rest_mesh.given()) {
       take_rest_shape(body, where + "/rest_mesh", spec);
     }
-    spec.weights = make_weights(body.weights, spec.start ? *spec.start : spec.mesh.vertices);
+    spec.weights = make_weights(body.weights, spec.start ? *spec.start : spec.mesh.vertices, where);
     if (body.limited) spec.material.limit = limit;
     spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);
     builder.add_body(spec);
@@ -131,6 +132,7 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     builder.add_stitch(config.scene.stitches[i], fmt::format("/stitches/{}", i));
   }
   for (const Obstacle& obstacle : config.scene.obstacles) builder.add_obstacle(obstacle);
+  if (!bounds_motions(config)) builder.set_unbounded_motions(config.step_solver.name);
   for (std::size_t i = 0; i < config.scene.collisions.size(); ++i) {
     builder.add_collision(config.scene.collisions[i], fmt::format("/collisions/{}", i));
   }

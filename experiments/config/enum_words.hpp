@@ -84,16 +84,15 @@ inline EnumWords<StiffnessKind> words_of(StiffnessKind) {
 }
 inline EnumWords<CollisionKind> words_of(CollisionKind) {
   return {{CollisionKind::ccd, "ccd"},
+          {CollisionKind::audited, "audited"},
           {CollisionKind::static_test, "static"},
           {CollisionKind::proximity, "proximity"},
           {CollisionKind::off, "off"}};
 }
 inline EnumWords<CollisionChoice> words_of(CollisionChoice) {
-  return {{CollisionChoice::automatic, "auto"},
-          {CollisionChoice::ccd, "ccd"},
-          {CollisionChoice::static_test, "static"},
-          {CollisionChoice::proximity, "proximity"},
-          {CollisionChoice::off, "off"}};
+  return {{CollisionChoice::automatic, "auto"},      {CollisionChoice::ccd, "ccd"},
+          {CollisionChoice::audited, "audited"},     {CollisionChoice::static_test, "static"},
+          {CollisionChoice::proximity, "proximity"}, {CollisionChoice::off, "off"}};
 }
 inline EnumWords<PlanarPairs> words_of(PlanarPairs) {
   return {{PlanarPairs::point_edge, "point_edge"}, {PlanarPairs::vertex_vertex, "vertex_vertex"}};

@@ -58,10 +58,11 @@ struct WeightBox {
   std::optional<std::array<Vec3d, 2>> box;  // m
   double weight = 1;
 };
-/// A weight group of a body: numbers of a file, of boxes, or that rise along an axis.
+/// A weight group of a body: numbers of a file, of boxes, of a formula, or that rise along an axis.
 struct WeightGroupConfig {
   std::string name;
   HashedFile file;               // none: empty path
+  std::string formula;           // in x, y, z (m); none: empty
   std::vector<WeightBox> boxes;  // the last one counts; outside of all 0
   Vec3d axis = Vec3d::UnitX();
   std::optional<double> from, to;  // m along the axis: 0 there, 1 here, linear between

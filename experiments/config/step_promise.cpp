@@ -11,4 +11,11 @@ double promised_overlap(const RunConfig& config) {
       own_parameters(solver.parameters, config.step_solver.parameters, "/step_solver"));
 }
 
+bool bounds_motions(const RunConfig& config) {
+  StepSolverOptions options;
+  options.name = config.step_solver.name;
+  options.parameters = config.step_solver.parameters;
+  return bounds_motions(options);
+}
+
 }  // namespace bb

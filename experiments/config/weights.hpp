@@ -15,8 +15,9 @@ namespace bb {
 void read_weights(const nlohmann::json& body, const std::string& pointer, const Reader& reader,
                   std::vector<WeightGroupConfig>& groups);
 
-/// start: where the vertices of the body start, m.   Errors: ConfigError at the file and its line: a word that is no number in [0, 1],
-/// another number of lines than of vertices, a file that has changed.
-std::vector<WeightGroup> make_weights(const std::vector<WeightGroupConfig>& groups, const Positions& start);
+/// start: where the vertices of the body start, m. where: the body.   Errors: ConfigError at the file and its line: a word that is no
+/// number in [0, 1], another number of lines than of vertices, a file that has changed; those of formula_weights.
+std::vector<WeightGroup> make_weights(const std::vector<WeightGroupConfig>& groups, const Positions& start,
+                                      const std::string& where);
 
 }  // namespace bb

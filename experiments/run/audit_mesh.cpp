@@ -33,6 +33,18 @@ std::vector<int> rigid_bodies(const std::vector<PrescribedMotion>& motions, doub
   return out;
 }
 
+/// Pairs that a step is proven for when it is over.
+audit::JudgedPairs judged_pairs(const Scene& scene) {
+  audit::JudgedPairs out;
+  for (const CollisionPair& pair : scene.collisions.pairs) {
+    if (pair.kind == CollisionKind::audited) out.late.push_back({pair.first, pair.second});
+  }
+  if (out.late.empty()) return out;
+  out.owner = scene.body;
+  out.n_bodies = static_cast<int>(scene.bodies.size());
+  return out;
+}
+
 }  // namespace
 
 audit::AuditMesh make_audit_mesh(const Scene& scene, double dt, bool only_points) {
@@ -45,6 +57,7 @@ audit::AuditMesh make_audit_mesh(const Scene& scene, double dt, bool only_points
   mesh.prescribed = mesh.fixed;
   mesh.motion.assign(mesh.fixed.size(), -1);
   mesh.thickness = scene.offset;
+  mesh.judged = judged_pairs(scene);
   const std::vector<int> bodies = rigid_bodies(scene.motions, dt);
   for (const Pin& pin : scene.pins) {
     if (!pin.span.always()) continue;  // judged as what moves freely

@@ -40,7 +40,7 @@ AuditWatch::AuditWatch(const Scene& scene, double dt, double ccd_park, AuditReco
   if (promised_overlap > 0) record_.promised_m = promised_overlap;
   if (only_points) record_.obstacles_judge = "points";
   judge(scene.x0, -1);
-  audit_.check_step_end(scene.x0, scene.x0, -1);
+  audit_.check_step_end(scene.x0, scene.x0, -1, tolerance_);
   at_step_end_ = {audit_.ledger(), last_judged_};
 }
 
@@ -61,7 +61,10 @@ void AuditWatch::on_motion(const Positions& x0, const Positions& x1, int step) {
 
 void AuditWatch::on_step(const Positions& x, StepRecord& step) {
   if (x != last_judged_) audit_.note_unjudged(step.step);
-  audit_.check_step_end(at_step_end_.last_judged, x, step.step);
+  const double start = now_s();
+  audit_.check_step_end(at_step_end_.last_judged, x, step.step, tolerance_);
+  audit_.judge_all_motions(false);
+  record_.time_s += now_s() - start;
   const AuditRecord before = record_;
   fill_record();
   step.crossings = record_.crossings - before.crossings;
@@ -93,6 +96,11 @@ void AuditWatch::measure_gaps(const Positions& x, StepRecord& step) {
 void AuditWatch::on_retry() {
   audit_.restore(at_step_end_.ledger);
   last_judged_ = at_step_end_.last_judged;
+}
+
+void AuditWatch::on_redo() {
+  on_retry();
+  audit_.judge_all_motions(true);
 }
 
 // The subjects are those of the scene.

@@ -22,6 +22,8 @@ class AuditWatch {
   void on_step(const Positions& x, StepRecord& step);
   /// Forgets the motions since the last step ended: they are no part of the run.
   void on_retry();
+  /// The same, and until the step is over no pair waits for its end: every motion is bounded.
+  void on_redo();
   /// What the audit found so far, at the end of a step.
   void keep(Archive& archive);
   const audit::AuditLedger& ledger() const { return audit_.ledger(); }

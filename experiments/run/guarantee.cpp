@@ -10,10 +10,15 @@
 namespace bb {
 namespace {
 
-/// Of pairs that no motion is bounded for. Only solvers with a step bound refuse states by their gaps.
+/// Of pairs that no motion is bounded for at first. Only solvers with a step bound refuse states by their
+/// gaps.
 std::string promise_of(CollisionKind kind, const StepSolverEntry& solver) {
   const bool judges_states = solver.needs.step_bound;
   switch (kind) {
+    case CollisionKind::audited:
+      return "no surface passes through another in the straight motion of a step from its start to its end; "
+             "within a step they may, and a step for which that is not proven is done again as if the pair "
+             "were ccd";
     case CollisionKind::static_test:
       return judges_states ? "no state of a step has the two surfaces intersect; what passes through as a "
                              "whole from one state "
@@ -48,7 +53,7 @@ std::vector<Guarantee> of_pairs(const StepSolverEntry& solver, const Scene& scen
     out.push_back({solver.name, "of contact none, since no pair of bodies collides as ccd"});
   }
   for (const CollisionKind kind :
-       {CollisionKind::static_test, CollisionKind::proximity, CollisionKind::off}) {
+       {CollisionKind::audited, CollisionKind::static_test, CollisionKind::proximity, CollisionKind::off}) {
     const auto n = static_cast<long>(count(kind));
     if (n > 0)
       out.push_back({fmt::format("{} ({})", pairs_text(n), word_of(kind)), promise_of(kind, solver)});

@@ -46,6 +46,15 @@ void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
 // The rows of the attempt stay in the trace, its motions are not those of the run.
 void Recorder::on_retry(int step) {
   if (audit_) audit_->on_retry();
+  forget_attempt(step);
+}
+
+void Recorder::on_redo(int step) {
+  if (audit_) audit_->on_redo();
+  forget_attempt(step);
+}
+
+void Recorder::forget_attempt(int step) {
   if (artifacts_) artifacts_->drop_matrices(step);
   condition_.forget_step();
 }

@@ -35,6 +35,7 @@ class Recorder final : public StepObserver {
   bool watches_motions() const override { return audit_.has_value(); }
   void on_motion(const Positions& x0, const Positions& x1, int step) override;
   void on_retry(int step) override;
+  void on_redo(int step) override;
   void on_step(StepSystem& system, const StepReport& report, const Positions& x) override;
 
   /// What it has recorded so far, between two steps; its files are not in it.
@@ -55,6 +56,7 @@ class Recorder final : public StepObserver {
     ContactFields fields;
     void keep(Archive& archive);
   };
+  void forget_attempt(int step);
   void look_at_rows(StepSystem& system, const StepReport& report, const Positions& x);
   void write_last();
 

@@ -53,6 +53,7 @@ class HookedRecorder final : public StepObserver {
     recorder_.on_motion(x0, x1, step);
   }
   void on_retry(int step) override { recorder_.on_retry(step); }
+  void on_redo(int step) override { recorder_.on_redo(step); }
   void on_step(StepSystem& system, const StepReport& report, const Positions& x) override {
     recorder_.on_step(system, report, x);
   }

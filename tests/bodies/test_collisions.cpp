@@ -59,26 +59,53 @@ TEST(Collisions, AutoFollowsOpenAndClosedSurfaces) {
                                  {"ball", "floor", by_surface},
                                  {"floor", "cloth", by_surface}});
   EXPECT_EQ(of.kind(0, 1), CollisionKind::static_test);
-  EXPECT_EQ(of.kind(0, 2), CollisionKind::ccd);
-  EXPECT_EQ(of.kind(0, 0), CollisionKind::ccd);
+  EXPECT_EQ(of.kind(0, 2), CollisionKind::audited);
+  EXPECT_EQ(of.kind(0, 0), CollisionKind::audited);
   EXPECT_EQ(of.kind(0, 3), CollisionKind::static_test);
   EXPECT_EQ(of.kind(0, 4), CollisionKind::static_test) << "an obstacle is closed";
-  EXPECT_EQ(of.kind(4, 2), CollisionKind::ccd);
+  EXPECT_EQ(of.kind(4, 2), CollisionKind::audited);
   EXPECT_EQ(of.find(0, 1)->reason, "auto: both surfaces are closed");
   EXPECT_EQ(of.find(0, 2)->reason, "auto: the surface of cloth is open");
   EXPECT_EQ(of.kind(1, 2), CollisionKind::ccd) << "nothing is said of it";
   EXPECT_EQ(of.find(1, 2), nullptr);
 }
 
+TEST(Collisions, AreNotAuditedWhereTheStepSolverBoundsNoMotion) {
+  SceneBuilder by_surface = all_kinds();
+  by_surface.set_unbounded_motions("penalty");
+  by_surface.add_collision({"cloth", "ball", CollisionChoice::automatic}, "/collisions/0");
+  by_surface.add_collision({"ball", "ball", CollisionChoice::automatic}, "/collisions/1");
+  by_surface.add_collision({"ball", "other", CollisionChoice::automatic}, "/collisions/2");
+  const Collisions of = by_surface.finish().collisions;
+  EXPECT_EQ(of.kind(0, 2), CollisionKind::ccd);
+  EXPECT_EQ(of.kind(0, 0), CollisionKind::ccd);
+  EXPECT_EQ(of.kind(0, 1), CollisionKind::static_test);
+  EXPECT_EQ(of.find(0, 2)->reason,
+            "auto: the surface of cloth is open; the step solver penalty bounds no motion");
+  SceneBuilder given = all_kinds();
+  given.set_unbounded_motions("penalty");
+  given.add_collision({"cloth", "ball", CollisionChoice::audited}, "/collisions/0");
+  try {
+    given.finish();
+    ADD_FAILURE() << "accepted";
+  } catch (const ConfigError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("/collisions/0/kind"), std::string::npos) << text;
+    EXPECT_NE(text.find("the step solver penalty bounds no motion"), std::string::npos) << text;
+  }
+}
+
 TEST(Collisions, AreTakenAsGiven) {
   const Collisions of = decided({{"cloth", "cloth", CollisionChoice::off},
                                  {"cloth", "ball", CollisionChoice::proximity},
                                  {"cloth", "other", CollisionChoice::static_test},
-                                 {"cloth", "box", CollisionChoice::ccd}});
+                                 {"cloth", "box", CollisionChoice::ccd},
+                                 {"ball", "other", CollisionChoice::audited}});
   EXPECT_EQ(of.kind(2, 2), CollisionKind::off);
   EXPECT_EQ(of.kind(2, 0), CollisionKind::proximity);
   EXPECT_EQ(of.kind(1, 2), CollisionKind::static_test);
   EXPECT_EQ(of.kind(2, 3), CollisionKind::ccd);
+  EXPECT_EQ(of.kind(0, 1), CollisionKind::audited);
   EXPECT_TRUE(of.chosen());
   EXPECT_FALSE(decided({}).chosen());
 }

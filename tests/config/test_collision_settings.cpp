@@ -36,7 +36,7 @@ TEST(CollisionSettings, AreWrittenAndReadAgain) {
   EXPECT_EQ(resolved["scene"]["collisions"], config["scene"]["collisions"]);
   EXPECT_EQ(json::parse(resolved_json(parsed(resolved))), resolved);
   const Collisions of = build_scene(read).collisions;
-  EXPECT_EQ(of.kind(0, 1), CollisionKind::ccd) << "open";
+  EXPECT_EQ(of.kind(0, 1), CollisionKind::audited) << "open";
   EXPECT_EQ(of.kind(1, 2), CollisionKind::static_test) << "though the groups differ";
   EXPECT_EQ(of.kind(1, 1), CollisionKind::off);
   EXPECT_EQ(of.kind(0, 0), CollisionKind::ccd) << "is not named";
@@ -59,7 +59,8 @@ TEST(CollisionSettings, NameWhatIsThere) {
     EXPECT_NE(refusal(config).find(part), std::string::npos) << refusal(config);
   }
   pair = {{"a", "ball"}, {"b", "cloth"}, {"kind", "of"}};
-  expect_violation(config, "/scene/collisions/0/kind", "\"of\"", "auto, ccd, static, proximity, off");
+  expect_violation(config, "/scene/collisions/0/kind", "\"of\"",
+                   "auto, ccd, audited, static, proximity, off");
   pair = {{"a", "floor"}, {"b", "floor"}, {"kind", "off"}};
   EXPECT_NE(refusal(config).find("a vertex that moves freely"), std::string::npos) << refusal(config);
   pair = {{"a", "ball"}, {"b", "cloth"}, {"kind", "off"}};
@@ -67,6 +68,21 @@ TEST(CollisionSettings, NameWhatIsThere) {
   for (const char* part : {"a.json#/scene/collisions/1", "cloth and ball once more", "every pair once"}) {
     EXPECT_NE(refusal(config).find(part), std::string::npos) << refusal(config);
   }
+}
+
+TEST(CollisionSettings, AreNotAuditedWhereTheStepSolverBoundsNoMotion) {
+  json config = three_kinds();
+  config["scene"]["collisions"] = {{{"a", "ball"}, {"b", "cloth"}, {"kind", "audited"}}};
+  EXPECT_EQ(refusal(config), "");
+  config["step_solver"] = {{"name", "pncg"}};
+  EXPECT_EQ(refusal(config), "");
+  config["step_solver"]["pncg_bound"] = "half_d_hat";
+  for (const char* part :
+       {"a.json#/scene/collisions/0/kind", "audited", "the step solver pncg bounds no motion"}) {
+    EXPECT_NE(refusal(config).find(part), std::string::npos) << refusal(config);
+  }
+  config["scene"]["collisions"][0]["kind"] = "auto";
+  EXPECT_EQ(build_scene(parsed(config)).collisions.kind(0, 1), CollisionKind::ccd);
 }
 
 TEST(CollisionSettings, AreRefusedOnADevice) {

@@ -1,4 +1,6 @@
 // Configs of one file under many overrides, read one after the other, are those that are read by themselves.
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -183,7 +185,7 @@ const std::vector<Overrides>& settings() {
 }
 
 std::string path_of_scene(const std::string& name) {
-  return std::string(BB_SOURCE_DIR) + "/configs/scenes/" + name + ".json";
+  return fmt::format("{}/configs/scenes/{}.json", BB_SOURCE_DIR, name);
 }
 
 /// Cases in the order of a product whose last axes run fastest; each axis is left out half of the time.

@@ -187,6 +187,33 @@ TEST(DrivenSettings, StitchesJoinVerticesThatAreThere) {
   expect_violation(config, "/scene/stitches/0/stiffness_N_per_m", "0", "a number >= 1e-36");
 }
 
+TEST(DrivenSettings, StitchesBreakAtTheirStrengthTimesTheWeightOfTheirVertex) {
+  json config = stitched_config();
+  json& stitch = config["scene"]["stitches"][0];
+  EXPECT_FALSE(build_scene(parsed(config)).stitches.first_breakable());
+  EXPECT_EQ(resolved_json(parsed(config)).find("strength_N"), std::string::npos);
+  stitch["strength_N"] = 6;
+  EXPECT_EQ(build_scene(parsed(config)).stitches.strength, (std::vector<double>{6, 6}));
+  config["scene"]["bodies"][0]["weights"] = {{{"name", "seam"}, {"formula", "x < 0 ? 0.25 : 1"}}};
+  stitch["weights"] = "seam";
+  EXPECT_EQ(build_scene(parsed(config)).stitches.strength, (std::vector<double>{1.5, 6}));
+  const json resolved = json::parse(resolved_json(parsed(config)));
+  EXPECT_EQ(resolved["scene"]["stitches"][0]["weights"], "seam");
+  EXPECT_EQ(json::parse(resolved_json(parsed(resolved))), resolved);
+  const auto expect_refusal = [&](const json& changed, const std::string& said) {
+    EXPECT_NE(refusal(changed).find("a.json#/scene/stitches/0/" + said), std::string::npos)
+        << said << " is not in " << refusal(changed);
+  };
+  expect_refusal(with(config, "/scene/stitches/0/weights", "seams"),
+                 "weights: found the weight group \"seams\"; allowed: a group of the body: seam");
+  expect_refusal(with(config, "/scene/bodies/0/weights/0/formula", "x < 0 ? 1 : 0"),
+                 "a_vertices/1: found vertex 1 with a weight of 0 in \"seam\"; allowed: weights > 0");
+  expect_violation(with(config, "/scene/stitches/0/strength_N", 0), "/scene/stitches/0/strength_N", "0",
+                   "a number >= 1e-36");
+  stitch.erase("strength_N");
+  expect_refusal(config, "weights: found weights of stitches that do not break; allowed: strength_N beside");
+}
+
 TEST(DrivenSettings, DampingIsAPartOfOneAndNotForTwoSteps) {
   json config = driven_config();
   config["scene"]["velocity_damping"] = {{"factor_per_s", 0.2}};

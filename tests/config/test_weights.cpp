@@ -1,4 +1,4 @@
-// Weight groups of a config: files with their hash, boxes, ramps; what a resolved config says of them, and what is refused with its place.
+// Weight groups of a config: files with their hash, boxes, formulas, ramps; what a resolved config says of them, and what is refused with its place.
 #include <fstream>
 
 #include "tests/config/config_text.hpp"
@@ -87,6 +87,72 @@ TEST(WeightSettings, have_the_numbers_of_files_boxes_and_ramps) {
   expect(factors({group("a", {{"file", file}})}), of_file);
 }
 
+TEST(WeightSettings, have_the_numbers_of_formulas) {
+  json config = square();
+  config["scene"]["bodies"][0]["mesh"].update({{"n_x", 9}, {"n_y", 9}});
+  json& body = config["scene"]["bodies"][0];
+  body["weights"] = {group("disc", {{"formula", "x^2 + y^2 < 0.02 ? 1 : 0"}}),
+                     group("rise", {{"formula", "min(max((y + 0.25) / 0.5, 0), 1)"}}),
+                     group("ramp", {{"axis", {0, 1, 0}}, {"from_m", -0.25}, {"to_m", 0.25}})};
+  body["pins"] = {
+      {{"mix", {{{"group", "disc"}}}}, {"threshold", 1}},
+      {{"mix", {{{"group", "rise"}}}}, {"pull_N_per_m", 3}, {"box_m", {{0.3, -9, -9}, {9, 9, 9}}}},
+      {{"mix", {{{"group", "ramp"}}}}, {"pull_N_per_m", 3}, {"box_m", {{0.3, -9, -9}, {9, 9, 9}}}}};
+  const Scene scene = build_scene(parsed(config));
+  ASSERT_EQ(scene.n_vertices(), 81);
+  std::vector<int> held, disc;
+  for (const Pin& pin : scene.pins) held.push_back(pin.vertex);
+  for (int v = 0; v < 81; ++v) {
+    if (scene.x0(0, v) * scene.x0(0, v) + scene.x0(1, v) * scene.x0(1, v) < 0.02) disc.push_back(v);
+  }
+  ASSERT_EQ(disc, (std::vector<int>{31, 39, 40, 41, 49})) << "vertices are 0.125 m apart";
+  EXPECT_EQ(held, disc);
+  ASSERT_EQ(scene.pulls.size(), 2U);
+  const std::vector<double>&rise = scene.pulls[0].weights.layers.at(0).weight,
+        &ramp = scene.pulls[1].weights.layers.at(0).weight;
+  ASSERT_EQ(rise.size(), 18U);
+  ASSERT_EQ(ramp.size(), 18U);
+  for (std::size_t i = 0; i < ramp.size(); ++i) EXPECT_NEAR(rise[i], ramp[i], 1e-15);
+  EXPECT_EQ(*std::max_element(rise.begin(), rise.end()), 1);
+}
+
+TEST(WeightSettings, of_a_formula_multiply_stiffnesses_and_stand_in_a_resolved_config) {
+  const json formula = group("a", {{"formula", "x > 0 ? 0.25 : 0.5"}});
+  const json boxes = group("a", {{"boxes",
+                                  {{{"box_m", {{-9, -9, -9}, {9, 9, 9}}}, {"weight", 0.5}},
+                                   {{"box_m", {{1e-9, -9, -9}, {9, 9, 9}}}, {"weight", 0.25}}}}});
+  EXPECT_EQ(factors({formula}), factors({boxes}));
+  EXPECT_NE(factors({formula})[0], factors({formula})[1]);
+  const std::string text = resolved_json(parsed(weighted(formula)));
+  EXPECT_EQ(resolved_json(parse_config(text, "a.json")), text);
+  EXPECT_EQ(json::parse(text)["scene"]["bodies"][0]["weights"][0], formula);
+}
+
+TEST(WeightSettings, of_a_formula_are_refused_with_its_position_or_the_vertex) {
+  const auto said = [](const char* formula) {
+    return refused(weighted({group("a", {{"formula", formula}})}));
+  };
+  const std::string at = "a.json#/scene/bodies/0/weights/0/formula: found ";
+  for (const auto& [formula, found, allowed] :
+       {std::tuple{"x +", "\"x +\", position 4: Unexpected end", "a formula in x, y, z (m)"},
+        {"min(x, ", "\"min(x, \", position 8: Unexpected end", "a formula in x, y, z (m)"},
+        {"x + * y", "\"x + * y\", position 4, token \"*\": Unexpected", "a formula in x, y, z (m)"},
+        {"x < r ? 1 : 0", "the name \"r\" at position 4 of \"x < r ? 1 : 0\"", "x, y, z (m), numbers, _pi"},
+        {"x = 0 ? 1 : 0", "an assignment at position 2 of \"x = 0 ? 1 : 0\"", "== for a comparison"},
+        {"0.5, 1", "2 values of \"0.5, 1\"", "one value"},
+        {"x + 0.75", "1.25 at vertex 1, which starts at (0.5, -0.5, 0)",
+         "a number in [0, 1] at every vertex"},
+        {"x", "-0.5 at vertex 0, which starts at (-0.5, -0.5, 0)", "a number in [0, 1] at every vertex"},
+        {"1 / (x - 0.5)", "-1 at vertex 0", "a number in [0, 1]"},
+        {"x < 0 ? 0 : 1 / (x - 0.5)", "inf at vertex 1", "a number in [0, 1]"},
+        {"sqrt(x)", "-nan at vertex 0", "a number in [0, 1]"}}) {
+    const std::string text = said(formula);
+    EXPECT_NE(text.find(at + found), std::string::npos) << formula << ": " << text;
+    EXPECT_NE(text.find(std::string("; allowed: ") + allowed), std::string::npos) << formula << ": " << text;
+  }
+  EXPECT_EQ(said("x == -0.5 && y >= -1 ? 1 : exp(-_pi)"), "");
+}
+
 TEST(WeightSettings, stand_in_a_resolved_config_with_the_hash_of_their_file) {
   json config = weighted({group("a", {{"file", written("kept.txt", "0\n1\n0\n1\n")}}),
                           group("b", {{"from_m", 0}, {"to_m", 1}})});
@@ -133,8 +199,10 @@ TEST(WeightSettings, have_one_source_each) {
     expect_violation(weighted({group("a", more)}), "/scene/bodies/0/weights/0" + place, found, allowed);
   };
   const json boxes = {{{"box_m", {{0, 0, 0}, {1, 1, 1}}}}};
-  at(json::object(), "", "no weights, or two ways to say them", "one of file, boxes, from_m with to_m");
+  at(json::object(), "", "no weights, or two ways to say them",
+     "one of file, boxes, formula, from_m with to_m");
   at({{"boxes", boxes}, {"from_m", 0}, {"to_m", 1}}, "", "no weights, or two ways to say them", "one of");
+  at({{"boxes", boxes}, {"formula", "1"}}, "", "no weights, or two ways to say them", "one of");
   at({{"from_m", 0}}, "/to_m", "nothing", "both from_m and to_m");
   at({{"to_m", 0}}, "/from_m", "nothing", "both from_m and to_m");
   at({{"from_m", 2}, {"to_m", 2}}, "/to_m", "2", "another number than from_m");

@@ -67,6 +67,41 @@ TEST(CollisionKinds, ProximityHasTheSameRowsAndNothingElse) {
   EXPECT_GT(ask(scene, halfway).gap_at_end, 0);
 }
 
+TEST(CollisionKinds, AuditedHasNoBoundUntilItIsAskedForAndAProofOfAStep) {
+  const Scene scene = triangle_over_sheet(near, CollisionKind::audited);
+  const Answer ccd = ask(triangle_over_sheet(near, CollisionKind::ccd), beyond);
+  EXPECT_EQ(ask(scene, beyond).rows_at_start, ccd.rows_at_start);
+  EXPECT_EQ(ask(scene, beyond).bound, 1);
+  EXPECT_GT(ask(scene, halfway).gap_at_end, 0);
+  ContactSystem contacts(scene, {});
+  const Positions x1 = dart_moved(scene, beyond);
+  contacts.update_candidates(scene.x0, x1);
+  contacts.bound_audited(true);
+  EXPECT_EQ(contacts.step_bound(scene.x0, x1).alpha, ccd.bound);
+  contacts.bound_audited(false);
+  EXPECT_EQ(contacts.step_bound(scene.x0, x1).alpha, 1);
+  const StepBound proof = contacts.prove_step(scene.x0, x1);
+  EXPECT_EQ(proof.alpha, ccd.bound);
+  EXPECT_GT(proof.queries, 0);
+  EXPECT_LT(contacts.prove_step(scene.x0, dart_moved(scene, halfway)).alpha, 1);
+  EXPECT_EQ(contacts.prove_step(scene.x0, dart_moved(scene, -near / 2)).alpha, 1);
+  Positions broken = x1;
+  broken(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(contacts.prove_step(scene.x0, broken).alpha, 0);
+}
+
+TEST(CollisionKinds, AProofOfAStepIsOfAuditedPairsAloneAndLeavesTheCandidates) {
+  const Scene scene = triangle_over_sheet(near, CollisionKind::ccd);
+  ContactSystem contacts(scene, {});
+  contacts.update_candidates(scene.x0, scene.x0);
+  const auto before = contacts.candidate_counts();
+  const StepBound proof = contacts.prove_step(scene.x0, dart_moved(scene, beyond));
+  EXPECT_EQ(proof.alpha, 1);
+  EXPECT_EQ(proof.queries, 0);
+  EXPECT_GT(before.point_triangle, 0U);
+  EXPECT_EQ(contacts.candidate_counts().point_triangle, before.point_triangle);
+}
+
 TEST(CollisionKinds, StaticRefusesStatesThatIntersectAndNoMotion) {
   const Scene scene = triangle_over_sheet(near, CollisionKind::static_test);
   EXPECT_GT(ask(scene, beyond).rows_at_start, 0u);

@@ -184,13 +184,14 @@ inline Scene in_wind(Lumping lumping = Lumping::barycentric) {
   return builder.finish();
 }
 
-inline Scene stitched() {
+/// strength (N) of each, if any.
+inline Scene stitched(std::optional<double> strength = std::nullopt) {
   SceneBuilder builder("stitched", false, Vec3d::Zero(), "test");
   builder.add_body(bare_sheet("lower"));
   BodySpec upper = bare_sheet("upper");
   upper.mesh.vertices.row(2).array() += 0.3;
   builder.add_body(upper);
-  builder.add_stitch({"lower", "upper", {0, 3, 7}, {1, 3, 6}, 6, 0}, "/stitches/0");
+  builder.add_stitch({"lower", "upper", {0, 3, 7}, {1, 3, 6}, 6, 0, strength}, "/stitches/0");
   builder.add_stitch({"lower", "upper", {11, 15}, {11, 14}, 9, 0.5}, "/stitches/1");  // pushes
   return builder.finish();
 }
@@ -250,6 +251,7 @@ inline std::vector<TermCase> driven_cases() {
   add("split drag", "air_drag", in_wind(Lumping::mixed_voronoi));
   add("weighted pressure", "inflation", inflated(true));
   add("stitches", "stitch", stitched());
+  add("stitches that break", "stitch", stitched(2.0));
   add("springs of cloth", "cloth_springs", sheet_with([](Material& m) {
         m.cloth_tension = 3, m.cloth_tension_growing = 2, m.cloth_compression = 1;
         m.cloth_compression_growing = 0.5, m.cloth_exponent = 4;

@@ -65,6 +65,19 @@ TEST(AuditMesh, GivenVerticesOfOneMotionAreOneRigidBody) {
   EXPECT_EQ(mesh.thickness, scene.offset);
 }
 
+TEST(AuditMesh, PairsThatAStepIsProvenForAreJudgedAtItsEnd) {
+  Scene scene = drape2d("point_edge");
+  EXPECT_TRUE(make_audit_mesh(scene, 0.01).judged.late.empty());
+  const int obstacle = static_cast<int>(scene.bodies.size());
+  scene.collisions.pairs = {{0, 0, CollisionKind::audited, ""},
+                            {0, 1, CollisionKind::proximity, ""},
+                            {1, obstacle, CollisionKind::audited, ""}};
+  const audit::JudgedPairs judged = make_audit_mesh(scene, 0.01).judged;
+  EXPECT_EQ(judged.late, (std::vector<std::array<int, 2>>{{0, 0}, {1, obstacle}}));
+  EXPECT_EQ(judged.owner, scene.body);
+  EXPECT_EQ(judged.n_bodies, obstacle);
+}
+
 TEST(AuditVerdict, NamesWhatEntersAnObstacle) {
   const Scene scene = drape2d("point_edge");
   const audit::AuditMesh mesh = make_audit_mesh(scene, 0.01);

@@ -205,6 +205,34 @@ TEST(AuditWatch, AfterAFailedAttemptTheMotionStartsWhereTheStepDid) {
   EXPECT_NE(watch.verdict().detail.find("no judged motion"), std::string::npos) << watch.verdict().detail;
 }
 
+/// Of a pair that a step is proven for when it is over, what happens within the step counts only where the
+/// step is done again.
+TEST(AuditWatch, OfAuditedPairsTheEndOfAStepCountsAndAllOfOneThatIsDoneAgain) {
+  Scene scene = sheet_over_ball();
+  scene.collisions.pairs = {{0, 1, CollisionKind::audited, "as given"}};
+  Positions through = scene.x0, back = scene.x0;
+  through.row(2).array() -= 0.05;
+  back.row(2).array() -= 0.001;
+  for (const bool redone : {false, true}) {
+    AuditRecord record;
+    AuditWatch watch(scene, 0.01, 0.1, record);
+    StepRecord step = converged();
+    if (redone) {
+      watch.on_motion(scene.x0, through, 0);
+      watch.on_redo();
+    }
+    watch.on_motion(scene.x0, through, 0);
+    watch.on_motion(through, back, 0);
+    watch.on_step(back, step);
+    EXPECT_EQ(watch.verdict().outcome, redone ? Outcome::penetration : Outcome::ok) << watch.verdict().detail;
+    EXPECT_EQ(step.violations > 0, redone);
+    EXPECT_EQ(record.motions, 2);
+    EXPECT_GT(record.obstacle_triangles, 0);
+    fall(watch, back, -0.3, 1);
+    EXPECT_EQ(watch.verdict().outcome, Outcome::penetration) << "the next step is judged at its end again";
+  }
+}
+
 /// The first attempt of the first step: the start is the state that it goes back to.
 TEST(AuditWatch, AFailedFirstAttemptGoesBackToTheStart) {
   const Scene scene = sheet_over_ball();

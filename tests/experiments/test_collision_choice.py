@@ -22,9 +22,9 @@ def cloths(folder: Path, collisions: list[dict], *, speed: float = -1.0, dt: flo
         "time": {"dt_s": dt, "steps": steps}})
 
 
-def run(program: str, folder: Path, config: Path) -> dict:
+def run(program: str, folder: Path, config: Path, *more: str) -> dict:
     done = bench(program, "run", config, "--out", folder / "run", "--progress", "none",
-                 "--set", "/formulation/stiffness_policy/kappa_N_per_m=200", "--set", "/threads=1")
+                 "--set", "/formulation/stiffness_policy/kappa_N_per_m=200", "--set", "/threads=1", *more)
     assert done.returncode == 0, done.stderr
     return json.loads((folder / "run" / "run.json").read_text())
 
@@ -80,7 +80,7 @@ def test_explain_says_what_every_pair_does_and_why(program, tmp_path):
     text = bench(program, "explain", config).stdout
     said = text.split("pairs of bodies\n")[1].split("\n\n")[0].splitlines()
     lines = {name: rest for name, *rest in (line.split(maxsplit=2) for line in said)}
-    assert lines["large|small"] == ["ccd", "auto: the surface of small is open"]
+    assert lines["large|small"] == ["audited", "auto: the surface of small is open"]
     assert lines["large|large"] == ["off", "as given"]
     assert lines["small|small"] == ["ccd", "by default"]
     assert "pairs of bodies\n" not in bench(program, "explain", cloths(tmp_path, [])).stdout
@@ -97,6 +97,7 @@ def guarantee(program, config, *more):
     ("proximity", "they may pass through each other"),
     ("off", "contact does nothing between them"),
     ("static", "what passes through as a whole from one state to the next is not seen"),
+    ("audited", "a step for which that is not proven is done again as if the pair were ccd"),
 ])
 def test_explain_promises_of_every_pair_what_its_kind_bounds(program, tmp_path, kind, said):
     rest = [{"a": name, "b": name, "kind": kind} for name in ("large", "small")] if kind != "static" else []
@@ -116,6 +117,58 @@ def test_explain_promises_nothing_of_states_that_the_step_solver_does_not_refuse
                      "/formulation/shape=quadratic")
     assert said[0].startswith("penalty, for 2 of 3 pairs of bodies (ccd): none against passing through")
     assert said[1] == "1 pair (static): none: the step solver accepts states in which they intersect"
+
+
+def test_audited_ends_as_ccd_whatever_an_iteration_passes_through(program, tmp_path):
+    """Thrown 20 cm a step, with any number of threads: the step is done again, and nothing has passed at its end."""
+    records = {}
+    for name, kind, threads in [("audited", "audited", 1), ("two", "audited", 2), ("ccd", "ccd", 1)]:
+        (tmp_path / name).mkdir()
+        config = cloths(tmp_path / name, pair(kind), speed=-20.0, steps=3)
+        records[name] = run(program, tmp_path / name, config, "--set", f"/threads={threads}")
+    audited, summary = records["audited"], records["audited"]["summary"]
+    assert audited["status"]["outcome"] == "ok", audited["status"]
+    assert touched(audited) > 0 and audited["audit"]["judged"] > 0 and audited["audit"]["motion_pairs"] > 0
+    assert summary["redone_audited"] == sum(step["redone_audited"] for step in audited["steps"]) > 0
+    assert summary["audited_queries"] > 0 and summary["retries"] == 0
+    assert {step["dt_s"] for step in audited["steps"]} == {0.01}
+    assert records["two"]["summary"]["state_hash"] == summary["state_hash"]
+    assert records["ccd"]["summary"]["redone_audited"] == records["ccd"]["summary"]["audited_queries"] == 0
+    assert records["ccd"]["status"]["outcome"] == "ok"
+
+
+def test_audited_goes_on_from_a_checkpoint_as_if_it_had_not_stopped(program, tmp_path):
+    (tmp_path / "whole").mkdir()
+    config = cloths(tmp_path, pair("audited"), speed=-20.0, steps=6)
+    whole = run(program, tmp_path / "whole", config)
+    assert whole["summary"]["redone_audited"] > 0
+    (tmp_path / "cut").mkdir()
+    run(program, tmp_path / "cut", config, "--step-limit", "1")
+    for _ in range(20):
+        again = run(program, tmp_path / "cut", config, "--step-limit", "1", "--resume")
+        if again["status"]["outcome"] != "timeout":
+            break
+    assert again["status"]["outcome"] == "ok" and again["status"]["resumed_from_step"] > 0
+    assert again["summary"]["state_hash"] == whole["summary"]["state_hash"]
+    for part in ("redone_audited", "audited_queries", "ccd_queries", "newton_iterations"):
+        assert again["summary"][part] == whole["summary"][part], part
+    for part in ("states", "motions", "state_pairs", "motion_pairs", "judged", "crossings", "violations"):
+        assert again["audit"][part] == whole["audit"][part], part
+
+
+@pytest.mark.parametrize("settings", [
+    {"name": "penalty", "/formulation/shape": "quadratic"},
+    {"name": "pncg", "/step_solver/pncg_bound": "half_d_hat"},
+])
+def test_audited_is_refused_where_no_motion_is_bounded(program, tmp_path, settings):
+    more = dict(settings)
+    solver = more.pop("name")
+    words = [f"/step_solver/name={solver}"] + [f"{pointer}={value}" for pointer, value in more.items()]
+    chosen = [word for setting in words for word in ("--set", setting)]
+    refused(bench(program, "check", cloths(tmp_path, pair("audited")), *chosen),
+            "/scene/collisions/0/kind", f"the step solver {solver} bounds no motion")
+    text = bench(program, "explain", cloths(tmp_path, pair("auto")), *chosen).stdout
+    assert f"auto: the surface of small is open; the step solver {solver} bounds no motion" in text
 
 
 def test_a_name_that_is_not_there(program, tmp_path):

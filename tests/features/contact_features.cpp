@@ -79,6 +79,27 @@ std::string keeps_no_more_than_half(const Method& method, const Track& run) {
   return end > 0.55 ? fmt::format("a plate of restitution 0.5 leaves with {:.3g} of its speed", end) : "";
 }
 
+/// A plate is thrown at a sheet that stands still, farther in a step than contact reaches.
+json thrown_at_a_sheet(const Method& method) {
+  json config = bare(method, 1e-3, 4);
+  config["scene"]["bodies"] = {plate("plate", 0.015, -10), plate("sheet", 0)};
+  config["scene"]["bodies"][0]["transform"]["translate_m"] = {0.011, 0.007, 0.015};
+  config["scene"]["bodies"][1]["pins"] = {{{"all", true}}};
+  config["scene"]["bodies"][1]["transform"]["scale"] = 2;
+  if (!method.solver.needs.overlap) config["formulation"]["shape"] = "log";  // a bounded one cannot carry it
+  config["scene"]["collisions"] = {{{"a", "plate"}, {"b", "sheet"}, {"kind", "audited"}}};
+  config["formulation"]["d_hat_m"] = 2e-3;
+  config["formulation"]["stiffness_policy"]["kappa_N_per_m"] = 1e5;
+  return config;
+}
+
+std::string stays_above(const Method&, const Track& run) {
+  double lowest = run.x[0](2, 0);
+  for (const Positions& x : run.x) lowest = std::min(lowest, x.leftCols(4).row(2).minCoeff());
+  if (lowest <= 0) return fmt::format("the plate gets to {:.3g} m, below the sheet", lowest);
+  return lowest > 2.5e-3 ? fmt::format("the plate stays at {:.3g} m and meets nothing", lowest) : "";
+}
+
 }  // namespace
 
 std::vector<Feature> contact_features() {
@@ -91,6 +112,12 @@ std::vector<Feature> contact_features() {
            true,
            past_a_ball,
            leaves_with_no_more},
+          {"audited pairs",
+           "a plate that is thrown at a sheet, 10 mm a step, does not pass through it",
+           {"inertia", "contact"},
+           true,
+           thrown_at_a_sheet,
+           stays_above},
           {"restitution 0 and a force that lifts",
            "a plate at rest leaves with the acceleration of the force",
            {"contact", "restitution"},

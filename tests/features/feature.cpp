@@ -110,8 +110,8 @@ std::string differs(const char* name, double found, double expected, double tole
 
 std::vector<Feature> features() {
   std::vector<Feature> out;
-  for (const auto& group :
-       {contact_features(), friction_features(), prescribed_features(), load_features(), part_features()})
+  for (const auto& group : {contact_features(), friction_features(), prescribed_features(), load_features(),
+                            stitch_features(), part_features()})
     out.insert(out.end(), group.begin(), group.end());
   return out;
 }

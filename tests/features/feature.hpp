@@ -57,6 +57,7 @@ std::vector<Feature> features();
 std::vector<Feature> contact_features();
 std::vector<Feature> friction_features();
 std::vector<Feature> load_features();
+std::vector<Feature> stitch_features();
 std::vector<Feature> prescribed_features();
 /// One for every part that bodies are made of, and what parts can have besides.
 std::vector<Feature> part_features();

@@ -178,72 +178,42 @@ std::string swells_as_it_weighs(const Method& method, const Track& run) {
   return goes_with_its_force(method, run, pressure_force(run, weight_along_x));
 }
 
-constexpr double apart = 0.05, stitch = 25;  // m, N/m
-
-json stitched(const Method& method) {
-  json config = bare(method, 1e-3, 50);
-  config["scene"]["bodies"] = {plate("plate", 0), plate("other", apart)};
-  config["scene"]["stitches"] = {{{"a", "plate"},
-                                  {"b", "other"},
-                                  {"a_vertices", {0, 1, 2, 3}},
-                                  {"b_vertices", {0, 1, 2, 3}},
-                                  {"stiffness_N_per_m", stitch}}};
-  ground(method, config, 25);
-  return config;
-}
-
-/// Where a solver has no energies its stitches are as stiff as it makes them: their ends meet.
-std::string is_drawn_together(const Method& method, const Track& run) {
-  for (int v = 0; v < 4; ++v) {
-    const double m = run.scene.mass[static_cast<std::size_t>(v)],
-                 left = run.end()(2, v + 4) - run.end()(2, v);
-    double expected = apart * std::cos(std::sqrt(2 * stitch / m) * run.t_end());
-    if (method.still()) expected = apart * 25 / (25 + 2 * stitch);
-    if (method.solver.name == "projection") expected = 0;
-    const auto wrong = differs("distance", left, expected, 0.03 * apart);
-    if (!wrong.empty()) return wrong;
-  }
-  return {};
-}
-
 }  // namespace
 
 std::vector<Feature> load_features() {
-  return {
-      {"gravity over time",
-       "the speed is the sum of the acceleration so far",
-       {"external_force"},
-       false,
-       scheduled,
-       has_the_sum_of_its_weight},
-      {"pull", "every vertex swings on its spring", {"pull"}, false, pulled, swings_on_its_springs},
-      {"pull by weights",
-       "every vertex swings on its share of the stiffness",
-       {"pull"},
-       false,
-       pulled_by_weights,
-       swings_as_it_weighs},
-      {"drag split as mass",
-       "the speed of every vertex falls as exp(-C A t/m)",
-       {"air_drag"},
-       true,
-       braked_as_its_mass,
-       every_vertex_slows_alike},
-      {"drag", "the speed falls as exp(-C A t/m)", {"air_drag"}, true, braked, slows_by_the_air},
-      {"velocity damping", "the speed falls by its factor", {"inertia"}, true, damped, keeps_its_part},
-      {"inflation",
-       "every vertex goes p dV/dx t^2/(2 m), on springs p dV/dx /k",
-       {"inflation"},
-       false,
-       inflated,
-       swells},
-      {"inflation by weights",
-       "the same with the mean weight of each triangle",
-       {"inflation"},
-       false,
-       inflated_by_weights,
-       swells_as_it_weighs},
-      {"stitches", "two plates swing towards each other", {"stitch"}, false, stitched, is_drawn_together}};
+  return {{"gravity over time",
+           "the speed is the sum of the acceleration so far",
+           {"external_force"},
+           false,
+           scheduled,
+           has_the_sum_of_its_weight},
+          {"pull", "every vertex swings on its spring", {"pull"}, false, pulled, swings_on_its_springs},
+          {"pull by weights",
+           "every vertex swings on its share of the stiffness",
+           {"pull"},
+           false,
+           pulled_by_weights,
+           swings_as_it_weighs},
+          {"drag split as mass",
+           "the speed of every vertex falls as exp(-C A t/m)",
+           {"air_drag"},
+           true,
+           braked_as_its_mass,
+           every_vertex_slows_alike},
+          {"drag", "the speed falls as exp(-C A t/m)", {"air_drag"}, true, braked, slows_by_the_air},
+          {"velocity damping", "the speed falls by its factor", {"inertia"}, true, damped, keeps_its_part},
+          {"inflation",
+           "every vertex goes p dV/dx t^2/(2 m), on springs p dV/dx /k",
+           {"inflation"},
+           false,
+           inflated,
+           swells},
+          {"inflation by weights",
+           "the same with the mean weight of each triangle",
+           {"inflation"},
+           false,
+           inflated_by_weights,
+           swells_as_it_weighs}};
 }
 
 }  // namespace bb::features

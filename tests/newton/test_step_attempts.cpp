@@ -48,6 +48,25 @@ TEST(StepAttempts, AddUpTheWorkOfAllAndKeepTheRestOfTheLast) {
   }
 }
 
+/// An attempt whose motion was not proven is followed by one as long.
+TEST(StepAttempts, ThatAreNotProvenAreNoRetries) {
+  StepReport failed = attempt(1, StepStatus::iteration_cap), unproven = attempt(2, StepStatus::converged),
+             last = attempt(3, StepStatus::converged);
+  failed.audited_queries = 0, unproven.audited_queries = 5, last.audited_queries = 0;
+  const int iterations = failed.newton_iterations + unproven.newton_iterations + last.newton_iterations;
+  unproven.add_attempt(failed);
+  last.add_unproven(unproven);
+  EXPECT_EQ(last.retries, 1);
+  EXPECT_EQ(last.redone_audited, 1);
+  EXPECT_EQ(last.audited_queries, 5);
+  EXPECT_EQ(last.newton_iterations, iterations);
+  StepReport shorter = attempt(4, StepStatus::converged);
+  shorter.add_attempt(last);
+  EXPECT_EQ(shorter.retries, 2);
+  EXPECT_EQ(shorter.redone_audited, 1);
+  EXPECT_EQ(shorter.audited_queries, 5);
+}
+
 /// The iterations of the last attempt, as an observer counts them.
 TEST(StepAttempts, SayHowManyIterationsWereBeforeTheLast) {
   class Watch final : public StepObserver {

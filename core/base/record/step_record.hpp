@@ -19,6 +19,13 @@ struct StepRecord : WorkCounts {
   BB_FIELD(double, t_s, "simulated time at its end") = 0;
   BB_FIELD(double, dt_s, "length; of accumulated_toi, the part that was reached") = 0;
   BB_FIELD(int, retries, "attempts before this one, from the same start with twice the length each") = 0;
+  BB_FIELD(
+      int, redone_audited,
+      "attempts before this one, from the same start and as long, after which the straight motion of the "
+      "step was not proven free of contact for pairs that collide as audited; from there on every motion "
+      "was bounded") = 0;
+  BB_FIELD(long long, audited_queries,
+           "ACCD queries of the proofs of such motions, which are in no other count") = 0;
   BB_FIELD(StepStatus, status, "how it ended") = StepStatus::converged;
   BB_FIELD(std::string, detail,
            "what held it: the pin, the pair, the linear status; empty when it converged");
@@ -68,6 +75,8 @@ struct StepRecord : WorkCounts {
   BB_FIELD(Number, restitution_dissipation_J,
            "sum over contacts of what restitution takes of the speed of their gaps, force times way",
            "no_restitution");
+  BB_FIELD(long long, broken_stitches,
+           "stitches that are broken once it is over, those of earlier steps too") = 0;
   BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma of triangles at its end",
            "no_limit");
   BB_FIELD(Number, solid_limit_load_max_Pa, "largest (1/volume) dS_e/dsigma of tetrahedra at its end",

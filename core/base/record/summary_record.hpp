@@ -68,6 +68,11 @@ struct Summary : WorkCounts {
   BB_FIELD(int, steps, "that were run") = 0;
   BB_FIELD(int, steps_capped, "that ended at their iteration cap") = 0;
   BB_FIELD(int, retries, "attempts at steps that failed and were repeated with half their length") = 0;
+  BB_FIELD(
+      int, redone_audited,
+      "steps that were done again with every motion bounded, since they were not proven free of contact for "
+      "pairs that collide as audited") = 0;
+  BB_FIELD(long long, audited_queries, "ACCD queries of such proofs, which are in no other count") = 0;
   BB_FIELD(Number, dt_min_s, "shortest step");
   BB_FIELD(long long, newton_iterations, "over all steps") = 0;
   BB_FIELD(Stats, newton_per_step, "Newton iterations of a step");
@@ -96,6 +101,8 @@ struct Summary : WorkCounts {
            "body|body or body|obstacle -> step at whose end they first had an active contact row");
   BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element over step ends", "no_limit");
   BB_FIELD(Number, contact_load_max_N, "largest of the steps", "no_contacts");
+  BB_FIELD(long long, broken_stitches,
+           "stitches that are broken at the end of the run, the largest of the steps") = 0;
   BB_FIELD(Number, limit_load_max_N_per_m, "largest of the steps", "no_limit");
   BB_FIELD(Number, solid_limit_load_max_Pa, "largest of the steps", "no_limit");
   BB_FIELD(StiffnessRecord, stiffness, "policies with one global kappa");

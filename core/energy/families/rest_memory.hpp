@@ -1,4 +1,4 @@
-// What rest shapes remember from step to step: plastic parts and lengths that creep.
+// What elements remember from step to step: plastic parts, lengths that creep, stiffnesses of what breaks.
 #pragma once
 
 #include <vector>
@@ -15,6 +15,8 @@ class RestMemory {
   void set(std::span<const double> values) { now_.upload(values); }
   /// Of the step.
   const double* data() const { return now_.data(); }
+  std::vector<double> values() const { return now_.download(); }
+  void copy_to(exec::Buffer<double>& out) const { out.copy_from(now_); }
 
   /// A step begins: what the one before has left holds.
   void begin_step() {

@@ -1,12 +1,14 @@
-// Springs: their columns, rest lengths that move, and l - l0 = 0 as constraints.
+// Springs: their columns, rest lengths that move, l - l0 = 0 as constraints, and stitches that break.
 #include "core/energy/families/springs.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "core/energy/element_loop.hpp"
 #include "core/energy/families/families.hpp"
 #include "core/energy/families/family_of.hpp"
 #include "core/energy/families/rest_lengths.hpp"
+#include "core/energy/families/rest_memory.hpp"
 
 namespace bb {
 namespace {
@@ -18,6 +20,11 @@ class SpringConstraints final : public ConstraintBatch {
   SpringConstraints(std::span<const int> vertices, std::span<const double> rest_length,
                     std::span<const double> stiffness)
       : vertices_(vertices), rest_length_(rest_length) {
+    set(stiffness);
+  }
+  /// 0: there is no constraint.
+  void set(std::span<const double> stiffness) {
+    compliance_.clear();
     for (const double k : stiffness) compliance_.push_back(1 / k);
   }
   std::string_view name() const override { return "spring"; }
@@ -57,11 +64,59 @@ class SpringFamily final : public FamilyOf<Springs> {
   void change_step(const FamilyStep& step) override {
     if (lengths_.move(step.t_end)) rest_length_.upload(lengths_.now());
   }
-  const ConstraintBatch* constraints() const override { return &constraints_; }
+  const ConstraintBatch* constraints() override { return &constraints_; }
 
  private:
   exec::Buffer<double> stiffness_, rest_length_;
   RestLengths lengths_;
+  SpringConstraints constraints_;
+};
+
+/// Springs that break: what they remember is their stiffness, 0 once they are broken.
+class BreakableSprings final : public FamilyOf<Springs> {
+ public:
+  BreakableSprings(const FamilyPlace& place, const SpringNames& names, const Stitches& stitches)
+      : FamilyOf(place, names.vertices, std::span(stitches.pairs)),
+        rest_length_(place.executor, names.rest_length),
+        strength_(place.executor, "stitch strength"),
+        broken_(place.executor, "stitch stiffness once a step is over"),
+        stiffness_(place.executor, names.stiffness),
+        constraints_(vertices(), stitches.rest_length, stitches.stiffness) {
+    rest_length_.upload(stitches.rest_length);
+    strength_.upload(stitches.strength);
+    stiffness_.set(stitches.stiffness);
+    elements_.rest_length = rest_length_.data();
+    take_stiffness();
+  }
+  void begin_step(const FamilyStep&) override {
+    stiffness_.begin_step();
+    take_stiffness();
+  }
+  bool flows() const override { return true; }
+  void end_step(const double* x, double /*dt*/) override { break_at(x, stiffness_.flow()); }
+  std::optional<std::size_t> broken(const double* x) override {
+    stiffness_.copy_to(broken_);
+    break_at(x, broken_.data());
+    const std::vector<double> left = broken_.download();
+    return static_cast<std::size_t>(std::count(left.begin(), left.end(), 0.0));
+  }
+  void keep(Archive& archive) override {
+    stiffness_.keep(archive);
+    take_stiffness();
+  }
+  const ConstraintBatch* constraints() override {
+    constraints_.set(stiffness_.values());
+    return &constraints_;
+  }
+
+ private:
+  void take_stiffness() { elements_.stiffness = stiffness_.data(); }
+  void break_at(const double* x, double* stiffness) {
+    place_.executor.each(elements_.n, BreakSprings{elements_, strength_.data(), x, stiffness});
+  }
+
+  exec::Buffer<double> rest_length_, strength_, broken_;
+  RestMemory stiffness_;
   SpringConstraints constraints_;
 };
 
@@ -83,8 +138,13 @@ MadeFamily spring_family(const FamilyPlace& place, const SpringNames& names,
 }
 
 MadeFamily stitch_family(const FamilyPlace& place, const Stitches& stitches) {
-  return spring_family(place, {"stitched vertices", "stitch stiffness", "stitch rest lengths"},
-                       stitches.pairs, stitches.stiffness, stitches.rest_length);
+  const SpringNames names{"stitched vertices", "stitch stiffness", "stitch rest lengths"};
+  if (!stitches.first_breakable())
+    return spring_family(place, names, stitches.pairs, stitches.stiffness, stitches.rest_length);
+  check_column("stitches/stiffness", stitches.pairs.size(), stitches.stiffness, false);
+  check_column("stitches/rest_length", stitches.pairs.size(), stitches.rest_length, false);
+  check_column("stitches/strength", stitches.pairs.size(), stitches.strength, false);
+  return std::make_unique<BreakableSprings>(place, names, stitches);
 }
 
 }  // namespace bb

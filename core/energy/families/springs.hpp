@@ -29,4 +29,18 @@ struct Springs : ElementVertices<2> {
   }
 };
 
+/// Springs whose tension at the end x of a step is beyond their strength have no stiffness from then on.
+struct BreakSprings {
+  Springs elements;
+  const double* strength;  // [n] N
+  const double* x;
+  double* stiffness;  // [n] N/m, that of the step before
+  BB_HD void operator()(exec::Index e) const {
+    Vec3d p[2];
+    elements.points(x, e, p);
+    const double stretch = (p[1] - p[0]).norm() - elements.rest_length[e];
+    if (elements.stiffness[e] * stretch > strength[e]) stiffness[e] = 0;
+  }
+};
+
 }  // namespace bb

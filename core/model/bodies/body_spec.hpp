@@ -71,10 +71,12 @@ struct StitchSpec {
   std::vector<int> a_vertices, b_vertices;  // of their own meshes
   double stiffness = 0;                     // N/m, of each spring, > 0
   double rest_length = 0;                   // m, >= 0
+  std::optional<double> strength = {};  // N, > 0: the tension beyond which a spring breaks; absent: none does
+  std::string weights = {};             // a group of a, factors on strength by a_vertices; empty: 1
 };
 
 /// What is asked of a pair: a CollisionKind, or the one that follows from whether the two surfaces close.
-enum class CollisionChoice { automatic, ccd, static_test, proximity, off };
+enum class CollisionChoice { automatic, ccd, audited, static_test, proximity, off };
 
 /// What contact does with two bodies, a body and an obstacle, or a body with itself.
 struct CollisionSpec {

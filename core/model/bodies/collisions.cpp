@@ -16,6 +16,8 @@ std::optional<CollisionKind> given_kind(CollisionChoice choice) {
   switch (choice) {
     case CollisionChoice::ccd:
       return CollisionKind::ccd;
+    case CollisionChoice::audited:
+      return CollisionKind::audited;
     case CollisionChoice::static_test:
       return CollisionKind::static_test;
     case CollisionChoice::proximity:
@@ -68,7 +70,8 @@ bool SceneBuilder::has_triangles(int owner) const {
 }
 
 /// Two closed surfaces of which one passes wholly through the other intersect on the way for as long as a body is thick; an open one
-/// may be on either side of another in two states without having intersected it in either.
+/// may be on either side of another in two states without having intersected it in either. Whether it passed
+/// shows in the motion of a step, once it is over.
 CollisionPair SceneBuilder::decide(const CollisionSpec& spec, int a, int b) const {
   const auto [first, second] = std::minmax(a, b);
   if (const auto kind = given_kind(spec.choice)) return {first, second, *kind, "as given"};
@@ -76,14 +79,37 @@ CollisionPair SceneBuilder::decide(const CollisionSpec& spec, int a, int b) cons
     return static_cast<std::size_t>(owner) >= closed_.size() || closed_[static_cast<std::size_t>(owner)] != 0;
   };
   if (scene_.planar) return {first, second, CollisionKind::ccd, "auto: the scene is planar"};
-  if (first == second)
-    return {first, second, CollisionKind::ccd, "auto: a body and itself are as two open surfaces"};
+  if (first == second) return decide_open(first, second, "auto: a body and itself are as two open surfaces");
   for (const int owner : {first, second}) {
-    if (closed(owner)) continue;
-    return {first, second, CollisionKind::ccd,
-            fmt::format("auto: the surface of {} is open", owner_name(owner))};
+    if (!closed(owner))
+      return decide_open(first, second, fmt::format("auto: the surface of {} is open", owner_name(owner)));
   }
   return {first, second, CollisionKind::static_test, "auto: both surfaces are closed"};
+}
+
+CollisionPair SceneBuilder::decide_open(int first, int second, const std::string& why) const {
+  if (unbounded_by_.empty()) return {first, second, CollisionKind::audited, why};
+  return {first, second, CollisionKind::ccd,
+          fmt::format("{}; the step solver {} bounds no motion", why, unbounded_by_)};
+}
+
+/// Whether the pair can be of its kind; else it is a violation.
+bool SceneBuilder::allows(const CollisionPair& pair, const std::string& where) {
+  if (pair.kind == CollisionKind::audited && !unbounded_by_.empty()) {
+    violations_.push_back({where + "/kind", "audited",
+                           fmt::format("another kind: the step solver {} bounds no motion, so a step that is "
+                                       "done again would pass through as before",
+                                       unbounded_by_)});
+    return false;
+  }
+  const bool obstacle = pair.second >= static_cast<int>(scene_.bodies.size());
+  const bool testable =
+      obstacle || (!scene_.planar && (has_triangles(pair.first) || has_triangles(pair.second)));
+  if (pair.kind != CollisionKind::static_test || testable) return true;
+  violations_.push_back(
+      {where + "/kind", "static",
+       scene_.planar ? "another kind: the scene is planar" : "another kind: neither surface has a triangle"});
+  return false;
 }
 
 void SceneBuilder::append_collisions() {
@@ -100,14 +126,7 @@ void SceneBuilder::append_collisions() {
                              "a pair of which one has a vertex that moves freely: others have no contact"});
       continue;
     }
-    const bool obstacle = pair.second >= static_cast<int>(scene_.bodies.size());
-    const bool testable = obstacle || (!scene_.planar && (has_triangles(a) || has_triangles(b)));
-    if (pair.kind == CollisionKind::static_test && !testable) {
-      violations_.push_back({where + "/kind", "static",
-                             scene_.planar ? "another kind: the scene is planar"
-                                           : "another kind: neither surface has a triangle"});
-      continue;
-    }
+    if (!allows(pair, where)) continue;
     if (std::any_of(out.pairs.begin(), out.pairs.end(), [&pair](const CollisionPair& other) {
           return other.first == pair.first && other.second == pair.second;
         })) {

@@ -109,6 +109,7 @@ void SceneBuilder::append_vertices(const BodySpec& spec, const Positions& start)
   pin_of_.resize(pin_of_.size() + n, -1);
   held_.resize(pin_of_.size(), -1);
   groups_.push_back(spec.collision_group);
+  weights_.push_back(spec.weights);
 }
 
 int SceneBuilder::motion_index(PrescribedMotion motion, int first_vertex) {

@@ -33,6 +33,8 @@ class SceneBuilder {
   void add_stitch(const StitchSpec& stitch, const std::string& where);
   /// Of bodies and obstacles that may come later: finish() looks for them. where: as of add_stitch.
   void add_collision(const CollisionSpec& collision, const std::string& where);
+  /// The step solver of that name bounds no motion: collisions cannot be `audited`, and `auto` makes none so.
+  void set_unbounded_motions(const std::string& step_solver) { unbounded_by_ = step_solver; }
   /// One with a motion gets a vertex that stands for its point, behind those of all bodies, and is a body of that vertex
   /// alone. Its `vertex` is set here.
   void add_obstacle(const Obstacle& obstacle);
@@ -58,6 +60,7 @@ class SceneBuilder {
   void append_surface(const BodySpec& spec, int first);
   void append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface, int first);
   std::vector<int> stitched(const std::string& body, const std::vector<int>& own, const std::string& where);
+  std::vector<double> strengths(const StitchSpec& stitch, const std::string& where);
   void append_obstacle_vertices();
   void append_groups();
   void append_collisions();
@@ -66,16 +69,20 @@ class SceneBuilder {
   bool has_triangles(int owner) const;
   std::string owner_name(int owner) const;
   CollisionPair decide(const CollisionSpec& spec, int a, int b) const;
+  CollisionPair decide_open(int first, int second, const std::string& why) const;
+  bool allows(const CollisionPair& pair, const std::string& where);
 
   Scene scene_;
   std::string where_;
   std::vector<std::string> names_;
-  std::vector<int> pin_of_;          // [n_vertices] index into scene_.pins, -1 free
-  std::vector<int> held_;            // the same of pins that hold for the whole run
-  std::vector<char> closed_;         // [bodies] whether the surface closes
-  std::vector<std::string> groups_;  // [bodies]
+  std::vector<int> pin_of_;                        // [n_vertices] index into scene_.pins, -1 free
+  std::vector<int> held_;                          // the same of pins that hold for the whole run
+  std::vector<char> closed_;                       // [bodies] whether the surface closes
+  std::vector<std::string> groups_;                // [bodies]
+  std::vector<std::vector<WeightGroup>> weights_;  // [bodies]
   std::vector<CollisionSpec> collisions_;
   std::vector<std::string> collisions_at_;  // where each is
+  std::string unbounded_by_;  // the step solver that bounds no motion; empty: motions are bounded
   std::vector<Violation> violations_;
 };
 

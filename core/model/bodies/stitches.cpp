@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/model/bodies/lumping.hpp"
 #include "core/model/bodies/scene_builder.hpp"
@@ -10,26 +11,58 @@
 #include "core/model/mesh/topology.hpp"
 
 namespace bb {
+namespace {
+
+/// Index of the body of that name; their number: there is none.
+std::size_t place_of(const std::vector<Body>& bodies, const std::string& name) {
+  const auto found =
+      std::find_if(bodies.begin(), bodies.end(), [&name](const Body& b) { return b.name == name; });
+  return static_cast<std::size_t>(found - bodies.begin());
+}
+
+}  // namespace
 
 /// Scene vertices of some of a body's own; empty after a violation.
 std::vector<int> SceneBuilder::stitched(const std::string& body, const std::vector<int>& own,
                                         const std::string& where) {
-  const auto found = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
-                                  [&body](const Body& b) { return b.name == body; });
-  if (found == scene_.bodies.end()) {
+  const std::size_t place = place_of(scene_.bodies, body);
+  if (place == scene_.bodies.size()) {
     std::string names;
     for (const Body& b : scene_.bodies) names += (names.empty() ? "" : ", ") + b.name;
     violations_.push_back({where, '"' + body + '"', "the name of a body: " + names});
     return {};
   }
+  const Body& found = scene_.bodies[place];
   std::vector<int> out;
   for (const int v : own) {
-    if (v < 0 || v >= found->n_vertices) {
+    if (v < 0 || v >= found.n_vertices) {
       violations_.push_back({where + "_vertices", fmt::format("vertex {}", v),
-                             fmt::format("0 to {} of body \"{}\"", found->n_vertices - 1, body)});
+                             fmt::format("0 to {} of body \"{}\"", found.n_vertices - 1, body)});
       return {};
     }
-    out.push_back(found->first_vertex + v);
+    out.push_back(found.first_vertex + v);
+  }
+  return out;
+}
+
+/// Of each of them, N; infinite where none breaks. The bodies are there.
+std::vector<double> SceneBuilder::strengths(const StitchSpec& stitch, const std::string& where) {
+  const Complaints report{where, violations_};
+  std::vector<double> out(stitch.a_vertices.size(),
+                          stitch.strength.value_or(std::numeric_limits<double>::infinity()));
+  if (stitch.strength)
+    report.number("/strength", *stitch.strength, *stitch.strength > 0, "a number > 0; without: none breaks");
+  if (stitch.weights.empty()) return out;
+  if (!stitch.strength) report("/weights", "weights of stitches that do not break", "strength_N beside them");
+  const WeightGroup* const group =
+      require_group(report, weights_[place_of(scene_.bodies, stitch.a)], "/weights", stitch.weights);
+  for (std::size_t i = 0; group && i < out.size(); ++i) {
+    const double weight = group->weight[static_cast<std::size_t>(stitch.a_vertices[i])];
+    out[i] *= weight;
+    if (weight > 0) continue;
+    report(fmt::format("/a_vertices/{}", i),
+           fmt::format("vertex {} with a weight of 0 in \"{}\"", stitch.a_vertices[i], stitch.weights),
+           "weights > 0: a stitch without strength breaks at rest");
   }
   return out;
 }
@@ -51,6 +84,7 @@ void SceneBuilder::add_stitch(const StitchSpec& stitch, const std::string& below
                            fmt::format("as many as a_vertices, {}, and at least one", a.size())});
     return;
   }
+  const std::vector<double> strength = strengths(stitch, where);
   for (std::size_t i = 0; i < a.size(); ++i) {
     const bool held =
         held_[static_cast<std::size_t>(a[i])] >= 0 && held_[static_cast<std::size_t>(b[i])] >= 0;
@@ -63,6 +97,7 @@ void SceneBuilder::add_stitch(const StitchSpec& stitch, const std::string& below
     scene_.stitches.pairs.push_back({a[i], b[i]});
     scene_.stitches.stiffness.push_back(stitch.stiffness);
     scene_.stitches.rest_length.push_back(stitch.rest_length);
+    scene_.stitches.strength.push_back(strength[i]);
   }
 }
 

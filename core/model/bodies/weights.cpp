@@ -10,10 +10,10 @@
 namespace bb {
 namespace {
 
-const WeightGroup* find_group(const BodySpec& spec, const std::string& name) {
-  const auto found = std::find_if(spec.weights.begin(), spec.weights.end(),
+const WeightGroup* find_group(const std::vector<WeightGroup>& groups, const std::string& name) {
+  const auto found = std::find_if(groups.begin(), groups.end(),
                                   [&](const WeightGroup& group) { return group.name == name; });
-  return found == spec.weights.end() ? nullptr : &*found;
+  return found == groups.end() ? nullptr : &*found;
 }
 
 void check_groups(const Complaints& report, const BodySpec& spec) {
@@ -49,14 +49,8 @@ void check_keys(const Complaints& report, const std::string& what, const std::ve
 /// constant: why influences have to be; empty: they may change.
 void check_mix(const Complaints& report, const BodySpec& spec, const std::string& what,
                const std::vector<WeightShare>& mix, const std::string& constant) {
-  std::vector<std::string> names;
-  for (const WeightGroup& group : spec.weights) names.push_back(group.name);
   for (const WeightShare& share : mix) {
-    if (find_group(spec, share.group) == nullptr) {
-      report(what, fmt::format("the weight group \"{}\"", share.group),
-             names.empty() ? "nothing: the body has no weights"
-                           : fmt::format("a group of the body: {}", fmt::join(names, ", ")));
-    }
+    require_group(report, spec.weights, what, share.group);
     report.number(what + "/influence", share.influence, good_influence(share.influence),
                   "a number in [-1, 1]");
     check_keys(report, what, share.keys);
@@ -101,6 +95,18 @@ void check_stiffness(const Complaints& report, const BodySpec& spec) {
 
 }  // namespace
 
+const WeightGroup* require_group(const Complaints& report, const std::vector<WeightGroup>& groups,
+                                 const std::string& what, const std::string& name) {
+  const WeightGroup* const found = find_group(groups, name);
+  if (found != nullptr) return found;
+  std::vector<std::string> names;
+  for (const WeightGroup& group : groups) names.push_back(group.name);
+  report(what, fmt::format("the weight group \"{}\"", name),
+         names.empty() ? "nothing: the body has no weights"
+                       : fmt::format("a group of the body: {}", fmt::join(names, ", ")));
+  return nullptr;
+}
+
 void check_weights(const Complaints& report, const BodySpec& spec) {
   check_groups(report, spec);
   for (const PinSpec& pin : spec.pins) check_pin(report, spec, pin);
@@ -114,7 +120,7 @@ void check_weights(const Complaints& report, const BodySpec& spec) {
 WeightMix mix_of(const BodySpec& spec, const std::vector<WeightShare>& shares) {
   WeightMix out;
   for (const WeightShare& share : shares) {
-    out.layers.push_back({find_group(spec, share.group)->weight, share.influence, share.keys});
+    out.layers.push_back({find_group(spec.weights, share.group)->weight, share.influence, share.keys});
   }
   return out;
 }

@@ -13,6 +13,10 @@ namespace bb {
 /// Groups that are there, weights in [0, 1], one a vertex, influences and keys in their ranges; what has to be constant.
 void check_weights(const Complaints& report, const BodySpec& spec);
 
+/// The group of that name; null where there is none, which is reported at `what`.
+const WeightGroup* require_group(const Complaints& report, const std::vector<WeightGroup>& groups,
+                                 const std::string& what, const std::string& name);
+
 /// Of all vertices of the body. Requires a spec that check_weights has nothing to say of.
 WeightMix mix_of(const BodySpec& spec, const std::vector<WeightShare>& shares);
 /// Of some of them, in their order; the body's own vertices are numbered from `first` on.

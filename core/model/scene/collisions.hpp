@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -11,12 +12,27 @@
 
 namespace bb {
 
-/// Each has all that the next one has, and more.
+/// Fewer and fewer things are known of a pair from one to the next.
 enum class CollisionKind : std::uint8_t {
-  ccd,          // rows, and no motion goes beyond a bound that is proven free of contact
+  ccd,      // rows, and no motion goes beyond a bound that is proven free of contact
+  audited,  // rows, and the straight motion of a step is proven free of contact when it is over, or the step
+            // is done again as if the pair were `ccd`
   static_test,  // rows, and no state is accepted in which the surfaces of the pair intersect
   proximity,    // rows: forces where the pair is near
   off           // nothing
+};
+
+/// Some of them.
+class CollisionKinds {
+ public:
+  constexpr CollisionKinds(std::initializer_list<CollisionKind> kinds) {
+    for (const CollisionKind kind : kinds) bits_ |= bit(kind);
+  }
+  constexpr bool has(CollisionKind kind) const { return (bits_ & bit(kind)) != 0; }
+
+ private:
+  static constexpr unsigned bit(CollisionKind kind) { return 1U << static_cast<unsigned>(kind); }
+  unsigned bits_ = 0;
 };
 
 /// A pair that the scene says something of.

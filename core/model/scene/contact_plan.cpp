@@ -129,6 +129,7 @@ void plan_pairs(const Scene& scene, const PrimitiveCount& points, const Primitiv
 PlanItem plan_collisions(const Collisions& of) {
   std::string text;
   for (const auto& [kind, word] : {std::pair{CollisionKind::ccd, "ccd"},
+                                   {CollisionKind::audited, "audited"},
                                    {CollisionKind::static_test, "static"},
                                    {CollisionKind::proximity, "proximity"},
                                    {CollisionKind::off, "off"}}) {

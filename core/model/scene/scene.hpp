@@ -56,6 +56,16 @@ struct Stitches {
   std::vector<std::array<int, 2>> pairs;
   std::vector<double> stiffness;    // [n] N/m
   std::vector<double> rest_length;  // [n] m
+  std::vector<double> strength =
+      {};  // [n] N, tension beyond which each breaks; infinite: it holds; empty: all hold
+
+  /// The first that can break.
+  std::optional<std::size_t> first_breakable() const {
+    for (std::size_t i = 0; i < strength.size(); ++i) {
+      if (strength[i] < std::numeric_limits<double>::infinity()) return i;
+    }
+    return std::nullopt;
+  }
 };
 
 /// Pressure at a time.
