@@ -29,7 +29,7 @@ def made(strong=None) -> tear.Cut:
 def torn(program, folder, *words) -> subprocess.CompletedProcess:
     size = ("--columns", str(COLUMNS), "--rows", str(ROWS), "--steps", str(STEPS))
     command = [sys.executable, ROOT / "examples/tearing/tear.py", folder, *size, "--program", program, *words]
-    done = subprocess.run(command, cwd=ROOT, env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin", "HOME": str(folder)},
+    done = subprocess.run(command, cwd=ROOT, env={"PYTHONPATH": str(ROOT / "analysis/src"), "PATH": "/usr/bin:/bin", "HOME": str(folder)},
                           capture_output=True, text=True, check=False, timeout=300)  # fmt: skip
     assert done.returncode == 0, done.stderr
     return done
