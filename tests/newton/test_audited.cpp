@@ -256,6 +256,24 @@ TEST(Audited, AnArchiveBetweenStepsIsTheWholeRun) {
   }
 }
 
+/// The bound of a motion of the small cloth through the other one, after a first step that was done again.
+TEST(Audited, WhatComesAfterAStepThatWasDoneAgainIsNotBounded) {
+  for (const CollisionChoice choice : {CollisionChoice::audited, CollisionChoice::ccd}) {
+    const Scene scene = thrown(choice, fast);
+    Method method = method_of();
+    Simulation simulation(scene, method, dt, 2);
+    StepObserver nobody;
+    EXPECT_EQ(simulation.step(nobody).redone_audited, choice == CollisionChoice::audited);
+    Positions down = Positions::Zero(3, scene.x0.cols());
+    down.leftCols(9).row(2).array() -= 1;
+    NewtonSystem& system = simulation.system();
+    system.set_direction(down);
+    system.prepare_motion(MotionEnd::free, false);
+    IterationReport report;
+    EXPECT_EQ(system.bound_motion(report) < 1, choice == CollisionChoice::ccd);
+  }
+}
+
 /// A strip that is folded over itself and closes within a step.
 TEST(Audited, ABodyAndItselfUnderAuto) {
   const auto strip = [](CollisionChoice choice) {
