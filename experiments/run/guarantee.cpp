@@ -50,7 +50,7 @@ std::vector<Guarantee> of_pairs(const StepSolverEntry& solver, const Scene& scen
     out.push_back({fmt::format("{}, for {} of {} of bodies (ccd)", solver.name, bounded, pairs_text(all)),
                    solver.guarantee});
   } else {
-    out.push_back({solver.name, "of contact none, since no pair of bodies collides as ccd"});
+    out.push_back({solver.name, "of contact what follows, since no pair of bodies collides as ccd"});
   }
   for (const CollisionKind kind :
        {CollisionKind::audited, CollisionKind::static_test, CollisionKind::proximity, CollisionKind::off}) {
