@@ -57,8 +57,8 @@ json asked(const json& question) {
   if (!std::filesystem::exists(program)) {
     return no_answer(fmt::format("a formula and no Python at \"{}\"", program));
   }
-  const Finished done =
-      run_process({program, "-m", "barrierbench_analysis.program.formula"}, question.dump(), {{"PYTHONPATH", BB_SOURCE_DIR "/analysis/src"}});
+  const Finished done = run_process({program, "-m", "barrierbench_analysis.program.formula"}, question.dump(),
+                                    {{"PYTHONPATH", BB_SOURCE_DIR "/analysis/src"}});
   const std::size_t end = done.out.find_last_not_of('\n');
   const std::string last =
       end == std::string::npos ? "" : done.out.substr(done.out.rfind('\n', end) + 1, end + 1);

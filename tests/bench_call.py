@@ -14,8 +14,8 @@ def bench(*words, program=sys.executable, environment=None, at_most=None, **opti
 
 
 def python(code: str, folder, at_most=None):
-    """A program of Python that imports `analysis`, in a folder."""
-    return _started(["-c", code], {"PYTHONPATH": str(ROOT)}, at_most, cwd=folder)
+    """A program of Python that imports `barrierbench_analysis`, in a folder."""
+    return _started(["-c", code], {"PYTHONPATH": str(ROOT / "analysis/src")}, at_most, cwd=folder)
 
 
 def _started(words, environment, at_most, **options):

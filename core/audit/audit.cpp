@@ -89,7 +89,7 @@ MotionAudit Audit::check_motion(const Positions& x0, const Positions& x1, int st
 void Audit::check_step_end(const Positions& x0, const Positions& x1, int step, double tolerance) {
   if (!x0.allFinite() || !x1.allFinite()) return;
   if (ends_) ledger_.add(ends_->judge(primitives_, x0, x1), step);
-  if (!late_ || all_motions_) return;
+  if (!late_ || all_motions_ || step < 0) return;  // the start is judged whole by check_state
   const StateAudit end = audit_state(*late_, primitives_, x1, false);
   ledger_.add_late(end, audit_motion(*late_, vertices_, primitives_, x0, x1, tolerance), step);
 }

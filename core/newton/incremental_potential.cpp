@@ -88,13 +88,13 @@ void IncrementalPotential::bound_audited(bool bound) {
 
 StepBound IncrementalPotential::prove_step(const Column& x_n, const Column& x) {
   StepBound smallest;
-  long long queries = 0;
+  long long queries = 0, probes = 0;
   for (Term* term : terms_) {
     const StepBound said = term->prove_step(x_n, x, clock_);
-    queries += said.queries;
-    if (said.alpha < smallest.alpha) smallest = said;
+    queries += said.queries, probes += said.probes;
+    if (!(said.alpha >= smallest.alpha)) smallest = said;  // a bound that is not a number proves nothing
   }
-  smallest.queries = queries;
+  smallest.queries = queries, smallest.probes = probes;
   return smallest;
 }
 

@@ -93,7 +93,7 @@ class IncrementalPotential {
   }
   /// As Term::bound_audited, of all terms.
   void bound_audited(bool bound);
-  /// As Term::prove_step: the smallest of all terms, with the queries of all.
+  /// As Term::prove_step: the smallest of all terms, with the queries and probes of all.
   StepBound prove_step(const Column& x_n, const Column& x);
   std::string describe_bound() const { return holder_ ? holder_->describe_bound() : std::string(); }
   /// force (N) becomes what makes room for gaps that are curved along dx, of a motion that bound() ends at `bound`. Whether

@@ -226,6 +226,7 @@ StepReport Simulation::attempt_until_converged(StepObserver& observer) {
   Archive start;
   if (parts_.can_halve() || proves_steps_) keep(start);
   bool bounded = !proves_steps_;
+  if (proves_steps_) system_->bound_audited(false);  // also after a step that something was thrown in
   StepReport report = attempt(observer);
   for (;;) {
     const bool halve = report.status != StepStatus::converged && parts_.can_halve();
@@ -237,13 +238,13 @@ StepReport Simulation::attempt_until_converged(StepObserver& observer) {
     halve ? again.add_attempt(report, entry_.counters) : again.add_unproven(report, entry_.counters);
     report = std::move(again);
   }
-  if (proves_steps_) system_->bound_audited(false);
   return report;
 }
 
 bool Simulation::is_proven(StepReport& report) {
   const StepBound proof = system_->prove_step();
-  report.audited_queries += proof.queries;
+  report.ccd_queries += proof.queries, report.audited_queries += proof.queries;
+  report.ccd_probes += proof.probes;
   return proof.alpha == 1;
 }
 

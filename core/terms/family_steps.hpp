@@ -30,7 +30,9 @@ class FamilySteps : public Base {
     const ScopedPhase timer(clock, Phase::elastic);
     family_->end_step(x.data(), dt_);
   }
-  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override {
+  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) override {
+    if (!family_->flows()) return;
+    const ScopedPhase timer(clock, Phase::elastic);
     if (const auto broken = family_->broken(x.data())) out.broken_stitches = static_cast<long long>(*broken);
   }
   void keep(Archive& archive) override { family_->keep(archive); }

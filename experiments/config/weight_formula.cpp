@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <cmath>
+
 #include "core/math/error.hpp"
 
 namespace bb {
@@ -83,8 +85,9 @@ std::vector<double> formula_weights(const std::string& text, const Positions& st
     const Vec3d x = start.col(v);
     out.push_back(formula.at(x));
     if (out.back() >= 0 && out.back() <= 1) continue;
+    const std::string found = std::isnan(out.back()) ? "not a number" : fmt::format("{}", out.back());
     throw ConfigError(
-        where, fmt::format("{} at vertex {}, which starts at ({}, {}, {})", out.back(), v, x[0], x[1], x[2]),
+        where, fmt::format("{} at vertex {}, which starts at ({}, {}, {})", found, v, x[0], x[1], x[2]),
         "a number in [0, 1] at every vertex");
   }
   return out;

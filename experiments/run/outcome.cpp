@@ -7,12 +7,13 @@
 namespace bb {
 namespace {
 
-/// What is known beside the status, and how often the step was halved.
+/// What is known beside the status, how often the step was halved, and whether it was done again.
 std::string because(const StepReport& step) {
   std::string text = step.detail.empty() ? "" : "; " + step.detail;
   if (step.retries > 0) {
     text += fmt::format("; after {} retries, the last with {:.3g} s", step.retries, step.dt_s);
   }
+  if (step.redone_audited > 0) text += "; done again with every motion bounded";
   return text;
 }
 

@@ -28,7 +28,7 @@ void summarize_steps(const std::vector<SolverCounter>& counters, RunRecord& reco
     keep_smaller(summary.gap_min_iterates_rel, step.gap_min_iterates_rel);
     keep_larger(summary.max_stretch, step.max_stretch);
     keep_larger(summary.contact_load_max_N, step.contact_load_max_N);
-    summary.broken_stitches = step.broken_stitches;
+    summary.broken_stitches = std::max(summary.broken_stitches, step.broken_stitches);
     keep_larger(summary.limit_load_max_N_per_m, step.limit_load_max_N_per_m);
     keep_larger(summary.solid_limit_load_max_Pa, step.solid_limit_load_max_Pa);
   }

@@ -18,10 +18,14 @@ namespace {
 class StepWatch final : public StepObserver {
  public:
   StepWatch(TakenStep& out, const Positions& start, bool keeps_states)
-      : out_(out), x_(start), keeps_states_(keeps_states) {}
+      : out_(out), start_(start), x_(start), keeps_states_(keeps_states) {}
   void on_iteration(const IterationReport& report) override {
     out_.iterations.push_back(report);
     if (keeps_states_) out_.states.push_back(x_);
+  }
+  void on_retry(int) override {
+    out_.iterations.clear(), out_.states.clear();
+    x_ = start_;
   }
   bool watches_motions() const override { return keeps_states_; }
   void on_motion(const Positions&, const Positions& x1, int) override {
@@ -31,6 +35,7 @@ class StepWatch final : public StepObserver {
 
  private:
   TakenStep& out_;
+  const Positions& start_;
   Positions x_;
   bool keeps_states_;
 };

@@ -31,7 +31,7 @@ class Tree:
     def __init__(self, folder: Path, data: Path | None):
         self.folder, self.build = folder, folder / "build" / "release"
         self.environment = os.environ | {
-            "PYTHONPATH": str(folder),
+            "PYTHONPATH": f"{folder / 'analysis/src'}:{folder}",
             "PYTHONDONTWRITEBYTECODE": "1",
             "BARRIERBENCH_PROGRAM": str(self.build / PROGRAM),
         }

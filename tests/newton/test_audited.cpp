@@ -75,7 +75,7 @@ struct Course {
   }
   long long queries() const {
     long long out = 0;
-    for (const StepReport& step : steps) out += step.ccd_queries + step.audited_queries;
+    for (const StepReport& step : steps) out += step.ccd_queries;
     return out;
   }
   std::size_t contacts() const {

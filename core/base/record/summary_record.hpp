@@ -72,7 +72,7 @@ struct Summary : WorkCounts {
       int, redone_audited,
       "steps that were done again with every motion bounded, since they were not proven free of contact for "
       "pairs that collide as audited") = 0;
-  BB_FIELD(long long, audited_queries, "ACCD queries of such proofs, which are in no other count") = 0;
+  BB_FIELD(long long, audited_queries, "those of ccd_queries that such proofs asked") = 0;
   BB_FIELD(Number, dt_min_s, "shortest step");
   BB_FIELD(long long, newton_iterations, "over all steps") = 0;
   BB_FIELD(Stats, newton_per_step, "Newton iterations of a step");

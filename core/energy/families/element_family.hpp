@@ -67,7 +67,7 @@ class ElementFamily {
   /// that x is no minimum, though the gradient may be 0 and the Hessian positive.
   virtual std::vector<std::size_t> cusps(const double* x) const = 0;
   /// Constraints whose energy is this one; null: it has no such form.
-  virtual const ConstraintBatch* constraints() { return nullptr; }
+  virtual const ConstraintBatch* constraints() const { return nullptr; }
 
   // --- what is given as a function of time, and rest shapes that move. Within a step they stay, so that E is one function of x.
   /// A step begins: what the one before has left holds.
@@ -79,7 +79,7 @@ class ElementFamily {
   virtual bool flows() const { return false; }
   /// A step of dt (s) has ended at x: what the next one begins with. Whoever looks at the step that is over sees its own E.
   virtual void end_step(const double* /*x*/, double /*dt*/) {}
-  /// How many elements are broken once a step is over that ends at x; nothing where none breaks.
+  /// How many elements are broken once a step is over that ends at x; nothing where none breaks; only of families that flow().
   virtual std::optional<std::size_t> broken(const double* /*x*/) { return std::nullopt; }
   /// What elements remember, where they do.
   virtual void keep(Archive&) {}

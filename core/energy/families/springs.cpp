@@ -64,7 +64,7 @@ class SpringFamily final : public FamilyOf<Springs> {
   void change_step(const FamilyStep& step) override {
     if (lengths_.move(step.t_end)) rest_length_.upload(lengths_.now());
   }
-  const ConstraintBatch* constraints() override { return &constraints_; }
+  const ConstraintBatch* constraints() const override { return &constraints_; }
 
  private:
   exec::Buffer<double> stiffness_, rest_length_;
@@ -104,20 +104,25 @@ class BreakableSprings final : public FamilyOf<Springs> {
     stiffness_.keep(archive);
     take_stiffness();
   }
-  const ConstraintBatch* constraints() override {
-    constraints_.set(stiffness_.values());
+  const ConstraintBatch* constraints() const override {
+    if (!constraints_hold_) constraints_.set(stiffness_.values());
+    constraints_hold_ = true;
     return &constraints_;
   }
 
  private:
-  void take_stiffness() { elements_.stiffness = stiffness_.data(); }
+  void take_stiffness() {
+    elements_.stiffness = stiffness_.data();
+    constraints_hold_ = false;
+  }
   void break_at(const double* x, double* stiffness) {
     place_.executor.each(elements_.n, BreakSprings{elements_, strength_.data(), x, stiffness});
   }
 
   exec::Buffer<double> rest_length_, strength_, broken_;
   RestMemory stiffness_;
-  SpringConstraints constraints_;
+  mutable SpringConstraints constraints_;  // of stiffness_, where constraints_hold_
+  mutable bool constraints_hold_ = false;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace bb {
 
-/// Fewer and fewer things are known of a pair from one to the next.
+/// What is asked of a pair.
 enum class CollisionKind : std::uint8_t {
   ccd,      // rows, and no motion goes beyond a bound that is proven free of contact
   audited,  // rows, and the straight motion of a step is proven free of contact when it is over, or the step

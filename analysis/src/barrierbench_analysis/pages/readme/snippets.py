@@ -221,11 +221,10 @@ def _python_faults(snippet: Snippet, before: str) -> list[str]:
         made = started(*words, cwd=folder, timeout=SECONDS)
         if made.returncode != 0:
             return [f"{snippet.place}: {_told(made)}"]
-        prelude = "import sys, types\nimport barrierbench_analysis\n"
         done = subprocess.run(
-            [sys.executable, "-c", prelude + before + snippet.text],
+            [sys.executable, "-c", before + snippet.text],
             cwd=folder,
-            env={**os.environ, "PYTHONPATH": f"{ROOT}:{ROOT / 'build/release/python'}"},
+            env={**os.environ, "PYTHONPATH": f"{ROOT / 'analysis/src'}:{ROOT / 'build/release/python'}"},
             capture_output=True,
             text=True,
             check=False,

@@ -44,7 +44,7 @@ def _number(record: dict, place: tuple[str, ...]) -> float | None:
 
 
 def row_of(scene: str, case: str, record: dict) -> dict:
-    """`failed`: words of claims/success.py in which the common success fell short. bj_p95 is the condition
+    """`failed`: words of kit/success.py in which the common success fell short. bj_p95 is the condition
     number itself, not its logarithm.
     """
     row = {name: _number(record, place) for name, place in METRICS.items()}
