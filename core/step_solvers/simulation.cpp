@@ -238,6 +238,7 @@ StepReport Simulation::attempt_until_converged(StepObserver& observer) {
     halve ? again.add_attempt(report, entry_.counters) : again.add_unproven(report, entry_.counters);
     report = std::move(again);
   }
+  if (proves_steps_) system_->bound_audited(false);
   return report;
 }
 
