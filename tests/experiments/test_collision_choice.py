@@ -106,7 +106,7 @@ def test_explain_promises_of_every_pair_what_its_kind_bounds(program, tmp_path, 
     assert some[1].startswith(f"1 pair ({kind}): ") and said in some[1] and len(some) == 2
     if rest:
         none = guarantee(program, cloths(tmp_path, pair(kind) + rest))
-        assert none[0] == "line_search: of contact none, since no pair of bodies collides as ccd"
+        assert none[0] == "line_search: of contact what follows, since no pair of bodies collides as ccd"
         assert none[1].startswith(f"3 pairs ({kind}): ") and len(none) == 2
     whole = guarantee(program, cloths(tmp_path, []))
     assert len(whole) == 1 and whole[0].startswith("line_search: no surface passes through another")

@@ -55,7 +55,7 @@ def test_every_key_is_explained(program):
         for key in body:
             assert key in explained.split() or f"/{key}/" in text, key
     commands = re.findall(r"^\./bench (\w+) +(examples\S+)", text, re.MULTILINE)
-    assert commands == [("check", "examples/scenes/cloth_over_bar.json"), ("run", "examples/scenes/cloth_over_bar.json")]
+    assert commands == [("check", "examples/scenes/cloth_over_bar.json"), ("run", "examples/scenes/cloth_over_bar.json"), ("run", "examples/scenes/garment_on_a_torso.json")]
     assert bench(program, "check", SCENE).returncode == 0
 
 
