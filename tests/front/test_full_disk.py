@@ -52,7 +52,7 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
     ("gap-map --quick --results out --runs out", "a temporary file", 0),
 ]
 PLANNED = set("match causes gate calibrate pareto work-precision figure stress claims ablation robust catalogue pictures matrix-corpus step-corpus".split())
-READ = set("status surface-gaps trend setup verify".split())  # which write nothing, or for the script ./bench
+READ = set("status surface-gaps trend setup verify completion".split())  # which write nothing, or for the script ./bench
 DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop"}
 IN_THE_TREE = set("demo engine accept readme".split())  # what they write is at a fixed place
 

@@ -67,6 +67,7 @@ TABLE = (
     Verb("condition-table", "make", PROGRAM, "studies.matrices.condition_table", "", "results/CONDITION.md: what Spectra and our Lanczos take for the condition numbers of the demo and of results/matrices, and how far they differ", "./bench condition-table"),
     Verb("gpu-report", "make", ENVIRONMENT, "studies.device.gpu_report", "", "results/GPU.md and its figure from the records of cards that experiments/gpu_evidence.sh made", "./bench gpu-report"),
     Verb("mesh", "make", PROGRAM, "program.mesh_file", "IN OUT.ply", "a mesh of Gmsh (MSH 2.2, 4.1), VTK (VTU, VTP, legacy) or another program, tetrahedra too, as PLY; tetrahedra within a closed surface", "./bench mesh gear.msh gear.ply"),
+    Verb("completion", "look", ENVIRONMENT, "front.completion", "bash|zsh", "a script for the shell that completes verbs, options and files", 'eval "$(./bench completion bash)"'),
     Verb("setup", "develop", ENVIRONMENT, "", "", "packages, compiler cache, Python environment; instant when all is there", "./bench setup", own_help=False),
     Verb("build", "develop", ENVIRONMENT, "front.build", "[PRESET]", "configures and builds (release by default; dev, sanitize, cuda-compile)", "./bench build sanitize", own_help=False),
     Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [--browser] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate; --browser installs chromium first, so that the player is tested in it", "./bench test -L eval", own_help=False),
