@@ -13,9 +13,9 @@ BASH = """\
 _bench() {
   local word="${COMP_WORDS[COMP_CWORD]}" verb="${COMP_WORDS[1]}"
   if [ "$COMP_CWORD" -eq 1 ]; then
-    COMPREPLY=($(compgen -W "$VERBS$" -- "$word"))
+    COMPREPLY=($(compgen -W "@VERBS@" -- "$word"))
   elif [[ "$word" == -* ]]; then
-    COMPREPLY=($(compgen -W "$("${COMP_WORDS[0]}" "$verb" --help 2>/dev/null | $OPTIONS$)" -- "$word"))
+    COMPREPLY=($(compgen -W "$("${COMP_WORDS[0]}" "$verb" --help 2>/dev/null | @OPTIONS@)" -- "$word"))
   else
     COMPREPLY=($(compgen -f -- "$word"))
   fi
@@ -26,11 +26,11 @@ ZSH = """\
 _bench() {
   if (( CURRENT == 2 )); then
     local -a verbs=(
-$ROWS$
+@ROWS@
     )
     _describe 'verb' verbs
   elif [[ "$PREFIX" == -* ]]; then
-    compadd -- ${(f)"$($words[1] $words[2] --help 2>/dev/null | $OPTIONS$)"}
+    compadd -- ${(f)"$($words[1] $words[2] --help 2>/dev/null | @OPTIONS@)"}
   else
     _files
   fi
@@ -48,8 +48,8 @@ def script(shell: str) -> str:
     every = verbs.every()
     if shell == "bash":
         names = " ".join(sorted(verb.name for verb in every))
-        return BASH.replace("$VERBS$", names).replace("$OPTIONS$", OPTIONS)
-    return ZSH.replace("$ROWS$", "\n".join(map(_row, every))).replace("$OPTIONS$", OPTIONS)
+        return BASH.replace("@VERBS@", names).replace("@OPTIONS@", OPTIONS)
+    return ZSH.replace("@ROWS@", "\n".join(map(_row, every))).replace("@OPTIONS@", OPTIONS)
 
 
 @tells("completion")
