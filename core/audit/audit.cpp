@@ -75,13 +75,13 @@ Audit::Audit(AuditMesh mesh, double promised_overlap)
 StateAudit Audit::check_state(const Positions& x, int step) {
   const bool first = ledger_.states == 0;
   const AuditMesh& all = ends_ ? pairs_ : mesh_;
-  const StateAudit found = audit_state(first ? all : in_motions(), primitives_, x, first);
+  StateAudit found = audit_state(first ? all : in_motions(), primitives_, x, first);
   ledger_.add(found, step);
   return found;
 }
 
 MotionAudit Audit::check_motion(const Positions& x0, const Positions& x1, int step, double tolerance) {
-  const MotionAudit found = audit_motion(in_motions(), vertices_, primitives_, x0, x1, tolerance);
+  MotionAudit found = audit_motion(in_motions(), vertices_, primitives_, x0, x1, tolerance);
   ledger_.add(found, step);
   return found;
 }

@@ -41,6 +41,7 @@ struct JudgedPairs {
     out.scope = other;
     out.asked.assign(static_cast<std::size_t>(n_bodies), 0);
     std::vector<int> bodies;
+    bodies.reserve(vertices.size());
     for (const int v : vertices) bodies.push_back(of(v));
     std::sort(bodies.begin(), bodies.end());
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
