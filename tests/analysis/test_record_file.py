@@ -164,7 +164,7 @@ def test_from_version_3_4_on_a_trace_is_read_only_where_its_record_names_it(fold
     (lambda lines: lines[:-1], r"trace.jsonl: found 5 whole lines; allowed: 6, one for each Newton iteration"),
     (lambda lines: [*lines, lines[-1]], r"trace.jsonl: found 7 whole lines; allowed: 6")])
 def test_a_hash_makes_no_trace_whole(folder, hashed, change, said):
-    """The record names the very file, and still a line is torn, missing, or has a number that is none."""
+    """The record names the very file, and still a line is torn, missing, or has a NaN or infinite number."""
     path = folder / "trace.jsonl"
     path.write_text("\n".join(change(path.read_text().splitlines())) + "\n")
     bind(folder)

@@ -36,9 +36,9 @@ struct BreakSprings {
   const double* x;
   double* stiffness;  // [n] N/m, that of the step before
   BB_HD void operator()(exec::Index e) const {
-    Vec3d p[2];
+    Vec3d p[2], along[2];
     elements.points(x, e, p);
-    const double stretch = (p[1] - p[0]).norm() - elements.rest_length[e];
+    const double stretch = spring_stretch<double>(p, elements.rest_length[e], along);
     if (elements.stiffness[e] * stretch > strength[e]) stiffness[e] = 0;
   }
 };

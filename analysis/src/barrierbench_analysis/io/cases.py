@@ -21,6 +21,8 @@ DEAD_AFTER_S = 60  # dead_after_s of core/base/record/folder_lock.hpp
 HOLDER = re.compile(r"process (\d+) on (.*) since (\S+)", re.S)
 
 OVER, RUNNING, DEAD, STOPPED, WAITING = "over", "running", "dead", "stopped", "waiting"
+# Files from which a cut run goes on; the first one alone is enough (experiments/run/checkpoint.hpp).
+CHECKPOINT = ("checkpoint.bin", "checkpoint.next.bin", "checkpoint.log")
 UNREADABLE = "unreadable"  # its record is: the run is made again
 STATES = (OVER, RUNNING, DEAD, STOPPED, UNREADABLE, WAITING)
 
@@ -130,5 +132,5 @@ def sighted(case: Case) -> Sighting:
         return Sighting(OVER)
     if holder:
         return holder
-    kept = case.folder / "checkpoint.bin"
+    kept = case.folder / CHECKPOINT[0]
     return Sighting(STOPPED, f"goes on from {kept.name}") if kept.is_file() else Sighting(WAITING)

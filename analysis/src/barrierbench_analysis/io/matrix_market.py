@@ -32,7 +32,7 @@ def _check_sizes(path: Path, text: bytes) -> None:
 
 def read_matrix(path: Path) -> sparse.csc_matrix:
     """Raises UserError with file and reason: not there, a folder, no Matrix Market, not real, not square, not
-    symmetric, a number that is none, empty.
+    symmetric, a NaN or infinite number, empty.
     """
     if path.is_dir():
         raise UserError(f"{path}: a folder; allowed: Matrix Market files, {path}/*.mtx")

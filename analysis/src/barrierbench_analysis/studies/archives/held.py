@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from barrierbench_analysis.io import fields
-from barrierbench_analysis.io.cases import read_cases
+from barrierbench_analysis.io.cases import CHECKPOINT, read_cases
 from barrierbench_analysis.io.digests import of_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import below
@@ -22,7 +22,6 @@ from .found import CUT, contradictions
 from .named import artifacts, inputs, leads_out, unlike_config
 
 MISSING, EXTRA, EDITED = "missing", "extra", "edited"
-CHECKPOINT = ("checkpoint.bin", "checkpoint.next.bin", "checkpoint.log")  # from which a cut run goes on
 
 
 @dataclass

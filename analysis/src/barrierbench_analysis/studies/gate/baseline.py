@@ -182,8 +182,8 @@ def _content(path: Path, case: str | None, kind: str | None) -> dict:
 
 
 def read(path: str | Path, case: str | None = None, kind: str | None = None) -> Baseline:
-    """Raises UserError with file and place: not there, empty, another version, of another case or kind, a
-    number that is none.
+    """Raises UserError with file and place: not there, empty, another version, of another case or kind, a NaN
+    or infinite number.
     """
     path = Path(path)
     data = _content(path, case, kind)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
+from barrierbench_analysis.io.cases import CHECKPOINT
 from barrierbench_analysis.io.errors import UserError, passed_on
 from barrierbench_analysis.program.start import begun, started
 
@@ -28,7 +29,7 @@ def kill_after_checkpoint(words: list[str], out: Path) -> bool:
     """
     process = begun(*words)
     start = time.monotonic()
-    while process.poll() is None and not (out / "checkpoint.bin").exists():
+    while process.poll() is None and not (out / CHECKPOINT[0]).exists():
         if time.monotonic() - start > LONGEST_S:
             process.kill()
             raise UserError(f"{out}: no checkpoint within {LONGEST_S:.0f} s")
@@ -45,7 +46,7 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     Raises UserError when the program cannot resume.
     """
     alone = run_case(case, out.with_name(out.name + "-not-killed"), 1, output__checkpoint_every=1)
-    for name in ("run.json", "checkpoint.bin"):
+    for name in ("run.json", CHECKPOINT[0]):
         (out / name).unlink(missing_ok=True)
     words = [*words_of(case, out, 1, {"/output/checkpoint_every": 1}), "--progress", "none"]
     killed = kill_after_checkpoint(words, out)
