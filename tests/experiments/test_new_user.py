@@ -1,18 +1,14 @@
 """What somebody who meets the program asks it first: help of one place, the version, a config through a pipe, how large a scene is, which
 row is which run, and lines that fit the terminal."""
 
-import fcntl
 import json
-import os
-import pty
 import re
-import struct
 import subprocess
-import termios
 
 import pytest
 from test_cli import BLOCK, ROOT, bench, refused, sweep_spec, write
 
+from tests import terminal
 from tests.falling_cloth import CLOTH_ON_BALL
 
 DRAPE2D = ROOT / "configs/scenes/drape2d.json"
@@ -20,22 +16,9 @@ DRAPE2D = ROOT / "configs/scenes/drape2d.json"
 
 def on_terminal(program: str, columns: int, *words) -> str:
     """What the program writes on a terminal of that width."""
-    ours, its = pty.openpty()
-    fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", 40, columns, 0, 0))
-    child = subprocess.Popen([program, *map(str, words)], stdout=its, stderr=its, stdin=subprocess.DEVNULL)
-    os.close(its)
-    said = b""
-    while True:
-        try:
-            part = os.read(ours, 65536)
-        except OSError:  # EIO: the other end is closed
-            part = b""
-        if not part:
-            break
-        said += part
-    os.close(ours)
-    assert child.wait() == 0, said
-    return said.decode()
+    status, text = terminal.shown([program, *map(str, words)], columns)
+    assert status == 0, text
+    return text
 
 
 def shown_lines(text: str) -> list[str]:
