@@ -1,0 +1,64 @@
+"""Runs what a study lacks, and makes rows of the records."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.studies.kit import runs
+from barrierbench_analysis.studies.kit.metrics import METRICS
+
+from . import store
+from .spec import Cell, Study
+
+RUNS = ROOT / "results" / "runs" / "studies"
+DIGITS = 12  # of a kept number
+
+
+def missing(study: Study, rows: dict[str, store.Row]) -> list[Cell]:
+    """Cells without a row, or whose row lacks a metric that the spec has now."""
+    metrics = study.data["metrics"].keys()
+    return [c for c in study.cells if c.key not in rows or not metrics <= rows[c.key].values.keys()]
+
+
+def _at(record: dict, pointer: str) -> float | None:
+    found = record
+    for name in pointer.strip("/").split("/"):
+        found = found.get(name) if isinstance(found, dict) else None
+    return found if isinstance(found, (int, float)) and not isinstance(found, bool) else None
+
+
+def row_of(study: Study, cell: Cell, record: dict, folder: Path) -> store.Row:
+    """The row of one record of `folder`."""
+    from barrierbench_analysis.studies.kit.metrics import FOLDER
+
+    record[FOLDER] = str(folder)
+    values = {
+        name: _at(record, source) if source.startswith("/") else METRICS[source][3](record)
+        for name, source in study.data["metrics"].items()
+    }
+    status = record["status"]
+    return store.Row(
+        key=cell.key,
+        place=cell.place,
+        outcome="not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"],
+        values={k: None if v is None else float(f"{v:.{DIGITS}g}") for k, v in values.items()},
+        unknowns=record["scene"]["free_dofs"],
+        seconds=round(seconds_of_run(record), 3),
+        run=record["ids"]["run_id"][:ID_DIGITS],
+        origin=origin([record]),
+    )
+
+
+def run_cells(study: Study, cells: list[Cell], out: Path | None = None) -> list[store.Row]:
+    """Runs these cells as one sweep and reads their records. Runs that are there already are not repeated.
+    Errors: UserError. Cost: the runs."""
+    out = out or RUNS / study.name
+    cases = [{"label": cell.label, "set": cell.settings} for cell in cells]
+    made = runs.sweep(study.name, study.base, study.data.get("set", {}), cases)
+    runs.run(made, out)
+    records = runs.collect(made, out)
+    return [
+        row_of(study, cell, records[note], out) for cell, note in zip(cells, made.notes, strict=True)
+    ]

@@ -1,0 +1,68 @@
+"""The rows of a study, one JSON object a line: results/studies/NAME.jsonl. A row belongs to the key of its cell
+and is never changed by another one: rows are added at the end, and a row that is there stays as it is."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from barrierbench_analysis.io import input_file
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.whole_file import write_whole
+
+FOLDER = ROOT / "results" / "studies"
+SCHEMA = "barrierbench.study_rows/1"
+
+
+@dataclass(frozen=True)
+class Row:
+    """What a study keeps of a run. values: metric -> number; None where the record has none."""
+
+    key: str
+    place: dict[str, str]
+    outcome: str
+    values: dict[str, float | None]
+    unknowns: int
+    seconds: float  # of the whole run, from start to end
+    run: str  # the first digits of run_id
+    origin: dict[str, str]  # date, machine, commit, build
+
+
+def file_of(study: str) -> Path:
+    return FOLDER / f"{study}.jsonl"
+
+
+def read_rows(path: Path) -> dict[str, Row]:
+    """key -> row, in the order of the file; empty where there is no file. Errors: UserError with the line of
+    what is no row, or of a key that is there twice."""
+    if not path.is_file():
+        return {}
+    first, *lines = input_file.read_text(path).splitlines() or [""]
+    if first != json.dumps({"schema": SCHEMA}):
+        raise UserError(f"{path}: line 1: found {first[:60]!r}; allowed: {json.dumps({'schema': SCHEMA})}")
+    found: dict[str, Row] = {}
+    for number, line in enumerate(lines, 2):
+        try:
+            row = Row(**json.loads(line))
+        except (ValueError, TypeError) as fault:
+            raise UserError(f"{path}: line {number}: {fault}; allowed: a row of ./bench study") from None
+        if row.key in found:
+            raise UserError(f"{path}: line {number}: the key {row.key} is there twice; allowed: each key once")
+        found[row.key] = row
+    return found
+
+
+def added(kept: dict[str, Row], new: list[Row]) -> dict[str, Row]:
+    """The kept rows as they are, and behind them the new ones. Errors: ValueError for a key that is kept."""
+    if there := [row.key for row in new if row.key in kept]:
+        raise ValueError(f"{there[0]}: a row with this key is kept; no run of it was asked for")
+    return {**kept, **{row.key: row for row in new}}
+
+
+def write_rows(path: Path, rows: dict[str, Row]) -> None:
+    """Errors: UserError where the disk is full, and then the file is as it was."""
+    lines = [json.dumps({"schema": SCHEMA})]
+    lines += [json.dumps(asdict(row), sort_keys=True, allow_nan=False) for row in rows.values()]
+    write_whole(path, "\n".join(lines) + "\n")

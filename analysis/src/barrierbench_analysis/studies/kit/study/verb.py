@@ -1,0 +1,87 @@
+"""./bench study NAME run | plan | page, of every spec in configs/studies.
+
+run: makes the runs that have no row, keeps their rows, writes the page. plan: counts the cells, those that have
+a row, and what the rest is expected to take. page: writes the page from the kept rows.
+
+Exit codes: 0 done, 2 a spec that cannot be read, or a page whose cells are not all there.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from barrierbench_analysis.io.errors import tells
+from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.start import built_program
+from barrierbench_analysis.tables.words import counted
+
+from . import page, store
+from .collect import missing, run_cells
+from .spec import Cell, Study, known, read_study
+
+AT_ONCE = 60  # runs whose rows are kept together: what an interrupt loses at most is their reading
+
+
+def arguments(argv: list[str]) -> argparse.Namespace:
+    parser = parser_of("study", __doc__, "./bench study answer plan", "./bench study drift run")
+    parser.add_argument("study", help=f"{', '.join(known())}, or the path of a spec")
+    parser.add_argument("what", nargs="?", default="run", choices=("run", "plan", "page"), help="default: run")
+    return parser.parse_args(argv)
+
+
+def planned(study: Study) -> list[str]:
+    """Lines: cells, those with a row, and the seconds that the rest takes where runs of the same last axis
+    have been made."""
+    rows = store.read_rows(store.file_of(study.name))
+    lacking = missing(study, rows)
+    lines = [
+        f"{study.name}: {counted(len(study.cells), 'cell')}, {len(study.cells) - len(lacking)} with a row in"
+        f" {store.file_of(study.name).name}, {len(lacking)} to run"
+    ]
+    if lacking and rows:
+        lines.append(f"about {_expected(lacking, list(rows.values())):.0f} s of one core for these")
+    return lines
+
+
+def _expected(cells: list[Cell], rows: list[store.Row]) -> float:
+    """Seconds: of each cell the mean of the rows that share most of its place."""
+
+    def alike(cell: Cell, row: store.Row) -> int:
+        return sum(row.place.get(name) == word for name, word in cell.place.items())
+
+    total = 0.0
+    for cell in cells:
+        best = max(alike(cell, row) for row in rows)
+        mine = [row.seconds for row in rows if alike(cell, row) == best]
+        total += sum(mine) / len(mine)
+    return total
+
+
+def make_rows(study: Study) -> int:
+    """Runs what is missing and keeps it, a part at a time. Returns how many runs were made."""
+    file = store.file_of(study.name)
+    rows = store.read_rows(file)
+    lacking = missing(study, rows)
+    for start in range(0, len(lacking), AT_ONCE):
+        new = run_cells(study, lacking[start : start + AT_ONCE])
+        of_now = {row.key for row in new}
+        rows = store.added({key: row for key, row in rows.items() if key not in of_now}, new)
+        store.write_rows(file, rows)
+        print(f"{study.name}: {len(lacking) - len(missing(study, rows))} of {len(lacking)} runs")
+    return len(lacking)
+
+
+@tells("study")
+def main(argv: list[str]) -> int:
+    args = arguments(argv)
+    study = read_study(args.study)
+    if args.what == "plan":
+        print("\n".join(planned(study)))
+        return 0
+    if args.what == "run":
+        built_program()
+        made = make_rows(study)
+        print(f"{study.name}: {counted(made, 'new row')} in {store.file_of(study.name).name}")
+    for path in page.write_page(study):
+        print(path)
+    return 0
