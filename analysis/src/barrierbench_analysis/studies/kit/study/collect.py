@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
@@ -23,9 +24,13 @@ def missing(study: Study, rows: dict[str, store.Row]) -> list[Cell]:
 
 
 def _at(record: dict, pointer: str) -> float | None:
+    """The number at a pointer; in a list -1 is its last entry. None where there is none."""
     found = record
     for name in pointer.strip("/").split("/"):
-        found = found.get(name) if isinstance(found, dict) else None
+        if isinstance(found, list) and re.fullmatch(r"-1|\d+", name) and int(name) < len(found):
+            found = found[int(name)] if found else None
+        else:
+            found = found.get(name) if isinstance(found, dict) else None
     return found if isinstance(found, (int, float)) and not isinstance(found, bool) else None
 
 

@@ -1,0 +1,190 @@
+"""The study kit: cells of a spec, rows that are kept, the page of a rule."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.studies.kit.study import collect, page, store, verb
+from barrierbench_analysis.studies.kit.study.spec import Study, known, read_study
+
+BASE = json.loads((ROOT / "configs/scenes/drape2d.json").read_text())
+SPEC = {
+    "schema": "barrierbench.study/1",
+    "name": "small",
+    "question": "Does it work?",
+    "base": "base.json",
+    "set": {"/threads": 1, "/time/steps": 2},
+    "axes": [
+        {"names": ["scene", "level"], "cases": [{"label": "strip a", "set": {}}, {"label": "strip b", "set": {"/time/dt_s": 0.005}}]},
+        {"names": ["formulation"], "cases": [{"label": "one", "set": {"/formulation": "log"}}, {"label": "two", "set": {"/formulation": "cubic"}}]},
+    ],
+    "seeds": [1, 2],
+    "metrics": {"newton": "newton", "steps": "/summary/steps"},
+    "page": "results/SMALL.md",
+}
+
+
+def written(folder, **changes) -> Study:
+    (folder / "base.json").write_text(json.dumps(BASE))
+    (folder / "small.json").write_text(json.dumps({**SPEC, **changes}))
+    return read_study(str(folder / "small.json"))
+
+
+def row(cell, outcome="ok", **values) -> store.Row:
+    origin = {"date": "2026-01-01", "machine": "m", "commit": "c", "build": "b"}
+    return store.Row(cell.key, cell.place, outcome, {"newton": 3.0, "steps": 2.0, **values}, 12, 0.5, "r", origin)
+
+
+# --- cells
+
+
+def test_cells_are_the_product_of_axes_and_seeds(tmp_path):
+    cells = written(tmp_path).cells
+    assert [cell.label for cell in cells][:3] == ["strip a one 1", "strip a one 2", "strip a two 1"]
+    assert len(cells) == len({cell.key for cell in cells}) == 8
+    assert cells[-1].settings == {"/time/dt_s": 0.005, "/formulation": "cubic", "/seeds/main": 2}
+
+
+def test_the_key_of_a_cell_is_of_all_that_its_run_is_made_of(tmp_path):
+    before = [cell.key for cell in written(tmp_path).cells]
+    assert before == [cell.key for cell in written(tmp_path, question="Another one?").cells]
+    assert not set(before) & {cell.key for cell in written(tmp_path, set={"/threads": 1, "/time/steps": 3}).cells}
+    study = written(tmp_path)
+    (tmp_path / "base.json").write_text(json.dumps({**BASE, "doc": "another file"}))
+    assert not set(before) & {cell.key for cell in Study(study.file, study.data).cells}
+
+
+def test_a_case_of_a_sweep_is_a_case(tmp_path):
+    (tmp_path / "sweep.json").write_text(json.dumps({"axes": [{"cases": [{"label": "strip c", "reference": True, "set": {}}]}]}))
+    axis = {"names": ["scene", "level"], "cases_of": {"sweep": "sweep.json", "axis": 0}}
+    assert written(tmp_path, axes=[axis, SPEC["axes"][1]]).cells[0].place["level"] == "c"
+    for place, sweep, number in (("sweep", "none.json", 0), ("axis", "sweep.json", 1)):
+        axis = {"names": ["scene", "level"], "cases_of": {"sweep": sweep, "axis": number}}
+        with pytest.raises(UserError, match=f"small.json#/axes/0/cases_of/{place}: found"):
+            _ = written(tmp_path, axes=[axis]).cells
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"axes": [{"names": ["scene"], "cases": SPEC["axes"][0]["cases"]}]}, "axes/0/cases/label: found 'strip a'; a word for each of scene"),
+        ({"axes": [{"names": ["scene"], "cases": []}]}, "axes/0: found .*; cases or cases_of is needed"),
+        ({"axes": [SPEC["axes"][1], SPEC["axes"][1]]}, "axes: found .*; another name for each axis"),
+        ({"axes": [{"names": ["a"], "cases": [{"label": k, "set": {}} for k in "ab"]}]}, "axes: found 'b 1'|axes: found 'a 1'"),
+        ({"metrics": {"x": "newtons"}}, "metrics/x: found 'newtons'; a pointer, or one of"),
+        ({"base": "none.json"}, "base: found 'none.json'"),
+        ({"page": "docs/x.md"}, "page: found 'docs/x.md'; results/NAME.md"),
+        ({"seeds": [1, 1]}, "seeds: found"),
+    ],
+)
+def test_a_spec_that_says_too_little_is_refused_with_its_place(tmp_path, changes, words):
+    with pytest.raises(UserError, match=words):
+        _ = written(tmp_path, **changes).cells
+
+
+def test_a_study_that_is_not_there_names_those_that_are():
+    with pytest.raises(UserError, match="found 'none'; allowed: answer, drift, or the path of a spec"):
+        read_study("none")
+
+
+# --- rows
+
+
+def test_rows_that_are_added_change_no_other_row(tmp_path):
+    cells, file = written(tmp_path).cells, tmp_path / "small.jsonl"
+    rows = store.added({}, [row(cell, newton=float(k)) for k, cell in enumerate(cells[:3])])
+    store.write_rows(file, rows)
+    before = file.read_bytes()
+    store.write_rows(file, store.added(store.read_rows(file), [row(cell) for cell in cells[3:]]))
+    assert file.read_bytes().startswith(before) and len(store.read_rows(file)) == len(cells)
+    assert [r.values["newton"] for r in store.read_rows(file).values()][:3] == [0.0, 1.0, 2.0]
+
+
+def test_a_kept_row_is_not_written_over(tmp_path):
+    cell = written(tmp_path).cells[0]
+    with pytest.raises(ValueError, match="a row with this key is kept"):
+        store.added({cell.key: row(cell)}, [row(cell, newton=4.0)])
+
+
+@pytest.mark.parametrize("bad", ["{", '{"key": "a"}', "[]"])
+def test_a_line_that_is_no_row_is_named(tmp_path, bad):
+    file = tmp_path / "small.jsonl"
+    store.write_rows(file, {})
+    file.write_text(file.read_text() + bad + "\n")
+    with pytest.raises(UserError, match="small.jsonl: line 2: "):
+        store.read_rows(file)
+
+
+def test_a_key_that_is_there_twice_is_refused(tmp_path):
+    file, cell = tmp_path / "small.jsonl", written(tmp_path).cells[0]
+    store.write_rows(file, {cell.key: row(cell)})
+    file.write_text(file.read_text() + file.read_text().splitlines()[1] + "\n")
+    with pytest.raises(UserError, match="line 3: the key .* is there twice"):
+        store.read_rows(file)
+
+
+def test_a_number_that_is_not_finite_is_not_kept(tmp_path):
+    with pytest.raises(ValueError, match="JSON"):
+        store.write_rows(tmp_path / "small.jsonl", {"a": row(written(tmp_path).cells[0], newton=float("nan"))})
+
+
+def test_a_row_without_a_metric_of_today_is_missing(tmp_path):
+    study = written(tmp_path)
+    rows = {cell.key: row(cell) for cell in study.cells}
+    assert collect.missing(study, rows) == []
+    first = study.cells[0].key
+    rows[first] = replace(rows[first], values={"newton": 3.0})
+    assert [cell.key for cell in collect.missing(study, rows)] == [first]
+
+
+# --- pages
+
+
+def test_a_page_of_a_part_of_the_cells_is_refused(tmp_path, monkeypatch):
+    study = written(tmp_path)
+    monkeypatch.setattr(store, "FOLDER", tmp_path)
+    store.write_rows(tmp_path / "small.jsonl", {cell.key: row(cell) for cell in study.cells[1:]})
+    with pytest.raises(UserError, match="1 cell of 8 without a row, the first 'strip a one 1'"):
+        page.rows_of(study)
+    with pytest.raises(UserError, match="a study whose rule is .*/rules/small.py"):
+        page.rule_of(study)
+
+
+def test_a_template_that_asks_for_more_is_refused(tmp_path):
+    study = written(tmp_path)
+    rows = [row(cell) for cell in study.cells]
+    study.template.write_text("{{ question }} {{ number }}")
+    assert page.text_of(study, rows, {"number": 4}) == "Does it work? 4"
+    with pytest.raises(UserError, match="small.md: 'number' is undefined; allowed: .*question"):
+        page.text_of(study, rows, {})
+
+
+@pytest.mark.parametrize("name", known())
+def test_the_page_of_a_study_is_that_of_its_kept_rows(name):
+    study = read_study(name)
+    rows = page.rows_of(study)
+    assert len(rows) == len(study.cells) > 0
+    assert study.page.read_text() == page.text_of(study, rows, page.rule_of(study)(study, rows))
+
+
+# --- the whole of it
+
+
+def test_a_study_runs_what_is_missing_and_nothing_twice(tmp_path, monkeypatch, program, capsys):
+    study = written(tmp_path, seeds=[1], axes=[SPEC["axes"][0], {**SPEC["axes"][1]}])
+    monkeypatch.setattr(store, "FOLDER", tmp_path / "rows")
+    monkeypatch.setattr(collect, "RUNS", tmp_path / "runs")
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
+    assert verb.planned(study) == ["small: 4 cells, 0 with a row in small.jsonl, 4 to run"]
+    assert verb.make_rows(study) == 4 and verb.make_rows(study) == 0
+    rows = page.rows_of(study)
+    assert {r.outcome for r in rows} == {"ok"} and all(r.values["steps"] == 2 and r.values["newton"] > 0 for r in rows)
+    assert verb.planned(study) == ["small: 4 cells, 4 with a row in small.jsonl, 0 to run"]
+    more = written(tmp_path, axes=[SPEC["axes"][0], SPEC["axes"][1]])
+    before = {r.key: r for r in rows}
+    assert verb.planned(more)[0] == "small: 8 cells, 4 with a row in small.jsonl, 4 to run" and len(verb.planned(more)) == 2
+    assert verb.make_rows(more) == 4
+    assert {r.key: r for r in page.rows_of(more) if r.key in before} == before
