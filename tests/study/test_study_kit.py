@@ -57,21 +57,11 @@ def test_the_key_of_a_cell_is_of_all_that_its_run_is_made_of(tmp_path):
     assert not set(before) & {cell.key for cell in Study(study.file, study.data).cells}
 
 
-def test_a_case_of_a_sweep_is_a_case(tmp_path):
-    (tmp_path / "sweep.json").write_text(json.dumps({"axes": [{"cases": [{"label": "strip c", "reference": True, "set": {}}]}]}))
-    axis = {"names": ["scene", "level"], "cases_of": {"sweep": "sweep.json", "axis": 0}}
-    assert written(tmp_path, axes=[axis, SPEC["axes"][1]]).cells[0].place["level"] == "c"
-    for place, sweep, number in (("sweep", "none.json", 0), ("axis", "sweep.json", 1)):
-        axis = {"names": ["scene", "level"], "cases_of": {"sweep": sweep, "axis": number}}
-        with pytest.raises(UserError, match=f"small.json#/axes/0/cases_of/{place}: found"):
-            _ = written(tmp_path, axes=[axis]).cells
-
-
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
         ({"axes": [{"names": ["scene"], "cases": SPEC["axes"][0]["cases"]}]}, "axes/0/cases/label: found 'strip a'; a word for each of scene"),
-        ({"axes": [{"names": ["scene"], "cases": []}]}, "axes/0: found .*; cases or cases_of is needed"),
+        ({"axes": [{"names": ["scene"], "cases": []}]}, "axes/0/cases: found"),
         ({"axes": [SPEC["axes"][1], SPEC["axes"][1]]}, "axes: found .*; another name for each axis"),
         ({"axes": [{"names": ["a"], "cases": [{"label": k, "set": {}} for k in "ab"]}]}, "axes: found 'b 1'|axes: found 'a 1'"),
         ({"metrics": {"x": "newtons"}}, "metrics/x: found 'newtons'; a pointer, or one of"),

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from barrierbench_analysis.io.digests import of_text
-from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import read_spec, refused, require_base
 from barrierbench_analysis.studies.kit import runs
@@ -65,8 +65,8 @@ class Study:
         """The product of all axes and seeds, the last axis fastest. Errors: UserError for a label with
         another number of words than its axis has names, or two cells that are one run."""
         axes = [
-            [(label, case["set"]) for case in _cases(self.file, k) for label in [_place(self.file, k, case)]]
-            for k in range(len(self.data["axes"]))
+            [(_place(self.file, k, axis["names"], case["label"]), case["set"]) for case in axis["cases"]]
+            for k, axis in enumerate(self.data["axes"])
         ]
         axes.append([({SEED: str(seed)}, {SEED_POINTER: seed}) for seed in self.data["seeds"]])
         found = [self._cell(chosen) for chosen in itertools.product(*axes)]
@@ -85,37 +85,15 @@ class Study:
         return Cell(place, settings, of_text(json.dumps(content, sort_keys=True))[:24])
 
 
-def _cases(file: Path, number: int) -> list[dict]:
-    """The cases of an axis: its own, and those of a sweep that it names."""
-    axis = read_object(file)["axes"][number]
-    found = list(axis.get("cases", []))
-    if of := axis.get("cases_of"):
-        sweep = file.parent / of["sweep"]
-        place = f"axes/{number}/cases_of"
-        if not sweep.is_file():
-            raise refused(file, f"{place}/sweep", of["sweep"], "the path of a sweep, relative to this file,")
-        axes = read_object(sweep).get("axes", [])
-        if of["axis"] >= len(axes) or "cases" not in axes[of["axis"]]:
-            raise refused(file, f"{place}/axis", of["axis"], f"the number of an axis of {sweep} with cases")
-        found = [{"label": case["label"], "set": case["set"]} for case in axes[of["axis"]]["cases"]] + found
-    if not found:
-        raise refused(file, f"axes/{number}", sorted(axis), "cases or cases_of")
-    return found
-
-
-def _place(file: Path, number: int, case: dict) -> dict[str, str]:
-    names, words = read_object(file)["axes"][number]["names"], case["label"].split()
+def _place(file: Path, number: int, names: list[str], label: str) -> dict[str, str]:
+    words = label.split()
     if len(names) != len(words):
-        raise refused(
-            file, f"axes/{number}/cases/label", case["label"], f"a word for each of {', '.join(names)}"
-        )
+        raise refused(file, f"axes/{number}/cases/label", label, f"a word for each of {', '.join(names)}")
     return dict(zip(names, words))
 
 
 def read_study(name: str) -> Study:
     """The study of a name, or of the path of a spec. Errors: UserError, with the names of what there is."""
-    from barrierbench_analysis.io.errors import UserError
-
     file = Path(name) if name.endswith(".json") else FOLDER / f"{name}.json"
     if not file.is_file():
         raise UserError(f"study: found {name!r}; allowed: {', '.join(known())}, or the path of a spec")
