@@ -1,5 +1,5 @@
-"""Makes the numbers of README.md and docs/results.md from the records of ./bench demo and the kept numbers of
-./bench claims, and checks them and every snippet of these pages, docs/jobs and the other pages of docs.
+"""Makes the numbers of README.md and docs/results from the records of ./bench demo and the kept numbers of
+./bench claims, and checks them and every snippet of these pages and of the other pages of docs.
 
 Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 there is nothing to make it
 from.
@@ -35,7 +35,7 @@ from .templates import PARTS, filled, lacking
 PAGES = tuple(PARTS)
 ABLATION = ROOT / "configs" / "ablation" / "default.json"
 # Pages whose snippets are checked and which have no generated numbers.
-MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
+MORE = ("CONTRIBUTING.md", "docs/**/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
@@ -125,7 +125,7 @@ def keep_demo(runs: Path) -> None:
     """Keeps the numbers of the demo's records, copies the figures that the pages show, and says which."""
     write(gather(runs))
     copied = figures.copy(
-        [input_file.read_text(ROOT / page) for page in PAGES], runs / "figures", ROOT / "docs"
+        [input_file.read_text(ROOT / page) for page in pages_with_snippets(ROOT)], runs / "figures", ROOT / "docs"
     )
     print(f"docs: {', '.join(copied) or 'no figure'}")
 

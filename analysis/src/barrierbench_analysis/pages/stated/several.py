@@ -1,4 +1,4 @@
-"""One quantity, several studies: the table of docs/results.md in which every study's number of the log over
+"""One quantity, several studies: the table of docs/results/several-studies.md in which every study's number of the log over
 another shape stands with its conditions, and that says where they are decided differently.
 """
 
