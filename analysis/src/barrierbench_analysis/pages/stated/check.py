@@ -60,9 +60,7 @@ def unreconciled(root: Path, numbers: Iterable[Number]) -> list[str]:
     claims = input_file.read_text(root / "results/CLAIMS.md")
     for (metric, shape), _ in apart(numbers).items():
         if shape not in told:
-            faults.append(
-                f"{SEVERAL}: no row on {shape}, of which studies decide {metric} differently"
-            )
+            faults.append(f"{SEVERAL}: no row on {shape}, of which studies decide {metric} differently")
         for study in dict.fromkeys(n.study for n in numbers if (n.metric, n.over) == (metric, shape)):
             page = PAGES.get(study, f"results/CLAIMS.md, {study}")
             text = input_file.read_text(root / PAGES[study]) if study in PAGES else _section(claims, study)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.pages.reference import MARK
 
 from .counted import (
     catalogue,
@@ -146,13 +147,19 @@ READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
     "docs/gap_map_more.txt": (gap_map,),
 }
 CAPTIONS = {"docs/work_precision_*.txt": work_precision_caption}
-NO_NUMBERS = ("docs/guides/index.md", "docs/results/method/index.md")  # pages that state none, so that nothing can be read in them
+NO_NUMBERS = (
+    "docs/guides/index.md",
+    "docs/results/method/index.md",
+)  # pages that state none, so that nothing can be read in them
 EVERY = ("README.md", "docs/**/*.md", "docs/*.txt", "results/*.md")
 
 
 def pages_of(root: Path) -> list[str]:
-    """All pages, from the root, whether a reader is made for them or not."""
-    return [path.relative_to(root).as_posix() for pattern in EVERY for path in sorted(root.glob(pattern))]
+    """All pages, from the root, whether a reader is made for them or not; but for those of docs/reference
+    that are made from what the program prints, which state nothing that was measured.
+    """
+    every = (path for pattern in EVERY for path in sorted(root.glob(pattern)))
+    return [path.relative_to(root).as_posix() for path in every if MARK not in input_file.read_text(path)]
 
 
 def _readers(page: str) -> list[Callable[[str, str], Iterator[Statement]]]:

@@ -229,8 +229,8 @@ def page(factorial: Factorial, table: Table, study: Study) -> str:
         "",
         (
             f"Written by `./bench ablation`. {about['date']}, {about['machine']}; commit {about['commit']},"
-            f" build {about['build']}. Rules: docs/results/method/ablation.md, which also lists what was changed"
-            " and when."
+            f" build {about['build']}. Rules: docs/results/method/ablation.md, which also"
+            " lists what was changed and when."
         ),
         "",
         lead(factorial, table),
