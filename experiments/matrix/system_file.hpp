@@ -1,5 +1,5 @@
 // A linear system of Newton as two files: NAME.mtx, the matrix, and NAME.json beside it, its side-car with
-// everything else (docs/laboratory.md, Hard systems as data).
+// everything else (docs/results/method/hard-systems.md).
 #pragma once
 
 #include <string>

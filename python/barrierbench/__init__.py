@@ -1,4 +1,4 @@
-"""Contact barriers compared in one Newton and CCD pipeline. SI units everywhere; docs/python.md is the guide.
+"""Contact barriers compared in one Newton and CCD pipeline. SI units everywhere; docs/guides/python.md is the guide.
 
 shape         values and derivatives of barriers, what a contact does under a load, matching rules
 geometry      distances of pairs with gradient and Hessian, continuous collision detection (ACCD)

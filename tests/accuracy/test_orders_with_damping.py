@@ -1,4 +1,4 @@
-"""Observed orders where forces depend on velocities, and where Newmark begins anew: what docs/laboratory.md says of them."""
+"""Observed orders where forces depend on velocities, and where Newmark begins anew: what docs/results/method/accuracy.md says of them."""
 
 import numpy as np
 import pytest

@@ -113,7 +113,7 @@ def test_pages_say_the_contacts_and_bytes_of_the_scene_that_they_name():
     dense, million = gpu_model.SIZES[-1], gpu_model.Size("drape_1m", 1048576, 2e6, "")
     known = gpu_model.read_inputs()
     contacts = gpu_model.contacts(dense, known["dense_patch"])
-    assert dense.name == "dense_8m" and f"--contacts {round(contacts, -5):.0f} " in (ROOT / "docs/jobs/card.md").read_text()
+    assert dense.name == "dense_8m" and f"--contacts {round(contacts, -5):.0f} " in (ROOT / "docs/guides/card.md").read_text()
     page = (ROOT / "docs/device.md").read_text()
     record = json.loads((ROOT / "results/gpu/nvidia_h200-2026-11-26.json").read_text())
     scene = record["scenes"]["drape_1m"]

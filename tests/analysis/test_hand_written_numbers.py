@@ -34,7 +34,7 @@ def ends(group: str) -> list[float]:
 
 
 def test_the_text_on_the_drape_is_that_of_its_table():
-    text, strip = page("docs/results.md"), ends("demo_strip")
+    text, strip = page("docs/results/demo.md"), ends("demo_strip")
     pcg = [f"{row['probe_pcg']:g}" for row in (LOG, CUBIC, RUNS["demo_strip", "log"], RUNS["demo_strip", "cubic"])]
     assert "PCG takes {} against {} iterations (strip: {} against {})".format(*pcg) in text
     assert "and {:.1f} and {:.1f} times in the last two".format(*ends("demo_drape")[-2:]) in text
@@ -42,7 +42,7 @@ def test_the_text_on_the_drape_is_that_of_its_table():
 
 
 def test_the_text_on_a_stiffness_refreshed_once_a_step_is_that_of_its_table():
-    text = page("docs/results.md")
+    text = page("docs/results/demo.md")
     for what, key in (("median", "cond_raw_median"), ("largest", "cond_raw_max")):
         assert LAGGED[key] > CUBIC[key] and f"{what} {cond(LAGGED[key])} against {cond(CUBIC[key])}" in text
     assert LAGGED["gap_min_rel"] < CUBIC["gap_min_rel"] and f"narrower ({LAGGED['gap_min_rel']:.3f} against {CUBIC['gap_min_rel']:.3f} d_hat)" in text
@@ -58,24 +58,24 @@ def days(parts) -> str:
     return f"{found[0]} to {found[-1]}"
 
 
-@pytest.mark.parametrize("name", ["docs/results.md", "docs/jobs/reproduce-a-figure.md"])
+@pytest.mark.parametrize("name", ["docs/results/claims.md", "docs/guides/reproduce-a-figure.md"])
 def test_what_claims_take_is_what_their_runs_took(name):
     (claims,) = (one for one in cost.gather() if one["study"] == "claims")
     of = days(read_object(ROOT / "results/claims.json")["sweeps"].values())
     assert f"{claims['core_s'] / 3600:.2f} core hours" in page(name) and f"runs of {of}" in page(name)
-    if name == "docs/results.md":
+    if name == "docs/results/claims.md":
         assert f"The kept verdicts are of runs of {of};" in page(name)
 
 
 def test_what_the_stress_suite_takes_is_what_its_runs_took():
     (stress,) = (one for one in cost.gather() if one["study"] == "stress suite")
     of = days(read_object(ROOT / "results/stress.json")["tests"].values())
-    assert f"{stress['runs']} runs, {stress['core_s'] / 60:.1f} minutes of one core ({of})" in page("docs/verbs.md")
+    assert f"{stress['runs']} runs, {stress['core_s'] / 60:.1f} minutes of one core ({of})" in page("docs/guides/verbs.md")
     assert f"{stress['core_s'] / 60:.1f} minutes in all" in page("results/STRESS.md")
 
 
 def test_the_text_on_confirmed_claims_is_that_of_their_numbers():
-    table, text = claims_table.read(claims_table.FILE), page("docs/results.md")
+    table, text = claims_table.read(claims_table.FILE), page("docs/results/claims.md")
     asker = Eval(None, table.answers, fresh=False)
 
     def of(claim: str, part: int, digits: str = ".2f") -> str:

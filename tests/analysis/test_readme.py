@@ -1,4 +1,4 @@
-"""README.md and docs/results.md: every snippet works, and generated numbers are those of the kept records."""
+"""README.md and docs/results: every snippet works, and generated numbers are those of the kept records."""
 
 import json
 import math
@@ -200,22 +200,23 @@ def test_kept_numbers_come_back_as_they_were(tmp_path):
 
 
 def test_pages_whose_numbers_are_others_are_named(tmp_path):
-    (tmp_path / "docs/jobs").mkdir(parents=True)
     for page, parts in templates.PARTS.items():
+        (tmp_path / page).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / page).write_text("".join(f"<!-- numbers: {name} -->\nold\n<!-- /numbers -->\n" for name in parts))
-    assert len(readme.stale(tmp_path, everything())) == len(templates.PARTS) == 3
+    assert len(readme.stale(tmp_path, everything())) == len(templates.PARTS) == 5
     assert readme.write_pages(tmp_path, everything()) == list(readme.PAGES)
     assert readme.stale(tmp_path, everything()) == [] and readme.write_pages(tmp_path, everything()) == []
 
 
 def test_a_page_that_lost_its_marks_is_no_page_that_is_right(tmp_path):
-    (tmp_path / "docs/jobs").mkdir(parents=True)
+    for page in templates.PARTS:
+        (tmp_path / page).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / page).write_text("")
     (tmp_path / "README.md").write_text("<!-- numbers: result -->\nold\n")  # the end is gone
-    (tmp_path / "docs/results.md").write_text("")
-    (tmp_path / "docs/jobs/cluster.md").write_text("<!-- numbers: cost -->\nold\n<!-- /numbers -->\n")
+    (tmp_path / "docs/guides/cluster.md").write_text("<!-- numbers: cost -->\nold\n<!-- /numbers -->\n")
     found = readme.stale(tmp_path, everything())
-    lost = [page for page in ("README.md", "docs/results.md") for _ in templates.PARTS[page]]
-    assert [line.partition(":")[0] for line in found] == [*lost, "docs/jobs/cluster.md"]
+    lost = [page for page in templates.PARTS for _ in templates.PARTS[page] if page != "docs/guides/cluster.md"]
+    assert [line.partition(":")[0] for line in found] == [*lost, "docs/guides/cluster.md"]
     assert "no <!-- numbers: demo -->" in found[len(templates.PARTS["README.md"])] and "its numbers are not" in found[-1]
     with pytest.raises(UserError, match="README.md: no <!-- numbers: slices -->"):
         readme.write_pages(tmp_path, everything())
@@ -300,12 +301,12 @@ def test_a_path_outside_the_tree_is_a_placeholder(line, faulty):
 @pytest.mark.parametrize("page", readme.pages_with_snippets(ROOT))
 def test_every_snippet_of_the_pages_works(program, page):
     text = (ROOT / page).read_text()
-    assert snippets.snippets(text, page) or not page.startswith(("README.md", "docs/jobs/", "CONTRIBUTING.md"))
+    assert snippets.snippets(text, page) or not page.startswith(("README.md", "docs/guides/", "CONTRIBUTING.md"))
     assert snippets.faults(text, page) == []
 
 
 def test_a_link_of_a_page_leads_somewhere():
-    """Files of this repository that README, docs and docs/jobs name as links."""
+    """Files of this repository that README and docs name as links."""
     links = [(page, link) for page in readme.pages_with_snippets(ROOT) for link in re.findall(r"\]\(([^)#:]+)[^):]*\)", (ROOT / page).read_text())]
     assert len(links) > 40
     assert [(page, link) for page, link in links if not ((ROOT / page).parent / link).exists()] == []
@@ -313,8 +314,8 @@ def test_a_link_of_a_page_leads_somewhere():
 
 def test_the_readme_fits_on_a_few_screens():
     lines = (ROOT / "README.md").read_text().splitlines()
-    assert len(lines) <= 160 and len(list((ROOT / "docs/jobs").glob("*.md"))) >= 8
-    assert all(f"(docs/jobs/{path.name})" in "\n".join(lines) for path in (ROOT / "docs/jobs").glob("*.md"))
+    assert len(lines) <= 160 and len(list((ROOT / "docs/guides").glob("*.md"))) >= 8
+    assert all(f"(docs/guides/{path.name})" in "\n".join(lines) for path in (ROOT / "docs/guides").glob("*.md"))
 
 
 @pytest.fixture(scope="module")

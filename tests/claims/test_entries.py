@@ -87,7 +87,7 @@ def test_the_page_is_made_of_the_kept_numbers():
     asker = Eval(None, table.answers)
     answers = [judge(read_claim(name), table, asker) for name in ids()]
     assert (ROOT / "results" / "CLAIMS.md").read_text() == report.markdown(answers, table)
-    page = (ROOT / "docs/results.md").read_text()
+    page = (ROOT / "docs/results/claims.md").read_text()
     assert report.in_page(page, answers) == page and "| N1 |" in page
     assert not [line for a in answers for line in missing(a.claim, table)] and len(table.sweeps) >= 10
 

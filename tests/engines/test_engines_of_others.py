@@ -108,7 +108,7 @@ def test_what_engines_do_not_share_is_refused_by_name(program):
 
 @pytest.mark.parametrize("name, term", [("trapped", "tetrahedra"), ("domino", "tetrahedra"), ("noodle", "springs"), ("codim", "springs")])
 def test_scenes_that_peers_cannot_run_are_refused_by_name_and_the_page_says_so(program, tmp_path, name, term):
-    """The table of docs/engines.md has the times of ours that are kept."""
+    """The table of docs/results/engines.md has the times of ours that are kept."""
     entry = read_entry(name)
     write_config(entry, tmp_path / "scene.json")
     with pytest.raises(UserError, match=f"found {term} .*engines share no other term"):
@@ -116,7 +116,7 @@ def test_scenes_that_peers_cannot_run_are_refused_by_name_and_the_page_says_so(p
     kept = {row["formulation"]: row for row in table.read()[name]["rows"]}
     log, dynamic = kept["log"], kept["cubic_dynamic_consistent"]
     cells = f"| `{name}` | {log['seconds']:g} s, {log['newton']} | {dynamic['seconds']:g} s, {dynamic['newton']} |"
-    assert cells in (ROOT / "docs/engines.md").read_text()
+    assert cells in (ROOT / "docs/results/engines.md").read_text()
 
 
 def test_a_scene_file_is_checked(tmp_path):

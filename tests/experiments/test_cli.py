@@ -336,6 +336,6 @@ def test_eval_ends_at_an_interrupt(program):
 
 
 def test_the_sweep_of_the_page_is_the_one_of_the_help(program):
-    text, page = bench(program, "sweep", "--help").stdout, (ROOT / "docs/jobs/run-an-ablation.md").read_text()
+    text, page = bench(program, "sweep", "--help").stdout, (ROOT / "docs/guides/run-an-ablation.md").read_text()
     shown = text[text.index("{\n"):text.index("\n}\n") + 2]
     assert f"```json\n{shown}\n```" in page

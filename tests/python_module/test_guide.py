@@ -1,9 +1,9 @@
-"""docs/python.md, followed: its examples in order."""
+"""docs/guides/python.md, followed: its examples in order."""
 
 import re
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parents[2] / "docs/python.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs/guides/python.md"
 
 
 def test_the_guide_runs(bb):

@@ -1,4 +1,4 @@
-"""Verdicts as text: results/CLAIMS.md, and the short table of docs/results.md."""
+"""Verdicts as text: results/CLAIMS.md, and the short table of docs/results/claims.md."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from barrierbench_analysis.studies.kit.metrics import METRICS
 
 WIDTH = 140
 MANY = 4  # parts: of more a table says how many hold
-SEVERAL = "../docs/results.md#one-quantity-several-studies"
+SEVERAL = "../docs/results/several-studies.md"
 BY_SMALLEST = "; compared by smallest gaps"
 
 
@@ -194,7 +194,7 @@ def _sweeps(table: Table) -> list[str]:
 
 HEAD = """# Claims
 
-Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/laboratory.md, Claims, has the rules. A
+Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/results/method/claims.md, has the rules. A
 number is the mean of its scenes (a ratio: of their logarithms), a scene the mean of its levels (resolution, load, limit), a level that of its starts, with a 95% interval
 over scenes by Student's t ([COVERAGE.md](COVERAGE.md)), or what its line says: levels and starts are no samples. cond is a condition number. Every part names its slice.
 Verdicts from runs are exploratory: their rules were changed after numbers were seen, or not registered before them; the confirmed ones are over scenes that no rule was
@@ -242,7 +242,7 @@ BEGIN, END = "<!-- claims: written by ./bench claims -->\n", "<!-- /claims -->"
 
 
 def in_page(page: str, answers: list[Answer]) -> str:
-    """docs/results.md with its table of verdicts made anew."""
+    """docs/results/claims.md with its table of verdicts made anew."""
     before, _, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)
     return before + BEGIN + "\n".join(verdict_table(answers)) + "\n" + end + after if end else page

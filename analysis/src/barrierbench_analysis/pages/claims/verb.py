@@ -1,7 +1,7 @@
 """Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every
 verdict from the records by the rule of its claim, and writes results/CLAIMS.md, results/claims.json (the
-numbers used), docs/claims.png and the table of docs/results.md. With names of claims it runs the sweeps of
-these alone. Confirmation sweeps are run for claims that are registered (--register ID, then commit
+numbers used), docs/claims.png and the table of docs/results/claims.md. With names of claims it runs the
+sweeps of these alone. Confirmation sweeps are run for claims that are registered (--register ID, then commit
 claims/confirmation/registry.json).
 
 Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them;
@@ -173,5 +173,5 @@ def write_all(table: Table, asker: Eval) -> None:
             claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}"
         )
     copy_to_page(drawn, ROOT / "docs")
-    page = ROOT / "docs" / "results.md"
+    page = ROOT / "docs/results/claims.md"
     write_whole(page, report.in_page(input_file.read_text(page), answers))

@@ -10,7 +10,7 @@ from pathlib import Path
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.whole_file import copy_whole
 
-LINK = re.compile(r"!\[[^\]]*\]\((?:docs/)?(\w+)\.png\)")
+LINK = re.compile(r"!\[[^\]]*\]\((?:docs/|\.\./)*(\w+)\.png\)")
 COMPANY = re.compile(r"\b(\w+_more)\b")  # names of further figures in captions
 
 

@@ -1,4 +1,4 @@
-"""What the generated parts of README.md and docs/results.md are made of: numbers of the demo's records, kept
+"""What the generated parts of README.md and docs/results are made of: numbers of the demo's records, kept
 in results/demo.json.
 """
 

@@ -212,8 +212,10 @@ def result_sentences(numbers: dict) -> list[str]:
 
 PARTS = {
     "README.md": ("slices", "result"),
-    "docs/results.md": ("demo", "drape", "gap_map", "several"),
-    "docs/jobs/cluster.md": ("cost",),
+    "docs/results/demo.md": ("demo", "drape"),
+    "docs/results/which-barrier.md": ("gap_map",),
+    "docs/results/several-studies.md": ("several",),
+    "docs/guides/cluster.md": ("cost",),
 }  # page -> its generated parts
 TEMPLATES = {
     "demo": demo_table,

@@ -1,5 +1,6 @@
-"""Makes the numbers of README.md and docs/results.md from the records of ./bench demo and the kept numbers of
-./bench claims, and checks them and every snippet of these pages, docs/jobs and the other pages of docs.
+"""Makes the numbers of README.md and docs/results from the records of ./bench demo and the kept numbers of
+./bench claims, and checks them and every snippet of these pages and of the other pages of docs. It also
+writes the pages of docs/reference.
 
 Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 there is nothing to make it
 from.
@@ -14,6 +15,7 @@ from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.pages.reference import make as reference
 from barrierbench_analysis.pages.stated import several
 from barrierbench_analysis.pages.stated.check import faults as disagreements
 from barrierbench_analysis.pages.stated.cost import gather as gather_cost
@@ -35,7 +37,7 @@ from .templates import PARTS, filled, lacking
 PAGES = tuple(PARTS)
 ABLATION = ROOT / "configs" / "ablation" / "default.json"
 # Pages whose snippets are checked and which have no generated numbers.
-MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
+MORE = ("CONTRIBUTING.md", "docs/**/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
@@ -111,6 +113,11 @@ def arguments(argv: list[str]) -> argparse.Namespace:
             " on one thing that disagree"
         ),
     )
+    what.add_argument(
+        "--reference",
+        action="store_true",
+        help="write the pages of docs/reference that are made from what the program prints of itself",
+    )
     parser.add_argument(
         "--runs",
         type=Path,
@@ -125,7 +132,9 @@ def keep_demo(runs: Path) -> None:
     """Keeps the numbers of the demo's records, copies the figures that the pages show, and says which."""
     write(gather(runs))
     copied = figures.copy(
-        [input_file.read_text(ROOT / page) for page in PAGES], runs / "figures", ROOT / "docs"
+        [input_file.read_text(ROOT / page) for page in pages_with_snippets(ROOT)],
+        runs / "figures",
+        ROOT / "docs",
     )
     print(f"docs: {', '.join(copied) or 'no figure'}")
 
@@ -139,6 +148,9 @@ def main(argv: list[str]) -> int:
         print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
         return 0
     built_program()
+    if args.reference:
+        print(f"docs/reference; changed: {', '.join(reference.write(ROOT)) or 'no page'}")
+        return 0
     numbers = kept()
     found = (
         [
@@ -149,6 +161,7 @@ def main(argv: list[str]) -> int:
         + stale(ROOT, numbers)
         + disagreements(ROOT, numbers["several"])
         + figures.absent(ROOT / "docs")
+        + reference.stale(ROOT)
     )
     print(
         "\n".join(found)

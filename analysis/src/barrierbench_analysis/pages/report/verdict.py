@@ -13,7 +13,7 @@ from .gather import Entry, Folder
 
 GOOD, BAD, PLAIN = "good", "bad", "plain"
 IN_SENTENCES = ("cond_raw", "newton", "pcg")  # times are in the tables alone
-CLAIM_SCENES = 3  # docs/laboratory.md, Claims: fewer decide nothing
+CLAIM_SCENES = 3  # docs/results/method/claims.md: fewer decide nothing
 MOST_GROUPS = 8
 
 

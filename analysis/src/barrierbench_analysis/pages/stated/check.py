@@ -17,8 +17,15 @@ from .pages import NO_NUMBERS, NUMBER, by_page
 from .several import apart, shapes_of_table
 from .statement import Statement
 
-SEVERAL = "#one-quantity-several-studies"
-PROSE = ("README.md", "docs/results.md")  # pages that take numbers from the pages of results/
+SEVERAL = "docs/results/several-studies.md"
+# Pages that take numbers from the pages of results/.
+PROSE = (
+    "README.md",
+    "docs/results/which-barrier.md",
+    SEVERAL,
+    "docs/results/claims.md",
+    "docs/results/dominoes.md",
+)
 PAGES = {"ablation": "results/ABLATION.md", "gap map": "results/GAP_MAP.md"}  # study -> page; claims have one
 
 
@@ -49,20 +56,18 @@ def unreconciled(root: Path, numbers: Iterable[Number]) -> list[str]:
     not lead its reader to the table in which both stand.
     """
     numbers, faults = list(numbers), []
-    told = shapes_of_table(input_file.read_text(root / "docs/results.md"))
+    told = shapes_of_table(input_file.read_text(root / SEVERAL))
     claims = input_file.read_text(root / "results/CLAIMS.md")
     for (metric, shape), _ in apart(numbers).items():
         if shape not in told:
-            faults.append(
-                f"docs/results.md{SEVERAL}: no row on {shape}, of which studies decide {metric} differently"
-            )
+            faults.append(f"{SEVERAL}: no row on {shape}, of which studies decide {metric} differently")
         for study in dict.fromkeys(n.study for n in numbers if (n.metric, n.over) == (metric, shape)):
             page = PAGES.get(study, f"results/CLAIMS.md, {study}")
             text = input_file.read_text(root / PAGES[study]) if study in PAGES else _section(claims, study)
             if SEVERAL not in text:
                 faults.append(
                     f"{page}: {metric} of the log over {shape} is decided differently by other studies; a"
-                    f" link to docs/results.md{SEVERAL} is needed"
+                    f" link to {SEVERAL} is needed"
                 )
     return list(dict.fromkeys(faults))
 

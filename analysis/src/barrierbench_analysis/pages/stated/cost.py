@@ -1,4 +1,4 @@
-"""What a study takes, from the seconds that kept results have: the table of docs/jobs/cluster.md."""
+"""What a study takes, from the seconds that kept results have: the table of docs/guides/cluster.md."""
 
 from __future__ import annotations
 

@@ -212,7 +212,7 @@ def _ends_of_tables(text: str) -> Counter:
 
 
 def engines_in_words(text: str, page: str) -> Iterator[Statement]:
-    """What docs/engines.md says of MuJoCo."""
+    """What docs/results/engines.md says of MuJoCo."""
     own, jittered = r"Of MuJoCo's (\d+) runs no frame", r"in an obstacle, in (\d+) runs"
     yield from _said(own, text, page, "mujoco, all variants: runs of the own start")
     yield from _said(jittered, text, page, "mujoco, all variants: runs of jittered starts")
@@ -237,7 +237,7 @@ OF_CELLS = tuple(
 
 
 def gap_map(text: str, page: str) -> Iterator[Statement]:
-    """Cells and runs of the gap map, on its page, in its captions and in docs/results.md."""
+    """Cells and runs of the gap map, on its page, in its captions and in docs/results/which-barrier.md."""
     words, runs = " ".join(text.split()), STUDIES["gap map"]
     yield from _said(r"(\d+) of (\d+) cells are not run", words, page, OF_CELLS[-1], CELLS)
     yield from _said(r"(\d+) cells, (\d+) runs of", words, page, CELLS, runs)

@@ -1,5 +1,5 @@
-"""One quantity, several studies: the table of docs/results.md in which every study's number of the log over
-another shape stands with its conditions, and that says where they are decided differently.
+"""One quantity, several studies: the table of docs/results/several-studies.md. Every study's number of the
+log over another shape stands there with its conditions; `apart` finds what studies decide differently.
 """
 
 from __future__ import annotations

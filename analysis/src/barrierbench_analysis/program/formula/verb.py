@@ -21,7 +21,7 @@ in BARRIERBENCH_CACHE or ~/.cache/barrierbench. In a config:
 With --policy it is the stiffness kappa of a contact in N/m instead, made of
 {POLICY.words}: m and k are w^T M w and w^T H w over w^T w (kg and N/m; w the weighted normals of the free
 vertices, M their masses, H the elastic Hessian), h the time step (s), c the weight of the inertia M/(c h^2).
-In a config: "stiffness_policy": {{"name": "formula", "formula": "m/h^2 + k"}}. docs/jobs/add-a-barrier.md.
+In a config: "stiffness_policy": {{"name": "formula", "formula": "m/h^2 + k"}}. docs/guides/add-a-barrier.md.
 """
 
 

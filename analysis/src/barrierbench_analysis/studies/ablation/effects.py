@@ -1,4 +1,4 @@
-"""Main effects and interactions of the factors, with the scenes as samples (docs/laboratory.md, Ablation).
+"""Main effects and interactions of the factors, with the scenes as samples (docs/results/method/ablation.md).
 
 In a scene, numbers are fitted by least squares with one column a level that is not the first of its factor;
 an interaction adds the products of the columns of two factors. What the runs of a scene do not tell apart

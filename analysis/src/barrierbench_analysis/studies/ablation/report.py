@@ -229,15 +229,15 @@ def page(factorial: Factorial, table: Table, study: Study) -> str:
         "",
         (
             f"Written by `./bench ablation`. {about['date']}, {about['machine']}; commit {about['commit']},"
-            f" build {about['build']}. Rules: docs/laboratory.md, Ablation, which also lists what was changed"
-            " and when."
+            f" build {about['build']}. Rules: docs/results/method/ablation.md, which also"
+            " lists what was changed and when."
         ),
         "",
         lead(factorial, table),
         "",
         (
             "Claims and gap map measure the shapes under other conditions: [One quantity, several studies]"
-            "(../docs/results.md#one-quantity-several-studies)."
+            "(../docs/results/several-studies.md)."
         ),
         "",
         *(f"{k}. {sentence}" for k, sentence in enumerate(sentences(factorial, table, study), 1)),

@@ -270,7 +270,7 @@ def _company(about: dict, refused: bool) -> list[str]:
     """Other studies of the same, and the builds of this one."""
     lines = [
         "Claims and ablation measure some of these ratios under other conditions: [One quantity, several"
-        " studies](../docs/results.md#one-quantity-several-studies).",
+        " studies](../docs/results/several-studies.md).",
         "",
     ]
     if len(builds := {source["build"] for source in about["sources"]}) > 1:

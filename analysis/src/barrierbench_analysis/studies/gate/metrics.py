@@ -1,4 +1,4 @@
-"""What a gate measures in a record: one line a number, with its class (docs/laboratory.md, Gates), unit,
+"""What a gate measures in a record: one line a number, with its class (docs/results/method/gates.md), unit,
 direction and tolerance.
 """
 

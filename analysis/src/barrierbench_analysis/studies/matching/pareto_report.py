@@ -31,7 +31,7 @@ sample, so their scatter is no interval. Cells of all scenes: geometric mean ove
 only n scenes have the number. Last column: mean over all gaps that both reach. Neither knows the error of the interpolation between stiffnesses: a
 ratio that swings from one gap to the next is a shape of the paths, to be read in the figure. Every failed run is listed, here and in the
 caption of its figure. At equal load instead of equal gap, and over more scenes, claims, gap map and ablation set shapes side by side:
-[One quantity, several studies](../docs/results.md#one-quantity-several-studies).
+[One quantity, several studies](../docs/results/several-studies.md).
 """
 
 
