@@ -87,7 +87,7 @@ def gathered() -> dict:
 
 
 def everything():
-    return kept() | {"slices": gathered(), "gap_map": ["With no limit raw 0.01.", "Of 4 cells 3 are decided."], "several": [gathered()["slices"][OFF][0].number],
+    return kept() | {"answer": "| a |", "slices": gathered(), "gap_map": ["With no limit raw 0.01.", "Of 4 cells 3 are decided."], "several": [gathered()["slices"][OFF][0].number],
                      "cost": [{"study": "claims", "command": "./bench claims", "runs": 3, "core_s": 7200.0}]}
 
 
@@ -181,9 +181,9 @@ def test_the_drape_is_judged_by_steps_that_end_in_contact_with_both():
 def test_only_generated_parts_change_and_an_unknown_one_is_refused(tmp_path):
     page = "before\n<!-- numbers: result -->\nold\n<!-- /numbers -->\nafter <!-- numbers -->\n"
     made = templates.filled(page, everything(), "a.md")
-    assert made.startswith("before\n<!-- numbers: result -->\n4. In all") and made.endswith("<!-- /numbers -->\nafter <!-- numbers -->\n") and "old" not in made
+    assert made.startswith("before\n<!-- numbers: result -->\n1. In all") and made.endswith("<!-- /numbers -->\nafter <!-- numbers -->\n") and "old" not in made
     assert templates.filled(made, everything(), "a.md") == made
-    with pytest.raises(UserError, match="a.md: .*other.*allowed: demo, result, drape, slices"):
+    with pytest.raises(UserError, match="a.md: .*other.*allowed: answer, demo, result, drape, slices"):
         templates.filled(page.replace("result", "other"), everything(), "a.md")
 
 
@@ -212,13 +212,13 @@ def test_a_page_that_lost_its_marks_is_no_page_that_is_right(tmp_path):
     for page in templates.PARTS:
         (tmp_path / page).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / page).write_text("")
-    (tmp_path / "README.md").write_text("<!-- numbers: result -->\nold\n")  # the end is gone
+    (tmp_path / "README.md").write_text("<!-- numbers: answer -->\nold\n")  # the end is gone
     (tmp_path / "docs/guides/cluster.md").write_text("<!-- numbers: cost -->\nold\n<!-- /numbers -->\n")
     found = readme.stale(tmp_path, everything())
     lost = [page for page in templates.PARTS for _ in templates.PARTS[page] if page != "docs/guides/cluster.md"]
     assert [line.partition(":")[0] for line in found] == [*lost, "docs/guides/cluster.md"]
-    assert "no <!-- numbers: demo -->" in found[len(templates.PARTS["README.md"])] and "its numbers are not" in found[-1]
-    with pytest.raises(UserError, match="README.md: no <!-- numbers: slices -->"):
+    assert "no <!-- numbers: result -->" in found[len(templates.PARTS["README.md"])] and "its numbers are not" in found[-1]
+    with pytest.raises(UserError, match="README.md: no <!-- numbers: answer -->"):
         readme.write_pages(tmp_path, everything())
 
 

@@ -35,8 +35,8 @@ def test_confirmed_stands_before_exploratory_and_larger_before_smaller():
 
 
 def test_every_headline_is_of_the_strongest_evidence(kept):
-    """README states each with its interval; among the candidates are confirmed and exploratory ones, or the rule has had nothing to choose."""
-    page = " ".join((ROOT / "README.md").read_text().split())
+    """docs/results/which-barrier.md states each with its interval; among the candidates are confirmed and exploratory ones, or the rule has had nothing to choose."""
+    page = " ".join((ROOT / "docs/results/which-barrier.md").read_text().split())
     found = slices.headlines(kept["slices"])
     assert len(found) == 8 + 9
     for headline in found:
@@ -48,7 +48,7 @@ def test_every_headline_is_of_the_strongest_evidence(kept):
 
 def test_where_a_headline_is_exploratory_a_confirmed_number_of_the_same_stands_beside_it(kept):
     """Of all studies, also where only comparable runs count: contact and limiter of one form at theta 0.1."""
-    page, beside = " ".join((ROOT / "README.md").read_text().split()), 0
+    page, beside = " ".join((ROOT / "docs/results/which-barrier.md").read_text().split()), 0
     for headline in slices.headlines(kept["slices"]):
         mine = headline.number
         rivals = [n for n in kept["several"] if (n.quantity, n.conditions) == (mine.quantity, mine.conditions)]
@@ -63,7 +63,7 @@ def test_where_a_headline_is_exploratory_a_confirmed_number_of_the_same_stands_b
 def test_where_a_page_ranks_shapes_by_exploratory_numbers_it_says_so():
     """docs/results/which-barrier.md: the sentences of the gap map, beside which confirmed numbers of log and cubic exist."""
     before, _, _ = (ROOT / "docs/results/which-barrier.md").read_text().partition("<!-- numbers: gap_map -->")
-    assert before.rstrip().endswith("All of this is exploratory; of the log beside the cubic the confirmed numbers are the first results of README.md.")
+    assert before.rstrip().endswith("All of this is exploratory; of the log beside the cubic the confirmed numbers are the first results of this page.")
 
 
 def test_the_table_of_verdicts_has_the_confirmed_number():

@@ -1,5 +1,5 @@
-"""The log beside the cubic over theta, without a strain limit and with one: the first results of README, from
-results/claims.json and results/gap_map.json. Each is the number of the strongest evidence there is.
+"""The log beside the cubic over theta, without a strain limit and with one: the first results of
+docs/results/which-barrier.md, from results/claims.json and results/gap_map.json. Each is the number of the strongest evidence there is.
 """
 
 from __future__ import annotations
@@ -169,8 +169,3 @@ def sentences(found: dict, width: int) -> list[str]:
             f"{k}. {text}", width, subsequent_indent="   ", break_long_words=False, break_on_hyphens=False
         )
     ]
-
-
-def count(found: dict) -> int:
-    """How many results these are: the next one has the number after."""
-    return len(AXIS) + len(found["size"])

@@ -25,6 +25,8 @@ from barrierbench_analysis.studies.ablation import table as ablation_table
 from barrierbench_analysis.studies.ablation.factors import read_factorial
 from barrierbench_analysis.studies.claims import table as claims_table
 from barrierbench_analysis.studies.gap_map import table as map_table
+from barrierbench_analysis.studies.kit.study import page as study_page
+from barrierbench_analysis.studies.kit.study.spec import read_study
 
 from . import figures
 from .map import gather as gather_map
@@ -41,11 +43,12 @@ MORE = ("CONTRIBUTING.md", "docs/**/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
-    """The numbers of the demo, those of the claims' slices, the sentences of the gap map, what several
+    """The answer, the numbers of the demo, those of the claims' slices, the sentences of the gap map, what several
     studies say of one quantity, and what studies take. Errors: UserError where one is missing.
     """
     claims, found = claims_table.read(claims_table.FILE), map_table.read(MAP)
     studies = {
+        "answer": study_page.numbers_of(read_study("answer"))["table"],
         "slices": gather_slices(claims, found),
         "gap_map": gather_map(),
         "several": several.gather(claims, found, read_factorial(ABLATION), ablation_table.read()),
