@@ -1,10 +1,11 @@
-"""Which barrier to use: four formulations in scenes that no rule was tuned on, with what was calibrated once a
-scene kept while its material, mass and speed change.
+"""Which barrier to use: four formulations in scenes that no rule was tuned on, with what was calibrated
+once a scene kept while its material, mass and speed change.
 
-A scene is one sample. Of each formulation: the share of its runs that end `ok`, mean over scenes; the smallest gap
-of those, geometric mean over scenes of the least of a scene; Newton iterations, matrix products and seconds over
-those of the fixed log in the same runs, geometric mean over scenes. Intervals are Student's at 95%. Only runs in
-which both formulations end `ok` enter a ratio. The rule was written before the first run of the study.
+A scene is one sample. Of each formulation: how many runs end `ok`; the share of scenes in which all do,
+with Wilson's interval; the smallest gap of those runs, geometric mean over scenes of the least of a scene;
+Newton iterations, matrix products and seconds over those of the fixed log in the same runs, geometric mean
+over scenes with Student's interval. All intervals are at 95%. Only runs in which both formulations end `ok`
+enter a ratio.
 """
 
 from __future__ import annotations
@@ -14,54 +15,49 @@ from collections import defaultdict
 from dataclasses import dataclass
 
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.studies.kit.study.over_scenes import Number, over_scenes
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.answer import WHEN
-from barrierbench_analysis.tables.estimate import Cells, of_scenes, student
+from barrierbench_analysis.tables.estimate import Cells, wilson
 
 RATIOS = ("newton", "products", "seconds")
-HEAD = ("formulation", "ends ok", "smallest gap / d_hat", "Newton", "matrix products", "seconds")
-
-
-@dataclass(frozen=True)
-class Number:
-    """A mean over scenes with its interval; None without a scene, an interval without two."""
-
-    value: float | None
-    low: float | None
-    high: float | None
-    scenes: int
-
-    def text(self, form: str) -> str:
-        if self.value is None:
-            return "-"
-        interval = "" if self.low is None else f" [{self.low:{form}}, {self.high:{form}}]"
-        return f"{self.value:{form}}{interval}"
-
-
-def over_scenes(cells: Cells, back=math.exp) -> Number:
-    """The mean over scenes of what `back` takes to its unit (log -> number)."""
-    values = [scene.value for scene in of_scenes({k: v for k, v in cells.items() if v})]
-    if not values:
-        return Number(None, None, None, 0)
-    middle = sum(values) / len(values)
-    low, high = student(values) if len(values) > 1 else (None, None)
-    return Number(
-        back(middle), None if low is None else back(low), None if high is None else back(high), len(values)
-    )
+HEAD = (
+    "formulation",
+    "runs that end ok",
+    "scenes in which all do",
+    "smallest gap / d_hat",
+    "Newton",
+    "matrix products",
+    "seconds",
+)
 
 
 def _run(row: Row) -> tuple[str, str, str]:
     return row.place["scene"], row.place["level"], row.place["seed"]
 
 
-def _shares(rows: list[Row]) -> Number:
-    cells: Cells = defaultdict(lambda: defaultdict(list))
+@dataclass(frozen=True)
+class Ends:
+    """How runs end: those that end ok of all, and the scenes in which all do of all."""
+
+    ok: int
+    runs: int
+    whole: int
+    scenes: int
+
+    @property
+    def cells(self) -> list[str]:
+        low, high = wilson(self.whole, self.scenes)
+        return [f"{self.ok} of {self.runs}", f"{self.whole} of {self.scenes} [{low:.2f}, {high:.2f}]"]
+
+
+def _ends(rows: list[Row]) -> Ends:
+    ok: dict[str, list[bool]] = defaultdict(list)
     for row in rows:
-        cells[row.place["scene"]][row.place["level"]].append(float(row.outcome == "ok"))
-    found = over_scenes(cells, back=lambda share: share)
-    bounded = [None if x is None else min(max(x, 0.0), 1.0) for x in (found.low, found.high)]
-    return Number(found.value, *bounded, found.scenes)
+        ok[row.place["scene"]].append(row.outcome == "ok")
+    whole = sum(map(all, ok.values()))
+    return Ends(sum(map(sum, ok.values())), len(rows), whole, len(ok))
 
 
 def _gaps(rows: list[Row]) -> Number:
@@ -84,26 +80,26 @@ def _ratio(rows: list[Row], reference: dict[tuple, Row], metric: str) -> Number:
     return over_scenes(cells)
 
 
-def compared(rows: list[Row], study: Study) -> dict[str, dict[str, Number]]:
+def compared(rows: list[Row], study: Study) -> dict[str, dict]:
     """formulation -> its numbers, the reference first. rows: of the levels that are compared."""
     names = list(dict.fromkeys(row.place["formulation"] for row in rows))
     of = {name: [row for row in rows if row.place["formulation"] == name] for name in names}
     reference = {_run(row): row for row in of[study.data["about"]["reference"]]}
     return {
-        name: {"ok": _shares(mine), "gap": _gaps(mine)}
+        name: {"ends": _ends(mine), "gap": _gaps(mine)}
         | {metric: _ratio(mine, reference, metric) for metric in RATIOS}
         for name, mine in of.items()
     }
 
 
-def table(found: dict[str, dict[str, Number]], study: Study) -> list[str]:
+def table(found: dict[str, dict], study: Study) -> list[str]:
     """Markdown: one row a formulation. Ratios of the reference are 1 by definition."""
     words, reference = study.data["about"]["names"], study.data["about"]["reference"]
 
     def cells(name: str) -> list[str]:
         numbers = found[name]
         ratios = ["1" if name == reference else numbers[metric].text(".3g") for metric in RATIOS]
-        return [words[name], numbers["ok"].text(".2f"), numbers["gap"].text(".2g"), *ratios]
+        return [words[name], *numbers["ends"].cells, numbers["gap"].text(".2g"), *ratios]
 
     return markdown([*HEAD, "when to use"], [[*cells(name), WHEN[words[name]]] for name in found])
 
@@ -122,8 +118,9 @@ def _ended(rows: list[Row], study: Study) -> list[str]:
 
 
 def rule(study: Study, rows: list[Row]) -> dict:
-    """The numbers of the page and of README. Errors: KeyError for a spec without the levels and names that it
-    speaks of."""
+    """The numbers of the page and of README. Errors: KeyError for a spec without the levels and names that
+    it speaks of.
+    """
     large = set(study.data["about"]["large"])
     small_rows = [row for row in rows if row.place["level"] not in large]
     large_rows = [row for row in rows if row.place["level"] in large]

@@ -1,8 +1,10 @@
-"""Drift of a frictionless card: the kinetic energy that a card loses, or gains, while it slides over a meshed floor.
+"""Drift of a frictionless card: the kinetic energy that a card loses, or gains, while it slides over a
+meshed floor.
 
-Without friction nothing may change the horizontal speed, so that any loss is an error of the contact between two
-meshes. A scene is one direction of the floor's mesh, a level one size of its triangles; a number is the largest
-share of the kinetic energy over the levels of a scene, geometric mean over scenes with Student's 95% interval.
+Without friction nothing may change the horizontal speed, so that any loss is an error of the contact
+between two meshes. A scene is one direction of the floor's mesh, a level one size of its triangles; a
+number is the largest share of the kinetic energy over the levels of a scene, geometric mean over scenes
+with Student's 95% interval.
 """
 
 from __future__ import annotations
@@ -11,16 +13,17 @@ import math
 from collections import defaultdict
 
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.studies.kit.study.over_scenes import over_scenes
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
-
-from .answer import over_scenes
 
 FLOOR = 1e-12  # shares below it are rounding
 
 
 def _share(row: Row) -> float | None:
-    """Of the kinetic energy once the card has settled on the floor, the part that is gone, or has come, at the end."""
+    """Of the kinetic energy once the card has settled on the floor, the part that is gone, or has come, at
+    the end.
+    """
     settled, end = row.values["settled_J"], row.values["end_J"]
     return None if row.outcome != "ok" or not settled or end is None else max(abs(1 - end / settled), FLOOR)
 

@@ -58,12 +58,11 @@ def row_of(study: Study, cell: Cell, record: dict, folder: Path) -> store.Row:
 
 def run_cells(study: Study, cells: list[Cell], out: Path | None = None) -> list[store.Row]:
     """Runs these cells as one sweep and reads their records. Runs that are there already are not repeated.
-    Errors: UserError. Cost: the runs."""
+    Errors: UserError. Cost: the runs.
+    """
     out = out or RUNS / study.name
     cases = [{"label": cell.label, "set": cell.settings} for cell in cells]
     made = runs.sweep(study.name, study.base, study.data.get("set", {}), cases)
     runs.run(made, out)
     records = runs.collect(made, out)
-    return [
-        row_of(study, cell, records[note], out) for cell, note in zip(cells, made.notes, strict=True)
-    ]
+    return [row_of(study, cell, records[note], out) for cell, note in zip(cells, made.notes, strict=True)]

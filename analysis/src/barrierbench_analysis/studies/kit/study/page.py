@@ -36,7 +36,8 @@ def rule_of(study: Study) -> Callable[[Study, list[store.Row]], dict]:
 
 def rows_of(study: Study) -> list[store.Row]:
     """The kept rows of the cells that the spec asks for today, in its order. Errors: UserError where one is
-    missing, so that no number is of a part of the cells."""
+    missing, so that no number is of a part of the cells.
+    """
     rows = store.read_rows(store.file_of(study.name))
     if lacking := missing(study, rows):
         raise UserError(
@@ -74,9 +75,7 @@ def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
     try:
         return environment.from_string(input_file.read_text(study.template)).render(about | numbers)
     except TemplateError as fault:
-        raise UserError(
-            f"{study.template}: {fault}; allowed: {', '.join(sorted(about | numbers))}"
-        ) from None
+        raise UserError(f"{study.template}: {fault}; allowed: {', '.join(sorted(about | numbers))}") from None
 
 
 def write_page(study: Study) -> list[Path]:

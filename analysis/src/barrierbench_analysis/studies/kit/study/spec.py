@@ -21,8 +21,9 @@ SEED, SEED_POINTER = "seed", "/seeds/main"
 
 @dataclass(frozen=True)
 class Cell:
-    """One run that a study asks for. place: the label of every axis. key: hash of all that the run is made of
-    but the program, the content of files included; two cells with one key are one run."""
+    """One run that a study asks for. place: the label of every axis. key: hash of all that the run is made
+    of but the program, the content of files included; two cells with one key are one run.
+    """
 
     place: dict[str, str]
     settings: dict
@@ -63,7 +64,8 @@ class Study:
     @cached_property
     def cells(self) -> list[Cell]:
         """The product of all axes and seeds, the last axis fastest. Errors: UserError for a label with
-        another number of words than its axis has names, or two cells that are one run."""
+        another number of words than its axis has names, or two cells that are one run.
+        """
         axes = [
             [(_place(self.file, k, axis["names"], case["label"]), case["set"]) for case in axis["cases"]]
             for k, axis in enumerate(self.data["axes"])

@@ -1,5 +1,7 @@
-"""The rows of a study, one JSON object a line: results/studies/NAME.jsonl. A row belongs to the key of its cell
-and is never changed by another one: rows are added at the end, and a row that is there stays as it is."""
+"""The rows of a study, one JSON object a line: results/studies/NAME.jsonl. A row belongs to the key of its
+cell and is never changed by another one: rows are added at the end, and a row that is there stays as it
+is.
+"""
 
 from __future__ import annotations
 
@@ -35,8 +37,9 @@ def file_of(study: str) -> Path:
 
 
 def read_rows(path: Path) -> dict[str, Row]:
-    """key -> row, in the order of the file; empty where there is no file. Errors: UserError with the line of
-    what is no row, or of a key that is there twice."""
+    """key -> row, in the order of the file; empty where there is no file. Errors: UserError with the line
+    of what is no row, or of a key that is there twice.
+    """
     if not path.is_file():
         return {}
     first, *lines = input_file.read_text(path).splitlines() or [""]
@@ -49,7 +52,9 @@ def read_rows(path: Path) -> dict[str, Row]:
         except (ValueError, TypeError) as fault:
             raise UserError(f"{path}: line {number}: {fault}; allowed: a row of ./bench study") from None
         if row.key in found:
-            raise UserError(f"{path}: line {number}: the key {row.key} is there twice; allowed: each key once")
+            raise UserError(
+                f"{path}: line {number}: the key {row.key} is there twice; allowed: each key once"
+            )
         found[row.key] = row
     return found
 

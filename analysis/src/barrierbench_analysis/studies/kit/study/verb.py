@@ -1,7 +1,7 @@
 """./bench study NAME run | plan | page, of every spec in configs/studies.
 
-run: makes the runs that have no row, keeps their rows, writes the page. plan: counts the cells, those that have
-a row, and what the rest is expected to take. page: writes the page from the kept rows.
+run: makes the runs that have no row, keeps their rows, writes the page. plan: counts the cells, those that
+have a row, and what the rest is expected to take. page: writes the page from the kept rows.
 
 Exit codes: 0 done, 2 a spec that cannot be read, or a page whose cells are not all there.
 """
@@ -25,13 +25,16 @@ AT_ONCE = 60  # runs whose rows are kept together: what an interrupt loses at mo
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("study", __doc__, "./bench study answer plan", "./bench study drift run")
     parser.add_argument("study", help=f"{', '.join(known())}, or the path of a spec")
-    parser.add_argument("what", nargs="?", default="run", choices=("run", "plan", "page"), help="default: run")
+    parser.add_argument(
+        "what", nargs="?", default="run", choices=("run", "plan", "page"), help="default: run"
+    )
     return parser.parse_args(argv)
 
 
 def planned(study: Study) -> list[str]:
     """Lines: cells, those with a row, and the seconds that the rest takes where runs of the same last axis
-    have been made."""
+    have been made.
+    """
     rows = store.read_rows(store.file_of(study.name))
     lacking = missing(study, rows)
     lines = [
