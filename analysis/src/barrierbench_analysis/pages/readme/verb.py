@@ -35,7 +35,7 @@ from .templates import PARTS, filled, lacking
 PAGES = tuple(PARTS)
 ABLATION = ROOT / "configs" / "ablation" / "default.json"
 # Pages whose snippets are checked and which have no generated numbers.
-MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
+MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/*/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
