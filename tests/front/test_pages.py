@@ -82,6 +82,8 @@ def formula_faults(text: str, page: str) -> list[str]:
         if not opened and plain.count("$") % 2:
             faults.append(f"{page}:{number}: found an odd number of $; allowed: $formula$ on one line")
         for formula in [plain] if opened else re.findall(r"\$([^$]*)\$", plain):
+            if formula != formula.strip() or (not opened and re.search(rf"\w\${re.escape(formula)}\$|\${re.escape(formula)}\$\w", plain)):
+                faults.append(f"{page}:{number}: found ${formula}$; allowed: no space within the $, no letter beside them")
             bar = line.startswith("|") and "|" in formula
             if bar or (found := ESCAPES.search(formula)):
                 faults.append(f"{page}:{number}: found {'|' if bar else found[0]} in {formula!r}, which Markdown takes for its own")
@@ -140,6 +142,6 @@ def test_the_rules_see_what_is_wrong(tmp_path):
         (tmp_path / "a.md").write_text(GOOD + wrong)
         [fault] = link_faults(tmp_path, "a.md")
         assert said in fault and fault.startswith("a.md:10:")
-    for wrong in ("$$\nx\n", "$$x$$\n", "a $x\n", "$a\\,b$\n", "$\\tilde{x}_n$\n", "$a*b$\n", "| $|b|$ |\n", "$$\nx\ny\n$$\n"):
+    for wrong in ("$$\nx\n", "$$x$$\n", "a $x\n", "$a\\,b$\n", "$\\tilde{x}_n$\n", "$a*b$\n", "| $|b|$ |\n", "a $b $ c\n", "a$^b$\n", "$$\nx\ny\n$$\n"):
         assert formula_faults(GOOD + wrong, "a.md"), wrong
     assert size_faults("a\n" * 301, "a.md") and size_faults("a" * 401, "a.md") and not size_faults("|" + "a" * 500, "a.md")
