@@ -1,4 +1,4 @@
-// Shapes and stiffnesses that a config gives as formulas (docs/design.md, Formulas). The Python of analysis/src/barrierbench_analysis/program/formula reads, checks and
+// Shapes and stiffnesses that a config gives as formulas (docs/reference/formulas.md). The Python of analysis/src/barrierbench_analysis/program/formula reads, checks and
 // compiles them into plugins; this file asks it, loads what it made and keeps it for the process.
 #pragma once
 

@@ -12,7 +12,7 @@ namespace bb {
 
 /// The kappa-free law of a shape: rho(u) = d_hat b''(d)/|b'(d)| at d = u d_hat, so that a contact at rest
 /// under load f has stiffness K = rho(u) f/d_hat. Errors: ConfigError unless 0 < u < 1 and b' is finite and
-/// not 0 there. Source: docs/design.md, Matching; any shape.
+/// not 0 there. Source: docs/theory/barriers.md, Matching; any shape.
 double rho(const BarrierFunction& barrier, double u);
 
 /// Rest state of one contact of stiffness kappa under a load.

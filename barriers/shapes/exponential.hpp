@@ -5,7 +5,7 @@
 //   at d_hat: 0, 0, 0 (b''' jumps by a^2/exp(a));   at 0: finite, b' -> -(1 - (1 + a) exp(-a)) d_hat
 // So it is C2 at d_hat and carries at most (1 - (1 + a) exp(-a)) kappa d_hat. rho = d_hat b''/|b'| is 2/e at d_hat,
 // as the cubic's, and a deep inside: what a load costs in stiffness does not grow with depth.
-// Source: ours, derived in this project (docs/design.md, Shapes and arguments).
+// Source: ours, derived in this project (docs/theory/barriers.md, Shapes and arguments).
 #pragma once
 
 #include "core/barrier/normalized_gap.hpp"

@@ -7,7 +7,7 @@
 
 namespace bb {
 
-enum class MassTerm { paper, inertia, scaled, none };  // docs/design.md, Stiffness policies
+enum class MassTerm { paper, inertia, scaled, none };  // docs/theory/barriers.md, Stiffness policies
 /// What becomes of kappa'(d): left out of the curvature, kappa being a number, or included, the force kappa(d)
 /// b'(d) being derived from its potential (core/barrier/folded_barrier.hpp).
 enum class KappaDerivative { dropped, included };

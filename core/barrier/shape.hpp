@@ -47,7 +47,7 @@ struct Shape {
   const DeviceCode& (*device_code)(const Shape&, std::uint64_t layout) = nullptr;
 };
 
-/// What the shape is evaluated on; part of a formulation's identity (docs/design.md).
+/// What the shape is evaluated on; part of a formulation's identity (docs/theory/barriers.md).
 ///   gap: b = f(d; d_hat).   squared_gap: b = f(d^2; d_hat^2) / d_hat^2, derivatives in d.
 enum class Argument { gap, squared_gap };
 
@@ -58,7 +58,7 @@ struct BarrierFunction {
   /// As the article's own code does (step solver article_literal, argument gap only): an unbounded shape is
   /// evaluated at max(d, 1e-10), a bounded one by its formula below contact too, its curvature 0 for d <= 0.
   bool literal = false;
-  /// Columns of doubles are narrowed to float, evaluated so, and widened again (docs/design.md, Precision). Requires
+  /// Columns of doubles are narrowed to float, evaluated so, and widened again (docs/reference/arithmetic.md, Precision). Requires
   /// batch_float.
   bool in_float = false;
 

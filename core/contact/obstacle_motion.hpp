@@ -8,7 +8,7 @@
 
 namespace bb {
 
-/// Smallest stop level that means anything: 16 ulps of the largest coordinate, m (docs/design.md).
+/// Smallest stop level that means anything: 16 ulps of the largest coordinate, m (docs/theory/newton.md).
 template <class T>
 BB_HD T ulp_floor(T largest) {
   return 16 * std::numeric_limits<T>::epsilon() * largest;

@@ -1,4 +1,4 @@
-// Which rows stay of the contact model offset_geometric (docs/design.md, Offset geometric contact).
+// Which rows stay of the contact model offset_geometric (docs/theory/contact-models.md, Offset geometric contact).
 #pragma once
 
 #include <set>

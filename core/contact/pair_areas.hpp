@@ -1,5 +1,5 @@
 // The area that a candidate pair stands for in a sum over pairs that is an integral over surfaces
-// (docs/design.md, Weights by area).
+// (docs/theory/contact-models.md, Weights by area).
 #pragma once
 
 #include <vector>

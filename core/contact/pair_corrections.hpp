@@ -1,4 +1,4 @@
-// Rows that take back what pairs count twice because they share a closest feature (docs/design.md, Weights by area).
+// Rows that take back what pairs count twice because they share a closest feature (docs/theory/contact-models.md, Weights by area).
 #pragma once
 
 #include <compare>

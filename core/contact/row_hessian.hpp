@@ -67,7 +67,7 @@ BB_HD inline Mat<T, 3, 3> fixed_points_block(const Vec<T, 3>& n, const Vec<T, 3>
 }
 
 /// Lower blocks (lower_blocks.hpp) of stiffness grad d grad d^T + force grad^2 d with projected eigenvalues.
-///   grad d = w x n, and with c = force the second term is in the basis of docs/design.md, Contact rows:
+///   grad d = w x n, and with c = force the second term is in the basis of docs/theory/contact-models.md, Contact rows:
 ///   -c (g_l x n)(w x q_l)^T - c (w x q_l)(g_l x n)^T - c d (g_l x n)(g_l x n)^T + c/d (w x t)(w x t)^T,
 /// t the direction at a right angle to n and every q_l (F = 1). w x t is an eigenvector; the rest lives in
 /// span(w, g_l) x n and w x span(q_l), which are at right angles to each other.

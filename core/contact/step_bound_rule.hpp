@@ -1,4 +1,4 @@
-// How contact bounds a motion: one part of it for all vertices, or one for each (docs/design.md, Bounds of each vertex).
+// How contact bounds a motion: one part of it for all vertices, or one for each (docs/theory/newton.md, Bounds of each vertex).
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
 // kappa of contact rows from iterate to iterate, by their pairs: when it is computed anew, kept, or given to a pair that appears in a
-// line search (docs/design.md, Stiffness policies). It knows no policy by name, runs on any executor, and stands once.
+// line search (docs/theory/barriers.md, Stiffness policies). It knows no policy by name, runs on any executor, and stands once.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Constraints that a term offers beside its energy (docs/design.md, Constraints): what solvers of positions (XPBD) and of
+// Constraints that a term offers beside its energy (docs/theory/step-solvers.md, Constraints): what solvers of positions (XPBD) and of
 // multipliers (augmented Lagrangians) read in the place of gradients and Hessians.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Creep of a rest shape: a deviation beyond a dead zone decays, since the rest shape follows (docs/design.md, Creep).
+// Creep of a rest shape: a deviation beyond a dead zone decays, since the rest shape follows (docs/theory/incremental-potential.md, Creep).
 #pragma once
 
 #include <cmath>

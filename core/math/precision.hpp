@@ -1,4 +1,4 @@
-// In which arithmetic the pipeline runs (docs/design.md, Precision): the scalar with which the templates of geometry,
+// In which arithmetic the pipeline runs (docs/reference/arithmetic.md, Precision): the scalar with which the templates of geometry,
 // elements and shapes are called. Storage stays double, which holds every float.
 #pragma once
 

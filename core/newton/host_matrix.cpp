@@ -1,4 +1,4 @@
-// Gradient and matrix of the terms on the host, summed in the order that docs/design.md fixes, and the linear solve.
+// Gradient and matrix of the terms on the host, summed in the order that docs/reference/arithmetic.md fixes, and the linear solve.
 #include <algorithm>
 #include <optional>
 

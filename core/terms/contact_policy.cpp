@@ -1,5 +1,5 @@
 // What the contact term tells its stiffness policy at its start and between steps
-// (docs/design.md, Stiffness policies).
+// (docs/theory/barriers.md, Stiffness policies).
 #include <algorithm>
 
 #include "core/base/archive/archive.hpp"

@@ -1,4 +1,4 @@
-// Friction: mu load f0(slide) of every contact that a step begins with (docs/design.md, Friction). Normal, weights and load are
+// Friction: mu load f0(slide) of every contact that a step begins with (docs/theory/friction.md). Normal, weights and load are
 // those of the start of the step, so that E stays one function of x within a step; contacts that come later rub from the next step on.
 // With refresh per_iteration they are those of the iterate, and E is one function within an iteration.
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Rows of friction (docs/design.md): the energy of a slide, and what turns of obstacles add to it. A law is core/energy/friction_laws'.
+// Rows of friction (docs/theory/friction.md): the energy of a slide, and what turns of obstacles add to it. A law is core/energy/friction_laws'.
 #pragma once
 
 #include "core/contact/obstacle_arm.hpp"

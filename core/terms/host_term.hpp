@@ -1,4 +1,4 @@
-// A term as the host's matrix engine reads it: local terms of elements side by side, which it scatters (docs/design.md, Terms).
+// A term as the host's matrix engine reads it: local terms of elements side by side, which it scatters (docs/architecture.md, Terms).
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Terms on the contacts of one state with the loads that these carry there: friction, restitution (docs/design.md). Which contacts and
+// Terms on the contacts of one state with the loads that these carry there: friction, restitution (docs/theory/friction.md). Which contacts and
 // how much is taken at the start of a step, so that E stays one function of x within it. One family on every executor: what a step,
 // a state of it and its end mean for the rows is here; where contacts come from and where sums go is the term's.
 #pragma once

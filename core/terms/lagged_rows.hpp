@@ -1,4 +1,4 @@
-// Energies of the relative motion of the closest points of contacts (docs/design.md, Friction, Restitution), as families of rows: a row
+// Energies of the relative motion of the closest points of contacts (docs/theory/friction.md), as families of rows: a row
 // keeps what its contact was in the state that it was taken from. Number k of a row is column[k n + row].
 #pragma once
 

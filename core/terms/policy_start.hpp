@@ -1,5 +1,5 @@
 // When a policy with memory starts, and from which numbers: at the first iterate that has contacts, from B with kappa = 1
-// and the gradient of everything else (docs/design.md, Stiffness policies).
+// and the gradient of everything else (docs/theory/barriers.md, Stiffness policies).
 #pragma once
 
 #include "core/barrier/shape.hpp"

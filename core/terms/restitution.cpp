@@ -1,5 +1,5 @@
 // Restitution: every contact that a step begins with damps the speed at which its gap closes by load a, and that at which it opens
-// by no more than the load (docs/design.md, Restitution). Load, normal and weights are those of the start of the step, a is that of
+// by no more than the load (docs/theory/friction.md). Load, normal and weights are those of the start of the step, a is that of
 // the speed at which the pair met.
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// Rows of restitution (docs/design.md): the damping of contacts, and the speeds at which their pairs met.
+// Rows of restitution (docs/theory/friction.md): the damping of contacts, and the speeds at which their pairs met.
 #pragma once
 
 #include "core/energy/restitution.hpp"

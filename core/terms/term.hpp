@@ -1,4 +1,4 @@
-// A term of E, the incremental potential (docs/design.md, Terms): what the Newton step asks of it, wherever it runs. A term is one file
+// A term of E, the incremental potential (docs/architecture.md, Terms): what the Newton step asks of it, wherever it runs. A term is one file
 // of this room and one line of registry.inc. It owns what it computes, in the memory of its executor; positions (m) are there too.
 #pragma once
 
@@ -97,7 +97,7 @@ class Term {
   /// What held the last bound() below 1.
   virtual std::string describe_bound() const { return {}; }
 
-  // --- a step that is proven when it is over (docs/design.md, Collision choice)
+  // --- a step that is proven when it is over (docs/theory/contact-models.md, Collision choice)
   /// Whether bound() holds for pairs too that a step is proven for when it is over.
   virtual void bound_audited(bool /*bound*/) {}
   /// How far the straight motion of the whole step, x_n to the iterate x, is proven free of what passes

@@ -1,4 +1,4 @@
-// Matching (docs/design.md): from the loads of a pilot, or from given ones, to the stiffness of
+// Matching (docs/theory/barriers.md): from the loads of a pilot, or from given ones, to the stiffness of
 // contact and limit.
 #pragma once
 

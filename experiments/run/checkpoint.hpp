@@ -1,5 +1,5 @@
 // The checkpoint of a run that is not over: files in its folder from which `bench run --resume` goes on
-// (docs/design.md, Outcomes, retries, resume).
+// (docs/reference/outcomes.md).
 #pragma once
 
 #include <filesystem>

@@ -10,7 +10,7 @@ namespace bb {
 
 /// Replaces `auto` by lagged_cholesky below 1000 unknowns and by pcg from there on, with the reason in linear_solver_reason; the
 /// other settings of /linear_solver stay. So a record has the solver that ran, and repeats it anywhere. Any other solver stays as
-/// it is, at no cost. docs/design.md has the measurement behind it.
+/// it is, at no cost. docs/theory/newton.md has the measurement behind it.
 /// Errors: those of build_scene. Cost: a scene.
 void decide_linear_solver(RunConfig& config);
 

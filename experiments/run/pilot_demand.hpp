@@ -1,5 +1,5 @@
 // What the contacts and limited elements of a pilot ask of a stiffness: the largest demand over all of them,
-// at all converged step ends (docs/design.md, Matching).
+// at all converged step ends (docs/theory/barriers.md, Matching).
 #pragma once
 
 #include <functional>

@@ -85,7 +85,7 @@ class Step:
 
     @property
     def x_tilde(self) -> Doubles:
-        """[n, 3] m: where inertia alone would lead (docs/design.md, Incremental potential)."""
+        """[n, 3] m: where inertia alone would lead (docs/theory/incremental-potential.md)."""
         return self._core.x_tilde
 
     @property

@@ -69,7 +69,7 @@ TEST(Exponential, RhoIsThatOfTheCubicAtDHatAndTheExponentDeepInside) {
     }
   }
   EXPECT_NEAR(rho(with_exponent(40), 1e-6), 40, 1e-12);
-  EXPECT_NEAR(rho(barrier("exponential"), 0.1), 6.15, 5e-3);  // the numbers of docs/design.md
+  EXPECT_NEAR(rho(barrier("exponential"), 0.1), 6.15, 5e-3);  // the numbers of docs/theory/barriers.md
   EXPECT_NEAR(rho(with_exponent(8), 0.1), 8.04, 5e-3);
 }
 

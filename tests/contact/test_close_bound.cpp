@@ -7,7 +7,7 @@
 namespace bb::test::close_bound_test {
 namespace {
 
-/// Where a pair is stopped (docs/design.md, Step bound), m.
+/// Where a pair is stopped (docs/theory/newton.md, Step bound), m.
 double stop_of(const Scene& scene, const TruePair& pair, const Positions& x0, const Positions& x1) {
   constexpr double eps = std::numeric_limits<double>::epsilon();
   double largest = pair.offset;

@@ -72,7 +72,7 @@ inline TrueClosest true_closest(const Corners& a, const Corners& b) {
   return best;
 }
 
-/// A pair as docs/design.md has it (Contact rows): primitives by their vertices, or one and an obstacle.
+/// A pair as docs/theory/contact-models.md has it (Contact rows): primitives by their vertices, or one and an obstacle.
 struct TruePair {
   std::vector<int> first, second;
   int obstacle = -1;

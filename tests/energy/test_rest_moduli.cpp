@@ -1,4 +1,4 @@
-// Membrane models as materials: their moduli at rest (the table of docs/design.md, Membranes) from second derivatives of the element and
+// Membrane models as materials: their moduli at rest (the table of docs/theory/incremental-potential.md, Shells) from second derivatives of the element and
 // from differences of its energy, and the Poisson's ratios for which the energy is smallest at rest and grows with the stretch.
 #include <gtest/gtest.h>
 
@@ -66,7 +66,7 @@ Moduli moduli_of(const Mat3d& c) {
   return {(c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1)) / c(1, 1), c(0, 1) / c(1, 1), c(2, 2)};
 }
 
-/// The table of docs/design.md.
+/// The table of docs/theory/incremental-potential.md.
 const std::map<std::string, Moduli (*)(double nu), std::less<>> table = {
     {"corotational",
      [](double nu) {

@@ -264,7 +264,7 @@ TEST(TetrahedronFamily, names_the_rest_tetrahedron_that_is_inverted_or_flat) {
   EXPECT_THROW(make(), ConfigError);
 }
 
-// What the term -mu/2 log(|F|^2 + 1) of the paper is for: docs/design.md, Solids.
+// What the term -mu/2 log(|F|^2 + 1) of the paper is for: docs/theory/incremental-potential.md, Solids.
 TEST(Solids, StableNeoHookeanWithoutItsLogarithmHoldsAPoint) {
   const VecXl point = VecXl::Zero(9);
   const auto terms = terms_at<solid::stable_neo_hookean, double>(point, Projection::none);

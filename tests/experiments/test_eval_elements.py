@@ -18,7 +18,7 @@ def density(model, s, mu, lam):
 
 
 def element_energy(q, x):
-    """By the formulas of docs/design.md, from the points."""
+    """By the formulas of docs/theory/incremental-potential.md, from the points."""
     model, rest = q["model"], [[mpf(c) for c in p] for p in q["rest"]]
     if model == "spring":
         return mpf(q["k"]) / 2 * (norm(sub(x[1], x[0])) - norm(sub(rest[1], rest[0]))) ** 2

@@ -54,6 +54,8 @@ def test_a_page_that_states_one_thing_twice_and_differently_is_told():
         assert check.contradictions(whole_page.everything(text, page)) == []
         every = planted(text, page)
         sample = random.Random(page).sample(every, min(TRIED, len(every)))
+        if page in pages.NO_NUMBERS:
+            continue
         assert sample, page
         faults = [check.contradictions(whole_page.everything("\n".join(lines), page)) for lines in sample]
         assert all(len(of) <= 2 and of[0].count(page) >= 2 for of in faults if of)

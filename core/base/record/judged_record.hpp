@@ -76,7 +76,7 @@ struct Check {
 };
 
 struct BuildValidity {
-  BB_RECORD(BuildValidity, "the validity block of the build (docs/design.md, Validity)");
+  BB_RECORD(BuildValidity, "the validity block of the build (docs/theory/audit.md, Validity)");
   BB_FIELD(bool, valid, "every check of the block passed; else the record has no times") = false;
   BB_FIELD(int, checks, "that were made") = 0;
   BB_FIELD(std::string, failed, "names of those that failed; empty: none");
@@ -95,7 +95,7 @@ struct Validity {
 /// Filled by one function, judge_comparability(); readers never compute it again.
 struct Comparability {
   BB_RECORD(Comparability, "whether the run may be compared with the others of its sweep");
-  BB_FIELD(std::string, verdict, "docs/design.md, Comparability",
+  BB_FIELD(std::string, verdict, "docs/theory/audit.md, Comparability",
            "comparable not_comparable no_reference not_valid") = "no_reference";
   BB_FIELD(std::string, reason, "one sentence");
   BB_FIELD(std::string, reference_run, "folder of the reference, beside this run's; empty: none");

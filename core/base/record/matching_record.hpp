@@ -1,4 +1,4 @@
-// How the stiffness of a run was chosen: from which loads of which contacts (docs/design.md, Matching).
+// How the stiffness of a run was chosen: from which loads of which contacts (docs/theory/barriers.md, Matching).
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 namespace bb {
 
 struct MatchingRecord {
-  BB_RECORD(MatchingRecord, "how stiffness was chosen (docs/design.md, Matching)");
+  BB_RECORD(MatchingRecord, "how stiffness was chosen (docs/theory/barriers.md, Matching)");
   BB_FIELD(std::string, rule, "matching rule") = "as_given";
   BB_FIELD(std::string, load_source, "of load_N", "given pilot static_weight none") = "none";
   BB_FIELD(std::string, limit_load_source, "of limit_load_N_per_m",

@@ -1,4 +1,4 @@
-// All elements of one kind of a scene, in the memory of an executor: what terms of E launch, on any executor (docs/design.md, Families).
+// All elements of one kind of a scene, in the memory of an executor: what terms of E launch, on any executor (docs/architecture.md, Element kinds and families).
 // The physics is in the element functions of core/energy; a kind is one header of this folder, which kernels read, and one
 // file, which fills its columns (family_of.hpp).
 #pragma once

@@ -1,4 +1,4 @@
-// What contact does with pairs of bodies: what was asked for, and what `auto` makes of it (docs/design.md, Collision choice).
+// What contact does with pairs of bodies: what was asked for, and what `auto` makes of it (docs/theory/contact-models.md, Collision choice).
 #include <fmt/format.h>
 
 #include <algorithm>

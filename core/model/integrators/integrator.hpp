@@ -1,5 +1,5 @@
 // What an integrator supplies: the weight c of the inertia term, the prediction x_tilde and the velocity
-// update. E(x) = 1/(2 c h^2) (x - x_tilde)^T M (x - x_tilde) - f^T (x - x_n) + ...   (docs/design.md)
+// update. E(x) = 1/(2 c h^2) (x - x_tilde)^T M (x - x_tilde) - f^T (x - x_n) + ...   (docs/theory/incremental-potential.md)
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What contact does with a pair of bodies (docs/design.md, Collision choice). An owner is a body by its number or, behind all
+// What contact does with a pair of bodies (docs/theory/contact-models.md, Collision choice). An owner is a body by its number or, behind all
 // bodies, an obstacle.
 #pragma once
 

@@ -1,4 +1,4 @@
-"""The rule of comparability (docs/design.md, Comparability) for two runs of which neither is the reference of
+"""The rule of comparability (docs/theory/audit.md) for two runs of which neither is the reference of
 the other: at which gaps each pair of bodies carries its load. The program judges a run against its reference;
 a test holds this rule to its verdicts.
 """

@@ -1,4 +1,4 @@
-"""The words of a record in sentences for a reader who has not seen docs/design.md."""
+"""The words of a record in sentences for a reader who has not seen docs/words.md."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ SHOWN = (
     " drawn."
 )
 OTHER = "Steps of other lengths, in the middle of that time: {names}."
-EDGE = 0.5  # of the width: below it kappa = m/gap^2 with the cubic amplifies an error (docs/design.md)
+EDGE = 0.5  # of the width: below it kappa = m/gap^2 amplifies an error of the cubic (docs/theory/barriers.md)
 
 
 @dataclass(frozen=True)

@@ -202,7 +202,7 @@ tuned on, by a rule that was committed before their first run ("-": none was run
 (2026-11-23): before, a bootstrap drew levels and starts as samples too, and signs were those of scenes x levels, then of levels got through with every start; now of the
 shares of starts, and thresholds are strict. A claim of which some parts hold and some do not holds in part. From a sentence to its runs: its sweep's command makes
 the records, `run_id` names them in results/claims.json and in their run.json, and `./bench run RUN.json` repeats one.
-Runs are comparable by the gaps at which each pair of bodies carries its load (docs/design.md, Comparability); where a part says "compared by smallest gaps", its numbers are
+Runs are comparable by the gaps at which each pair of bodies carries its load (docs/theory/audit.md, Comparability); where a part says "compared by smallest gaps", its numbers are
 of records before version 3.5.0, whose verdicts are by the smallest gap of the whole run: another rule, and the two are never compared with each other. An end of a step
 that is not asked to converge has a residual, in tolerances of a step that is.
 """

@@ -149,7 +149,9 @@ READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
 CAPTIONS = {"docs/work_precision_*.txt": work_precision_caption}
 NO_NUMBERS = (
     "docs/guides/index.md",
+    "docs/reference/index.md",
     "docs/results/method/index.md",
+    "docs/theory/index.md",
 )  # pages that state none, so that nothing can be read in them
 EVERY = ("README.md", "docs/**/*.md", "docs/*.txt", "results/*.md")
 

@@ -2,7 +2,7 @@
 is a regression.
 
 The first is the reference. No envelope is known for it, so numbers may move as far as the tolerances of their
-kind allow (docs/design.md, Gates). Exit codes: 0 nothing regressed, 1 something did, 2 the two cannot be
+kind allow (docs/results/method/gates.md). Exit codes: 0 nothing regressed, 1 something did, 2 the two cannot be
 compared.
 """
 

@@ -124,7 +124,7 @@ def time_of_impact(pair: str, x0, x1) -> Fraction | None:
 
 
 def shape(name: str, d: float, d_hat: float) -> tuple[Decimal, Decimal, Decimal]:
-    """b, b', b'' of the gap by the formulas of docs/design.md."""
+    """b, b', b'' of the gap by the formulas of docs/theory/barriers.md."""
     with localcontext() as context:
         context.prec = DIGITS
         d, h = Decimal(d), Decimal(d_hat)

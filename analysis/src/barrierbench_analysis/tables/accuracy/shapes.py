@@ -59,7 +59,7 @@ def barrier(shape: str, argument: str, d: float, d_hat: float) -> tuple[float, f
     """b (m^2) and b' (m) at the gap d > 0; (0, 0) from d_hat on. argument squared_gap: f(d^2;
     d_hat^2)/d_hat^2 with f the same formula.
 
-    Errors: UserError for a name that is not in SHAPES. Cost O(1). Source: docs/design.md, Shapes and
+    Errors: UserError for a name that is not in SHAPES. Cost O(1). Source: docs/theory/barriers.md, Shapes and
     arguments.
     """
     if shape not in SHAPES or argument not in ("gap", "squared_gap"):
