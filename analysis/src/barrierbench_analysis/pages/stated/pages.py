@@ -147,10 +147,8 @@ READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
     "docs/gap_map_more.txt": (gap_map,),
 }
 CAPTIONS = {"docs/work_precision_*.txt": work_precision_caption}
-NO_NUMBERS = (
-    "docs/guides/index.md",
-    "docs/results/method/index.md",
-)  # pages that state none, so that nothing can be read in them
+# Pages that state none, so that nothing can be read in them.
+NO_NUMBERS = ("docs/guides/index.md", "docs/reference/index.md", "docs/results/method/index.md")
 EVERY = ("README.md", "docs/**/*.md", "docs/*.txt", "results/*.md")
 
 
