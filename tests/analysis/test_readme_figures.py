@@ -1,5 +1,8 @@
 """Figures of the pages: what is shown is copied, and no caption names a figure that is not there."""
 
+import re
+
+from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.pages.readme import figures
 
 PAGE = "![a](docs/one.png) ![b](two.png) ![c](docs/elsewhere.png)"
@@ -29,3 +32,11 @@ def test_a_caption_without_its_company_is_told(tmp_path):
 
 def test_no_caption_of_ours_names_a_missing_figure():
     assert figures.absent(figures.Path(__file__).resolve().parents[2] / "docs") == []
+
+
+def test_every_picture_of_docs_stands_on_a_page():
+    pages = [path.read_text() for of in ("*.md", "docs/**/*.md", "results/*.md", "examples/**/*.md") for path in ROOT.glob(of)]
+    shown = {name for text in pages for name in re.findall(r"!\[[^\]]*\]\([^)]*?([\w-]+)\.png\)", text)}
+    pictures = {path.stem for path in (ROOT / "docs").glob("*.png")}
+    assert len(pictures) > 40 and pictures - shown == set()
+    assert {path.stem for path in (ROOT / "docs").glob("*.txt")} - pictures == set()

@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = {".ci", ".github", "analysis", "barriers", "claims", "cmake", "configs", "containers", "core", "docs", "engines", "examples", "experiments", "python", "results", "tests"}
 FILES = {".clang-format", ".clang-tidy", ".gitignore", "bench", "CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "CONTRIBUTING.md", "LICENSE", "README.md",
-         "pyproject.toml", "pytest.ini"}
+         "mkdocs.yml", "pyproject.toml", "pytest.ini"}
 
 
 def test_the_root_holds_known_names_alone():

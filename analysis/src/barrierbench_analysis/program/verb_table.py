@@ -75,6 +75,7 @@ TABLE = (
     Verb("tidy", "develop", ENVIRONMENT, "front.tidy", "[FILES]", "clang-tidy the sources (all, or the files named)", "./bench tidy core/base/record/hash.cpp", own_help=False),
     Verb("rooms", "develop", ENVIRONMENT, "front.rooms", "", "the rooms of the code, what each one includes, lowest first; fails on a circle or an undeclared one", "./bench rooms", own_help=False),
     Verb("python", "develop", ENVIRONMENT, "front.python_module", "[--no-tests] [PYTEST ARGUMENTS]", "builds the Python module barrierbench beside the program and runs its tests (docs/guides/python.md); pip install . builds it by itself", "./bench python --no-tests", own_help=False),
+    Verb("site", "develop", ENVIRONMENT, "front.site", "", "the web site of README.md, docs and results with search and formulas, in build/site; a broken link fails", "./bench site"),
     Verb("mutate", "develop", ENVIRONMENT, "front.mutate", "", "puts mistakes into the code one at a time and counts those that the tests catch", "./bench mutate --only 'newton/armijo*'"),
     Verb("fuzz", "develop", ENVIRONMENT, "front.fuzz", "[TARGET...]", "feeds broken input to every reader under clang's sanitizers; 1 when one of them fails", "./bench fuzz mesh_ply config --seconds 60"),
     Verb("microbenchmarks", "develop", "barrierbench_microbenchmarks", "front.microbenchmarks", "[GOOGLE BENCHMARK ARGUMENTS]", "ns per shape, query, contact, element, tier; JSON kept in results/runs/microbenchmarks", "./bench microbenchmarks --benchmark_filter='drape/.*:48'", own_help=False),

@@ -125,7 +125,7 @@ def text_of(record: dict) -> str:
         "# Engines of others" + (f": {name.removeprefix('engines_')}" if name != NAME else ""),
         "",
         f"Made by `{record.get('command', './bench engine compare')}`;"
-        " [docs/guides/engines.md](../docs/engines.md) says what is compared.",
+        " [docs/guides/engines.md](../docs/guides/engines.md) says what is compared.",
         "Error: distance of vertices from our refined reference, root mean square over vertices and frames,"
         " in widths of the scene. Depth: the largest in an obstacle or a closed body. Gained: the most of"
         " kinetic energy and that of gravity above the start; end: what is left of it. Seconds are those of"

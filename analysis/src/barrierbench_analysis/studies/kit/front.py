@@ -1,8 +1,7 @@
 """Paths of one formulation over its stiffness, and their comparison at equal reached gap.
 
 A point of a path is one run: the gap it reached and what that took. The stiffness itself is no coordinate,
-since the same number means different forces in different formulas (docs/results/method/pareto.md
-Pareto fronts).
+since the same number means different forces in different formulas (docs/results/method/pareto.md).
 """
 
 from __future__ import annotations
