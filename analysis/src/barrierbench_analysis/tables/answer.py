@@ -266,7 +266,7 @@ def _ratios(log: Mapping, cubic: Mapping) -> dict[str, float]:
 
 
 def log_over_cubic(rows: Iterable[Mapping]) -> list[Pair]:
-    """Every pair of a fixed log and a fixed cubic that both ended ok and are valid."""
+    """Every pair of a fixed log and a fixed cubic that both ended ok and are valid; comparable ones first."""
     by_run, found = {row["run"]: row for row in rows}, []
     for row in by_run.values():
         reference = reference_of(row, by_run)
@@ -279,4 +279,4 @@ def log_over_cubic(rows: Iterable[Mapping]) -> list[Pair]:
         theta = None if row.get("matching_rule") == "as_given" else row.get("matching_theta")
         is_comparable = row.get("comparability_verdict") == "comparable"
         found.append(Pair(place, theta, row.get("scene_free_dofs"), is_comparable, ratios))
-    return found
+    return sorted(found, key=lambda pair: not pair.is_comparable)

@@ -49,8 +49,8 @@ class Figure:
 @dataclass
 class Figures:
     shown: list[Figure] = field(default_factory=list)
-    answer: Figure | None = None  # the log over the cubic
     notes: list[str] = field(default_factory=list)  # what is left out, and why
+    answer: Figure | None = None  # the log over the cubic
 
 
 def figure_of(group: str, png: Path) -> Figure:
