@@ -171,8 +171,8 @@ class Answer:
             f"Row {self.reference}: the numbers of its runs, from the smallest to the largest. Other rows: x"
             f" times the {self.reference}'s number, geometric mean over the compared runs, which are those"
             " that their records call comparable with it.",
-            f"gap/d_hat: the smallest gap of the compared runs at a converged step end. products: {products}."
-            " seconds: of the pass time.",
+            "ended ok: and every check of validity passed. gap/d_hat: the smallest gap of the compared runs"
+            f" at a converged step end. products: {products}. seconds: of the pass time.",
         ]
         if self.left_out:
             found.append(f"{self.left_out} comparable runs have another reference and are in no factor.")
@@ -211,9 +211,14 @@ def _line(
     return Line(name, first, len(rows), good, len(pairs), bool(references), min(gaps, default=None), values)
 
 
-def _order(names: Iterable[str]) -> list[str]:
-    names = list(dict.fromkeys(names))
-    return [name for name in FIRST if name in names] + [name for name in names if name not in FIRST]
+def _ranked(lines: list[Line]) -> list[Line]:
+    """FIRST, then those with comparable runs, those with good ones, the rest; else as they come."""
+
+    def rank(line: Line) -> tuple:
+        first = FIRST.index(line.name) if line.name in FIRST else len(FIRST)
+        return first, not line.pairs and not line.is_reference, not line.ok
+
+    return sorted(lines, key=rank)
 
 
 def answer(rows: Iterable[Mapping]) -> Answer:
@@ -232,11 +237,11 @@ def answer(rows: Iterable[Mapping]) -> Answer:
     }
     used = {other["run"]: other for _, other in pairs}
     lines = []
-    for name in _order(map(name_of, rows)):
+    for name in dict.fromkeys(map(name_of, rows)):
         mine = [pair for pair in pairs if name_of(pair[0]) == name]
         references = list(used.values()) if name == reference else []
         lines.append(_line(name, [r for r in rows if name_of(r) == name], mine, references, measures))
-    return Answer(lines, reference, len(every) - len(pairs), is_probed)
+    return Answer(_ranked(lines), reference, len(every) - len(pairs), is_probed)
 
 
 # --- the log over the cubic
