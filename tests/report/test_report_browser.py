@@ -182,6 +182,18 @@ def test_a_telephone_scrolls_tables_and_never_the_page(browser, which, request):
     opened.clean()
 
 
+def test_a_telephone_shows_the_answer_first_and_a_link_opens_its_section(browser, report):
+    opened = Opened(browser, report, 375, 740)
+    top = opened.page.evaluate("document.querySelector('#answer tbody tr').getBoundingClientRect().bottom")
+    assert top < 740 and opened.page.evaluate("document.documentElement.scrollWidth") == 375
+    cells = opened.page.evaluate("[...document.querySelectorAll('#answer tbody > tr > *')].map((c) => c.getBoundingClientRect()).map((r) => [r.left, r.right])")
+    assert len(cells) >= 16 and all(left >= 0 and right <= 375 for left, right in cells)
+    assert not opened.page.locator("#runs table").is_visible()
+    opened.page.locator("nav").get_by_role("link", name="Runs").click()
+    assert opened.page.locator("#runs table").is_visible()
+    opened.clean()
+
+
 def test_the_focus_is_seen_and_the_keyboard_reaches_the_first_table(browser, report):
     opened = Opened(browser, report)
     opened.page.keyboard.press("Tab")
