@@ -243,6 +243,7 @@ def test_a_page_of_many_runs_stays_quick(browser, tmp_path):
     clock.send("Performance.enable", {"timeDomain": "threadTicks"})
     opened.page.reload()
     opened.page.locator("html[data-ready='yes']").wait_for(state="attached")  # no script of ours: the page refuses them
+    opened.unfold()
     took = [seconds()]
     opened.page.evaluate("""() => { [...document.querySelectorAll('#runs thead button')].find((b) => b.textContent === 'Newton').click();
       document.body.offsetHeight; }""")
