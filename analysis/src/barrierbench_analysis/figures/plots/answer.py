@@ -99,7 +99,7 @@ def figure(rows: Iterable[Mapping], out: Path) -> list[Path]:
         return []
     looks, count = _thetas(pairs), min(len({pair.place for pair in pairs}), MOST_PLACES)
     fig, axes = plt.subplots(
-        2, 2, figsize=(WIDTH_IN, 1.7 + 0.36 * count), layout="constrained", sharey=True, squeeze=False
+        2, 2, figsize=(WIDTH_IN, 1.5 + 0.5 * count), layout="constrained", sharey=True, squeeze=False
     )
     heights = _heights(axes[0, 0], pairs)
     for axis, key in zip(axes.flat, RATIOS):
