@@ -72,6 +72,19 @@ def test_runs_that_are_not_comparable_are_in_no_number_but_the_count_of_ends(kno
     assert found.reference == "" and found.notes() == ["No two runs here are comparable, so the table has no factors."]
 
 
+def test_other_time_steps_and_other_references_are_said(known):
+    changed(known / "cubic_dynamic", labels={"dt_s": 0.001})
+    notes = answer.of(gathered(known)).notes()
+    assert notes[-1] == "Other time steps than the reference: dynamic as published."
+    shutil.copytree(known / "quadratic", known / "more/quadratic")
+    shutil.copytree(known / "cubic", known / "more/cubic")
+    changed(known / "more/quadratic", status={"outcome": "ok", "valid": True})
+    reference = json.loads((known / "more/quadratic/run.json").read_text())["ids"]["run_id"]
+    changed(known / "more/cubic", comparability={"reference_run": "quadratic", "reference_run_id": reference})
+    found = answer.of(gathered(known))
+    assert found.left_out == 1 and found.notes()[-1] == "1 comparable run has another reference and is in no factor."
+
+
 def test_products_are_of_the_solver_where_every_run_iterates(known):
     assert answer.of(gathered(known)).is_probed
     for name, iterations in (("log", 1000), ("cubic", 3000), ("cubic_dynamic", 500)):
@@ -212,7 +225,7 @@ def test_failures_that_are_all_expected_are_folded(runs, without_figures, monkey
 def test_nothing_is_wider_than_a_narrow_window():
     """What tests/report/test_report_browser.py measures in a browser, by the rules that do it."""
     css = (Path(page.HERE) / "page.css").read_text()
-    narrow = css[css.index("@media (max-width: 640px)") :]
+    narrow = css[css.index("@media (max-width: 1000px)") :]
     assert ".scroll { overflow-x: auto;" in css and "figure img { display: block; width: 100%;" in css
     assert ".cards thead { display: none; }" in narrow and "overflow-wrap: break-word" in css
     widths = [float(width) for width in re.findall(r"(?<!max-)(?<!-)\bmin-width: ([\d.]+)rem", css)]

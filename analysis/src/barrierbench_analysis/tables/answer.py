@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .series import is_published
-from .words import number
+from .words import listed, number
 
 LOG, CUBIC = "fixed log", "fixed cubic"
 PUBLISHED, POTENTIAL = "dynamic as published", "dynamic from a potential"
@@ -155,6 +155,7 @@ class Answer:
     lines: list[Line]
     reference: str  # name of the line that the factors are over; empty: no two runs are comparable
     left_out: int  # comparable pairs whose reference is of another name
+    other_steps: list[str]  # names of lines with other time steps than the reference's in some pair
     is_probed: bool  # products: of the probe on the diagnosed matrices, not of the runs' own solver
 
     def notes(self) -> list[str]:
@@ -172,10 +173,14 @@ class Answer:
             f" times the {self.reference}'s number, geometric mean over the compared runs, which are those"
             " that their records call comparable with it.",
             "ended ok: and every check of validity passed. gap/d_hat: the smallest gap of the compared runs"
-            f" at a converged step end. products: {products}. seconds: of the pass time.",
+            f" at a converged step end. products: {products}. seconds: of the pass time, one repetition.",
         ]
+        if self.other_steps:
+            found.append(f"Other time steps than the reference: {listed(self.other_steps)}.")
         if self.left_out:
-            found.append(f"{self.left_out} comparable runs have another reference and are in no factor.")
+            one = self.left_out == 1
+            has, are = ("run has", "is") if one else ("runs have", "are")
+            found.append(f"{self.left_out} comparable {has} another reference and {are} in no factor.")
         return found
 
 
@@ -241,7 +246,8 @@ def answer(rows: Iterable[Mapping]) -> Answer:
         mine = [pair for pair in pairs if name_of(pair[0]) == name]
         references = list(used.values()) if name == reference else []
         lines.append(_line(name, [r for r in rows if name_of(r) == name], mine, references, measures))
-    return Answer(_ranked(lines), reference, len(every) - len(pairs), is_probed)
+    stepped = dict.fromkeys(name_of(one) for one, other in pairs if one.get("dt_s") != other.get("dt_s"))
+    return Answer(_ranked(lines), reference, len(every) - len(pairs), list(stepped), is_probed)
 
 
 # --- the log over the cubic
