@@ -40,8 +40,10 @@ def lines(found: Answer) -> list[str]:
     """The same for a terminal of WIDTH columns: when to use what stands below the table."""
     rows = [row for line in found.lines for row in _broken(line.cells()[:-1])]
     shown = aligned(HEAD[:-1], rows, right=set(NUMBERS))
+    shown.append("")
     for note in found.notes():
         shown += textwrap.wrap(note, WIDTH)
+    shown.append("")
     for line in found.lines:
         if sentence := when_to_use(line.name):
             shown += textwrap.wrap(f"{line.name}: {sentence}", WIDTH, subsequent_indent="  ")

@@ -39,4 +39,4 @@ def lines(root: Path, page: Path, drawn: Path) -> list[str]:
     files = [("report page", page), ("comparison figure", drawn / f"{STEM}.png"), ("player", _player(folder))]
     there = [f"  {name:<17}  {shown_path(file)}" for name, file in files if file and file.is_file()]
     said = [line for one in verdict.expectations(folder) for line in textwrap.wrap(one.text, answer.WIDTH)]
-    return [*answer.lines(answer.of(folder)), "", *said, "", "Open:", *there]
+    return [*answer.lines(answer.of(folder)), "", *said, *[""] * bool(said), "Open:", *there]
