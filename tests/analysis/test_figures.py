@@ -222,7 +222,7 @@ def test_demo_makes_everything_and_names_failures(program, tmp_path, monkeypatch
 
     assert "strip: quadratic ended newton_stall: step 2 ended at its cap" in text
     names = {p.name for p in (tmp_path / "out").iterdir()}
-    expected = {f"{stem}.{suffix}" for stem in ("condition_strip", "iterations_strip", "gaps_strip", "barrier_shapes")
+    expected = {f"{stem}.{suffix}" for stem in ("condition_strip", "iterations_strip", "gaps_strip", "barrier_shapes", "answer")
                 for suffix in ("png", "pdf", "csv", "txt", "svg", "dat")}
     assert names == expected | {"table.csv"}
 

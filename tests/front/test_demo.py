@@ -11,6 +11,7 @@ from barrierbench_analysis.figures.plots import demo as figures
 from barrierbench_analysis.front import demo
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.pages.readme.numbers import GROUPS
+from barrierbench_analysis.pages.report import closing
 from barrierbench_analysis.pages.report import verb as report
 
 
@@ -28,20 +29,21 @@ def calls(monkeypatch):
     monkeypatch.setattr(demo, "run_sweep", run_sweep)
     monkeypatch.setattr(figures, "make", lambda runs, out: made.append((runs, out)) or 1)
     monkeypatch.setattr(report, "report", lambda *words: made.append(words) or "the verdict")
+    monkeypatch.setattr(closing, "lines", lambda *words: made.append(words) or ["the answer"])
     return made, codes
 
 
 def test_every_sweep_runs_once_and_then_the_figures_and_the_page(calls, tmp_path, capsys):
     made, _ = calls
     assert demo.main(["--out", str(tmp_path), "--jobs", "2"]) == 1  # that of the figures
-    *sweeps, drawn, page = made
-    assert {(file.stem, out) for file, out, _ in sweeps} == {(name, tmp_path / name) for name in demo.SWEEPS} and len(sweeps) == len(demo.SWEEPS) == 5
+    *sweeps, drawn, page, closed = made
+    assert {(file.stem, out) for file, out, _ in sweeps} == {(name, tmp_path / name) for name in demo.SWEEPS} and len(sweeps) == len(demo.SWEEPS) == 6
     assert all(words[:2] == ("--jobs", "2") for _, _, words in sweeps)
-    assert drawn == (tmp_path, None) and page == (tmp_path, tmp_path / "report.html", tmp_path / "figures")
+    assert drawn == (tmp_path, None) and page == closed == (tmp_path, tmp_path / "report.html", tmp_path / "figures")
     said = capsys.readouterr()
-    *tables, verdict = said.out.split("\n\n")
-    assert sorted(tables) == sorted(f"table of {name}" for name in demo.SWEEPS) and verdict.strip() == "the verdict"
-    assert f"open file://{tmp_path}/report.html" in said.err
+    *tables, verdict, answer = said.out.split("\n\n")
+    assert sorted(tables) == sorted(f"table of {name}" for name in demo.SWEEPS)
+    assert verdict.strip() == "the verdict" and answer.strip() == "the answer"
 
 
 def test_a_sweep_that_fails_is_said_and_nothing_is_drawn(calls, tmp_path, capsys):

@@ -94,6 +94,9 @@ class Opened:
         rows = f"#{table} tbody tr:not([hidden])"
         return [text.strip() for text in self.page.locator(f"{rows} > :nth-child({number})").all_inner_texts()]
 
+    def unfold(self) -> None:
+        self.page.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+
     def clean(self) -> None:
         assert self.errors == [] and self.asked == [self.file.as_uri()]
         self.context.close()
@@ -131,6 +134,7 @@ def of_two(report) -> Path:
 
 def test_tables_sort_filter_and_copy_and_nothing_is_asked_of_a_network(browser, report):
     opened = Opened(browser, report)
+    opened.unfold()
     page, cond = opened.page, opened.page.locator("#runs").get_by_role("button", name="cond raw")
     assert opened.column("runs", 6) == ["250", "300", "100", "400"]
     cond.click()
@@ -159,7 +163,7 @@ def test_tables_sort_filter_and_copy_and_nothing_is_asked_of_a_network(browser, 
 @pytest.mark.parametrize("which", ["report", "of_two"])
 def test_text_can_be_read_and_everything_has_a_name(browser, which, scheme, request):
     opened = Opened(browser, request.getfixturevalue(which), scheme=scheme)
-    opened.page.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    opened.unfold()
     found = opened.page.evaluate(CONTRAST)
     assert found["bad"] == [] and found["judged"] > 100
     ground = opened.page.evaluate("getComputedStyle(document.body).backgroundColor")
@@ -171,17 +175,30 @@ def test_text_can_be_read_and_everything_has_a_name(browser, which, scheme, requ
 @pytest.mark.parametrize("which", ["report", "of_two"])
 def test_a_telephone_scrolls_tables_and_never_the_page(browser, which, request):
     opened = Opened(browser, request.getfixturevalue(which), 375, 740)
-    opened.page.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    opened.unfold()
     assert opened.page.evaluate("document.documentElement.scrollWidth") == 375
     wide = opened.page.evaluate("[...document.querySelectorAll('.scroll')].map((box) => [box.scrollWidth > box.clientWidth, box.getBoundingClientRect().right <= 375])")
     assert len(wide) >= 3 and any(scrolls for scrolls, _ in wide) and all(fits for _, fits in wide)
     opened.clean()
 
 
+def test_a_telephone_shows_the_answer_first_and_a_link_opens_its_section(browser, report):
+    opened = Opened(browser, report, 375, 740)
+    top = opened.page.evaluate("document.querySelector('#answer tbody tr').getBoundingClientRect().bottom")
+    assert top < 740 and opened.page.evaluate("document.documentElement.scrollWidth") == 375
+    cells = opened.page.evaluate("[...document.querySelectorAll('#answer tbody > tr > *')].map((c) => c.getBoundingClientRect()).map((r) => [r.left, r.right])")
+    assert len(cells) >= 16 and all(left >= 0 and right <= 375 for left, right in cells)
+    assert not opened.page.locator("#runs table").is_visible()
+    opened.page.locator("nav").get_by_role("link", name="Runs").click()
+    assert opened.page.locator("#runs table").is_visible()
+    opened.clean()
+
+
 def test_the_focus_is_seen_and_the_keyboard_reaches_the_first_table(browser, report):
     opened = Opened(browser, report)
     opened.page.keyboard.press("Tab")
-    assert opened.page.evaluate("document.activeElement.textContent") == "To the verdict"
+    assert opened.page.evaluate("document.activeElement.textContent") == "To the answer"
+    opened.unfold()
     opened.page.locator("#runs").get_by_role("button", name="Newton").focus()
     opened.page.keyboard.press("Shift+Tab")
     assert opened.page.evaluate("parseFloat(getComputedStyle(document.activeElement).outlineWidth)") >= 2
@@ -226,6 +243,7 @@ def test_a_page_of_many_runs_stays_quick(browser, tmp_path):
     clock.send("Performance.enable", {"timeDomain": "threadTicks"})
     opened.page.reload()
     opened.page.locator("html[data-ready='yes']").wait_for(state="attached")  # no script of ours: the page refuses them
+    opened.unfold()
     took = [seconds()]
     opened.page.evaluate("""() => { [...document.querySelectorAll('#runs thead button')].find((b) => b.textContent === 'Newton').click();
       document.body.offsetHeight; }""")

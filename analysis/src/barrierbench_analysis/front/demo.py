@@ -1,5 +1,6 @@
 """Runs the sweeps of the README, of each as many runs at a time as there are cores, then makes their figures,
-their table and the page that says what they show. Records that this program has made are not run again.
+their table and the page that says what they show, and ends with the answer: what each formulation took, which
+failures were expected, and which files to open. Records that this program has made are not run again.
 
 Exit codes: 0 all is there, 1 a run does not keep what the demonstration promises, else that of the sweep that
 failed first.
@@ -18,7 +19,14 @@ from barrierbench_analysis.program.building import job_count, say
 from barrierbench_analysis.program.start import run_sweep
 
 OUT = ROOT / "results/runs/demo"
-SWEEPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")  # configs/sweeps/NAME.json
+SWEEPS = (  # configs/sweeps/NAME.json
+    "demo_equal_gap",
+    "demo_drape",
+    "demo_long",
+    "demo_strip",
+    "demo_pinned",
+    "demo_article",
+)
 
 
 def run_all(out: Path, jobs: int) -> int:
@@ -58,7 +66,8 @@ def main(argv: list[str]) -> int:
     code = importlib.import_module("barrierbench_analysis.figures.plots.demo").make(args.out, None)
     report = importlib.import_module("barrierbench_analysis.pages.report.verb")
     page = args.out / "report.html"
-    print("\n" + report.report(args.out, page, args.out / "figures"))
+    print("\n" + report.report(args.out, page, args.out / "figures") + "\n")
+    closing = importlib.import_module("barrierbench_analysis.pages.report.closing")
+    print("\n".join(closing.lines(args.out, page, args.out / "figures")))
     say(f"runs and figures took {(time.monotonic() - begun) / 60:.1f} minutes, {args.jobs} runs at a time")
-    say(f"open {page.resolve().as_uri()}")
     return code

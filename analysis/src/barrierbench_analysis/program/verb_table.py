@@ -26,11 +26,11 @@ class Verb(NamedTuple):
 
 # fmt: off
 TABLE = (
-    Verb("demo", "run", PROGRAM, "front.demo", "", "setup, build, the demonstration sweep, its figures, its table and the page that says what they show", "./bench demo"),
+    Verb("demo", "run", PROGRAM, "front.demo", "", "setup, build, the demonstration sweep, its figures and the page that says what they show; ends with a table of what each formulation takes", "./bench demo"),
     Verb("status", "run", ENVIRONMENT, "tables.sweeps.status", "DIR [--watch]", "where the runs of a sweep are: over, running, dead, stopped, unreadable or waiting; 0 when all are over", "./bench status results/runs/demo/demo_strip --watch"),
     Verb("collect", "look", ENVIRONMENT, "tables.sweeps.collect", "DIR OUT.csv", "the records of a sweep as one tidy table, CSV and Parquet, units in its column names, and a dictionary of its columns", "./bench collect results/runs/demo/demo_strip strip.csv"),
     Verb("figures", "look", ENVIRONMENT, "figures.plots.verb", "RUNS [OUT]", "figures and table of the records below a folder, or of the file of ./bench steps --out", "./bench figures results/runs/demo"),
-    Verb("report", "look", ENVIRONMENT, "pages.report.verb", "DIR [DIR2]", "one HTML page, which needs no network, of the records below a folder: verdict, failures, comparison, figures, players, every run with its command, methods; of two folders what differs", "./bench report results/runs/demo"),
+    Verb("report", "look", ENVIRONMENT, "pages.report.verb", "DIR [DIR2]", "one HTML page, which needs no network, of the records below a folder: answer, verdict, players, failures, comparison, figures, every run with its command, methods; of two folders what differs", "./bench report results/runs/demo"),
     Verb("formula", "look", ENVIRONMENT, "program.formula.verb", "TEXT", "a barrier as a formula: whether it is one and where it fails, its derivatives, limits, precision, C++", "./bench formula '-(d - d_hat)^2*log(d/d_hat)'"),
     Verb("render", "look", ENVIRONMENT, "figures.pictures.render", "RUN", "a still (PNG) of one step of a run that kept frames (--set /output/frames_every=1)", "./bench render results/runs/drape --color gap"),
     Verb("stills", "look", ENVIRONMENT, "figures.pictures.stills", "RUN... --out FILE.png", "the last frames of several runs in one picture, each under its label and outcome", "./bench stills results/runs/baseline_stills/* --columns 9 --out docs/baselines.png"),

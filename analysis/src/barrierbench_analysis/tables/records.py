@@ -29,6 +29,11 @@ class Records:
     cond: pd.DataFrame  # one row a condition estimate
     unreadable: list[str] = field(default_factory=list)  # records left out: "path: reason"
 
+    def rows(self) -> list[dict]:
+        """The rows of `runs` as run_rows.run_row makes them: None in the place of what is none."""
+        runs = self.runs.astype(object)
+        return runs.where(runs.notna(), None).to_dict("records")
+
 
 def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
     """File and sha256 of every plugin of the run; formulas are no plugins that could be asked for."""

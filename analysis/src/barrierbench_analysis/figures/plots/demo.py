@@ -14,10 +14,10 @@ from barrierbench_analysis.program import processes
 from barrierbench_analysis.tables.records import Records, load
 from barrierbench_analysis.tables.table import as_text, summary_table
 
-from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
+from . import answer, barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
-LAYERED = ("demo_drape", "demo_long")  # five layers, each of which has to touch the next
+LAYERED = ("demo_equal_gap", "demo_drape", "demo_long")  # five layers, each of which has to touch the next
 OF_A_GROUP = [  # each draws the runs of one sweep
     module.figure for module in (condition, matrix_forms, iterations, gaps, kappa_cycle)
 ]
@@ -72,8 +72,9 @@ def make_all_of(records: Records, out: Path) -> str:
         len(os.sched_getaffinity(0)), multiprocessing.get_context("fork"), _share, records, out
     ) as pool:
         shapes = pool.submit(barrier_shapes.figure, out, records.runs)
+        beside = pool.submit(answer.figure, records.rows(), out)
         paths = [path for made in pool.map(_picture, draw, of) for path in made]
-        paths += shapes.result()
+        paths += shapes.result() + beside.result()
     table = summary_table(records)
     write_whole(out / "table.csv", table.to_csv(index=False))
     failed = records.runs[records.runs["outcome"] != "ok"]

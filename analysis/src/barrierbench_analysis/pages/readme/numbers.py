@@ -45,7 +45,7 @@ OF_RUN = (  # name in a row, column of the runs
     ("steps", "summary_steps"),
     ("run", "run_id"),
 )
-GROUPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")
+GROUPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article", "demo_equal_gap")
 
 
 def _plain(value):

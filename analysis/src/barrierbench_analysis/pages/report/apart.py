@@ -25,6 +25,8 @@ from .tables import (
 
 
 def _why(entry: Entry) -> str:
+    if entry.failed_as_expected:
+        return f"expected: {entry.expected.because}"
     if entry.row["outcome"] == "ok":
         return f"failed checks of its validity: {', '.join(entry.failed_checks) or 'not named'}"
     return meaning(entry.row["outcome"])

@@ -12,7 +12,7 @@ import textwrap
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.figures.plots import condition, gaps, iterations
+from barrierbench_analysis.figures.plots import answer, condition, gaps, iterations
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.tables import series
@@ -50,6 +50,7 @@ class Figure:
 class Figures:
     shown: list[Figure] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # what is left out, and why
+    answer: Figure | None = None  # the log over the cubic
 
 
 def figure_of(group: str, png: Path) -> Figure:
@@ -83,6 +84,13 @@ def _kept(group: str, where: Path) -> list[Path]:
     )
 
 
+def _answer(folder: Folder, kept: Path | None, scratch: Path) -> Figure | None:
+    """The log over the cubic; None where no fixed log stands beside a fixed cubic."""
+    there = kept and kept / f"{answer.STEM}.png"
+    paths = [there] if there and there.is_file() else answer.figure(folder.rows.values(), scratch)
+    return figure_of("", paths[0]) if paths else None
+
+
 def drawn(folder: Folder, kept: Path | None = None) -> Figures:
     """kept: a folder where the figures of these very records have just been drawn. A trace that is not its
     record's leaves its group without figures, which is said. Cost: 1 to 5 s a group.
@@ -91,6 +99,7 @@ def drawn(folder: Folder, kept: Path | None = None) -> Figures:
     small = [group for group, entries in folder.groups.items() if len(entries) <= MOST_RUNS]
     large = [group for group in folder.groups if group not in small]
     with tempfile.TemporaryDirectory() as scratch:
+        found.answer = _answer(folder, kept, Path(scratch))
         for group in small[:MOST_GROUPS]:
             try:
                 paths = _kept(group, kept) if kept else []

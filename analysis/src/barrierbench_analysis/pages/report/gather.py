@@ -5,6 +5,7 @@ sweeps that have no record.
 from __future__ import annotations
 
 import os
+from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
@@ -14,8 +15,11 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import below
 from barrierbench_analysis.io.record_file import RecordError, leaves, named_files, read_record, read_trace
 from barrierbench_analysis.program import processes
+from barrierbench_analysis.tables import answer
 from barrierbench_analysis.tables.run_rows import run_row
 from barrierbench_analysis.tables.words import reservations
+
+from . import expected
 
 PARALLEL_FROM = 200  # records, from which on reading them is shared by the cores
 SHOWN_FAULTS = 20  # of an error that names what cannot be read
@@ -49,7 +53,17 @@ class Entry:
     @property
     def good(self) -> bool:
         """Whether it ended ok and every check of its validity passed."""
-        return self.row["outcome"] == "ok" and bool(self.row["valid"])
+        return answer.is_good(self.row)
+
+    @property
+    def expected(self) -> expected.End | None:
+        """How it is expected to fail; None where it is not."""
+        return expected.end_of(self.row)
+
+    @property
+    def failed_as_expected(self) -> bool:
+        end = self.expected
+        return not self.good and end is not None and expected.word_of(self.row) in end.outcomes
 
     @property
     def reserved(self) -> list[str]:
@@ -58,9 +72,7 @@ class Entry:
 
     def cond(self, matrix: str, statistic: str = "median") -> float | None:
         """A condition number of the clamped matrices; matrix: stage/scaling, as in the summary."""
-        found = ((self.row.get("cond") or {}).get(matrix) or {}).get("log10_cond") or {}
-        value = found.get(statistic)
-        return None if value is None else 10**value
+        return answer.cond_of(self.row, matrix, statistic)
 
     @property
     def wall_s(self) -> float | None:
@@ -109,6 +121,11 @@ class Folder:
     def by_run(self) -> dict[str, Entry]:
         return {entry.run: entry for entry in self.entries}
 
+    @cached_property
+    def rows(self) -> dict[str, dict]:
+        """Folder of a run below the root -> its row."""
+        return {entry.run: entry.row for entry in self.entries}
+
     @property
     def lost(self) -> list[str]:
         """Every file that cannot be read: lists of cases, records, and traces of records that can."""
@@ -116,19 +133,17 @@ class Folder:
 
     @cached_property
     def groups(self) -> dict[str, list[Entry]]:
+        """Those with the largest share of comparable runs first, else in the order of the records."""
         found: dict[str, list[Entry]] = {}
         for entry in self.entries:
             found.setdefault(entry.group, []).append(entry)
-        return found
+        counts = Counter(row["group"] for row, _ in answer.compared(self.rows.values()))
+        return dict(sorted(found.items(), key=lambda group: -counts[group[0]] / len(group[1])))
 
     def reference_of(self, entry: Entry) -> Entry | None:
         """The run that the record names as its reference, where that very run is in this folder."""
-        beside = entry.row.get("comparability_reference_run")
-        if not beside:
-            return None
-        found = self.by_run.get(str(Path(entry.run).parent / beside))
-        same = found and found.row["run_id"] == entry.row.get("comparability_reference_run_id")
-        return found if same else None
+        found = answer.reference_of(entry.row, self.rows)
+        return None if found is None else self.by_run[found["run"]]
 
 
 def _trace_fault(record: dict, folder: Path) -> str:

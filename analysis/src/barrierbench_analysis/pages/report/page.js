@@ -115,4 +115,19 @@ for (const box of document.querySelectorAll("[data-player]")) {
     box.append(Object.assign(document.createElement("p"), {className: "bad", textContent: `The player cannot be started: ${error.message}`}));
   }));
 }
+/** A link to a section that is folded opens it, and printing opens all. */
+function unfold(hash) {
+  const box = document.getElementById(hash.slice(1))?.querySelector(":scope > details.fold");
+  if (box) box.open = true;
+}
+
+window.addEventListener("hashchange", () => unfold(location.hash));
+document.addEventListener("click", (event) => {
+  const link = event.target.closest("nav a");
+  if (link) unfold(link.hash);
+});
+window.addEventListener("beforeprint", () => {
+  for (const box of document.querySelectorAll("details.fold")) box.open = true;
+});
+unfold(location.hash);
 document.documentElement.dataset.ready = "yes";

@@ -10,18 +10,19 @@ import jinja2
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.tables.words import counted, listed
 
-from . import apart, methods, tables, verdict
+from . import answer, apart, methods, tables, verdict
 from .figures import Figures
 from .gather import Folder
 from .players import Players
 
 HERE = Path(__file__).resolve().parent
 SECTIONS = (
+    ("answer", "Answer"),
     ("verdict", "Verdict"),
+    ("players", "Scenes in motion"),
     ("failures", "Failures"),
     ("comparison", "Comparison"),
     ("figures", "Figures"),
-    ("players", "Scenes in motion"),
     ("runs", "Runs"),
     ("methods", "Methods"),
 )
@@ -68,6 +69,8 @@ def commands(folder: Folder) -> list[str]:
 
 def page(folder: Folder, out: Path, figures: Figures, players: Players) -> str:
     """out: where it will lie; links to records are from there."""
+    found = answer.of(folder)
+    said = verdict.verdict(folder)
     there = {
         "figures": figures.shown or figures.notes,
         "players": players.shown or players.notes,
@@ -77,7 +80,11 @@ def page(folder: Folder, out: Path, figures: Figures, players: Players) -> str:
         title=title(folder),
         about=about(folder),
         sections=[(key, name) for key, name in SECTIONS if there.get(key, True)],
-        verdict=verdict.verdict(folder),
+        answer=answer.table(found),
+        answer_notes=found.notes(),
+        badges=tables.badges(folder),
+        is_loud=any(one.tone == verdict.BAD for one in said),
+        verdict=said,
         limits=verdict.limits(folder),
         failures=apart.failures(folder, out),
         reserved=apart.reserved(folder, out),

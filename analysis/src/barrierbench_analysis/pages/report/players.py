@@ -37,7 +37,9 @@ class Players:
 
 
 def pairs(folder: Folder) -> list[tuple[Entry, ...]]:
-    """Runs with frames, one choice a group: a run and its reference, else the first run alone."""
+    """Runs with frames, one choice a group: a run and its reference, a comparable one where there is one;
+    else the first run alone.
+    """
     found = []
     for entries in folder.groups.values():
         filmed_runs = [entry for entry in entries if entry.frames]
@@ -46,6 +48,7 @@ def pairs(folder: Folder) -> list[tuple[Entry, ...]]:
             for entry in filmed_runs
             if (reference := folder.reference_of(entry)) and reference is not entry and reference.frames
         ]
+        beside.sort(key=lambda pair: pair[1].row["comparability_verdict"] != "comparable")
         found += beside[:1] or [(entry,) for entry in filmed_runs[:1]]
     return found
 

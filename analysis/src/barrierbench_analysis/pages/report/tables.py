@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import shlex
-from dataclasses import dataclass, field
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from urllib.parse import quote
 
@@ -32,7 +33,8 @@ class Cell:
 
     text: str
     sort: float | None = None
-    tone: str = ""  # good, bad
+    tone: str = ""  # good, bad, expected
+    badge: bool = False  # is shown as a label in the colour of its tone
     href: str = ""
     colour: str = ""  # of a formulation
     command: str = ""  # is shown with a button that copies it
@@ -48,6 +50,7 @@ class Table:
     columns: list[Column]
     rows: list[list[Cell]] = field(default_factory=list)
     is_filtered: bool = False
+    is_cards: bool = False  # a row is a card where the window is narrow
 
     def choices(self, index: int) -> list[str]:
         return sorted({row[index].text for row in self.rows})
@@ -96,12 +99,22 @@ def head(entry: Entry) -> Cell:
 
 
 def outcome(entry: Entry) -> Cell:
+    """A label: how it ended; of one that failed, whether that was expected."""
     word = entry.row["outcome"]
-    if word == "ok" and not entry.row["valid"]:
-        return Cell("ok, not valid", tone="bad")
     if entry.reserved:
-        return Cell(f"ok: {', '.join(entry.reserved)}")
-    return Cell(word, tone="good" if word == "ok" else "bad")
+        return Cell(f"ok: {', '.join(entry.reserved)}", badge=True)
+    if entry.good:
+        return Cell(word, tone="good", badge=True)
+    text = "ok, not valid" if word == "ok" else word
+    if entry.failed_as_expected:
+        return Cell(f"{text}, expected", tone="expected", badge=True)
+    return Cell(text, tone="bad", badge=True)
+
+
+def badges(folder: Folder) -> list[Cell]:
+    """How many runs ended in which way; the frequent ones first."""
+    ends = Counter(map(outcome, folder.entries))
+    return [replace(cell, text=f"{n} {cell.text}") for cell, n in ends.most_common()]
 
 
 RECORD = Column(

@@ -1,6 +1,7 @@
-"""One HTML file, which needs no network, of the records below a folder: the verdict in plain words, what did
-not end ok, formulations beside their references, figures, scenes in motion where frames were kept, every run
-with the command that makes it again, and a methods text. With two folders: what differs between them.
+"""One HTML file, which needs no network, of the records below a folder: what each formulation takes, the
+verdict in plain words, scenes in motion where frames were kept, what did not end ok, formulations beside
+their references, figures, every run with the command that makes it again, and a methods text. With two
+folders: what differs between them.
 
 Exit codes: 0 written, 2 no record can be read, or the file cannot be written.
 """

@@ -9,9 +9,10 @@ from barrierbench_analysis.tables.run_words import earlier_rule
 from barrierbench_analysis.tables.words import counted, listed, number
 
 from .comparison import METRICS, Beside, Factor, compared
+from .expected import word_of
 from .gather import Entry, Folder
 
-GOOD, BAD, PLAIN = "good", "bad", "plain"
+GOOD, BAD, PLAIN, EXPECTED = "good", "bad", "plain", "expected"
 IN_SENTENCES = ("cond_raw", "newton", "pcg")  # times are in the tables alone
 CLAIM_SCENES = 3  # docs/results/method/claims.md: fewer decide nothing
 MOST_GROUPS = 8
@@ -27,15 +28,22 @@ def _are(count: int) -> str:
     return "is" if count == 1 else "are"
 
 
+def _were(count: int) -> str:
+    return "was" if count == 1 else "were"
+
+
 def headline(folder: Folder) -> Sentence:
     runs = folder.entries
-    bad = [run for run in runs if not run.good]
+    failed = [run for run in runs if not run.good]
+    bad = [run for run in failed if not run.failed_as_expected]
     lost = len(folder.lost) + len(folder.absent) + len(folder.earlier)
-    if not bad and not lost:
+    if not failed and not lost:
         all_of = "The run" if len(runs) == 1 else f"All {len(runs)} runs"
         return Sentence(f"{all_of} ended ok and {_are(len(runs))} valid.", GOOD)
-    good = len(runs) - len(bad)
+    good, foreseen = len(runs) - len(failed), len(failed) - len(bad)
     text = f"{good} of {counted(len(runs), 'run')} ended ok and {_are(good)} valid"
+    if foreseen:
+        text += f"; {foreseen} {_were(foreseen)} expected to fail and did"
     words = Counter(run.row["outcome"] if run.row["outcome"] != "ok" else "ok but not valid" for run in bad)
     if bad:
         text += "; " + listed([f"{n} ended {word}" for word, n in words.most_common()])
@@ -48,7 +56,20 @@ def headline(folder: Folder) -> Sentence:
     parts += [f"{counted(len(folder.earlier), 'record')} of an earlier sweep file left out"] * bool(
         folder.earlier
     )
-    return Sentence("; ".join([text, *parts]) + ".", BAD)
+    return Sentence("; ".join([text, *parts]) + ".", BAD if bad or lost else GOOD)
+
+
+def expectations(folder: Folder) -> list[Sentence]:
+    """Runs that were expected to fail: those that did, and those that ended ok nevertheless."""
+    said, did = [], [run for run in folder.entries if run.failed_as_expected]
+    names = [f"{run.name} ({word_of(run.row)})" for run in did]
+    if did:
+        count = f"{counted(len(did), 'run')} {_were(len(did))}"
+        said.append(Sentence(f"{count} expected to fail and did: {listed(names)}.", EXPECTED))
+    if ended := [run.name for run in folder.entries if run.good and run.expected]:
+        count = f"{counted(len(ended), 'run')} {_were(len(ended))}"
+        said.append(Sentence(f"{count} expected to fail and ended ok: {listed(ended)}.", BAD))
+    return said
 
 
 def reserved(folder: Folder) -> list[Sentence]:
@@ -69,6 +90,7 @@ def reserved(folder: Folder) -> list[Sentence]:
 def crossings(folder: Folder) -> list[Sentence]:
     audited = [run for run in folder.entries if run.faults is not None]
     through = [run for run in audited if run.faults]
+    is_expected = all(run.failed_as_expected for run in through)
     unproven = [run for run in audited if not run.faults and run.row.get("audit_unproven")]
     said = []
     if through:
@@ -76,8 +98,9 @@ def crossings(folder: Folder) -> list[Sentence]:
             Sentence(
                 f"In {len(through)} of {counted(len(audited), 'audited run')} a surface passes through"
                 f" another:"
-                f" {listed([f'{run.name} ({run.faults})' for run in through])}.",
-                BAD,
+                f" {listed([f'{run.name} ({run.faults})' for run in through])}"
+                f"{', which is expected' if is_expected else ''}.",
+                EXPECTED if is_expected else BAD,
             )
         )
     elif audited:
@@ -259,4 +282,11 @@ def limits(folder: Folder) -> list[str]:
 
 def verdict(folder: Folder) -> list[Sentence]:
     """The headline first."""
-    return [headline(folder), *reserved(folder), *crossings(folder), *comparability(folder), *ratios(folder)]
+    return [
+        headline(folder),
+        *expectations(folder),
+        *reserved(folder),
+        *crossings(folder),
+        *comparability(folder),
+        *ratios(folder),
+    ]
