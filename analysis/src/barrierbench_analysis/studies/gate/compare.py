@@ -93,9 +93,9 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
     return findings + not_compared + judge.numbers(case, before, now, same_kind, new_verdict)
 
 
-@tells("compare")
+@tells("gate compare")
 def main(argv: list[str]) -> int:
-    parser = parser_of("compare", __doc__)
+    parser = parser_of("gate compare", __doc__)
     parser.add_argument(
         "a",
         type=Path,
