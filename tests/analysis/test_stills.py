@@ -67,7 +67,7 @@ def test_no_title_is_cut_off(runs, tmp_path, monkeypatch, note, columns):
 
 def test_what_cannot_be_drawn_is_named(runs, tmp_path):
     def told(*words):
-        done = subprocess.run([sys.executable, ROOT / "analysis", "stills", *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False)
+        done = subprocess.run([sys.executable, ROOT / "analysis", "draw", "sheet", *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False)
         assert done.returncode == 2
         return done.stderr
 

@@ -12,6 +12,7 @@ import pytest
 from barrierbench_analysis.program import streams
 from barrierbench_analysis.program.arguments import finite_number
 from barrierbench_analysis.io.places import ROOT
+from tests import terminal
 from tests.bench_call import bench
 
 SCENE = {"schema": "barrierbench.config/1", "scene": {"name": "drape2d"}, "formulation": "log", "time": {"steps": 2}, "output": {"frames_every": 1}}

@@ -1,5 +1,5 @@
-"""A script for the shell that completes verbs, sub-commands, modes of a study, the options that a help names, and
-files. For bash: eval "$(./bench completion bash)"; for zsh: eval "$(./bench completion zsh)".
+"""A script for the shell that completes verbs, sub-commands, modes of a study, the options that a help names,
+and files. For bash: eval "$(./bench completion bash)"; for zsh: eval "$(./bench completion zsh)".
 """
 
 from __future__ import annotations
