@@ -15,6 +15,7 @@ from barrierbench_analysis.program.start import RELEASE, become, built_program, 
 from barrierbench_analysis.program.verb_table import HELP, Heading
 
 HELP_WORDS = ("help", *HELP)
+OF_PROGRAM = (["sweep"], ["help"])  # behind a word of HELP_WORDS: the program explains the files, or itself
 
 
 COLUMN = 16  # of what a verb is for, in the list of all
@@ -124,10 +125,7 @@ def _answer(arguments: list[str]) -> int:
 
         print(version())
         return 0
-    if arguments[0] in HELP_WORDS and arguments[1:] not in (
-        ["sweep"],
-        ["help"],
-    ):  # files, which the program explains
+    if arguments[0] in HELP_WORDS and arguments[1:] not in OF_PROGRAM:
         asked = verbs.asked(arguments[1:])
         if asked and not asked.rest:
             arguments = [*arguments[1:], "--help"]
@@ -142,11 +140,13 @@ def _answer(arguments: list[str]) -> int:
     row, rest, note = asked
     if note:
         print(f"bench: note: {note}", file=sys.stderr, flush=True)
-    if isinstance(row, Heading) or (not row.own_help and any(word in HELP for word in rest)):
-        if isinstance(row, Heading) and any(word not in HELP for word in rest):
-            raise UserError(
-                f"{row.name}: found {rest[0]!r}; allowed: a sub-command (./bench {row.name} lists them)"
-            )
+    if isinstance(row, Heading):
+        if wrong := [word for word in rest if word not in HELP]:
+            allowed = f"allowed: a sub-command (./bench {row.name} --help lists them)"
+            raise UserError(f"{row.name}: found {wrong[0]!r}; {allowed}")
+        print(help_of(row))
+        return 0
+    if not row.own_help and any(word in HELP for word in rest):
         print(help_of(row))
         return 0
     return become_program([row.word, *rest]) if row.word else run(row, rest)

@@ -99,11 +99,10 @@ def asked(words: list[str]) -> Asked | None:
 
 
 def _refuse(heading: Heading, word: str) -> None:
-    allowed = {verb.name.split()[1]: verb for verb in below(heading)}
-    near = _near(
-        word, {**{verb.was: name for name, verb in allowed.items()}, **{name: name for name in allowed}}
-    )
-    raise UserError(f"{heading.name}: found {word!r}; allowed: {', '.join(allowed)}" + near)
+    names = [verb.name.split()[1] for verb in below(heading)]
+    before = {verb.was: verb.name.split()[1] for verb in below(heading)}
+    near = _near(word, before | {name: name for name in names})
+    raise UserError(f"{heading.name}: found {word!r}; allowed: {', '.join(names)}{near}")
 
 
 def _without_mode(verb: Verb, rest: list[str]) -> list[str]:
@@ -124,7 +123,8 @@ def _without_mode(verb: Verb, rest: list[str]) -> list[str]:
 
 def _near(word: str, names: dict[str, str]) -> str:
     """`; did you mean NAME?` for the near one of `names` (what may be written -> the name); empty without
-    one."""
+    a near one.
+    """
     found = difflib.get_close_matches(word, [name for name in names if name], 1, 0.5)
     return f"; did you mean {names[found[0]]}?" if found else ""
 
