@@ -53,7 +53,7 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
 ]
 PLANNED = {"study match", "study causes", "gate run", "gate calibrate", "study pareto", "study work-precision", "draw figure", "study stress", "study claims", "study ablation", "study robust", "study catalogue", "draw pictures", "study matrix-corpus", "study step-corpus"}
 READ = {"status", "data surface-gaps", "gate trend", "setup", "verify", "completion"}  # which write nothing, or for the script ./bench
-DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop"}
+DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop" or verb.needs not in (verbs.ENVIRONMENT, verbs.PROGRAM)}
 IN_THE_TREE = {"demo", "engine", "gate accept", "dev readme"}  # what they write is at a fixed place
 
 

@@ -136,6 +136,13 @@ def nearest(word: str) -> str:
     return _near(word, names | {row.name: row.name for row in (*rows, *HEADINGS)})
 
 
+def renewed(text: str) -> str:
+    """A text that is kept, of a record or a claim, with the names now of the verbs that it names."""
+    now = {verb.was: verb.name for verb in every() if verb.was}
+    old = "|".join(sorted(map(re.escape, now), key=len, reverse=True))
+    return re.sub(rf"(\./bench )({old})(?![\w-])", lambda match: match[1] + now[match[2]], text)
+
+
 def usage_line(row: Verb | Heading) -> str:
     """`bench NAME ...`, without the options by name."""
     if isinstance(row, Heading):

@@ -6,6 +6,7 @@ import textwrap
 
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.pages.stated.sources import measured_elsewhere
+from barrierbench_analysis.program.verbs import renewed
 from barrierbench_analysis.studies.claims import frontiers, verdict_code
 from barrierbench_analysis.studies.claims.entry import Claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import Answer
@@ -268,7 +269,7 @@ def markdown(answers: list[Answer], table: Table) -> str:
             for name, (meaning, _, machine, _) in METRICS.items()
         ),
     ]
-    return "\n".join(lines) + "\n"
+    return renewed("\n".join(lines)) + "\n"  # texts of claims are kept
 
 
 def text(answers: list[Answer]) -> str:

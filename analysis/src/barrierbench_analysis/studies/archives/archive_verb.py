@@ -1,6 +1,7 @@
 """A study as one file: a ZIP archive of all files below a folder with records, and in it archive.json, which
 has the version of this form and size and sha256 of every file. ./bench gate compare, report, draw figures,
-data collect and verify read it in the place of the folder. The same files make the same archive, byte for byte.
+data collect and verify read it in the place of the folder. The same files make the same archive, byte for
+byte.
 
 Exit codes: 0 written, 2 no record below the folder, or the file cannot be written.
 """

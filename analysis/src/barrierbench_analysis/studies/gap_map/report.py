@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from barrierbench_analysis.io.text_table import markdown as table_lines
+from barrierbench_analysis.program.verbs import renewed
 
 from . import size_page, skips
 from .compare import METRICS, Beside, Common, at_gap, at_theta, counted_once, deepest, gaps_at, middles
@@ -254,7 +255,7 @@ def _head(found: Map, sorted_out: Kept | None) -> list[str]:
         ),
         "",
         (
-            f"Made by `{about['command']}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the"
+            f"Made by `{renewed(about['command'])}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the"
             " load-weighted median of d/d_hat at converged step ends; theta, the target, is where the"
             " largest load of the pilot would rest. Raw and block Jacobi are 95th percentiles of cond over"
             " iterations in contact. A number is a geometric mean over scenes, the resolutions of a scene"
