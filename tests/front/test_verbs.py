@@ -237,6 +237,12 @@ def test_an_old_name_runs_its_verb_with_the_same_words_and_says_the_new_name(old
     assert capsys.readouterr() == ("", "")
 
 
+def test_a_kept_text_is_shown_with_the_names_now():
+    text = "`./bench gap-map`, ./bench matrix a.mtx, ./bench gap-mapper, ./bench study gap-map, ./bench run, a matrix; ./bench compare"
+    now = "`./bench study gap-map`, ./bench data matrices a.mtx, ./bench gap-mapper, ./bench study gap-map, ./bench run, a matrix; ./bench gate compare"
+    assert verbs.renewed(text) == now == verbs.renewed(now)
+
+
 # --- gate, and modes of studies
 
 

@@ -77,13 +77,11 @@ def _row(row: verbs.Verb | Heading) -> str:
     return f"      '{row.name.split()[-1]}:{meaning}'"
 
 
-def _defaults(array: str) -> str:
+def _defaults() -> str:
     """Options behind a heading alone are those of its default."""
-    one = '  [[ "${name[*]}" != HEADING ]] || name+=(DEFAULT)'
-    rows = [
-        one.replace("HEADING", row.name).replace("DEFAULT", row.default) for row in HEADINGS if row.default
-    ]
-    return "\n".join(rows).replace("name", array)
+    return "\n".join(
+        f'  [[ "${{name[*]}}" != {row.name} ]] || name+=({row.default})' for row in HEADINGS if row.default
+    )
 
 
 def _filled(text: str, first: int, parts: dict[str, str]) -> str:
@@ -94,7 +92,7 @@ def _filled(text: str, first: int, parts: dict[str, str]) -> str:
             f'    "{first + 2}:{verb.name}") {parts["MODE"](_modes(verb))} ;;' for verb in studies
         ),
         "NAMES": "|".join(row.name for row in HEADINGS),
-        "DEFAULTS": _defaults("name"),
+        "DEFAULTS": _defaults(),
         "OPTIONS": OPTIONS,
         **parts,
     }
