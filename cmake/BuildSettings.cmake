@@ -70,7 +70,7 @@ endif()
 # Fuzzing: what the sanitizers of clang see, and coverage for libFuzzer. Warnings are judged by the g++ builds.
 if(BB_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    message(FATAL_ERROR "BB_FUZZ needs clang++ with libFuzzer, not ${CMAKE_CXX_COMPILER_ID}: use ./bench fuzz or the preset fuzz")
+    message(FATAL_ERROR "BB_FUZZ needs clang++ with libFuzzer, not ${CMAKE_CXX_COMPILER_ID}: use ./bench dev fuzz or the preset fuzz")
   endif()
   target_compile_options(bb_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-w
     -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)

@@ -26,7 +26,7 @@ usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER] [--only GRO
   --before COMMIT    the program of that commit goes along, for runs before and after a change (default: the commit before this
                      one; none: without)
 
-The record is kept as results/gpu/<card>-<day>.json; commit it, and ./bench gpu-report makes results/GPU.md of all records.
+The record is kept as results/gpu/<card>-<day>.json; commit it, and ./bench study gpu-report makes results/GPU.md of all records.
 Exit codes: 0 a record was written or a lease ended (what failed is in it), 1 no stage of a lease passed, 2 wrong usage, 5 no card
 can be used here (a lease with --dry needs none), 70 the program does not build.
 Found by themselves and left out with a word where they are not: compute-sanitizer, ncu (Nsight Compute), nvidia-smi.

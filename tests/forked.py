@@ -4,6 +4,7 @@ The process is forked from that of pytest. What belongs to the start of a proces
 imported) is judged by tests that start Python.
 """
 
+import contextlib
 import importlib
 import os
 import select
@@ -18,6 +19,7 @@ from pathlib import Path
 
 from barrierbench_analysis.program import streams, verbs
 from barrierbench_analysis.front.door import main
+from barrierbench_analysis.io.errors import UserError
 
 
 def _status(code: object) -> int:
@@ -52,8 +54,9 @@ def _child(words: list[str], cwd: Path, environment: dict[str, str], files: tupl
 
 def forked(words: list[str], cwd: Path, environment: dict[str, str], timeout: float, limits: Callable[[], None] = lambda: None) -> subprocess.CompletedProcess:
     """As subprocess.run of python analysis WORDS, with nothing to read. Errors: TimeoutExpired."""
-    if row := verbs.find(words[0]):
-        importlib.import_module(f"barrierbench_analysis.{row.module}")
+    with contextlib.suppress(UserError):
+        if (found := verbs.asked(words)) and getattr(found.row, "module", ""):
+            importlib.import_module(f"barrierbench_analysis.{found.row.module}")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, open(os.devnull) as nothing:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # threads of numpy wait for work, and are not asked in the child

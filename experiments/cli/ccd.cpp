@@ -30,7 +30,7 @@ struct CcdVerb {
 void check_request(const CcdVerb& verb) {
   const int sources = int(!verb.folder.empty()) + int(verb.random != 0) + int(verb.head_on != 0);
   if (sources != 1) {
-    throw ConfigError("bench ccd", fmt::format("{} sources of queries", sources),
+    throw ConfigError("bench data ccd", fmt::format("{} sources of queries", sources),
                       "one of FOLDER, --random N and --head-on N");
   }
   const auto check_count = [](const char* option, int n) {

@@ -111,7 +111,7 @@ void print_methods() {
 void print_verbs() {
   show("verbs (verb, group, what it is for)\n");
   for (const Verb& verb : verbs())
-    print_wrapped(fmt::format("  {:<22} {:<8} {}", verb.name, verb.group, verb.doc), doc_column);
+    print_wrapped(fmt::format("  {:<22} {:<8} {}", verb.typed, verb.group, verb.doc), doc_column);
 }
 
 struct Section {

@@ -107,6 +107,14 @@ void require_verb(const std::vector<std::string>& argv) {
   throw bb::unknown_name("bench", word, names);
 }
 
+/// A verb under its name before this one, which is said: of the program alone, the front door has such names of its own.
+void settle_old_name(std::vector<std::string>& argv) {
+  const auto old = std::find(argv.begin() + 1, argv.end(), "neutral");
+  if (old == argv.end() || first_word(argv) != "neutral") return;
+  *old = "export-scene";
+  say("note: \"neutral\" is now \"export-scene\"\n");
+}
+
 /// `help VERB` is `VERB --help`, but for a word that is a file format too: `help sweep` is about sweep files.
 void settle_help(std::vector<std::string>& argv) {
   if (argv.size() != 3 || argv[1] != "help" || argv[2] == "sweep") return;
@@ -120,11 +128,21 @@ struct Given {
   std::vector<std::string> plugins_before, plugins_after;
 };
 
+/// Help whose usage has the verb as a user types it.
+struct TypedUsage : CLI::Formatter {
+  explicit TypedUsage(const char* name) : typed(name) {}
+  std::string make_usage(const CLI::App* app, std::string) const override {
+    return CLI::Formatter::make_usage(app, fmt::format("bench {}", typed));
+  }
+  const char* typed;
+};
+
 /// A part of the command line for each verb; what it does once that is read.
 std::vector<std::pair<CLI::App*, Action>> declare_verbs(CLI::App& app, Given& given) {
   std::vector<std::pair<CLI::App*, Action>> out;
   for (const Verb& verb : verbs()) {
     CLI::App* part = app.add_subcommand(verb.name, verb.doc);
+    part->formatter(std::make_shared<TypedUsage>(verb.typed));
     part->footer(std::string("example: ") + verb.example);
     out.emplace_back(part, verb.declare(*part));
     common_arguments(*part, given.common, given.plugins_after);
@@ -165,6 +183,7 @@ int main(int argc, char** argv) {
   Given given;
   CommonOptions& common = given.common;
   common.argv.assign(argv, argv + argc);
+  settle_old_name(common.argv);
   settle_help(common.argv);
   CLI::App app{"barrierbench: contact barriers compared in one Newton + ACCD pipeline"};
   app.name("bench");

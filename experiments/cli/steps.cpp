@@ -134,9 +134,9 @@ Action verb::steps(CLI::App& app) {
       ->allow_extra_args(false);
   app.add_option("--split", verb->split, "of --corpus: the half that options are tuned on, or the other one")
       ->check(CLI::IsMember({"tune", "report"}));
-  app.add_option(
-      "--out", verb->out,
-      "JSON file with every |dx|, for ./bench figures; of --corpus: its record, written after each state");
+  app.add_option("--out", verb->out,
+                 "JSON file with every |dx|, for ./bench draw figures; of --corpus: its record, written "
+                 "after each state");
   return [verb](const CommonOptions& common) { return install_interrupt(), cli::steps(*verb, common); };
 }
 

@@ -43,7 +43,7 @@ std::string why_to_run(const Sweep& sweep, std::size_t i, const RunConfig& confi
 double core_seconds(const RunRecord& record);
 
 /// sweep.json, the file as it was read, and cases.json: every case with its folder, label, config_id and swept values, which
-/// ./bench status and ./bench collect read. Each is written where it is not there or another one. Errors: RecordError.
+/// ./bench status and ./bench data collect read. Each is written where it is not there or another one. Errors: RecordError.
 void write_sweep_files(const Sweep& sweep);
 
 /// Whether every case has a record, whatever is in it.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "experiments/cli/verbs.hpp"
@@ -17,14 +18,15 @@ using Action = std::function<int(const CommonOptions&)>;
 
 /// Adds the options of a verb to its part of the command line.
 namespace verb {
-#define BB_VERB(name, group, doc, example) Action name(CLI::App& app);
+#define BB_VERB(word, group, name, doc, example) Action word(CLI::App& app);
 #include "experiments/cli/verbs.inc"
 #undef BB_VERB
 }  // namespace verb
 
 struct Verb {
-  const char* name;
+  std::string name;   // the word of this program; a hyphen for _ of its row
   const char* group;  // run, look, study, judge, make, develop
+  const char* typed;  // behind ./bench
   const char* doc;
   const char* example;
   Action (*declare)(CLI::App&);

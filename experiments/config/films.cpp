@@ -34,7 +34,8 @@ ParameterList of_files() {
           {{"file", text_up_to(0), no_default,
             "Path of the first of numbered mesh files, walk_0000.obj, walk_0001.obj, ...: the others are "
             "those of its "
-            "folder whose names differ in the last number alone. `./bench film` makes them of PC2, MDD, NPZ, "
+            "folder whose names differ in the last number alone. `./bench data film` makes them of PC2, MDD, "
+            "NPZ, "
             "PVD and "
             "runs."},
            {"sha256", any_text(), no_default, "Expected SHA-256 of their hashes (hex)."},

@@ -134,13 +134,13 @@ MotionHashes read_motion(const StepSetting& setting, const std::string& bytes) {
 [[noreturn]] void refuse(const fs::path& file, const std::string& found, const std::string& allowed) {
   throw ConfigError(
       file.string(), found,
-      fmt::format("{}; ./bench step-corpus --make --only {} makes the states of results/steps again", allowed,
-                  file.stem().string()));
+      fmt::format("{}; ./bench study step-corpus --make --only {} makes the states of results/steps again",
+                  allowed, file.stem().string()));
 }
 
 json read_document(const fs::path& file) {
   json document = json::parse(read_input_file(file.string(), state_file), nullptr, false);
-  if (!document.is_object()) refuse(file, "no JSON object", "a file that ./bench steps --keep wrote");
+  if (!document.is_object()) refuse(file, "no JSON object", "a file that ./bench data steps --keep wrote");
   const json schema = document.value("schema", json());
   if (schema != step_state_schema) {
     refuse(file, "schema " + schema.dump(), fmt::format("a state of this program, {}", step_state_schema));
@@ -250,7 +250,7 @@ std::vector<std::string> step_states_in(const fs::path& folder) {
   }
   if (out.empty()) {
     throw ConfigError(folder.string(), unreachable ? "no folder that can be read" : "no state (*.state)",
-                      "a folder of states, as results/steps; ./bench step-corpus --make makes them");
+                      "a folder of states, as results/steps; ./bench study step-corpus --make makes them");
   }
   std::sort(out.begin(), out.end());
   return out;
@@ -273,7 +273,7 @@ StepState read_step_state(const fs::path& folder, const std::string& name) {
     require_same(out, document);
   } catch (const json::exception& error) {
     refuse(file, fmt::format("a key that is missing or of another type ({})", error.what()),
-           "a file that ./bench steps --keep wrote");
+           "a file that ./bench data steps --keep wrote");
   }
   return out;
 }

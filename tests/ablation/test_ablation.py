@@ -222,14 +222,14 @@ def test_a_spec_that_does_not_fit_its_sweep(small, edit, said):
 
 def test_kept_rows_are_those_of_the_draw():
     if not table.FILE.is_file():
-        pytest.skip("results/ablation.json is not kept yet: ./bench ablation")
+        pytest.skip("results/ablation.json is not kept yet: ./bench study ablation")
     whole, kept = factors.read_factorial(DEFAULT), table.read()
     assert kept.digest == whole.digest
     for scene in whole.scenes.labels:
         asked = {" ".join(whole.labels_of(one)) for one in drawn(whole, scene)}
         assert {row["case"] for row in kept.rows if row["scene"] == scene} <= asked
     if not (ROOT / "results/ABLATION.md").is_file():
-        pytest.skip("results/ABLATION.md is not written yet: ./bench ablation --no-run")
+        pytest.skip("results/ABLATION.md is not written yet: ./bench study ablation --no-run")
     page = report.page(whole, kept, effects.study(whole, kept))
     assert page == (ROOT / "results/ABLATION.md").read_text()
 

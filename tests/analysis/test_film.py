@@ -1,4 +1,4 @@
-"""`bench film`: a film of a config out of PC2, VTU with PVD, and a run, and what is refused."""
+"""`bench data film`: a film of a config out of PC2, VTU with PVD, and a run, and what is refused."""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""`bench frames`: each format read back by a reader that is not ours, and what is refused."""
+"""`bench data frames`: each format read back by a reader that is not ours, and what is refused."""
 
 import json
 import struct

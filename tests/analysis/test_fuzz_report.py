@@ -62,5 +62,5 @@ def test_targets_are_those_of_the_list():
 
 
 def test_an_unknown_target_ends_with_2():
-    done = subprocess.run([sys.executable, str(ROOT / "analysis"), "fuzz", "nothing"], capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, str(ROOT / "analysis"), "dev", "fuzz", "nothing"], capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "found target 'nothing'" in done.stderr

@@ -1,4 +1,4 @@
-"""`bench mesh`: meshes of Gmsh and VTK as PLY that the program reads; what is left out, what is refused."""
+"""`bench data mesh`: meshes of Gmsh and VTK as PLY that the program reads; what is left out, what is refused."""
 
 import json
 import os

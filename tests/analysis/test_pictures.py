@@ -1,4 +1,4 @@
-"""The stills at the top of README are those that `bench pictures` makes, and it says what they are."""
+"""The stills at the top of README are those that `bench draw pictures` makes, and it says what they are."""
 
 import subprocess
 from pathlib import Path

@@ -88,7 +88,7 @@ def gathered() -> dict:
 
 def everything():
     return kept() | {"answer": "| a |", "slices": gathered(), "gap_map": ["With no limit raw 0.01.", "Of 4 cells 3 are decided."], "several": [gathered()["slices"][OFF][0].number],
-                     "cost": [{"study": "claims", "command": "./bench claims", "runs": 3, "core_s": 7200.0}]}
+                     "cost": [{"study": "claims", "command": "./bench study claims", "runs": 3, "core_s": 7200.0}]}
 
 
 def test_slices_are_those_of_theta_and_limit(alone):
@@ -258,7 +258,7 @@ GOOD = """```sh
 ./bench list shapes                    # answers
 echo '{"kind": "rho", "shape": "cubic", "u": 0.5}' | ./bench eval
 ./bench check configs/scenes/resting_block_1d.json --set /time/steps=3 && ./bench help record
-./bench figures results/runs/demo
+./bench draw figures results/runs/demo
 ```
 ```python
 from barrierbench_analysis import load
@@ -278,7 +278,7 @@ print(records.runs[["outcome", "gap_min_rel_min"]])
     ("```sh\n./bench test -R barriers\n```\n", "a.md:13", "-L takes a room"),
     ("```sh\npython3 examples/ci/toy_solver.py --record run.json\n```\n", "a.md:13", ".venv/bin/python"),
     ("```json\n{\"schema\": \"barrierbench.sweep/1\", \"name\": \"a\", \"base\": \"../scenes/drape.json\", \"axes\": [{\"pointer\": \"/time/steps\", \"values\": [1]}]}\n```\n", "a.md:13", "../scenes/drape.json"),
-    ("```sh\n./bench score log --jobs 2 --thetas 0.5\n```\n", "a.md:13", "score has no --thetas"),
+    ("```sh\n./bench study score log --jobs 2 --thetas 0.5\n```\n", "a.md:13", "score has no --thetas"),
     ("```sh\necho '{\"kind\": \"none\"}' | ./bench eval\n```\n", "a.md:13", "kind"),
     ("```json\n{\"schema\": \"barrierbench.sweep/1\", \"name\": \"a\", \"base\": \"configs/scenes/drape.json\", \"axes\": [{\"pointer\": \"/time/x\", \"values\": [1]}]}\n```\n", "a.md:13", "/time/x"),
     ("```json\n{\"schema\":\n```\n", "a.md:13", "not JSON"),
@@ -322,7 +322,7 @@ def test_the_readme_fits_on_a_few_screens():
 def kept_numbers() -> dict:
     """Of the repository: gathering its gap map takes most of the time of this file."""
     if not numbers.FILE.is_file():
-        pytest.skip("results/demo.json is not kept yet: ./bench demo, then ./bench readme --write")
+        pytest.skip("results/demo.json is not kept yet: ./bench demo, then ./bench dev readme --write")
     return readme.kept()
 
 

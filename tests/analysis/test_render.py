@@ -307,7 +307,7 @@ def test_the_path_that_is_said_is_the_file_that_is_written(run, tmp_path, capsys
 def test_another_ending_is_refused_before_anything_is_drawn(run, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(still_picture, "drawn_of_run", None)
     assert render.main([str(run), "--out", str(tmp_path / "README.md")]) == 2
-    assert f"bench render: --out {tmp_path / 'README.md'}: found the ending .md; allowed: a file that ends in .png" in capsys.readouterr().err
+    assert f"bench draw still: --out {tmp_path / 'README.md'}: found the ending .md; allowed: a file that ends in .png" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

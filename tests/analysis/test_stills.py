@@ -67,7 +67,7 @@ def test_no_title_is_cut_off(runs, tmp_path, monkeypatch, note, columns):
 
 def test_what_cannot_be_drawn_is_named(runs, tmp_path):
     def told(*words):
-        done = subprocess.run([sys.executable, ROOT / "analysis", "stills", *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False)
+        done = subprocess.run([sys.executable, ROOT / "analysis", "draw", "sheet", *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False)
         assert done.returncode == 2
         return done.stderr
 
@@ -86,4 +86,4 @@ def test_the_path_that_is_said_is_the_file_that_is_written(runs, tmp_path, capsy
 def test_another_ending_is_refused_before_anything_is_drawn(runs, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(stills, "render", None)
     assert stills.main([str(runs[0]), "--out", str(tmp_path / "st.foo")]) == 2
-    assert f"bench stills: --out {tmp_path / 'st.foo'}: found the ending .foo; allowed: a file that ends in .png" in capsys.readouterr().err
+    assert f"bench draw sheet: --out {tmp_path / 'st.foo'}: found the ending .foo; allowed: a file that ends in .png" in capsys.readouterr().err

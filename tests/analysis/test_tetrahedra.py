@@ -1,4 +1,4 @@
-"""`bench mesh --tetrahedra`: a closed surface filled, and what is refused. What needs TetGen is skipped without it."""
+"""`bench data mesh --tetrahedra`: a closed surface filled, and what is refused. What needs TetGen is skipped without it."""
 
 import importlib.util
 import json

@@ -99,7 +99,7 @@ def test_without_runs_a_scene_of_which_nothing_is_kept_is_an_error(tmp_path, mon
     assert page.main(["belt", "--no-run"]) == 0 and "5 of 5 runs of 1 scene end as expected" in capsys.readouterr().out
     assert page.main(["twist", "--no-run"]) == 2
     said = capsys.readouterr()
-    assert said.out == "" and "nothing kept of twist: ./bench catalogue twist" in said.err
+    assert said.out == "" and "nothing kept of twist: ./bench study catalogue twist" in said.err
 
 
 def test_one_is_written_as_an_ordinary_config(tmp_path, capsys):

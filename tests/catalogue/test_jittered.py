@@ -1,5 +1,5 @@
 """Three scenes of the catalogue from ten jittered starts each, with contacts, cut short: every seed passes, and one that fails is red. In less than
-half a minute, since ./bench test runs it; ./bench robust runs whole scenes.
+half a minute, since ./bench test runs it; ./bench study robust runs whole scenes.
 """
 
 import pytest

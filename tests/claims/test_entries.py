@@ -180,7 +180,7 @@ def test_a_claim_without_records_is_not_decided():
 def test_a_torn_table_is_refused(tmp_path, monkeypatch, capsys, kept):
     file = tmp_path / "claims.json"
     file.write_text(kept)
-    with pytest.raises(UserError, match="claims.json: .*remove it, then ./bench claims"):
+    with pytest.raises(UserError, match="claims.json: .*remove it, then ./bench study claims"):
         read(file)
     monkeypatch.setattr(verb, "FILE", file)
     assert verb.main(["--no-run"]) == 2 and "claims.json" in capsys.readouterr().err

@@ -28,7 +28,7 @@ def test_rho(asker):
 def test_kept_answers_stand_in_for_the_program(asker):
     rho_above(RHO, asker)
     assert rho_above(RHO, Eval(None, asker.answers)).verdict == HOLDS
-    with pytest.raises(UserError, match="./bench claims asks it"):
+    with pytest.raises(UserError, match="./bench study claims asks it"):
         rho_above({**RHO, "u": [0.3]}, Eval(None, asker.answers))
     broken = {query: {"rho": 1.0} for query in asker.answers}
     assert rho_above(RHO, Eval(asker.program, broken, fresh=True)).verdict == HOLDS  # asked again

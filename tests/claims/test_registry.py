@@ -32,7 +32,7 @@ def test_the_code_of_the_common_success_is_in_the_rule(repository, monkeypatch):
 
 
 def test_registered_committed_and_run(repository):
-    assert repository.state(Table()).word == "-" and "not registered: ./bench claims --register K12" in repository.state(Table()).why
+    assert repository.state(Table()).word == "-" and "not registered: ./bench study claims --register K12" in repository.state(Table()).why
     entry = repository.register()
     assert repository.state(Table()).word == "registered, not run"
     repository.commit()

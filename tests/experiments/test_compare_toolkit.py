@@ -1,4 +1,4 @@
-"""./bench compare-toolkit on small sheets: both codes answer alike, the table and the JSON hold every stage, and a
+"""./bench study compare-toolkit on small sheets: both codes answer alike, the table and the JSON hold every stage, and a
 disagreement is an error. Nothing here is about time."""
 
 import json

@@ -1,4 +1,4 @@
-"""States of steps: ./bench steps --keep and --corpus, what they refuse, and the committed corpus of ./bench step-corpus."""
+"""States of steps: ./bench data steps --keep and --corpus, what they refuse, and the committed corpus of ./bench study step-corpus."""
 
 import hashlib
 import json
@@ -151,7 +151,7 @@ def test_a_state_that_this_program_cannot_take_is_refused_with_the_command_that_
     folder = damaged(kept, tmp_path / "states", edit)
     done = bench(program, "steps", "--corpus", folder, "--out", tmp_path / "out.json")
     assert done.returncode == 2 and done.stdout == "" and not (tmp_path / "out.json").exists()
-    assert said in done.stderr and f"{folder}/small" in done.stderr and "./bench step-corpus --make --only small" in done.stderr
+    assert said in done.stderr and f"{folder}/small" in done.stderr and "./bench study step-corpus --make --only small" in done.stderr
 
 
 def test_what_is_not_there_is_refused_by_name(program, kept, tmp_path):

@@ -102,4 +102,4 @@ def test_other_engines_are_refused(program, tmp_path):
     content = json.loads(config.read_text())
     content["scene"]["bodies"][0]["pins"] = []  # pulls are refused, too
     config.write_text(json.dumps(content))
-    refused(bench(program, "neutral", config), f"found stitch ({COLUMNS} stitches)")
+    refused(bench(program, "export-scene", config), f"found stitch ({COLUMNS} stitches)")

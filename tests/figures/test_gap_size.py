@@ -14,7 +14,7 @@ def drawn(folder, title=size_figure.TITLE):
 
 
 def test_it_is_rebuilt_to_the_same_bytes_whoever_asks(tmp_path):
-    """By the page of the map, and by ./bench figure."""
+    """By the page of the map, and by ./bench draw figure."""
     page, of = drawn(tmp_path / "page"), spec.read_spec(ROOT / "configs/figures/gap_size.json")
     (tmp_path / "figure").mkdir()
     drawing = Drawing(of.name, of.title, tmp_path / "figure/gap_size", of.width_in, of.options)

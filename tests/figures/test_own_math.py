@@ -58,6 +58,6 @@ def test_figures_and_report_of_a_sweep_with_such_labels(program, tmp_path):
     (tmp_path / "s.json").write_text(json.dumps({"schema": "barrierbench.sweep/1", "name": "s", "base": "base.json", "axes": [{"cases": cases}]}))
     done = subprocess.run([program, "sweep", "s.json", "--out", "out", "--progress", "none"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    for words in (["figures", "out"], ["report", "out"], ["collect", "out", "out.csv"]):
+    for words in (["draw", "figures", "out"], ["report", "out"], ["data", "collect", "out", "out.csv"]):
         done = subprocess.run([sys.executable, ROOT / "analysis", *words], cwd=tmp_path, capture_output=True, text=True, check=False)
         assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr

@@ -90,15 +90,15 @@ def test_the_last_column_of_a_table_is_broken_where_the_terminal_is_narrow(monke
 
 def test_help_keeps_to_the_terminal(monkeypatch):
     monkeypatch.setenv("COLUMNS", "70")
-    verb = next(verb for verb in verbs.TABLE if verb.name == "score")
-    assert max(map(len, door.usage_of(verb)[1:-1])) <= 70
+    verb = next(verb for verb in verbs.TABLE if verb.name == "study score")
+    assert max(map(len, door.help_of(verb).splitlines()[1:-1])) <= 70
 
 
 @pytest.mark.parametrize("word", ["help", "--help", "-h"])
 def test_help_of_a_verb_is_that_of_the_verb(word, capsys):
     with pytest.raises(SystemExit):
         door.main([word, "score"])
-    assert "usage: bench score" in capsys.readouterr().out
+    assert "usage: bench study score" in capsys.readouterr().out
 
 
 def test_the_version_is_that_of_the_sources(capsys):

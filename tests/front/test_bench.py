@@ -34,14 +34,14 @@ def test_help_works_without_home_and_path(tmp_path):
 
 def test_a_folder_with_modules_of_its_own_does_not_matter(tmp_path):
     (tmp_path / "argparse.py").write_text("raise SystemExit(9)\n")
-    assert bench("compare", "--help", cwd=tmp_path).returncode == 0
+    assert bench("gate", "compare", "--help", cwd=tmp_path).returncode == 0
 
 
 def test_exit_codes_are_those_of_the_verb(tmp_path):
-    missing = bench("compare", str(tmp_path / "a"), str(tmp_path / "b"))
+    missing = bench("gate", "compare", str(tmp_path / "a"), str(tmp_path / "b"))
     assert missing.returncode == 2 and "Traceback" not in missing.stderr and str(tmp_path / "a") in missing.stderr
     wrong = bench("figuers")
-    assert wrong.returncode == 2 and wrong.stdout == "" and "did you mean figures?" in wrong.stderr
+    assert wrong.returncode == 2 and wrong.stdout == "" and "did you mean draw figures?" in wrong.stderr
 
 
 def copied(folder: Path) -> Path:

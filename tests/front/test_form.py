@@ -21,7 +21,7 @@ def ruff(*words: str) -> subprocess.CompletedProcess:
 @pytest.mark.parametrize("words", [("format", "--check"), ("check",)])
 def test_ruff_finds_nothing(words):
     done = ruff(*words)
-    assert done.returncode == 0, done.stdout + done.stderr + "\n./bench format writes the form"
+    assert done.returncode == 0, done.stdout + done.stderr + "\n./bench dev format writes the form"
 
 
 def test_tests_and_examples_have_no_faults_either():

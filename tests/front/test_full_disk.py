@@ -18,47 +18,51 @@ CONFIG = {"schema": "barrierbench.config/1", "scene": {"name": "drape2d"}, "form
 SMALL = "--size 64 48"
 FRAME = 8000  # bytes that the start of this scene has, which is a scratch file
 WRITE = [  # words after `bench`, the file, and bytes that a file may have: what others of its files need
-    ("mesh in.msh out.ply", "out.ply", 0),
-    ("collect . out.csv", "out.csv", 0),
-    ("figures . out", "out/condition_drape2d.png", 100),
+    ("data mesh in.msh out.ply", "out.ply", 0),
+    ("data collect . out.csv", "out.csv", 0),
+    ("draw figures . out", "out/condition_drape2d.png", 100),
     ("report . --out out.html", "a temporary file", 0),
-    (f"render run --out out.png {SMALL}", "out.png", 0),
-    (f"render run --out out.png --bare {SMALL}", "out.png", 0),
-    (f"render config.json --out out.png {SMALL}", "out.png", FRAME),
-    ("render config.json --out out.png --bare --size 900 900", "out.png", FRAME),
-    (f"render run --out out.gif {SMALL}", "out.gif", 100),
-    ("stills run run --out out.png", "a temporary file", 0),
-    ("play run --out out.html", "out.html", 0),
+    (f"draw still run --out out.png {SMALL}", "out.png", 0),
+    (f"draw still run --out out.png --bare {SMALL}", "out.png", 0),
+    (f"draw still config.json --out out.png {SMALL}", "out.png", FRAME),
+    ("draw still config.json --out out.png --bare --size 900 900", "out.png", FRAME),
+    (f"draw still run --out out.gif {SMALL}", "out.gif", 100),
+    ("draw sheet run run --out out.png", "a temporary file", 0),
+    ("draw player run --out out.html", "out.html", 0),
     ("scenes drape --write out.json", "out.json", 0),
-    *((f"frames run out --format {kind}", f"out/{file}", 100)
+    *((f"data frames run out --format {kind}", f"out/{file}", 100)
       for kind, file in (("obj", "frame_000000.obj"), ("ply", "frame_000000.ply"), ("pc2", "frame.pc2"), ("vtu", "frame_000000.vtu"))),
-    ("film run out", "out/frame_000000.ply", 100),
-    ("archive run out.zip", "out.zip", 0),
+    ("data film run out", "out/frame_000000.ply", 100),
+    ("data archive run out.zip", "out.zip", 0),
     ("judge run --out out", "out", 0),
     ("judge run --out out", "a temporary file", 100),
-    ("compare run run --json out.json", "a temporary file", 0),  # of scipy, when it is loaded
-    ("compare run run --json out.json", "out.json", 100),
-    ("match config.json --formulations cubic --out out", "a temporary file", 0),
-    ("match config.json --formulations cubic --out out", "the program ended with 75: out", 1000),
+    ("gate compare run run --json out.json", "a temporary file", 0),  # of scipy, when it is loaded
+    ("gate compare run run --json out.json", "out.json", 100),
+    ("study match config.json --formulations cubic --out out", "a temporary file", 0),
+    ("study match config.json --formulations cubic --out out", "the program ended with 75: out", 1000),
     ("formula (d_hat-d)^3/d", "cache/formulas", 0),
-    ("score (d_hat-d)^3/d --out out", "cache/formulas", 0),
+    ("study score (d_hat-d)^3/d --out out", "cache/formulas", 0),
     *((f"{words} out", file, 1000) for words, file in (  # and what they begin with, which names the first of hours of runs
-        ("causes config.json --out", "out/probe"), ("gate --case drape --out", "out/"), ("calibrate --copies 1 --out", "out/"),
-        ("pareto --results out --runs", "a temporary file"), ("work-precision --out out --runs", "out/"), ("matrix-corpus --out", "probe"), ("step-corpus --results", "out/"),
-        ("figure work_precision --quick --out out --runs", "out/"), ("stress S09 --runs", "out/"), ("claims K3 --runs", "out/"),
-        ("ablation --shards 1 --runs", "out/"), ("robust drape --seeds 1 --runs", "out/drape.json"), ("pictures --runs", "out/"),
-        ("catalogue drape --formulations log --runs", "out/drape.json"), ("gpu-report --results", "out/GPU.md"),
-        ("condition-table --out", "a temporary file"))),
-    ("gap-map --quick --results out --runs out", "a temporary file", 0),
+        ("study causes config.json --out", "out/probe"), ("gate run --case drape --out", "out/"), ("gate calibrate --copies 1 --out", "out/"),
+        ("study pareto --results out --runs", "a temporary file"), ("study work-precision --out out --runs", "out/"), ("study matrix-corpus --out", "probe"), ("study step-corpus --results", "out/"),
+        ("draw figure work_precision --quick --out out --runs", "out/"), ("study stress S09 --runs", "out/"), ("study claims K3 --runs", "out/"),
+        ("study ablation --shards 1 --runs", "out/"), ("study robust drape --seeds 1 --runs", "out/drape.json"), ("draw pictures --runs", "out/"),
+        ("study catalogue drape --formulations log --runs", "out/drape.json"), ("study gpu-report --results", "out/GPU.md"),
+        ("study condition-table --out", "a temporary file"))),
+    ("study gap-map --quick --results out --runs out", "a temporary file", 0),
 ]
-PLANNED = set("match causes gate calibrate pareto work-precision figure stress claims ablation robust catalogue pictures matrix-corpus step-corpus".split())
-READ = set("status surface-gaps trend setup verify completion".split())  # which write nothing, or for the script ./bench
-DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop"}
-IN_THE_TREE = set("demo engine accept readme".split())  # what they write is at a fixed place
+PLANNED = {"study match", "study causes", "gate run", "gate calibrate", "study pareto", "study work-precision", "draw figure", "study stress", "study claims", "study ablation", "study robust", "study catalogue", "draw pictures", "study matrix-corpus", "study step-corpus"}
+READ = {"status", "data surface-gaps", "gate trend", "setup", "verify", "completion"}  # which write nothing, or for the script ./bench
+DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop" or verb.needs not in (verbs.ENVIRONMENT, verbs.PROGRAM)}
+IN_THE_TREE = {"demo", "engine", "gate accept", "dev readme"}  # what they write is at a fixed place
+
+
+def verb_of(words: str) -> str:
+    return verbs.asked(words.split()).row.name
 
 
 def test_every_verb_is_run_or_named():
-    run = {words.split()[0] for words, *_ in WRITE}
+    run = {verb_of(words) for words, *_ in WRITE}
     assert len(run) >= 28 and run | READ | DEVELOP | IN_THE_TREE == {verb.name for verb in verbs.TABLE} and not run & (READ | DEVELOP | IN_THE_TREE)
 
 
@@ -82,11 +86,11 @@ def contents(folder) -> dict:
 def test_a_verb_names_the_file_and_leaves_what_was_there(program, inputs, tmp_path, words, file, size):
     here = tmp_path / "here"
     shutil.copytree(inputs, here)
-    verb, *more = words.split()
+    verb = verb_of(words)
     if file.startswith("out.") and verb != "scenes":  # which replaces nothing
         (here / file).write_text("before")
     before = contents(here)
-    done = bench(verb, *more, cwd=here, program=program, environment={"BARRIERBENCH_CACHE": "cache"}, at_most=size)
+    done = bench(*words.split(), cwd=here, program=program, environment={"BARRIERBENCH_CACHE": "cache"}, at_most=size)
     said = done.stderr.splitlines()[-1]
     assert done.returncode == 75 and said.startswith(f"bench {verb}: ") and "File too large" in done.stderr, done.stderr
     assert file in done.stderr and (".tmp." not in said or verb in PLANNED), done.stderr
@@ -101,8 +105,7 @@ def test_nothing_is_at_issue_without_the_limit(program, inputs, tmp_path):
     here = tmp_path / "here"
     shutil.copytree(inputs, here)
     for words, file, _ in WRITE[:6]:
-        verb, *more = words.split()
-        done = bench(verb, *more, cwd=here, program=program)
+        done = bench(*words.split(), cwd=here, program=program)
         assert done.returncode == 0 and (file == "a temporary file" or (here / file).is_file()), done.stderr
 
 
@@ -177,9 +180,9 @@ def test_the_codes_are_those_of_the_program():
 
 def test_a_full_disk_without_a_folder_for_temporary_files_is_said_as_such(program, tmp_path):
     (tmp_path / "a.json").write_text("{}")
-    done = bench("render", "a.json", cwd=tmp_path, program=program, at_most=0)
+    done = bench("draw", "still", "a.json", cwd=tmp_path, program=program, at_most=0)
     said = done.stderr.splitlines()[-1]  # matplotlib, too, says that it cannot write
-    assert done.returncode == 75 and re.fullmatch(r"bench render: a temporary file \([^)]*\): File too large", said), done.stderr
+    assert done.returncode == 75 and re.fullmatch(r"bench draw still: a temporary file \([^)]*\): File too large", said), done.stderr
     unnamed = "from barrierbench_analysis.io import errors; print(errors.text_of(OSError(28, 'No space left on device')))"
     done = python(unnamed, tmp_path, at_most=0)
     assert done.returncode == 0 and re.fullmatch(r"a temporary file \([^)]*\) or a stream: No space left on device\n", done.stdout), done.stderr

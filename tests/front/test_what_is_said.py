@@ -98,7 +98,7 @@ def test_a_letter_that_the_locale_has_not_is_written_as_its_number(tmp_path):
 def test_a_warning_of_a_library_is_a_line_without_its_source(program, tmp_path):
     """The title of a still has a letter that the font lacks."""
     (tmp_path / "\u4e2d.json").write_text(json.dumps(SCENE))
-    done = bench("render", "\u4e2d.json", "--size", "64", "48", "--out", "a.png", cwd=tmp_path, program=program)
+    done = bench("draw", "still", "\u4e2d.json", "--size", "64", "48", "--out", "a.png", cwd=tmp_path, program=program)
     assert done.returncode == 0 and re.fullmatch(r"(bench: warning: Glyph 20013 [^\n]* missing [^\n]*\n)+", done.stderr), done.stderr
     assert ".py" not in done.stderr and "site-packages" not in done.stderr
 
@@ -122,17 +122,17 @@ def test_numbers_of_arguments_are_finite(tmp_path):
     for text in ("nan", "inf", "-inf", "", "1e999", "a"):
         with pytest.raises(argparse.ArgumentTypeError, match="allowed: a finite number"):
             finite_number(text)
-    done = bench("render", ".", "--view", "nan", "nan", cwd=tmp_path)
+    done = bench("draw", "still", ".", "--view", "nan", "nan", cwd=tmp_path)
     assert done.returncode == 2 and "argument --view: found 'nan'; allowed: a finite number" in done.stderr
     text = "".join(path.read_text() for path in (ROOT / "analysis").rglob("*.py"))
     assert text.count("type=finite_number") >= 9 and "type=float" not in text.replace("dtype=float", "")
 
 
 @pytest.mark.parametrize("words, where", [
-    ("gate|", "1"), ("compare|", "1"), ("compare|a|", "2"), ("match|", "1"), ("score|", "1"), ("formula|", "1"), ("formula|--|", "2"),
-    ("formula|--json|", "2"), ("render|--bare|", "2"), ("render|.|--view||1", "--view"), ("render|.|--view|1|", "4"), ("render|.|--out|", "--out"),
-    ("render|.|--out=", "--out"), ("formula|--|--out|", "3")])
+    ("gate run|", "1"), ("gate compare|", "1"), ("gate compare|a|", "2"), ("study match|", "1"), ("study score|", "1"), ("formula|", "1"), ("formula|--|", "2"),
+    ("formula|--json|", "2"), ("draw still|--bare|", "2"), ("draw still|.|--view||1", "--view"), ("draw still|.|--view|1|", "4"), ("draw still|.|--out|", "--out"),
+    ("draw still|.|--out=", "--out"), ("formula|--|--out|", "3")])
 def test_an_empty_word_is_named_by_its_option_or_its_number(program, tmp_path, words, where):
-    verb = words.split("|")[0]
-    done = bench(*words.split("|"), cwd=tmp_path, program=program)
+    verb, *more = words.split("|")
+    done = bench(*verb.split(), *more, cwd=tmp_path, program=program)
     assert (done.returncode, done.stderr) == (2, f"bench {verb}: argument {where}: found nothing; allowed: a value (./bench {verb} --help says what there is)\n")

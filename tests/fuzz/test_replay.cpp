@@ -1,5 +1,5 @@
 // Every fuzz target on its seeds, on what fuzzing found once (found/TARGET/), and on seeds cut and changed by a fixed
-// rule. Needs no clang; the same functions are fuzzed by ./bench fuzz.
+// rule. Needs no clang; the same functions are fuzzed by ./bench dev fuzz.
 #include <gtest/gtest.h>
 
 #include <algorithm>

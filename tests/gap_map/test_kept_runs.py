@@ -36,7 +36,7 @@ def test_runs_of_now_count_and_nothing_is_said(spec, of_now, tmp_path, capsys):
     table.write(of_now, tmp_path / "gap_map.json")
     assert len(entry.told_rows(tmp_path / "gap_map.json", spec).counted) == of_now.about["runs"] and capsys.readouterr().err == ""
     page = report.markdown(of_now)
-    assert "`./bench gap-map` goes on" in page and "no longer counts" not in page
+    assert "`./bench study gap-map` goes on" in page and "no longer counts" not in page
 
 
 @pytest.mark.parametrize(("change", "said"), [
@@ -54,7 +54,7 @@ def test_what_is_refused_is_said_with_its_reason(spec, of_now, change, said, tmp
     assert len(entry.told_rows(tmp_path / "gap_map.json", spec).counted) == runs - refused
     assert capsys.readouterr().err == f"gap-map: {tmp_path / 'gap_map.json'} has runs that do not count for {spec.path}: {sorted_out.why}\n"
     page = report.markdown(of_now, sorted_out)
-    assert f"**A call that collects runs no longer counts all of these**: it refuses {sorted_out.why}. " in page and "`./bench gap-map` goes on" not in page and "are those of now" not in page
+    assert f"**A call that collects runs no longer counts all of these**: it refuses {sorted_out.why}. " in page and "`./bench study gap-map` goes on" not in page and "are those of now" not in page
 
 
 def test_a_place_that_the_spec_has_no_more_is_a_reason_too(spec, of_now):

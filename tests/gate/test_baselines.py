@@ -66,7 +66,7 @@ def test_a_file_that_is_no_baseline(gate, folder, capsys, text, said):
 def test_no_baseline_and_no_case(gate, folder, capsys):
     (folder / "block-log.json").unlink()
     assert gate("gate", "--case", "block-log", "--baselines", folder) == 2
-    assert "bench calibrate" in capsys.readouterr().err
+    assert "bench gate calibrate" in capsys.readouterr().err
     assert gate("gate", "--case", "nothing of this name") == 2
     assert gate("gate", "--set", "nothing of this name") == 2
 
@@ -156,7 +156,7 @@ def test_calibrate_and_accept(gate, tmp_path, capsys):
 def test_a_reason_is_needed(gate, capsys):
     for arguments in ([], ["--reason", " "]):
         assert gate("accept", *arguments) == 2
-        assert "bench accept: " in (said := capsys.readouterr().err) and "--reason" in said
+        assert "bench gate accept: " in (said := capsys.readouterr().err) and "--reason" in said
 
 
 def test_class_I_is_never_accepted(gate, block, folder, tmp_path, capsys):

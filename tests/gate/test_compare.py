@@ -1,4 +1,4 @@
-"""bench compare: which numbers differ, in which direction, and what cannot be compared."""
+"""bench gate compare: which numbers differ, in which direction, and what cannot be compared."""
 
 import json
 import shutil

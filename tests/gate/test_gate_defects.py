@@ -2,7 +2,7 @@
 
 Where settings act as the defect would, the run is real: a stand-in for the program adds them, and its record claims the config that was asked
 for (conftest.py). What no setting can do is written into the record as the defect would leave it. All five stand as changes of the code in
-tests/mutation/gate.toml too, which `./bench mutate --only 'gate/*'` builds and judges with the committed baselines.
+tests/mutation/gate.toml too, which `./bench dev mutate --only 'gate/*'` builds and judges with the committed baselines.
 """
 
 import pytest

@@ -75,11 +75,11 @@ def test_a_folder_is_called_one(gate, tmp_path, capsys):
     assert gate("gate", "--matrix", tmp_path / "more", "--baseline", kept) == 2
     assert f"{tmp_path / 'more'}: a folder; allowed: Matrix Market files, {tmp_path / 'more'}/*.mtx" in capsys.readouterr().err
     assert gate("gate", "--matrix", good, "--baseline", tmp_path / "more") == 2
-    assert f"{tmp_path / 'more'}: a folder; `bench accept --matrix" in capsys.readouterr().err
+    assert f"{tmp_path / 'more'}: a folder; `bench gate accept --matrix" in capsys.readouterr().err
 
 
 def test_advice_is_the_command_for_matrices(gate, tmp_path, capsys):
-    kept, matrix, command = tmp_path / "b.json", tmp_path / "a.mtx", f"bench accept --matrix ... --baseline {tmp_path / 'b.json'}"
+    kept, matrix, command = tmp_path / "b.json", tmp_path / "a.mtx", f"bench gate accept --matrix ... --baseline {tmp_path / 'b.json'}"
     worse = laplace(30)
     worse[0, 0] = 100
     assert gate("gate", "--matrix", write(matrix, worse), "--baseline", kept) == 2
@@ -89,7 +89,7 @@ def test_advice_is_the_command_for_matrices(gate, tmp_path, capsys):
     assert gate("gate", "--matrix", matrix, write(tmp_path / "b.mtx", laplace(30)), "--baseline", kept) == 1
     said = capsys.readouterr()
     assert f"from now on: {command} --better --reason" in said.err and "calibrate" not in said.err + said.out
-    assert "accept it (bench accept --matrix)" in said.out
+    assert "accept it (bench gate accept --matrix)" in said.out
     assert gate("accept", "--matrix", matrix, "--baseline", kept, "--better", "--reason", "better") == 0
 
 

@@ -1,6 +1,6 @@
 """What the gate missed and once cried wolf about: a baseline and a doctored record each, and the verdict that it deserves.
 
-The records are those of one honest run of the block, edited; `bench accept --record` makes the baseline of one, `bench gate --record` judges the other."""
+The records are those of one honest run of the block, edited; `bench gate accept --record` makes the baseline of one, `bench gate --record` judges the other."""
 
 import copy
 import hashlib
@@ -157,7 +157,7 @@ def test_cond_that_is_20_percent_better_is_green(judged, capsys):
     better = {metric for metric, verdict in verdicts.items() if verdict == "better"}
     assert code == 0 and len(better) == 12 and "log10_cond full/none median" in better
     said = capsys.readouterr()
-    assert "12 better" in said.out and ": green" in said.out and "bench accept --record ... --baseline " in said.err and " --better " in said.err
+    assert "12 better" in said.out and ": green" in said.out and "bench gate accept --record ... --baseline " in said.err and " --better " in said.err
 
 
 # --- a folder of matrices

@@ -26,8 +26,8 @@ def named(verb: str, kind: str, content: Content, words: tuple, says: str, name:
 
 
 READERS = {  # a verb whose file is x: its words
-    "compare": ("x", "x"), "gate": ("--record", "x", "--baseline", "x"), "accept": ("--record", "x", "--baseline", "b.json", "--reason", "r"), "figure": ("x",),
-    "match": ("x",), "gap-map": ("x",), "work-precision": ("x",), "ablation": ("x",),
+    "gate compare": ("x", "x"), "gate run": ("--record", "x", "--baseline", "x"), "gate accept": ("--record", "x", "--baseline", "b.json", "--reason", "r"), "draw figure": ("x",),
+    "study match": ("x",), "study gap-map": ("x",), "study work-precision": ("x",), "study ablation": ("x",),
 }
 SPECIAL = {"fifo": fifo, "zero": link_to("/dev/zero")}
 HUGE_MATRIX = "%%MatrixMarket matrix coordinate real symmetric\n2000000000 2000000000 1\n1 1 1\n"
@@ -36,15 +36,15 @@ DENSE = "%%MatrixMarket matrix array real general\n2000000000 2000000000\n1\n"
 
 VERBS = [
     *[named(verb, kind, content, words, "x") for verb, words in READERS.items() for kind, content in SPECIAL.items()],
-    *[named("accept", f"matrix-{kind}", text, ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "its header says") for kind, text in
+    *[named("gate accept", f"matrix-{kind}", text, ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "its header says") for kind, text in
       {"huge": HUGE_MATRIX, "entries": MANY_ENTRIES, "dense": DENSE}.items()],
-    named("accept", "matrix-fifo", fifo, ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "x: a FIFO"),
-    named("accept", "matrix-sparse", sparse(1 << 40), ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "1099511627776 bytes; at most"),
-    named("collect", "fifo", fifo, ("run", "t.csv"), "no record that can be read", "run/run.json"),
-    named("collect", "list-fifo", fifo, ("run", "t.csv"), "run", "run/cases.json"),
+    named("gate accept", "matrix-fifo", fifo, ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "x: a FIFO"),
+    named("gate accept", "matrix-sparse", sparse(1 << 40), ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "1099511627776 bytes; at most"),
+    named("data collect", "fifo", fifo, ("run", "t.csv"), "no record that can be read", "run/run.json"),
+    named("data collect", "list-fifo", fifo, ("run", "t.csv"), "run", "run/cases.json"),
     *[VerbCase(f"program-{name}", ("list", "shapes"), (f"BARRIERBENCH_PROGRAM: found {path}", "allowed: a built program"), environment={"BARRIERBENCH_PROGRAM": path})
       for name, path in {"yes": "/usr/bin/yes", "cat": "/bin/cat", "true": "/bin/true", "folder": "/etc", "text": "/etc/passwd", "device": "/dev/zero"}.items()],
-    VerbCase("program-yes-of-a-verb-in-python", ("score", "log", "--out", "o"), ("does not list shapes",), environment={"BARRIERBENCH_PROGRAM": "/usr/bin/yes"}),
+    VerbCase("program-yes-of-a-verb-in-python", ("study", "score", "log", "--out", "o"), ("does not list shapes",), environment={"BARRIERBENCH_PROGRAM": "/usr/bin/yes"}),
     *[VerbCase(f"closed-{name}", ("run", BLOCK, "--set", "/time/steps=1", "--out", "o"), code=0, closed=numbers, writes=("o",))
       for name, numbers in {"output": (1,), "everything": (0, 1, 2)}.items()],
     VerbCase("closed-help", ("help",), code=0, closed=(1,)),

@@ -64,7 +64,7 @@ def test_moving_obstacles_beside_frames_are_no_frames_either(program, tmp_path, 
 
 @pytest.mark.parametrize("kind", ["obj", "ply", "vtu"])
 def test_obstacles_beside_frames_are_no_frame_and_named(program, tmp_path, kind):
-    """As `bench frames` writes them."""
+    """As `bench data frames` writes them."""
     folder, _ = written(tmp_path / "a", kind, CLEAN)
     (folder / f"obstacles.{kind}").write_text("never opened")
     code, record = judge(tmp_path, folder)

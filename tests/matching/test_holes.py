@@ -12,7 +12,7 @@ from barrierbench_analysis.studies.matching.pareto_report import markdown
 
 SCALES = (0.01, 0.1, 1.0, 10.0, 100.0)
 HOLES = SCALES[1:-1]
-ABOUT = {"command": "./bench pareto", "decades": 4.0, "rule": "equal_force, theta 0.1", "starts": 2, "gap": "smallest", "doc": "made up", "vary": "both", "unknowns": "3 to 9",
+ABOUT = {"command": "./bench study pareto", "decades": 4.0, "rule": "equal_force, theta 0.1", "starts": 2, "gap": "smallest", "doc": "made up", "vary": "both", "unknowns": "3 to 9",
          "seconds": 2.0, "date": "2024-01-31", "machine": "a cpu", "build": "0123456789", "gaps": [0.1, 0.2], "spec_sha256": "s"}  # fmt: skip
 
 

@@ -61,7 +61,7 @@ def rows(make) -> Runs:
     """make(formulation, scale, seed) gives gap, newton and what else differs."""
     found = [{"scene": "a", "formulation": f, "scale": s, "seed": k, "outcome": "ok", "run": f"{f}{s}{k}", **{m: 1.0 for m in pareto.METRICS}, **make(f, s, k)}
              for f in ("log", "cubic") for s in (0.01, 0.1, 1.0, 10.0, 100.0) for k in (1, 2, 3)]
-    about = {"command": "./bench pareto", "decades": 4.0, "rule": "equal_force, theta 0.1", "starts": 3, "gap": "smallest", "doc": "made up", "vary": "both", "unknowns": "3 to 9",
+    about = {"command": "./bench study pareto", "decades": 4.0, "rule": "equal_force, theta 0.1", "starts": 3, "gap": "smallest", "doc": "made up", "vary": "both", "unknowns": "3 to 9",
              "seconds": 2.0, "date": "2024-01-31", "machine": "a cpu", "build": "0123456789", "gaps": [0.02, 0.1, 0.99], "spec_sha256": "s"}
     return Runs(about, found)
 

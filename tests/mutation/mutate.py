@@ -1,12 +1,12 @@
 """Puts plausible mistakes into the code one at a time and counts how many the tests catch.
 
-    ./bench mutate                        every mutant; what one build can hold together is built together (switches.py)
-    ./bench mutate --one-by-one           a build for every mutant: about half a minute of one core each
-    ./bench mutate --only 'newton/*'      those whose room/name matches a pattern (repeatable)
-    ./bench mutate --list                 the mutants, nothing is built
-    ./bench mutate --check                only whether every text is still found, a second
-    ./bench mutate --resume               keeps the verdicts of results.json that were made on this very tree
-    ./bench mutate --jobs 2               of those built one by one that many at a time, each in a tree of its own
+    ./bench dev mutate                        every mutant; what one build can hold together is built together (switches.py)
+    ./bench dev mutate --one-by-one           a build for every mutant: about half a minute of one core each
+    ./bench dev mutate --only 'newton/*'      those whose room/name matches a pattern (repeatable)
+    ./bench dev mutate --list                 the mutants, nothing is built
+    ./bench dev mutate --check                only whether every text is still found, a second
+    ./bench dev mutate --resume               keeps the verdicts of results.json that were made on this very tree
+    ./bench dev mutate --jobs 2               of those built one by one that many at a time, each in a tree of its own
 
 A mutant is an entry of one of the *.toml files beside this script:
 
@@ -46,7 +46,9 @@ HERE = Path(__file__).resolve().parent
 
 
 def parse_arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="bench mutate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    about = "Puts mistakes into the code one at a time and counts those that the tests catch.\n\nexample:\n  ./bench dev mutate --only 'newton/armijo*'"
+    parser = argparse.ArgumentParser(prog="bench dev mutate", usage="bench dev mutate [OPTIONS]", description=about, epilog=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", action="append", metavar="PATTERN", help="room/name, with * and ?")
     parser.add_argument("--list", action="store_true", help="the mutants, nothing is built")
     parser.add_argument("--check", action="store_true", help="only whether every text is found once")

@@ -1,4 +1,4 @@
-"""What a film and its page hold, what ./bench play says, and what it refuses."""
+"""What a film and its page hold, what ./bench draw player says, and what it refuses."""
 
 import base64
 import json
@@ -21,7 +21,7 @@ LAST = "frames/step_000004.ply"
 def refused(capsys, *words) -> str:
     assert verb.main([str(word) for word in words]) == 2
     said = capsys.readouterr()
-    assert said.out == "" and said.err.startswith("bench play: ")
+    assert said.out == "" and said.err.startswith("bench draw player: ")
     return said.err
 
 

@@ -1,4 +1,4 @@
-"""The module that ./bench python has built; without it these tests are skipped."""
+"""The module that ./bench dev python has built; without it these tests are skipped."""
 
 import importlib
 import os
@@ -16,7 +16,7 @@ sys.path.insert(0, str(MODULE))
 def bb():
     """The package barrierbench."""
     if not list(MODULE.glob("barrierbench/_core*.so")):
-        pytest.skip("the Python module is not built: ./bench python")
+        pytest.skip("the Python module is not built: ./bench dev python")
     return importlib.import_module("barrierbench")
 
 

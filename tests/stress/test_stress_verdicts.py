@@ -170,7 +170,7 @@ def test_the_table_is_read_as_it_was_written(tmp_path):
 def test_a_torn_table_is_refused(tmp_path, monkeypatch, capsys, kept):
     file = tmp_path / "stress.json"
     file.write_text(kept)
-    with pytest.raises(UserError, match="stress.json: .*remove it, then ./bench stress"):
+    with pytest.raises(UserError, match="stress.json: .*remove it, then ./bench study stress"):
         read(file)
     monkeypatch.setattr(verb, "FILE", file)
     assert verb.main(["M09", "--no-run"]) == 2 and "stress.json" in capsys.readouterr().err
@@ -178,7 +178,7 @@ def test_a_torn_table_is_refused(tmp_path, monkeypatch, capsys, kept):
 
 def test_what_is_missing_is_named_with_its_file(tmp_path, capsys):
     assert verb.main(["M09", "--no-run", "--full", "--runs", str(tmp_path)]) == 2
-    assert f"{tmp_path / 'full' / 'stress.json'}: nothing kept of M09: ./bench stress M09 --full" in capsys.readouterr().err
+    assert f"{tmp_path / 'full' / 'stress.json'}: nothing kept of M09: ./bench study stress M09 --full" in capsys.readouterr().err
 
 
 def test_what_was_not_expected_stands_in_the_page_and_on_the_terminal():

@@ -180,7 +180,7 @@ def test_another_version_and_what_is_damaged_are_refused(file, tmp_path, capsys,
     for verb, words in ((compare, [bad, bad]), (report, [bad]), (figures, [bad]), (collect, [bad, tmp_path / "t.csv"])):
         assert verb.main([str(word) for word in words]) == 2
         said = capsys.readouterr().err
-        assert says in said and str(bad) in said and f"allowed: an archive of ./bench archive ({SCHEMA})" in said
+        assert says in said and str(bad) in said and f"allowed: an archive of ./bench data archive ({SCHEMA})" in said
     assert not (tmp_path / "t.csv").exists()
 
 
@@ -202,7 +202,7 @@ def test_an_encrypted_entry_and_an_unknown_method_are_refused(file, tmp_path, ca
     for verb, words in ((compare, [bad, bad]), (verify, [bad]), (report, [bad]), (figures, [bad]), (collect, [bad, tmp_path / "t.csv"])):
         assert verb.main([str(word) for word in words]) == 2
         said = capsys.readouterr().err
-        assert name in said and "can" in said and "be read" in said and f"allowed: an archive of ./bench archive ({SCHEMA})" in said
+        assert name in said and "can" in said and "be read" in said and f"allowed: an archive of ./bench data archive ({SCHEMA})" in said
 
 
 def test_a_name_that_leads_out_is_refused(file, tmp_path):

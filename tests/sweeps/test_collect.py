@@ -28,7 +28,7 @@ def read(path) -> list[dict]:
 
 
 def test_every_run_is_a_row_and_every_swept_pointer_a_column(out, tmp_path):
-    done = verb("collect", out, tmp_path / "t.csv")
+    done = verb("data", "collect", out, tmp_path / "t.csv")
     assert done.returncode == 0, done.stderr
     rows, known = read(tmp_path / "t.csv"), records(out)
     assert len(rows) == len(known) == 5
@@ -39,17 +39,17 @@ def test_every_run_is_a_row_and_every_swept_pointer_a_column(out, tmp_path):
         assert float(row["wall_s"]) == record["summary"]["wall_s"]
         assert float(row["gap_min_m"]) == record["summary"]["gap_min_m"] if isinstance(record["summary"]["gap_min_m"], float) else True
     again = tmp_path / "again.csv"
-    assert verb("collect", out, again).returncode == 0 and again.read_bytes() == (tmp_path / "t.csv").read_bytes()
+    assert verb("data", "collect", out, again).returncode == 0 and again.read_bytes() == (tmp_path / "t.csv").read_bytes()
 
 
 def test_a_run_that_failed_is_a_row_with_its_outcome(out, tmp_path):
-    assert verb("collect", out.parent / "fails", tmp_path / "t.csv").returncode == 0
+    assert verb("data", "collect", out.parent / "fails", tmp_path / "t.csv").returncode == 0
     (row,) = read(tmp_path / "t.csv")
     assert row["outcome"] not in ("ok", "") and row["valid"] == "False" and row["/step_solver/max_iterations"] == "1"
 
 
 def test_the_dictionary_has_every_column_with_unit_and_meaning(out, tmp_path):
-    assert verb("collect", out, tmp_path / "t.csv").returncode == 0
+    assert verb("data", "collect", out, tmp_path / "t.csv").returncode == 0
     words = read(tmp_path / "t.columns.csv")
     assert [word["column"] for word in words] == list(read(tmp_path / "t.csv")[0])
     of = {word["column"]: word for word in words}
@@ -74,19 +74,19 @@ def test_what_cannot_be_read_is_named_and_left_out(out, tmp_path):
     torn, other, *_ = sorted(copy.glob("*/run.json"))
     torn.write_text(torn.read_text()[:1000])
     other.write_text(json.dumps({**json.loads(other.read_text()), "schema": {"name": "barrierbench.run", "version": "9.0.0"}}))
-    done = verb("collect", copy, tmp_path / "t.csv")
+    done = verb("data", "collect", copy, tmp_path / "t.csv")
     assert done.returncode == 0 and len(read(tmp_path / "t.csv")) == 3
     assert str(torn) in done.stderr and str(other) in done.stderr and "9.0.0" in done.stderr
     empty = tmp_path / "empty"
     empty.mkdir()
-    refused(verb("collect", empty, tmp_path / "none.csv"), "no record that can be read")
-    refused(verb("collect", tmp_path / "nowhere", tmp_path / "none.csv"), "no such folder")
-    refused(verb("collect", out, tmp_path / "none.xlsx"), ".csv or .parquet")
+    refused(verb("data", "collect", empty, tmp_path / "none.csv"), "no record that can be read")
+    refused(verb("data", "collect", tmp_path / "nowhere", tmp_path / "none.csv"), "no such folder")
+    refused(verb("data", "collect", out, tmp_path / "none.xlsx"), ".csv or .parquet")
     assert not (tmp_path / "none.csv").exists()
 
 
 def test_parquet_beside_the_csv_holds_the_same_rows(out, tmp_path):
-    done = verb("collect", out, tmp_path / "t.csv")
+    done = verb("data", "collect", out, tmp_path / "t.csv")
     assert done.returncode == 0 and f"{tmp_path / 't.csv'}, {tmp_path / 't.parquet'}: 5 runs" in done.stdout
     text, typed = pd.read_csv(tmp_path / "t.csv", float_precision="round_trip"), pd.read_parquet(tmp_path / "t.parquet")
     assert list(text.columns) == list(typed.columns) and len(text) == len(typed) == 5
@@ -100,7 +100,7 @@ def test_parquet_beside_the_csv_holds_the_same_rows(out, tmp_path):
 
 
 def test_parquet_alone_where_it_is_named(out, tmp_path):
-    assert verb("collect", out, tmp_path / "t.parquet").returncode == 0
+    assert verb("data", "collect", out, tmp_path / "t.parquet").returncode == 0
     assert len(pd.read_parquet(tmp_path / "t.parquet")) == 5 and {path.name for path in tmp_path.iterdir()} == {"t.parquet", "t.columns.csv"}
 
 

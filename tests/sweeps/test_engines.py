@@ -64,7 +64,7 @@ def by_snakemake_on_slurm(spec: Path, out: Path, environment: dict) -> None:
 
 def table(out: Path) -> pd.DataFrame:
     file = out.parent / f"{out.name}.csv"
-    done = subprocess.run([sys.executable, ROOT / "analysis", "collect", out, file], capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, ROOT / "analysis", "data", "collect", out, file], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     found = pd.read_csv(file, dtype=str)
     return found[[name for name in found.columns if not name.endswith(OF_THE_RUN) and not name.startswith("provenance_env_")]]  # Snakemake sets OMP_NUM_THREADS

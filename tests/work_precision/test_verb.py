@@ -105,7 +105,7 @@ def test_missing_records_and_bad_numbers_are_told(run, draw_no_more, tmp_path, c
         verb.collect(spec, spec.scenes[0], tmp_path / "runs")
     capsys.readouterr()
     assert verb.main([str(tmp_path / "spec.json"), "--no-run", "--out", str(tmp_path / "none")]) == 2
-    assert "./bench work-precision makes it" in capsys.readouterr().err
+    assert "./bench study work-precision makes it" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("edit, said", [
@@ -206,7 +206,7 @@ def test_numbers_of_another_spec_are_refused(draw_no_more, tmp_path, capsys):
         (out / "work_precision.json").write_text(json.dumps({**{k: v for k, v in kept.items() if k != "spec_sha256"}, **sha}))
         assert verb.main(words) == 2
         said = capsys.readouterr().err
-        assert "/spec_sha256: found" in said and f"its numbers are of another spec; ./bench work-precision {file}" in said and read_spec(file).sha256 in said
+        assert "/spec_sha256: found" in said and f"its numbers are of another spec; ./bench study work-precision {file}" in said and read_spec(file).sha256 in said
         assert not (out / "WORK_PRECISION.md").exists() and not list(out.glob("*.png"))
     (out / "work_precision.json").write_text(json.dumps({**kept, "spec_sha256": read_spec(file).sha256}))
     draw_no_more()

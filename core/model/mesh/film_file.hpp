@@ -14,7 +14,7 @@ namespace bb {
 /// that is missing between two.
 std::vector<std::string> film_files(const std::string& first);
 
-/// times.csv beside them, as `bench frames` writes it; empty: there is none.
+/// times.csv beside them, as `bench data frames` writes it; empty: there is none.
 std::string film_times_file(const std::string& first);
 /// Its column time_s, s. Errors: ConfigError naming the line.
 std::vector<double> parse_film_times(const std::string& bytes, const std::string& name);

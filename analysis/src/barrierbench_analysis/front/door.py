@@ -10,36 +10,58 @@ from typing import NoReturn
 
 from barrierbench_analysis.io.errors import TRY_AGAIN, UserError, tells
 from barrierbench_analysis.program import verbs
-from barrierbench_analysis.program.arguments import text_width
+from barrierbench_analysis.program.arguments import summary, text_width
 from barrierbench_analysis.program.start import RELEASE, become, built_program, require_program
-from barrierbench_analysis.program.verb_table import HELP
+from barrierbench_analysis.program.verb_table import HELP, Heading
 
 HELP_WORDS = ("help", *HELP)
+OF_PROGRAM = (["sweep"], ["help"])  # behind a word of HELP_WORDS: the program explains the files, or itself
 
 
-def usage_of(verb: verbs.Verb) -> list[str]:
-    """What its row says."""
-    return [
-        f"  {verb.name} {verb.arguments}".rstrip(),
-        *textwrap.wrap(verb.help, text_width(), initial_indent=6 * " ", subsequent_indent=6 * " "),
-        f"        {verb.example}",
-    ]
+COLUMN = 16  # of what a verb is for, in the list of all
+
+
+def _listed(name: str, words: str) -> list[str]:
+    """A name and what it is for, beside each other."""
+    indent = COLUMN * " "
+    lines = textwrap.wrap(words, text_width(), initial_indent=indent, subsequent_indent=indent)
+    return [f"  {name}".ljust(COLUMN) + lines[0][COLUMN:], *lines[1:]]
 
 
 def usage() -> str:
-    """Every verb in its group, with an example."""
-    lines = ["usage: ./bench VERB [ARGUMENTS]", ""]
+    """Every verb in its group; of a heading its sub-commands by name."""
+    lines = ["usage: ./bench VERB [OPTIONS]", ""]
     for group, meaning in verbs.GROUPS.items():
         lines.append(f"{group}: {meaning}")
-        for verb in verbs.every():
-            if verb.group == group:
-                lines += usage_of(verb)
+        for row in verbs.top():
+            if row.group == group:
+                names = (
+                    [verb.name.split()[1] for verb in verbs.below(row)] if isinstance(row, Heading) else []
+                )
+                lines += _listed(row.name, f"{row.help}: {', '.join(names)}" if names else row.help)
         lines.append("")
     more = (
-        "./bench VERB --help, or ./bench help VERB, says more; what runs the program is run after an"
-        " incremental build, or by the program that BARRIERBENCH_PROGRAM names."
+        "./bench VERB --help, or ./bench help VERB, says more and has an example; what runs the program is"
+        " run"
+        " after an incremental build, or by the program that BARRIERBENCH_PROGRAM names."
     )
     return "\n".join([*lines, *textwrap.wrap(more, text_width())])
+
+
+def help_of(row: verbs.Verb | Heading) -> str:
+    """What the rows say: of a heading its sub-commands too."""
+    lines = [f"usage: {verbs.usage_line(row)}", "", summary(row)]
+    if isinstance(row, Heading):
+        rows = verbs.below(row)
+        column = max(len(verb.name) for verb in rows) - len(row.name) + 3
+        lines += ["", f"./bench {row.name} NAME --help says more:"]
+        for verb in rows:
+            words = textwrap.wrap(verb.help, max(text_width() - column, 20))
+            lines += [
+                f"  {verb.name.split()[1]}".ljust(column) + words[0],
+                *(column * " " + one for one in words[1:]),
+            ]
+    return "\n".join(lines)
 
 
 def become_program(arguments: list[str]) -> NoReturn:
@@ -49,20 +71,12 @@ def become_program(arguments: list[str]) -> NoReturn:
     """
     from barrierbench_analysis.program import building
 
-    word = arguments[0]
-    everything = verbs.every()
-    if not word.startswith("-") and word not in [verb.name for verb in everything]:
-        near = verbs.nearest(word, everything)
-        raise UserError(
-            f"found {word!r}; allowed: one of the verbs of ./bench help"
-            + (f"; did you mean {near}?" if near else "")
-        )
     if "BARRIERBENCH_PROGRAM" in os.environ:
         require_program()
         built = built_program()
     else:
         built = building.ensure_program()
-    os.environ["BENCH_VERBS"] = " ".join(verb.name for verb in verbs.TABLE)  # for its own suggestion
+    os.environ["BENCH_VERBS"] = " ".join(row.name for row in verbs.top())  # for its own suggestion
     become(built, arguments)
 
 
@@ -82,7 +96,9 @@ def run(verb: verbs.Verb, arguments: list[str]) -> int:
         return building.of_script(verb.name, *arguments)
     os.environ.setdefault("BARRIERBENCH_PROGRAM", str(RELEASE))
     module = f"barrierbench_analysis.{verb.module}"  # even to load it may take a temporary file
-    return tells(verb.name)(lambda words: importlib.import_module(module).main(words))(arguments)
+    return tells(verb.name)(lambda words: importlib.import_module(module).main(words))(
+        [verb.subject, *arguments] if verb.subject else arguments
+    )
 
 
 def open_streams() -> None:
@@ -111,13 +127,31 @@ def _answer(arguments: list[str]) -> int:
 
         print(version())
         return 0
-    if len(arguments) == 2 and arguments[0] in HELP_WORDS and verbs.find(arguments[1]):
-        arguments = [arguments[1], "--help"]
-    verb = verbs.find(arguments[0])
-    if verb and not verb.own_help and any(word in HELP for word in arguments[1:]):
-        print("\n".join(["usage: ./bench VERB [ARGUMENTS]", "", *usage_of(verb)]))
+    if arguments[0] in HELP_WORDS and arguments[1:] not in OF_PROGRAM:
+        asked = verbs.asked(arguments[1:])
+        if asked and not asked.rest:
+            arguments = [*arguments[1:], "--help"]
+    asked = verbs.asked(arguments)
+    if asked is None:
+        if not arguments[0].startswith("-"):
+            raise UserError(
+                f"found {arguments[0]!r}; allowed: one of the verbs of ./bench"
+                f" help{verbs.nearest(arguments[0])}"
+            )
+        return become_program(arguments)
+    row, rest, note = asked
+    if note:
+        print(f"bench: note: {note}", file=sys.stderr, flush=True)
+    if isinstance(row, Heading):
+        if wrong := [word for word in rest if word not in HELP]:
+            allowed = f"allowed: a sub-command (./bench {row.name} --help lists them)"
+            raise UserError(f"{row.name}: found {wrong[0]!r}; {allowed}")
+        print(help_of(row))
         return 0
-    return run(verb, arguments[1:]) if verb else become_program(arguments)
+    if not row.own_help and any(word in HELP for word in rest):
+        print(help_of(row))
+        return 0
+    return become_program([row.word, *rest]) if row.word else run(row, rest)
 
 
 def _forget_output() -> None:
@@ -143,5 +177,9 @@ def main(arguments: list[str]) -> int:
         print(f"bench: the standard output cannot be written: {error.strerror}", file=sys.stderr)
         return TRY_AGAIN
     except KeyboardInterrupt:
-        print(f"bench {arguments[0]}: interrupted; it may be called again", file=sys.stderr)
+        asked = verbs.asked(arguments) if arguments else None
+        print(
+            f"bench {asked.row.name if asked else arguments[0]}: interrupted; it may be called again",
+            file=sys.stderr,
+        )
         return TRY_AGAIN

@@ -28,7 +28,7 @@ def ruff(verb: str, *words: str) -> int:
     ).returncode
 
 
-@tells("format")
+@tells("dev format")
 def main(argv: list[str]) -> int:
     if argv:
         raise UserError(f"found {argv[0]!r}; allowed: no arguments")

@@ -163,9 +163,9 @@ def prepare(names: list[str]) -> None:
     )
 
 
-@tells("fuzz")
+@tells("dev fuzz")
 def main(argv: list[str]) -> int:
-    parser = parser_of("fuzz", __doc__.split("\n\n", 1)[1])
+    parser = parser_of("dev fuzz", __doc__.split("\n\n", 1)[1])
     parser.add_argument(
         "targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)"
     )

@@ -12,7 +12,7 @@ from barrierbench_analysis.program.building import ensure, folder
 TARGET = "barrierbench_microbenchmarks"
 
 
-@tells("microbenchmarks")
+@tells("dev microbenchmarks")
 def main(argv: list[str]) -> int:
     ensure(TARGET)
     out = ROOT / "results/runs/microbenchmarks"

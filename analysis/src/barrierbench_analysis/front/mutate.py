@@ -11,7 +11,7 @@ from barrierbench_analysis.program.building import setup
 from barrierbench_analysis.program.verb_table import HELP
 
 
-@tells("mutate")
+@tells("dev mutate")
 def main(argv: list[str]) -> int:
     if not set(argv) & set(HELP):
         setup()

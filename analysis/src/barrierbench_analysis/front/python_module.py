@@ -50,7 +50,7 @@ def build_module() -> None:
     build("release", *MODULE, "barrierbench", options=options())
 
 
-@tells("python")
+@tells("dev python")
 def main(argv: list[str]) -> int:
     build_module()
     say(f"built: PYTHONPATH={os.path.relpath(module_folder())}")

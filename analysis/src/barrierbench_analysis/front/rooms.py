@@ -9,7 +9,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.building import folder, regenerate
 
 
-@tells("rooms")
+@tells("dev modules")
 def main(argv: list[str]) -> int:
     regenerate("release")
     rooms = folder("release") / "rooms.txt"

@@ -19,7 +19,7 @@ OF_GCC = re.compile(
 )  # these mean nothing to clang
 
 
-@tells("tidy")
+@tells("dev tidy")
 def main(argv: list[str]) -> int:
     setup()
     regenerate("dev")

@@ -13,6 +13,7 @@ from typing import NoReturn
 from barrierbench_analysis.io.errors import UserError
 
 from . import verbs
+from .verb_table import Heading
 
 WIDTH = 110  # of text where the terminal is wider, or there is none
 
@@ -66,18 +67,25 @@ def _kept_lines(text: str) -> str:
     return "\n".join(textwrap.fill(line, max(text_width(), 20)) for line in text.strip().splitlines())
 
 
-def parser_of(name: str, doc: str | None = None, *examples: str) -> Parser:
-    """For the arguments of a verb: its help begins with that of its row, goes on with `doc`, which is printed
-    as it is, and ends with the example of the row and more of them.
+def summary(row: verbs.Verb | Heading) -> str:
+    """What its row says: what it does, in at most three lines of WIDTH, and an example."""
+    sentence = row.help[0].upper() + row.help[1:] + ("" if row.help.endswith("?") else ".")
+    about = textwrap.fill(sentence, max(text_width(), 20))
+    return f"{about}\n\nexample:\n  {row.example}"
+
+
+def parser_of(name: str, doc: str | None = None, *examples: str, row: verbs.Verb | None = None) -> Parser:
+    """For the arguments of a verb: its help begins with what its row says; behind the options come `doc`,
+    with its lines as they are, and more examples. row: of a verb without a line of the table.
     """
-    row = verbs.find(name)
-    about = textwrap.fill(f"{row.help[0].upper()}{row.help[1:]}.", text_width())
-    shown = (row.example, *examples)
+    row = row or verbs.find(name)
+    more = ["more examples:", *(f"  {one}" for one in examples)] if examples else []
     return Parser(
         prog=f"bench {name}",
-        description=f"{about}\n\n{_kept_lines(doc)}" if doc else about,
+        usage=verbs.usage_line(row),
+        description=summary(row),
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="\n".join([f"example{'s' * (len(shown) > 1)}:", *(f"  {one}" for one in shown)]),
+        epilog="\n".join([*([_kept_lines(doc), ""] if doc else []), *more]),
     )
 
 

@@ -44,7 +44,7 @@ def ply_bytes(cells: MeshArrays) -> bytes:
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("mesh", "Lengths are taken as m.")
+    parser = parser_of("data mesh", "Lengths are taken as m.")
     parser.add_argument(
         "source",
         type=Path,
@@ -91,7 +91,7 @@ def solid_of(path: Path, edge: float | None) -> MeshArrays:
     return MeshArrays(points, surface.triangles[:0], surface.segments, tetrahedra)
 
 
-@tells("mesh")
+@tells("data mesh")
 def main(argv: list[str]) -> int:
     options = parse(argv)
     if options.target.suffix.lower() != ".ply":
@@ -103,7 +103,7 @@ def main(argv: list[str]) -> int:
     write_whole_bytes(options.target, ply_bytes(cells))
     for note in cells.notes:
         more = " (--skin keeps those of the surface)" if "face of tetrahedra" in note else ""
-        print(f"bench mesh: {note}{more}", file=sys.stderr)
+        print(f"bench data mesh: {note}{more}", file=sys.stderr)
     print(
         f"{options.target}: {len(cells.points)} vertices, {len(cells.triangles)} triangles, "
         f"{len(cells.segments)} lone edges, {len(cells.tetrahedra)} tetrahedra"

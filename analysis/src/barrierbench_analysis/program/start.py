@@ -89,9 +89,12 @@ def piped(*words: str) -> subprocess.Popen:
 
 
 def in_shell(line: str, **options) -> subprocess.CompletedProcess:
-    """A line of bash in which ./bench stands for the program; otherwise as `started`."""
-    command = line.replace("./bench", shlex.quote(str(built_program())))
-    return subprocess.run(["bash", "-c", command], check=False, capture_output=True, text=True, **options)
+    """A line of bash in which ./bench is the front door, which builds nothing; otherwise as `started`."""
+    command = line.replace("./bench", shlex.join([sys.executable, str(ROOT / "analysis")]))
+    environment = {**os.environ, "BARRIERBENCH_PROGRAM": str(built_program())}
+    return subprocess.run(
+        ["bash", "-c", command], check=False, capture_output=True, text=True, env=environment, **options
+    )
 
 
 def become(program: Path, words: list[str]) -> NoReturn:

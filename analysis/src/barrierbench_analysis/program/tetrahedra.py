@@ -1,5 +1,5 @@
-"""Tetrahedra within a closed surface, made by TetGen: ./bench mesh SURFACE OUT.ply --tetrahedra. The surface
-stays as it is, every vertex and triangle of it; vertices are added within.
+"""Tetrahedra within a closed surface, made by TetGen: ./bench data mesh SURFACE OUT.ply --tetrahedra. The
+surface stays as it is, every vertex and triangle of it; vertices are added within.
 
 The package `tetgen` (MIT) has TetGen within it (AGPL-3.0, or a licence of WIAS). It is no part of this
 project and is installed by whoever wants it: analysis/requirements-tetrahedra.txt.

@@ -89,7 +89,9 @@ def is_archive(path: Path) -> bool:
 
 
 def _refused(path: Path, found: str) -> UserError:
-    return UserError(f"{path}: {found}; allowed: an archive of ./bench archive ({SCHEMA}), as it was written")
+    return UserError(
+        f"{path}: {found}; allowed: an archive of ./bench data archive ({SCHEMA}), as it was written"
+    )
 
 
 def _stays_inside(name: str) -> bool:

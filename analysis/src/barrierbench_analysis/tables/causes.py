@@ -1,4 +1,4 @@
-"""A condition number taken apart: the verb `bench causes`.
+"""A condition number taken apart: the verb `bench study causes`.
 
 Of the diagnosed Newton iteration with the largest condition number (or the one that is named): every stage
 and scaling side by side, what contact, strain limit and scaling make of it, and where the eigenvectors of
@@ -44,7 +44,8 @@ def diagnosed(folder: Path) -> tuple[dict, list[dict]]:
     rows = read_trace(record, folder)
     if not rows:
         raise UserError(
-            f"{folder / 'trace.jsonl'}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes"
+            f"{folder / 'trace.jsonl'}: not there; allowed: a run with the pass diagnose, e.g. ./bench study"
+            f" causes"
             " CONFIG.json"
         )
     return record, [row for row in rows if row["cond"]]
@@ -190,7 +191,7 @@ def run_folder(
         if asked:
             raise UserError(
                 f"{asked[0]}: given with a record, whose run is over: {given}; allowed: with a config, which"
-                f" is run, e.g. ./bench causes CONFIG.json {asked[0]}"
+                f" is run, e.g. ./bench study causes CONFIG.json {asked[0]}"
             )
         return given if given.is_dir() else given.parent
     folder = out or ROOT / "results/runs" / f"causes-{given.stem}"
@@ -207,9 +208,9 @@ def run_folder(
     return folder
 
 
-@tells("causes")
+@tells("study causes")
 def main(words: list[str]) -> int:
-    parser = parser_of("causes", __doc__.split("\n\n", 1)[1])
+    parser = parser_of("study causes", __doc__.split("\n\n", 1)[1])
     parser.add_argument(
         "run",
         type=Path,

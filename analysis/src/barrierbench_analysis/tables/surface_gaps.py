@@ -1,5 +1,5 @@
 """How close the whole surface came to obstacles and to itself in every run below some folders: ./bench
-surface-gaps RUNS...
+data surface-gaps RUNS...
 """
 
 from __future__ import annotations
@@ -70,9 +70,9 @@ def verdict(records: list[tuple[str, dict]]) -> tuple[str, list[str]]:
     )
 
 
-@tells("surface-gaps")
+@tells("data surface-gaps")
 def main(arguments: list[str]) -> int:
-    parser = parser_of("surface-gaps")
+    parser = parser_of("data surface-gaps")
     parser.add_argument(
         "runs", type=Path, nargs="+", metavar="RUNS", help="folders with records, at any depth"
     )

@@ -1,4 +1,4 @@
-"""A film for a config out of whatever holds frames: ./bench film SOURCE OUT."""
+"""A film for a config out of whatever holds frames: ./bench data film SOURCE OUT."""
 
 from __future__ import annotations
 
@@ -82,10 +82,10 @@ def film_of(source: Trajectory, body: str | None, scale: float, frame_s: float |
 
 def parse(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "film",
+        "data film",
         ABOUT,
-        "./bench film dance.pc2 out/dance --frame-s 0.041666667",
-        "./bench film results/runs/drape out/cloth --body cloth",
+        "./bench data film dance.pc2 out/dance --frame-s 0.041666667",
+        "./bench data film results/runs/drape out/cloth --body cloth",
     )
     parser.add_argument("source", type=Path, metavar="SOURCE", help="a folder or file with frames, or a run")
     parser.add_argument("out", type=Path, metavar="OUT", help="a folder that is not there yet")
@@ -95,7 +95,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells("film")
+@tells("data film")
 def main(argv: list[str]) -> int:
     arguments = parse(argv)
     source = read_trajectory(arguments.source)

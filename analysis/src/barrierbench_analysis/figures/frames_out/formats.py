@@ -1,4 +1,4 @@
-"""The formats of `bench frames`: each writes a sequence into a folder.
+"""The formats of `bench data frames`: each writes a sequence into a folder.
 
 Frames are numbered from 0, one after the other, in the order of times.csv.
 """

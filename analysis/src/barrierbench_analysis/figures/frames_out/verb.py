@@ -1,4 +1,4 @@
-"""Files of the frames of a run for other tools: ./bench frames RUN OUT --format obj|ply|pc2|vtu."""
+"""Files of the frames of a run for other tools: ./bench data frames RUN OUT --format obj|ply|pc2|vtu."""
 
 from __future__ import annotations
 
@@ -154,10 +154,11 @@ _times.__name__ = f"number from 1 to {MOST_TIMES}"
 
 def parse(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "frames",
+        "data frames",
         ABOUT,
-        "./bench frames results/runs/drape out/drape --format obj --subdivide 2 --smooth",
-        "./bench frames results/runs/duck out/duck --format pc2 --render-mesh fine.obj --body duck --smooth",
+        "./bench data frames results/runs/drape out/drape --format obj --subdivide 2 --smooth",
+        "./bench data frames results/runs/duck out/duck --format pc2 --render-mesh fine.obj --body duck"
+        " --smooth",
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
     parser.add_argument("out", type=Path, metavar="OUT", help="a folder that is not there yet")
@@ -218,7 +219,7 @@ def _check_together(given: argparse.Namespace) -> None:
         raise UserError(f"{option}: nothing is drawn finer; allowed: with --render-mesh or --subdivide")
 
 
-@tells("frames")
+@tells("data frames")
 def main(argv: list[str]) -> int:
     given = parse(argv)
     _check_together(given)

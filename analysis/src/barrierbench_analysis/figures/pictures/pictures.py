@@ -1,4 +1,4 @@
-"""The stills at the top of README: runs of seconds, drawn as ./bench render --bare draws them, with their
+"""The stills at the top of README: runs of seconds, drawn as ./bench draw still --bare draws them, with their
 captions.
 
 Exit codes: 0 all are made, 2 a run did not end ok, a picture is too large, or README has no place for them.
@@ -121,9 +121,9 @@ def placed(text: str, row: str) -> str:
     return found.sub(lambda match: f"{match[1]}{row}\n{match[2]}", text, count=1)
 
 
-@tells("pictures")
+@tells("draw pictures")
 def main(argv: list[str]) -> int:
-    parser = parser_of("pictures", __doc__)
+    parser = parser_of("draw pictures", __doc__)
     parser.add_argument(
         "--runs",
         type=Path,

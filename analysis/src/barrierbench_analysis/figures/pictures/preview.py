@@ -1,4 +1,4 @@
-"""The start of a config as a still, without a run: ./bench render CONFIG."""
+"""The start of a config as a still, without a run: ./bench draw still CONFIG."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """The verb render: a still of a run or of the start of a config, or all frames of a run in motion:
-./bench render RUN [--step N] [--color gap|stretch|load|body].
+./bench draw still RUN [--step N] [--color gap|stretch|load|body].
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ MOST_TIMES = 4  # 4^4 = 256 triangles for one
 
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "render",
+        "draw still",
         "A config in the place of RUN: its start is drawn, nothing is run.",
-        "./bench render results/runs/drape --color gap --out drape.gif",
-        "./bench render configs/scenes/sheets_on_ball.json --out start.png",
+        "./bench draw still results/runs/drape --color gap --out drape.gif",
+        "./bench draw still configs/scenes/sheets_on_ball.json --out start.png",
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json; or a config")
     parser.add_argument("--step", type=int, help="a step with a frame, -1: the start (default: the last)")
@@ -123,7 +123,7 @@ def written(given: argparse.Namespace) -> Path:
     return render(given.run, given.step, given.out, look)
 
 
-@tells("render")
+@tells("draw still")
 def main(arguments: list[str]) -> int:
     print(written(parse(arguments)))
     return 0

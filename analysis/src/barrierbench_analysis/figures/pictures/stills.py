@@ -76,10 +76,10 @@ def sheet(stills: list[Still], out: Path, columns: int) -> Path:
     return out
 
 
-@tells("stills")
+@tells("draw sheet")
 def main(argv: list[str]) -> int:
     """0: drawn; 2: a run without a record or frames."""
-    parser = parser_of("stills", __doc__)
+    parser = parser_of("draw sheet", __doc__)
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of run.json")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE.png", help=MEANS)
     parser.add_argument("--columns", type=int, default=3, metavar="N", help="pictures in a row (default: 3)")

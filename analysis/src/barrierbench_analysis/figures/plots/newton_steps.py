@@ -1,4 +1,4 @@
-"""Residual curves of single time steps, one line a choice of Hessian, from the file that `./bench steps
+"""Residual curves of single time steps, one line a choice of Hessian, from the file that `./bench data steps
 --out` writes.
 """
 
@@ -63,9 +63,9 @@ TRIAL = {
 
 def read_steps(path: Path) -> dict:
     """The file as it is. Raises UserError with place, value and what is allowed when it is none of `./bench
-    steps --out`.
+    data steps --out`.
     """
-    data = read_of_schema(path, SCHEMA, "; ./bench steps --out makes it")
+    data = read_of_schema(path, SCHEMA, "; ./bench data steps --out makes it")
     trials, config = data.get("trials"), data.get("config")
     if not isinstance(trials, list) or not trials:
         raise UserError(f"{path}#/trials: no trials; allowed: a list of at least one")
@@ -183,7 +183,7 @@ def figure(data: dict, stem: Path) -> list[Path]:
 
 
 def make(file: Path, out: Path | None) -> int:
-    """The figure of a file of `./bench steps --out`; the exit code."""
+    """The figure of a file of `./bench data steps --out`; the exit code."""
     for path in figure(read_steps(file), (out or file.parent) / file.stem):
         print(path)
     return 0

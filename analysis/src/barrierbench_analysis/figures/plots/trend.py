@@ -30,7 +30,8 @@ DASHES = ("-", "--", ":", "-.")
 APART = 0.1  # between lines of two cases, in distances of commits
 LEAST = 1.1  # an axis reaches at least so far from 1
 SHOWN = (
-    "What ./bench accept kept in results/baselines, commit after commit, over the first value of each case;"
+    "What ./bench gate accept kept in results/baselines, commit after commit, over the first value of each"
+    " case;"
     " colour and marker: formulation, dash: scene. A line begins with the commit that brought its case. Bars:"
     " the envelope that the gate holds it to."
 )

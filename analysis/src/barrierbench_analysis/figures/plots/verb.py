@@ -1,4 +1,5 @@
-"""The verb figures: those of the records below a folder, in an archive of one, or of ./bench steps --out."""
+"""The verb figures: those of the records below a folder, in an archive of one, or of ./bench data steps
+--out."""
 
 from __future__ import annotations
 
@@ -11,9 +12,9 @@ from barrierbench_analysis.tables.archive import beside, is_archive, study
 from . import demo, newton_steps
 
 
-@tells("figures")
+@tells("draw figures")
 def main(argv: list[str]) -> int:
-    parser = parser_of("figures")
+    parser = parser_of("draw figures")
     parser.add_argument(
         "runs", type=Path, metavar="RUNS", help="a folder with records, an archive of one, or that file"
     )

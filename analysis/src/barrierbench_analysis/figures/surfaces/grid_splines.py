@@ -11,7 +11,7 @@ import numpy as np
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.frames import Frame
 
-ALLOWED = "allowed: bodies whose mesh is of the generator grid; ./bench render --hide leaves others out"
+ALLOWED = "allowed: bodies whose mesh is of the generator grid; ./bench draw still --hide leaves others out"
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ def _sphere(radius: float) -> tuple[np.ndarray, np.ndarray]:
 def obstacle_mesh(obstacle: dict, center: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Points [n, 3] m and triangles [k, 3] with normals towards the allowed side. obstacle: of scene.json. A
     plane is a square and a cylinder a tube of half length `reach` round the point nearest `center`, as
-    ./bench render draws them.
+    ./bench draw still draws them.
     """
     point = np.array(obstacle["point_m"], float)
     inside = bool(obstacle.get("inside"))

@@ -6,6 +6,7 @@ import textwrap
 
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.pages.stated.sources import measured_elsewhere
+from barrierbench_analysis.program.verbs import renewed
 from barrierbench_analysis.studies.claims import frontiers, verdict_code
 from barrierbench_analysis.studies.claims.entry import Claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import Answer
@@ -194,7 +195,7 @@ def _sweeps(table: Table) -> list[str]:
 
 HEAD = """# Claims
 
-Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/results/method/claims.md, has the rules. A
+Made by `./bench study claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/results/method/claims.md, has the rules. A
 number is the mean of its scenes (a ratio: of their logarithms), a scene the mean of its levels (resolution, load, limit), a level that of its starts, with a 95% interval
 over scenes by Student's t ([COVERAGE.md](COVERAGE.md)), or what its line says: levels and starts are no samples. cond is a condition number. Every part names its slice.
 Verdicts from runs are exploratory: their rules were changed after numbers were seen, or not registered before them; the confirmed ones are over scenes that no rule was
@@ -238,7 +239,7 @@ def verdict_table(answers: list[Answer]) -> list[str]:
     return table_lines(VERDICT_COLUMNS, rows)
 
 
-BEGIN, END = "<!-- claims: written by ./bench claims -->\n", "<!-- /claims -->"
+BEGIN, END = "<!-- claims: written by ./bench study claims -->\n", "<!-- /claims -->"
 
 
 def in_page(page: str, answers: list[Answer]) -> str:
@@ -268,7 +269,7 @@ def markdown(answers: list[Answer], table: Table) -> str:
             for name, (meaning, _, machine, _) in METRICS.items()
         ),
     ]
-    return "\n".join(lines) + "\n"
+    return renewed("\n".join(lines)) + "\n"  # texts of claims are kept
 
 
 def text(answers: list[Answer]) -> str:

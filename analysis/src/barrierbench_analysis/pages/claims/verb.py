@@ -73,7 +73,11 @@ def gather(claims: list[Claim], runs: Path, kept: Table) -> Table:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "claims", __doc__, "./bench claims", "./bench claims --no-run", "./bench claims --register K3"
+        "study claims",
+        __doc__,
+        "./bench study claims",
+        "./bench study claims --no-run",
+        "./bench study claims --register K3",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
     parser.add_argument(
@@ -111,7 +115,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells("claims")
+@tells("study claims")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.coverage:
@@ -154,7 +158,8 @@ def register(claims: list[Claim], runs: Path, run_before: str) -> int:
         entry = registry.register(claim, table, run_before=run_before)
         print(
             f"{claim.id}: registered on {entry['date']}, rule {entry['rule_sha256'][:12]}, sweeps"
-            f" {', '.join(entry['sweeps'])}. Commit claims/confirmation/registry.json before ./bench claims"
+            f" {', '.join(entry['sweeps'])}. Commit claims/confirmation/registry.json before ./bench study"
+            f" claims"
             f" {claim.id}"
         )
     return 0

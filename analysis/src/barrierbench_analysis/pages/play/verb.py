@@ -1,5 +1,5 @@
-"""One self-contained HTML file that plays the frames of a run, or of two runs side by side: ./bench play RUN
-[RUN2].
+"""One self-contained HTML file that plays the frames of a run, or of two runs side by side: ./bench draw
+player RUN [RUN2].
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ _megabytes_asked.__name__ = "number of MB above 0"
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
-    parser = parser_of("play", "Frames are written by runs with --set /output/frames_every=1.")
+    parser = parser_of("draw player", "Frames are written by runs with --set /output/frames_every=1.")
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUN", help="folder of run.json; one or two")
     parser.add_argument("--out", type=Path, help="the HTML file (default: play.html in the folder of RUN)")
     color_argument(parser, COLOURS, "gap", "what colors mean at first; the page can change it")
@@ -155,7 +155,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     return args
 
 
-@tells("play")
+@tells("draw player")
 def main(arguments: list[str]) -> int:
     args = parse(arguments)
     out = args.out or default_out(args.runs)

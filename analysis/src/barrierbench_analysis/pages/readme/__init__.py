@@ -1,1 +1,1 @@
-"""Numbers and snippets of README.md and docs/results: made and checked by `bench readme`."""
+"""Numbers and snippets of README.md and docs/results: made and checked by `bench dev readme`."""

@@ -37,7 +37,7 @@ def copy(pages: list[str], made: Path, docs: Path) -> list[str]:
 def absent(docs: Path) -> list[str]:
     """One line for every figure that a caption names and that is not there."""
     return [
-        f"{path}: names {name}, and {docs}/{name}.png is not there; ./bench readme --write copies it"
+        f"{path}: names {name}, and {docs}/{name}.png is not there; ./bench dev readme --write copies it"
         for path in sorted(docs.glob("*.txt"))
         for name in dict.fromkeys(COMPANY.findall(input_file.read_text(path)))
         if not (docs / f"{name}.png").is_file()

@@ -20,7 +20,7 @@ def gather(file: Path = FILE) -> list[str]:
     try:
         found = read(file)
     except (UserError, OSError) as error:
-        raise UserError(f"{file}: {error}; ./bench gap-map --quick makes one") from error
+        raise UserError(f"{file}: {error}; ./bench study gap-map --quick makes one") from error
     n, (low, high) = counts(found.rows), found.about["unknowns"]
     of = (
         f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {found.about['runs']} runs of"

@@ -22,7 +22,7 @@ from barrierbench_analysis.tables.table import summary_table
 FILE = ROOT / "results" / "demo.json"
 RUNS = ROOT / "results" / "runs" / "demo"
 NAME = "barrierbench.demo_numbers/1"
-REMEDY = "; ./bench demo, then ./bench readme --write, makes it"
+REMEDY = "; ./bench demo, then ./bench dev readme --write, makes it"
 SUMMED = (  # columns of the summary table that a row keeps
     "group",
     "series",

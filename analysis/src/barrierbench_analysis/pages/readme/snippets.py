@@ -25,7 +25,14 @@ from barrierbench_analysis.program.start import in_shell, started
 
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```[ ]*$", re.DOTALL | re.MULTILINE)
 PLAIN = ("", "text")  # what is shown and not run: output, a file's layout
-CHECKED_CONFIG = ("run", "steps", "explain", "check", "causes", "match")  # verbs whose first file is a config
+CHECKED_CONFIG = (
+    "run",
+    "data steps",
+    "explain",
+    "check",
+    "study causes",
+    "study match",
+)  # first file: a config
 SAFE = ("list", "help", "eval", "device")  # answer at once
 MADE = (
     "results/runs",
@@ -78,11 +85,11 @@ def _missing_files(words: list[str]) -> list[str]:
 
 
 @functools.cache
-def _helped(verb: str) -> subprocess.CompletedProcess:
+def _helped(row: verbs.Verb) -> subprocess.CompletedProcess:
     """VERB --help, of the program or of this package."""
-    row = verbs.find(verb)
-    if not row:
-        return started(verb, "--help", timeout=SECONDS)
+    verb = row.name
+    if row.word:
+        return started(row.word, "--help", timeout=SECONDS)
     said, told = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
         try:
@@ -92,7 +99,12 @@ def _helped(verb: str) -> subprocess.CompletedProcess:
             code = ended.code
     if said.getvalue() or told.getvalue():
         return subprocess.CompletedProcess([verb, "--help"], code, said.getvalue(), told.getvalue())
-    command = [sys.executable, str(ROOT / "analysis"), verb, "--help"]  # a process of its own answers
+    command = [
+        sys.executable,
+        str(ROOT / "analysis"),
+        *verb.split(),
+        "--help",
+    ]  # a process of its own answers
     return subprocess.run(command, check=False, capture_output=True, text=True, timeout=SECONDS)
 
 
@@ -118,28 +130,38 @@ def _test_fault(rest: list[str]) -> str:
 
 def _command_fault(words: list[str]) -> str:
     """Of `./bench VERB ...`; empty when it is well."""
-    verb, rest = words[1], words[2:]
-    if verb == "test" and (fault := _test_fault(rest)):
+    try:
+        asked = verbs.asked(words[1:])
+    except UserError as error:
+        return str(error)
+    if asked is None:
+        return "" if words[1].startswith("-") else f"{words[1]}: no verb"
+    row, rest, note = asked
+    if note:
+        return note
+    if row.name == "test" and (fault := _test_fault(rest)):
         return fault
     if missing := _missing_files(rest):
         return f"{missing[0]}: not there"
-    row = verbs.find(verb)
-    if row and not (row.module and row.needs in (verbs.ENVIRONMENT, verbs.PROGRAM)):
-        return ""  # of the script itself, or of a target that is built for it alone
-    helped = _helped(verb)
+    if isinstance(row, verbs.Heading) or not (
+        row.word or row.module and row.needs in (verbs.ENVIRONMENT, verbs.PROGRAM)
+    ):
+        return ""  # a list of sub-commands, of the script itself, or of a target that is built for it alone
+    helped = _helped(row)
     if helped.returncode != 0:
         return _told(helped)
     flags = [word.split("=")[0] for word in rest if word.startswith("--")]
     if unknown := [flag for flag in flags if not re.search(rf"{flag}\b", helped.stdout)]:
-        return f"{verb} has no {unknown[0]}"
-    if verb in SAFE and not row:
-        done = started(verb, *rest, timeout=SECONDS)
+        return f"{row.name} has no {unknown[0]}"
+    if row.word in SAFE:
+        done = started(row.word, *rest, timeout=SECONDS)
         return "" if done.returncode in (0, 5) else _told(done)
     return ""
 
 
 def _config_fault(words: list[str]) -> str:
-    verb, files = words[1], [word for word in words[2:] if word.startswith("configs/")]
+    asked = verbs.asked(words[1:])
+    verb, files = asked.row.name if asked else "", [word for word in words[2:] if word.startswith("configs/")]
     if verb in CHECKED_CONFIG and files:
         verify = [
             "explain" if any("/device" in word for word in words) else "check",

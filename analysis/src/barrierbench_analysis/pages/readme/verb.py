@@ -1,5 +1,5 @@
 """Makes the numbers of README.md and docs/results from the records of ./bench demo and the kept numbers of
-./bench claims, and checks them and every snippet of these pages and of the other pages of docs. It also
+./bench study claims, and checks them and every snippet of these pages and of the other pages of docs. It also
 writes the pages of docs/reference.
 
 Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 there is nothing to make it
@@ -43,8 +43,8 @@ MORE = ("CONTRIBUTING.md", "docs/**/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
-    """The answer, the numbers of the demo, those of the claims' slices, the sentences of the gap map, what several
-    studies say of one quantity, and what studies take. Errors: UserError where one is missing.
+    """The answer, the numbers of the demo, those of the claims' slices, the sentences of the gap map, what
+    several studies say of one quantity, and what studies take. Errors: UserError where one is missing.
     """
     claims, found = claims_table.read(claims_table.FILE), map_table.read(MAP)
     studies = {
@@ -89,7 +89,10 @@ def write_pages(root: Path, numbers: dict) -> list[str]:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "readme", __doc__, "./bench demo && ./bench readme --write", "./bench claims && ./bench readme --fill"
+        "dev readme",
+        __doc__,
+        "./bench demo && ./bench dev readme --write",
+        "./bench study claims && ./bench dev readme --fill",
     )
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
@@ -104,7 +107,8 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "--fill",
         action="store_true",
         help=(
-            "fill the pages with the numbers that are kept in results/: after ./bench claims, without records"
+            "fill the pages with the numbers that are kept in results/: after ./bench study claims, without"
+            " records"
             " of the demo"
         ),
     )
@@ -142,7 +146,7 @@ def keep_demo(runs: Path) -> None:
     print(f"docs: {', '.join(copied) or 'no figure'}")
 
 
-@tells("readme")
+@tells("dev readme")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.write:

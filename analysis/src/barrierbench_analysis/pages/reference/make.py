@@ -18,7 +18,7 @@ from . import MARK, fields, settings, text
 FOLDER = "docs/reference"
 ONE_PAGE = 200  # rows of a format that stands on one page
 SMALL = 14  # rows of a section that stands on the page of its format itself
-COMMAND = "./bench readme --reference"
+COMMAND = "./bench dev readme --reference"
 
 
 def _said(*words: str) -> str:

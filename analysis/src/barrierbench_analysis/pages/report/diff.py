@@ -1,5 +1,5 @@
 """Two folders of records beside each other: runs of one config are paired, and each pair is judged by the
-rules of ./bench compare (studies/gate/compare.py), the first folder being the reference.
+rules of ./bench gate compare (studies/gate/compare.py), the first folder being the reference.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ COST, PHYSICS, INVARIANT = "cost", "physics", "invariant"
 
 @dataclass
 class Pair:
-    """A run of each folder, of one config. findings: what ./bench compare says of the second one."""
+    """A run of each folder, of one config. findings: what ./bench gate compare says of the second one."""
 
     old: Entry
     new: Entry
@@ -121,7 +121,7 @@ def diff_of(a: Folder, b: Folder) -> Diff:
         raise UserError(
             f"{a.place} and {b.place} have no config in common ({len(only_a)} and {len(only_b)} records);"
             f" allowed:"
-            " folders with runs of the same config_id (./bench compare --different-configs compares two"
+            " folders with runs of the same config_id (./bench gate compare --different-configs compares two"
             " others)"
         )
     for pair in pairs:

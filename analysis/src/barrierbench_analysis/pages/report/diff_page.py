@@ -82,9 +82,9 @@ def _lonely(diff: Diff) -> list[Sentence]:
 
 def limits(diff: Diff) -> list[str]:
     said = [
-        "Tolerances are those of ./bench compare, made round one run of the first folder: they are no"
+        "Tolerances are those of ./bench gate compare, made round one run of the first folder: they are no"
         " envelope of"
-        " how much the numbers scatter (./bench calibrate measures one).",
+        " how much the numbers scatter (./bench gate calibrate measures one).",
         "Times are shown and judge nothing.",
     ]
     for column, what in (("build_id", "build"), ("machine_id", "machine")):
@@ -105,7 +105,7 @@ def regressed(diff: Diff) -> tuple[Table, int]:
     """What is red, and how many more rows there would be."""
     table = Table(
         "regressed",
-        "What regressed, by the rules of ./bench compare",
+        "What regressed, by the rules of ./bench gate compare",
         [
             Column("run"),
             Column("kind", "invariant, physics or cost", filtered=True),
@@ -275,5 +275,5 @@ def page(diff: Diff, out: Path) -> str:
         metrics=metrics(diff),
         pairs=pairs(diff, out),
         lonely=lonely(diff, out),
-        commands=[f"./bench compare {a} {b} --common", f"./bench report {a} {b}"],
+        commands=[f"./bench gate compare {a} {b} --common", f"./bench report {a} {b}"],
     )

@@ -1,5 +1,5 @@
-"""The figures of a report as data URIs: those of ./bench figures for groups whose runs one figure can hold,
-and for larger groups one that puts a mark for each run.
+"""The figures of a report as data URIs: those of ./bench draw figures for groups whose runs one figure can
+hold, and for larger groups one that puts a mark for each run.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def figure_of(group: str, png: Path) -> Figure:
 
 
 def _pictures(paths: list[Path]) -> list[Path]:
-    """Those that a page shows: eigenvalues stay with ./bench figures."""
+    """Those that a page shows: eigenvalues stay with ./bench draw figures."""
     return [path for path in paths if path.suffix == ".png" and not path.stem.endswith(condition.EIGENVALUES)]
 
 
@@ -72,7 +72,7 @@ def _over_time(records: Records, group: str, out: Path) -> list[Path]:
 
 
 def _kept(group: str, where: Path) -> list[Path]:
-    """What ./bench figures has drawn of a group, in the order of OVER_TIME."""
+    """What ./bench draw figures has drawn of a group, in the order of OVER_TIME."""
     names = [f"{module.__name__.rsplit('.', 1)[1]}_{group}" for module in OVER_TIME]
     return _pictures(
         [
@@ -119,7 +119,7 @@ def drawn(folder: Folder, kept: Path | None = None) -> Figures:
         if left := some[MOST_GROUPS:]:
             found.notes.append(
                 f"Left out to keep the page small: figures of {counted(len(left), what[:-1], what)}"
-                f" ({listed(left)}); ./bench figures draws them."
+                f" ({listed(left)}); ./bench draw figures draws them."
             )
     if large:
         found.notes.append(

@@ -64,7 +64,7 @@ def title(folder: Folder) -> str:
 def commands(folder: Folder) -> list[str]:
     """Of the whole page: its sweeps, the figures, the page."""
     root = tables.shown_path(folder.place)
-    return [*methods.sweep_commands(folder), f"./bench figures {root}", f"./bench report {root}"]
+    return [*methods.sweep_commands(folder), f"./bench draw figures {root}", f"./bench report {root}"]
 
 
 def page(folder: Folder, out: Path, figures: Figures, players: Players) -> str:

@@ -61,7 +61,7 @@ def _player(runs: tuple[Entry, ...]) -> Player:
     notes = differences(films)
     kept = sum(len(film.steps) for film in films)
     if left := sum(film.left_out for film in films):
-        notes.append(f"{kept} of {kept + left} frames are in this page; ./bench play shows all.")
+        notes.append(f"{kept} of {kept + left} frames are in this page; ./bench draw player shows all.")
     text = page(films, "gap", notes, shared_library=SLOT)
     title = " beside ".join(run.name for run in runs)
     about = f"{counted(kept, 'frame')}. {' '.join(notes)}".strip()
@@ -90,5 +90,7 @@ def made(folder: Folder, most: int = MOST) -> Players:
     if found.shown:
         found.library = packed_library()
     if left := kept - len(shown):
-        found.notes.append(f"{counted(left, 'more run')} kept frames: ./bench play RUN [RUN2] plays them.")
+        found.notes.append(
+            f"{counted(left, 'more run')} kept frames: ./bench draw player RUN [RUN2] plays them."
+        )
     return found

@@ -42,7 +42,7 @@ def report(
     most_players: int = players.MOST,
     archive: Path | None = None,
 ) -> str:
-    """Writes the page of a folder; what is to be said of it. drawn: where ./bench figures has just drawn
+    """Writes the page of a folder; what is to be said of it. drawn: where ./bench draw figures has just drawn
     the figures of these records. archive: that the folder was unpacked from. Errors: UserError, RecordError.
     """
     found = gathered(folder, archive)

@@ -217,7 +217,7 @@ def _about_scenes(folder: Folder) -> list[str]:
         count = "One scene" if len(scenes) == 1 else f"{len(scenes)} scenes"
         said.append(
             f"{count} ({listed(list(scenes))}): nothing is said about others; a claim of this project needs"
-            f" {CLAIM_SCENES} (./bench claims)."
+            f" {CLAIM_SCENES} (./bench study claims)."
         )
     single = [
         f"{name}: {next(iter(sizes))} vertices"

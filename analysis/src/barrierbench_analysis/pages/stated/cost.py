@@ -50,13 +50,17 @@ def _counted(seconds: list[float]) -> tuple[int, float]:
 
 
 STUDIES = {
-    "claims": ("claims.json", "./bench claims", _claims),
-    "gap map": ("gap_map.json", "./bench gap-map", lambda d: _counted(_column(d, "seconds"))),
-    "Pareto fronts": ("pareto.json", "./bench pareto", lambda d: (len(d["rows"]), d["about"]["seconds"])),
-    "work-precision": ("work_precision.json", "./bench work-precision", _work_precision),
-    "catalogue": ("catalogue.json", "./bench catalogue", _catalogue),
-    "stress suite": ("stress.json", "./bench stress", _stress),
-    "ablation": ("ablation.json", "./bench ablation", lambda d: _counted(_column(d, "core_s"))),
+    "claims": ("claims.json", "./bench study claims", _claims),
+    "gap map": ("gap_map.json", "./bench study gap-map", lambda d: _counted(_column(d, "seconds"))),
+    "Pareto fronts": (
+        "pareto.json",
+        "./bench study pareto",
+        lambda d: (len(d["rows"]), d["about"]["seconds"]),
+    ),
+    "work-precision": ("work_precision.json", "./bench study work-precision", _work_precision),
+    "catalogue": ("catalogue.json", "./bench study catalogue", _catalogue),
+    "stress suite": ("stress.json", "./bench study stress", _stress),
+    "ablation": ("ablation.json", "./bench study ablation", lambda d: _counted(_column(d, "core_s"))),
 }
 
 

@@ -1,5 +1,6 @@
-"""C++ of a formula: a struct that is made like a built-in shape, from u, e, l (core/barrier/normalized_gap.hpp), with
-common subexpressions computed once; in a plugin (core/model/plugin/barrierbench_plugin.h), and in a kernel for a card.
+"""C++ of a formula: a struct that is made like a built-in shape, from u, e, l
+(core/barrier/normalized_gap.hpp), with common subexpressions computed once; in a plugin
+(core/model/plugin/barrierbench_plugin.h), and in a kernel for a card.
 """
 
 from __future__ import annotations
@@ -109,7 +110,8 @@ extern "C" __global__ void __launch_bounds__(bb::exec::block_threads)
 
 
 class Printer(CXX17CodePrinter):
-    """Every number as T(...), small whole powers as products: the same text for float, double and four doubles."""
+    """Every number as T(...), small whole powers as products: the same text for float, double and four
+    doubles."""
 
     def _print_Integer(self, x: sp.Integer) -> str:
         return f"T({int(x)}.0)"

@@ -31,7 +31,7 @@ CACHES = {".pc2": of_pc2, ".mdd": of_mdd}  # one file for all frames, without ce
 
 def of_folder(folder: Path) -> Trajectory:
     """All files of the one format of frames that is there, by a collection (.pvd) where one is; or one PC2
-    and the mesh of its name. The obstacles beside them, as `bench frames` writes them, are no frame.
+    and the mesh of its name. The obstacles beside them, as `bench data frames` writes them, are no frame.
     """
     known = (*SUFFIXES, *LISTS, *CACHES, ".pvd")
     every = [p for p in sorted(folder.iterdir()) if p.suffix.lower() in known]
@@ -74,7 +74,8 @@ def _of_collection(folder: Path, collections: list[Path]) -> Trajectory:
 
 
 def _of_cache_folder(folder: Path, files: list[Path]) -> Trajectory:
-    """As `bench frames --format pc2` writes it. Errors: UserError for anything else that could be frames."""
+    """As `bench data frames --format pc2` writes it. Errors: UserError for anything else that could be
+    frames."""
     cache = next(path for path in files if path.suffix.lower() in CACHES)
     meshes = [path for path in files if path.suffix.lower() in SUFFIXES and path.stem == cache.stem]
     if len(files) > 2 or len(files) - 1 != len(meshes):

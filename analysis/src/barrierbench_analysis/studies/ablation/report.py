@@ -199,7 +199,11 @@ def _what_was_run(factorial: Factorial, table: Table) -> list[str]:
             f" ({', '.join(factorial.scenes.levels)}) and {axes}; {allowed} of them are allowed. The fraction"
             f" has {spec['combinations']} in each scene; the rarest allowed pair of levels of two factors is"
             f" in {min(rarest)} to {max(rarest)} of them. {len(table.rows)} of {asked} runs are there"
-            + (f"; {missing} are not run yet, and `./bench ablation` goes on with them" if missing else "")
+            + (
+                f"; {missing} are not run yet, and `./bench study ablation` goes on with them"
+                if missing
+                else ""
+            )
             + ". Holm's factor counts all main effects of a number, or all its interactions."
         ),
         "",
@@ -228,7 +232,8 @@ def page(factorial: Factorial, table: Table, study: Study) -> str:
         "# Ablation",
         "",
         (
-            f"Written by `./bench ablation`. {about['date']}, {about['machine']}; commit {about['commit']},"
+            f"Written by `./bench study ablation`. {about['date']}, {about['machine']}; commit"
+            f" {about['commit']},"
             f" build {about['build']}. Rules: docs/results/method/ablation.md, which also"
             " lists what was changed and when."
         ),

@@ -77,7 +77,7 @@ def write(table: Table, file: Path = FILE) -> None:
 
 def read(file: Path = FILE) -> Table:
     """Errors: UserError where it is not there, or of another schema or other columns."""
-    data = read_of_schema(file, NAME, "; ./bench ablation makes it")
+    data = read_of_schema(file, NAME, "; ./bench study ablation makes it")
     return Table(data["digest"], data["about"], rows_of(data, COLUMNS, file))
 
 

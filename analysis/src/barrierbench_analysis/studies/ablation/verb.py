@@ -32,7 +32,9 @@ PAGE, PICTURE = ROOT / "results/ABLATION.md", ROOT / "docs/ablation.png"
 
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("ablation", __doc__, "./bench ablation --no-run", "./bench ablation --shards 1")
+    parser = parser_of(
+        "study ablation", __doc__, "./bench study ablation --no-run", "./bench study ablation --shards 1"
+    )
     parser.add_argument("spec", nargs="?", type=Path, default=DEFAULT, help=f"default: {DEFAULT.name}")
     parser.add_argument("--no-run", action="store_true", help="judge the rows that are kept")
     parser.add_argument("--gather", action="store_true", help="run nothing, but take rows from the records")
@@ -64,17 +66,17 @@ def gathered(factorial: Factorial, runs: Path, plan: str) -> Table:
             records += found.values()
             rows += [row_of(scene, case, record) for case, record in sorted(found.items())]
     if not rows:
-        raise UserError(f"{runs}: no record of this fraction; ./bench ablation makes them")
+        raise UserError(f"{runs}: no record of this fraction; ./bench study ablation makes them")
     return Table(factorial.digest, origin(records) | {"plan": plan}, rows)
 
 
-@tells("ablation")
+@tells("study ablation")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
     factorial = read_factorial(args.spec.absolute())
     kept = read() if FILE.is_file() else None
     if kept and kept.digest != factorial.digest and args.no_run:
-        raise UserError(f"{FILE}: made of other files than {args.spec} and its sweep; ./bench ablation")
+        raise UserError(f"{FILE}: made of other files than {args.spec} and its sweep; ./bench study ablation")
     plan = kept.about.get("plan", "") if kept and kept.digest == factorial.digest else ""
     if not args.no_run:
         shards = 0 if args.gather else args.shards or factorial.spec["shards"]
@@ -83,7 +85,7 @@ def main(argv: list[str]) -> int:
         kept = gathered(factorial, args.runs, plan)
         write(kept)
     if kept is None:
-        raise UserError(f"{FILE}: not there; ./bench ablation makes it")
+        raise UserError(f"{FILE}: not there; ./bench study ablation makes it")
     found = study(factorial, kept)
     write_whole(PAGE, page(factorial, kept, found))
     figure.draw(factorial, kept, found, PICTURE)

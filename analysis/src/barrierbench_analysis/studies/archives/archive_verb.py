@@ -1,6 +1,7 @@
 """A study as one file: a ZIP archive of all files below a folder with records, and in it archive.json, which
-has the version of this form and size and sha256 of every file. ./bench compare, report, figures, collect and
-verify read it in the place of the folder. The same files make the same archive, byte for byte.
+has the version of this form and size and sha256 of every file. ./bench gate compare, report, draw figures,
+data collect and verify read it in the place of the folder. The same files make the same archive, byte for
+byte.
 
 Exit codes: 0 written, 2 no record below the folder, or the file cannot be written.
 """
@@ -33,9 +34,9 @@ def inputs_outside(folder: Path) -> list[str]:
     return list(found)
 
 
-@tells("archive")
+@tells("data archive")
 def main(argv: list[str]) -> int:
-    parser = parser_of("archive", __doc__, "./bench report strip.zip")
+    parser = parser_of("data archive", __doc__, "./bench report strip.zip")
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="a folder with records below it")
     parser.add_argument("file", type=Path, metavar="FILE.zip", help="the archive")
     args = parser.parse_args(argv)

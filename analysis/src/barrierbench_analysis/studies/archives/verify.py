@@ -1,10 +1,10 @@
-"""The records below a folder, or in an archive of ./bench archive, held against their files. Of every record:
-it is read as strictly as for a comparison; config_id and run_id are those of what it holds; counts and
-largest values of its summary are those of its steps; its outcome agrees with its checks and its audit; every
-file that it names is there with the sha256 that it names; and no other file lies in its folder but, of a run
-that was cut, its checkpoint, whose contents are not judged. Of every sweep: each case has its record, and no
-record is of no case. A number that is none of these may be edited unseen: --rerun N makes N of the runs
-again, chosen by --seed, and asks for the same state and the same numbers to the last bit; --archive FILE
+"""The records below a folder, or in an archive of ./bench data archive, held against their files. Of every
+record: it is read as strictly as for a comparison; config_id and run_id are those of what it holds; counts
+and largest values of its summary are those of its steps; its outcome agrees with its checks and its audit;
+every file that it names is there with the sha256 that it names; and no other file lies in its folder but, of
+a run that was cut, its checkpoint, whose contents are not judged. Of every sweep: each case has its record,
+and no record is of no case. A number that is none of these may be edited unseen: --rerun N makes N of the
+runs again, chosen by --seed, and asks for the same state and the same numbers to the last bit; --archive FILE
 holds every file against those that were packed.
 
 Exit codes: 0 nothing is wrong, 1 something is, or nothing was judged, 2 no folder, no archive.

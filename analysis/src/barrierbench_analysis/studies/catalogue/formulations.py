@@ -22,7 +22,7 @@ ABOUT = {
     "cubic_dynamic_toi": "kappa anew in every iteration and steps that end at an accumulated time"
     " of impact, as Ando 2024 published both, in double precision",
 }
-PAIR = ("log", "cubic_dynamic_consistent")  # of ./bench robust, where none are named
+PAIR = ("log", "cubic_dynamic_consistent")  # of ./bench study robust, where none are named
 
 
 def cases(labels: list[str]) -> list[dict]:

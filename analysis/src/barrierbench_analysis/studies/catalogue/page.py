@@ -28,7 +28,7 @@ STILLS = "log"  # the formulation of the picture
 
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("catalogue", __doc__, "./bench catalogue twist drape --formulations log")
+    parser = parser_of("study catalogue", __doc__, "./bench study catalogue twist drape --formulations log")
     parser.add_argument("names", nargs="*", metavar="NAME", help="configs/catalogue/NAME.json (default: all)")
     parser.add_argument(
         "--formulations",
@@ -99,7 +99,7 @@ def _draw(runs: Path, scenes: dict[str, dict]) -> None:
     print(sheet.contact_sheet(found, PICTURE))
 
 
-@tells("catalogue")
+@tells("study catalogue")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
     asked, scenes = entries(args.names), table.read()
@@ -113,7 +113,7 @@ def main(argv: list[str]) -> int:
     kept = {entry.name: scenes[entry.name] for entry in asked if entry.name in scenes}
     missing = [entry.name for entry in asked if entry.name not in kept]
     if missing and (args.names or not kept):
-        raise UserError(f"{table.FILE}: nothing kept of {missing[0]}: ./bench catalogue {missing[0]}")
+        raise UserError(f"{table.FILE}: nothing kept of {missing[0]}: ./bench study catalogue {missing[0]}")
     if args.sheet:
         _draw(args.runs, scenes)
     if args.no_run:

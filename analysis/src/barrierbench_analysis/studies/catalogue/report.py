@@ -56,7 +56,7 @@ def _head(asked: list[Entry], here: list[Entry], scenes: dict[str, dict]) -> lis
         "# Catalogue",
         "",
         (
-            f"Written by `./bench catalogue`. {dates}, {machines}; commit {commits}. The scenes of"
+            f"Written by `./bench study catalogue`. {dates}, {machines}; commit {commits}. The scenes of"
             f" configs/catalogue at the size mini, {len(here)} of {len(asked)}; {len(rows)} runs,"
             f" {sum(not row['red'] for row in rows)} of which end as expected."
         ),
@@ -147,7 +147,8 @@ def _robust(robust: dict[str, list[dict]]) -> list[str]:
     return [
         "## Jittered starts",
         "",
-        "Written by `./bench robust`: a seed passes when its run ends `ok` without a crossing, or, of a scene"
+        "Written by `./bench study robust`: a seed passes when its run ends `ok` without a crossing, or, of"
+        " a scene"
         " that must be rejected, when it is.",
         "",
         *markdown(head, lines),

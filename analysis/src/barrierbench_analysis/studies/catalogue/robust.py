@@ -31,7 +31,7 @@ NAME = "barrierbench.robust/1"
 
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("robust", __doc__, "./bench robust --all")
+    parser = parser_of("study robust", __doc__, "./bench study robust --all")
     parser.add_argument("names", nargs="*", metavar="SCENE", help="configs/catalogue/SCENE.json")
     parser.add_argument("--all", action="store_true", help="all scenes of the catalogue")
     parser.add_argument("--seeds", type=int, default=10, metavar="N", help="starts (default: 10)")
@@ -109,7 +109,7 @@ def write(scenes: dict[str, list[dict]], file: Path = FILE) -> None:
     write_whole(file, f'{{\n "schema": "{NAME}",\n "scenes": {{\n' + ",\n".join(lines) + "\n }\n}\n")
 
 
-@tells("robust")
+@tells("study robust")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
     seeds, kept, lines = list(range(1, args.seeds + 1)), read(), []

@@ -1,4 +1,4 @@
-"""One picture of all scenes: the last state of a run of each, drawn by ./bench render."""
+"""One picture of all scenes: the last state of a run of each, drawn by ./bench draw still."""
 
 from __future__ import annotations
 

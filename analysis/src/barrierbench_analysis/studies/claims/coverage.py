@@ -1,5 +1,5 @@
 """How often the 95% interval over scenes has the true mean in it: a seeded simulation, printed by `./bench
-claims --coverage`.
+study claims --coverage`.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def simulations(runs: int = RUNS) -> Iterator[tuple[str, int, np.ndarray]]:
 
 HEAD = f"""# Coverage of the intervals of claims
 
-Made by `./bench claims --coverage`. Share of {RUNS} simulated sweeps whose 95% interval has the true mean in it: scenes with effects of variance 1, {LEVELS} levels a
+Made by `./bench study claims --coverage`. Share of {RUNS} simulated sweeps whose 95% interval has the true mean in it: scenes with effects of variance 1, {LEVELS} levels a
 scene (standard deviation {LEVEL_SD:g}, correlation {LEVEL_CORRELATION:g} between neighbours), {STARTS} starts with an intraclass correlation of {INTRACLASS:g}. The
 interval is Student's t on one value a scene. `tests/claims/test_coverage.py` holds every number of the table above its floor (93 to 97% for normal effects), and shows
 beside it, on the same draws, the bootstrap over scenes, levels and starts that was used before. Two clusters: with probability 2^(1-n) all n scenes are of one cluster,

@@ -61,7 +61,7 @@ class Claim:
 
     @property
     def command(self) -> str:
-        return f"./bench claims {self.id}"
+        return f"./bench study claims {self.id}"
 
 
 @dataclass(frozen=True)

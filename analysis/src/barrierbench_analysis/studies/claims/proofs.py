@@ -35,7 +35,7 @@ class Eval:
             return self.answers[text]
         self.asked.add(text)
         if self.program is None:
-            raise UserError(f"no kept answer of eval to {text}: ./bench claims asks it")
+            raise UserError(f"no kept answer of eval to {text}: ./bench study claims asks it")
         done = started("eval", plugins=list(self.plugins), input=text + "\n")
         if done.returncode != 0:
             raise UserError(f"eval {text}: {done.stderr.strip() or done.stdout.strip()}")

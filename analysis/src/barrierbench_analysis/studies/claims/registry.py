@@ -253,7 +253,8 @@ def _committed(claim: Claim, table: Table, entry: dict, root: Path) -> State:
                 "the history here is shallow"
                 if started
                 else (
-                    f"the records of {name} keep no time of their start: ./bench claims {claim.id} collects"
+                    f"the records of {name} keep no time of their start: ./bench study claims {claim.id}"
+                    f" collects"
                     " them again"
                 )
             )
@@ -282,7 +283,7 @@ def state(claim: Claim, table: Table, entries: dict, root: Path = ROOT) -> State
             (
                 f"not registered before {', '.join(run)} was run"
                 if run
-                else f"not registered: ./bench claims --register {claim.id}"
+                else f"not registered: ./bench study claims --register {claim.id}"
             ),
         )
     if changed := _changed(claim, entry):

@@ -29,7 +29,7 @@ from .parts import MOST
 FILE = ROOT / "results" / "claims.json"
 RUNS = ROOT / "results" / "runs" / "claims"
 NAME = "barrierbench.claims/1"
-AGAIN = "; remove it, then ./bench claims"
+AGAIN = "; remove it, then ./bench study claims"
 PLACE = ("scene", "level", "case", "seed")
 # run: the first 16 digits of run_id. pair: that is not comparable. Numbers of records before 3.5.0 have no
 # pair, gaps and ends

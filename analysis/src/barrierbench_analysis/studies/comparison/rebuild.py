@@ -33,7 +33,9 @@ RUNS = ROOT / "results" / "runs" / "figures"
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("figure", __doc__, "./bench figure all --quick", "./bench figure --list")
+    parser = parser_of(
+        "draw figure", __doc__, "./bench draw figure all --quick", "./bench draw figure --list"
+    )
     parser.add_argument("names", nargs="*", metavar="NAME", help="figures of --list, or all")
     parser.add_argument("--list", action="store_true", help="what there is, and what it is drawn of")
     parser.add_argument("--quick", action="store_true", help="from small runs, made where they are missing")
@@ -78,7 +80,7 @@ def draw(spec: Spec, quick: bool, place: Place, out: Path) -> list[Path]:
     return spec.kind.draw(subject, drawing)
 
 
-@tells("figure")
+@tells("draw figure")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.list:
@@ -97,7 +99,7 @@ def main(argv: list[str]) -> int:
             if len(specs) == 1:
                 raise
             refused.append(spec.name)
-            print(f"bench figure: {spec.name}: {error}", file=sys.stderr)
+            print(f"bench draw figure: {spec.name}: {error}", file=sys.stderr)
             continue
         print(f"figure {spec.name}: {time.monotonic() - start:.1f} s", file=sys.stderr)
         print("\n".join(str(path) for path in paths if path.suffix == ".png"), flush=True)

@@ -86,7 +86,7 @@ def matrices(wanted: Wanted, _: Place) -> list[Spectrum]:
     found = []
     for name in wanted.what:
         if not (MATRICES / f"{name}.mtx").is_file():
-            raise UserError(f"{MATRICES}/{name}.mtx: not there; this makes it: ./bench matrix-corpus")
+            raise UserError(f"{MATRICES}/{name}.mtx: not there; this makes it: ./bench study matrix-corpus")
         dense = read_matrix(MATRICES / f"{name}.mtx").toarray()
         about = read_object(MATRICES / f"{name}.json")
         found.append(Spectrum(name, about, np.linalg.eigvalsh(dense)))
@@ -104,7 +104,8 @@ def _git(*words: str) -> str:
 
 
 def baselines(wanted: Wanted, _: Place) -> pd.DataFrame:
-    """A row a commit that changed baselines, case and metric, the oldest first: what `./bench accept` kept.
+    """A row a commit that changed baselines, case and metric, the oldest first: what `./bench gate accept`
+    kept.
     Errors: UserError without git history.
     """
     rows = []

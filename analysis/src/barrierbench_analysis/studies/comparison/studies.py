@@ -1,5 +1,5 @@
-"""Studies with a verb of their own (./bench pareto, gap-map, work-precision) as subjects of figures: their
-kept numbers, which are made where that is allowed, and their figures in one column width.
+"""Studies with a verb of their own (./bench study pareto, gap-map, work-precision) as subjects of figures:
+their kept numbers, which are made where that is allowed, and their figures in one column width.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def _pareto_table(spec, kept: Path):
 
 
 def _pareto_make(spec, kept: Path, _: int) -> None:
-    runs = pareto.make(spec, f"./bench pareto {spec.path}", kept.parent / "records", True, [])
+    runs = pareto.make(spec, f"./bench study pareto {spec.path}", kept.parent / "records", True, [])
     write_whole(kept, pareto.to_json(runs))
 
 

@@ -160,7 +160,7 @@ def markdown(records: list[dict], prices: dict) -> str:
         "# The CUDA path on cards",
         "",
         (
-            "Written by `./bench gpu-report` from the records `results/gpu/*.json`, which"
+            "Written by `./bench study gpu-report` from the records `results/gpu/*.json`, which"
             " `experiments/gpu_evidence.sh` makes on a machine with a card."
         ),
         "",
@@ -242,9 +242,9 @@ def draw(records: list[dict], stem: Path) -> list[Path]:
     )
 
 
-@tells("gpu-report")
+@tells("study gpu-report")
 def main(arguments: list[str]) -> int:
-    parser = parser_of("gpu-report", __doc__)
+    parser = parser_of("study gpu-report", __doc__)
     parser.add_argument(
         "--records", type=Path, default=RECORDS, help="folder of records and prices (default: results/gpu)"
     )

@@ -1,12 +1,12 @@
 """Material matching: three tensile tests, one of bending, one of drape, each run by this program and by an
 engine. Stretch and bending factors of the engine are fitted; what is left is printed beside every comparison.
 
-The tests are configs on meshes that are written here, so that both sides run what `bench neutral` exports.
-Loads are weights. A strip of length L that hangs under its own weight in its own plane gets longer by g rho
-L^2/(2 Y) (Y: Young's modulus times thickness, rho: mass per area), its slowest oscillation has the period 4
-L sqrt(rho/Y); a cantilever of plate rigidity D drops by g rho L^4/(8 D) with the period 2 pi L^2/(3.516
-sqrt(D/rho)). Gravity is chosen for a strain of 2 % and a drop of L/5, and what is measured is the mean over
-the second of two periods, which is the static answer with and without damping.
+The tests are configs on meshes that are written here, so that both sides run what `bench export-scene`
+exports. Loads are weights. A strip of length L that hangs under its own weight in its own plane gets longer
+by g rho L^2/(2 Y) (Y: Young's modulus times thickness, rho: mass per area), its slowest oscillation has the
+period 4 L sqrt(rho/Y); a cantilever of plate rigidity D drops by g rho L^4/(8 D) with the period 2 pi
+L^2/(3.516 sqrt(D/rho)). Gravity is chosen for a strain of 2 % and a drop of L/5, and what is measured is the
+mean over the second of two periods, which is the static answer with and without damping.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""Scenes for engines: the file that `bench neutral` writes of a config, and what the judge is told of it."""
+"""Scenes for engines: the file that `bench export-scene` writes of a config, and what the judge is told of
+it."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ SCHEMA = "barrierbench.engine_scene/1"
 
 def exported(config: Path, sets: list[str] = ()) -> dict:
     """The scene of a config as the program builds it. Errors: UserError with what the program says."""
-    done = started("neutral", str(config), *(word for one in sets for word in ("--set", one)))
+    done = started("export-scene", str(config), *(word for one in sets for word in ("--set", one)))
     if done.returncode != 0:
         raise UserError(f"{config}: {(done.stderr.strip() or 'no scene').splitlines()[-1]}")
     return json.loads(done.stdout)

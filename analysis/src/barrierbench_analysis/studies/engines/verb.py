@@ -23,8 +23,8 @@ SPEC = ROOT / "configs/engines/compare.json"
 DOC = """list: the engines of engines/, their variants, what they promise, whether they are installed.
 NAME setup: makes the environment of one, from PyPI, below build/engines, and tries every variant (newton
 compiles its kernels then: minutes); instant when it is there.
-NAME run SCENE --out DIR: one scene, a config or a file of ./bench neutral, and what ./bench judge says of it;
-exit 0: clean, 1: not, 3: it did not run (outcome and log are said), 2: bad input.
+NAME run SCENE --out DIR: one scene, a config or a file of ./bench export-scene, and what ./bench judge says
+of it; exit 0: clean, 1: not, 3: it did not run (outcome and log are said), 2: bad input.
 compare [SPEC]: all scenes of configs/engines/compare.json under us and all engines: results/engines.json,
 results/ENGINES.md, docs/engines.png, or those of the `name` of the spec; what was run is kept and not run
 again. compare --starts N adds N jittered starts to what is there: the scatter of errors, depths and

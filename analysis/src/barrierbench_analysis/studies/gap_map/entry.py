@@ -172,7 +172,7 @@ def skip_arguments(parser: argparse.ArgumentParser) -> None:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     modes = "\n".join(f"  {mode:8} {text}" for mode, text in LIMITS.items())
-    parser = parser_of("gap-map", f"{__doc__}\nlimit modes:\n{modes}", "./bench gap-map --plan")
+    parser = parser_of("study gap-map", f"{__doc__}\nlimit modes:\n{modes}", "./bench study gap-map --plan")
     parser.add_argument(
         "spec",
         nargs="?",
@@ -287,7 +287,7 @@ def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
         spot_check(args, spec, collect(spec, beyond, args.runs, before)[0])
     rows, sources = collect(spec, beyond, args.runs, before)
     add_rho(spec, rows)
-    command = "./bench gap-map" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
+    command = "./bench study gap-map" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
     found = Map(about(spec, command, rows, sources), rows)
     write(found, kept)
     if left := counts(rows)[NOT_RUN] - len(decided(args, rows)):
@@ -295,7 +295,7 @@ def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
     return found
 
 
-@tells("gap-map")
+@tells("study gap-map")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     results = args.results or ROOT / "results"

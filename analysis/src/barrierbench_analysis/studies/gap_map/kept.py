@@ -128,7 +128,7 @@ def about(spec: Spec, command: str, rows: list[dict], sources: list[dict]) -> di
     """What the numbers are of. Errors: UserError where there are none."""
     sizes = [row["unknowns"] for row in rows if row["source"] is not None]
     if not sizes:
-        raise UserError(f"{spec.path}: no run of this map is there: ./bench gap-map --quick")
+        raise UserError(f"{spec.path}: no run of this map is there: ./bench study gap-map --quick")
     return {
         "name": spec.name,
         "command": command,
@@ -153,5 +153,5 @@ def read_for(path: Path, spec: Spec) -> Map:
     """The kept map. Errors: UserError where it is of another spec."""
     found = read(path)
     if found.about["spec_sha256"] != spec.sha256:
-        raise UserError(f"{path}: its numbers are of another {spec.path}: ./bench gap-map")
+        raise UserError(f"{path}: its numbers are of another {spec.path}: ./bench study gap-map")
     return found

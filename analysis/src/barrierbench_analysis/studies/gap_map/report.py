@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from barrierbench_analysis.io.text_table import markdown as table_lines
+from barrierbench_analysis.program.verbs import renewed
 
 from . import size_page, skips
 from .compare import METRICS, Beside, Common, at_gap, at_theta, counted_once, deepest, gaps_at, middles
@@ -210,7 +211,8 @@ def _not_run(found: Map, n: dict, refused: bool) -> list[str]:
     return [
         (
             f"**{n[NOT_RUN]} of {n['cells']} cells are not run yet**"
-            f"{'.' if refused else ': `./bench gap-map` goes on.'} By scene, runs that are there of those"
+            f"{'.' if refused else ': `./bench study gap-map` goes on.'} By scene, runs that are there of"
+            f" those"
             f" that can be: {extent(found.rows)}. Every number below is of the runs that are there."
         ),
         "",
@@ -226,7 +228,8 @@ def _refused(refused: Kept | None) -> list[str]:
         (
             f"**A call that collects runs {counts}**: it refuses {refused.why}. It does not write over them"
             " unless it is told so (`--drop`); with `--results DIR` it makes a map of its own. The numbers of"
-            " this page are of the programs that are named below; `./bench gap-map --no-run` writes it anew"
+            " this page are of the programs that are named below; `./bench study gap-map --no-run` writes it"
+            " anew"
             " from what is kept, where no record of a run of the map is there."
         ),
         "",
@@ -252,7 +255,7 @@ def _head(found: Map, sorted_out: Kept | None) -> list[str]:
         ),
         "",
         (
-            f"Made by `{about['command']}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the"
+            f"Made by `{renewed(about['command'])}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the"
             " load-weighted median of d/d_hat at converged step ends; theta, the target, is where the"
             " largest load of the pilot would rest. Raw and block Jacobi are 95th percentiles of cond over"
             " iterations in contact. A number is a geometric mean over scenes, the resolutions of a scene"

@@ -72,8 +72,8 @@ def _facts(sizes: list[Size]) -> Facts:
 
 
 def draw(found: Map, stem: Path, width_in: float = style.WIDE_IN, title: str = TITLE) -> list[Path]:
-    """The same files whoever asks: the page of the map, or ./bench figure. Errors: UserError where no run of
-    the log has one of the other shape beside it.
+    """The same files whoever asks: the page of the map, or ./bench draw figure. Errors: UserError where no
+    run of the log has one of the other shape beside it.
     """
     every = by_size(found.rows)
     thetas, sizes = thetas_of(every), drawn_sizes(found.rows)

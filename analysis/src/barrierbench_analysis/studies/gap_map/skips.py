@@ -111,7 +111,7 @@ def lines(skips: Skips) -> list[str]:
         (
             f"A cell is left out where {REASON} (docs/results/method/gap-map.md). {len(skips.left_out)} cells"
             f" are left out, and count as not run. {len(skips.checks)} such cells were run all the same, of"
-            f" which {skips.held} ended {OVERLOAD}; `./bench gap-map --spot-check N` runs N more."
+            f" which {skips.held} ended {OVERLOAD}; `./bench study gap-map --spot-check N` runs N more."
         ),
         "",
         *_table(skips),

@@ -12,7 +12,7 @@ from barrierbench_analysis.io.whole_file import write_whole
 from .rows import COLUMNS
 
 SCHEMA = "barrierbench.gap_map_result/1"
-REMEDY = "; ./bench gap-map makes it"
+REMEDY = "; ./bench study gap-map makes it"
 
 
 @dataclass

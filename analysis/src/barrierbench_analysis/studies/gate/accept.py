@@ -1,5 +1,5 @@
-"""Makes what `bench calibrate` measured the baseline, and says why in the file. It prints old and new of all
-that changes.
+"""Makes what `bench gate calibrate` measured the baseline, and says why in the file. It prints old and new of
+all that changes.
 
 With --record or --matrix the baseline is made of what another program has written. Class I and II are exact:
 there is nothing to accept, and a run that breaks an invariant makes no baseline. The first baseline of a
@@ -194,7 +194,7 @@ def other_program_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("accept", __doc__)
+    parser = parser_of("gate accept", __doc__)
     parser.add_argument(
         "--reason", required=True, help="why the numbers may change; it stays in the baseline"
     )
@@ -217,7 +217,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         type=Path,
         default=calibrate.OUT,
         metavar="DIR",
-        help="of bench calibrate (default: results/runs/calibration)",
+        help="of bench gate calibrate (default: results/runs/calibration)",
     )
     parser.add_argument(
         "--baselines", type=Path, default=baseline.FOLDER, metavar="DIR", help="default: results/baselines"
@@ -228,7 +228,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
-@tells("accept")
+@tells("gate accept")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     how = args.reason, args.metric, args.better, args.drift
@@ -247,7 +247,7 @@ def main(argv: list[str]) -> int:
             if not args.case or any(word in p.stem for word in args.case)
         ]
         if not proposals:
-            raise UserError(f"{args.proposals}: no proposal; `bench calibrate` makes them")
+            raise UserError(f"{args.proposals}: no proposal; `bench gate calibrate` makes them")
         for path in proposals:
             keep(baseline.read(path, path.stem, "run"), args.baselines / path.name, *how)
     return 0

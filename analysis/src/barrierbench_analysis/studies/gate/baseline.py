@@ -1,4 +1,4 @@
-"""Baselines: results/baselines/CASE.json, written by `bench accept` alone."""
+"""Baselines: results/baselines/CASE.json, written by `bench gate accept` alone."""
 
 from __future__ import annotations
 
@@ -145,13 +145,13 @@ def _line(path: Path, name: str, line, made_by: str) -> Kept:
 
 def how_to_accept(option: str, path: Path, *more: str) -> str:
     """The command that makes a baseline of what another program has written (--record or --matrix)."""
-    return " ".join(["bench accept", option, "...", "--baseline", str(path), *more, '--reason "..."'])
+    return " ".join(["bench gate accept", option, "...", "--baseline", str(path), *more, '--reason "..."'])
 
 
 def _remedy(path: Path, case: str | None, kind: str | None) -> str:
     """A baseline of a case of ours is measured; one of files of another program is made of them."""
     if case is not None or kind is None:
-        return '`bench calibrate` measures one and `bench accept --reason "..."` keeps it'
+        return '`bench gate calibrate` measures one and `bench gate accept --reason "..."` keeps it'
     return f"`{how_to_accept('--matrix' if kind == 'matrix' else '--record', path)}` makes one"
 
 

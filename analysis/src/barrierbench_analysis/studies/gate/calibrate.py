@@ -1,7 +1,8 @@
-"""Measures what `bench accept` may keep: each case of a set as it is, and 20 copies whose start is perturbed
-by 1e-12 of its size.
+"""Measures what `bench gate accept` may keep: each case of a set as it is, and 20 copies whose start is
+perturbed by 1e-12 of its size.
 
-Nothing of results/baselines/ is changed: the proposals stand in results/runs/calibration/ until `bench accept
+Nothing of results/baselines/ is changed: the proposals stand in results/runs/calibration/ until `bench gate
+accept
 --reason "..."`.
 """
 
@@ -117,9 +118,9 @@ def calibrate_case(case: Case, out: Path, copies: int) -> Baseline:
     return proposal
 
 
-@tells("calibrate")
+@tells("gate calibrate")
 def main(argv: list[str]) -> int:
-    parser = parser_of("calibrate", __doc__)
+    parser = parser_of("gate calibrate", __doc__)
     set_argument(parser)
     case_argument(parser)
     parser.add_argument("--copies", type=int, default=COPIES, help=f"perturbed copies (default: {COPIES})")
@@ -142,5 +143,8 @@ def main(argv: list[str]) -> int:
         if proposal.unsteady:
             words.append(f"not in all runs, so not judged: {', '.join(proposal.unsteady)}")
         print("; ".join(words))
-    print('bench calibrate: ./bench accept --reason "..." makes these the baselines', file=sys.stderr)
+    print(
+        'bench gate calibrate: ./bench gate accept --reason "..." makes these the' " baselines",
+        file=sys.stderr,
+    )
     return 0

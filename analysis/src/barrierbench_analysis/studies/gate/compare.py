@@ -2,8 +2,8 @@
 is a regression.
 
 The first is the reference. No envelope is known for it, so numbers may move as far as the tolerances of their
-kind allow (docs/results/method/gates.md). Exit codes: 0 nothing regressed, 1 something did, 2 the two cannot be
-compared.
+kind allow (docs/results/method/gates.md). Exit codes: 0 nothing regressed, 1 something did, 2 the two cannot
+be compared.
 """
 
 from __future__ import annotations
@@ -93,9 +93,9 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
     return findings + not_compared + judge.numbers(case, before, now, same_kind, new_verdict)
 
 
-@tells("compare")
+@tells("gate compare")
 def main(argv: list[str]) -> int:
-    parser = parser_of("compare", __doc__)
+    parser = parser_of("gate compare", __doc__)
     parser.add_argument(
         "a",
         type=Path,

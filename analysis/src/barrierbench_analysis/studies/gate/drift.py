@@ -2,7 +2,7 @@
 
 Each accept may move a number by its tolerance, so that ten of them move it by ten. A number that the last
 baseline passes is a `drift`, and red, when it is further from the first value than FACTOR times the half
-width of its envelope, on the side that is no better. `bench accept --drift
+width of its envelope, on the side that is no better. `bench gate accept --drift
 --reason "..."` makes the last value the first one, and the baseline keeps that it was done, when, and why.
 """
 
@@ -58,6 +58,6 @@ def limits(
 def note(first: First, lower: float, upper: float, word: str) -> str:
     return (
         f"{word} since the first baseline ({first.value:.6g}, {first.date or 'no date'}): outside"
-        f' {lower:.6g} .. {upper:.6g}, {FACTOR} tolerances; bench accept --drift --reason "..." if it is'
+        f' {lower:.6g} .. {upper:.6g}, {FACTOR} tolerances; bench gate accept --drift --reason "..." if it is'
         " meant"
     )

@@ -160,7 +160,7 @@ def judge_record(record: Path, path: Path) -> list[Finding]:
         case, [run], kept.record_version or meanings.PRESENT, run.version
     ) + meanings.without_version(case, kept.record_version)
     same_kind = bool(kept.made_by) and kept.made_by == run.made_by
-    new = judge.not_in_the_baseline("bench accept --record")
+    new = judge.not_in_the_baseline("bench gate accept --record")
     return dropped + lines + numbers(case, kept, run, same_kind, new)
 
 
@@ -174,11 +174,11 @@ def _to_hold(args: argparse.Namespace) -> str:
     if args.baseline:
         option = "--matrix" if args.matrix else "--record"
         return baseline.how_to_accept(option, args.baseline, "--better")
-    return 'bench calibrate, then bench accept --better --reason "..."'
+    return 'bench gate calibrate, then bench gate accept --better --reason "..."'
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("gate", __doc__, "./bench gate")
+    parser = parser_of("gate run", __doc__, "./bench gate")
     set_argument(parser)
     case_argument(parser)
     parser.add_argument(
@@ -200,7 +200,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         help="count instructions with valgrind as well, where the baseline has them",
     )
     parser.add_argument(
-        "--history", type=Path, metavar="FILE", help="append the numbers to this file, for ./bench trend"
+        "--history", type=Path, metavar="FILE", help="append the numbers to this file, for ./bench gate trend"
     )
     parser.add_argument("--verbose", action="store_true", help="lines that pass as well")
     args = parser.parse_args(argv)
@@ -209,7 +209,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
-@tells("gate")
+@tells("gate run")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.record:
@@ -226,7 +226,7 @@ def main(argv: list[str]) -> int:
         print(report.table(lines))
     print(report.closing(findings))
     if any(f.verdict == "better" for f in findings):
-        print(f"bench gate: to hold the better numbers from now on: {_to_hold(args)}", file=sys.stderr)
+        print(f"bench gate run: to hold the better numbers from now on: {_to_hold(args)}", file=sys.stderr)
     if args.history and not args.baseline:
         made = read_run(args.out / findings_case(findings) / "threads-1", allow_not_finite=True)
         trend.append(

@@ -18,7 +18,7 @@ NOT_IN_THE_REFERENCE = ("FAIL", "not in the reference")
 NOT_JUDGED = ("not_judged", "not in the reference, which is of another config or version")
 
 
-def not_in_the_baseline(how: str = "bench calibrate, bench accept") -> tuple[str, str]:
+def not_in_the_baseline(how: str = "bench gate calibrate, bench gate accept") -> tuple[str, str]:
     """Verdict and note. how: the verbs that take the number into the baseline."""
     return "FAIL", f"not in the baseline: accept it ({how})"
 

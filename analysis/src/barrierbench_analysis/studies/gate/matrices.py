@@ -177,7 +177,7 @@ def _same_matrices(kept: Baseline, spectra: dict[str, Spectrum], path: Path) -> 
 def _lonely(case: str, old: set[str], new: set[str]) -> list[Finding]:
     """A line for every matrix that only one side has, instead of one for each of its numbers."""
     said = [(name, "missing: the baseline has it") for name in sorted(old - new)] + [
-        (name, judge.not_in_the_baseline("bench accept --matrix")[1]) for name in sorted(new - old)
+        (name, judge.not_in_the_baseline("bench gate accept --matrix")[1]) for name in sorted(new - old)
     ]
     return [Finding(case, "III", f"matrix {name}", "FAIL", judged=0, note=note) for name, note in said]
 

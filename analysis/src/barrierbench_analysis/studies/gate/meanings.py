@@ -118,7 +118,7 @@ def without_version(case: str, version: str | None) -> list[Finding]:
             judged=0,
             note=(
                 f"the baseline does not say of which record version it is: taken as {PRESENT} (bench"
-                " calibrate, bench accept)"
+                " calibrate, bench gate accept)"
             ),
         )
     ]

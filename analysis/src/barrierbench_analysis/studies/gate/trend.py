@@ -1,5 +1,5 @@
 """Class VI: steps in the history of the numbers of a gate. `bench gate --history FILE` appends a line a run,
-`bench trend FILE` looks for steps.
+`bench gate trend FILE` looks for steps.
 
 A history of one metric is fitted by a piecewise constant function: the sum of |value - median of its piece|
 plus a penalty for every step is least (L1, exact by dynamic programming). The penalty is twice the median
@@ -132,9 +132,9 @@ def steps(rows: list[dict]) -> tuple[list[Step], int]:
     return sorted(found, key=lambda s: -abs(s.after - s.before) / (abs(s.before) or 1.0)), looked
 
 
-@tells("trend")
+@tells("gate trend")
 def main(argv: list[str]) -> int:
-    parser = parser_of("trend", __doc__)
+    parser = parser_of("gate trend", __doc__)
     parser.add_argument("history", type=Path, help="file of ./bench gate --history")
     args = parser.parse_args(argv)
     rows = read(args.history)

@@ -210,10 +210,10 @@ def rule_arguments(parser: argparse.ArgumentParser) -> None:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "match",
+        "study match",
         __doc__,
-        "./bench match configs/scenes/drape2d.json",
-        "./bench match configs/scenes/drape.json --formulations cubic quadratic --vary limit",
+        "./bench study match configs/scenes/drape2d.json",
+        "./bench study match configs/scenes/drape.json --formulations cubic quadratic --vary limit",
     )
     parser.add_argument(
         "config",
@@ -242,7 +242,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells("match")
+@tells("study match")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if not 0 < args.theta < 1:

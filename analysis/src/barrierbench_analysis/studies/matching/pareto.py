@@ -32,7 +32,7 @@ from .spec import Spec, make_sweep, read_spec
 SCHEMA = "barrierbench.pareto_result/1"
 DEFAULT = ROOT / "configs" / "pareto" / "default.json"
 COLUMNS = (*PLACE, *STATE, *METRICS)
-REMEDY = "; ./bench pareto makes it"
+REMEDY = "; ./bench study pareto makes it"
 
 
 def _about(spec: Spec, command: str, records: list[dict], plugins: list[str]) -> dict:
@@ -90,7 +90,9 @@ def write_page(runs: Runs, results: Path, docs: Path, figures: Path) -> None:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "pareto", __doc__, "./bench pareto configs/pareto/default.json --results results/runs/mine"
+        "study pareto",
+        __doc__,
+        "./bench study pareto configs/pareto/default.json --results results/runs/mine",
     )
     parser.add_argument(
         "spec",
@@ -120,7 +122,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells("pareto")
+@tells("study pareto")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     results = args.results or ROOT / "results"
@@ -133,17 +135,18 @@ def main(argv: list[str]) -> int:
         runs = from_json(kept)
         if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
             raise UserError(
-                f"{kept}: its numbers are of another {args.spec}, base config, mesh or preset: ./bench pareto"
+                f"{kept}: its numbers are of another {args.spec}, base config, mesh or preset: ./bench study"
+                f" pareto"
                 f" {args.spec}"
             )
         if "inputs_sha256" not in runs.about:
             print(
-                f"bench pareto: {kept} does not say of which base config and presets its numbers are",
+                f"bench study pareto: {kept} does not say of which base config and presets its numbers are",
                 file=sys.stderr,
             )
     else:
         command = (
-            "./bench pareto"
+            "./bench study pareto"
             + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
             + "".join(f" --plugin {file}" for file in args.plugin)
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from barrierbench_analysis.io.text_table import markdown as table_lines
+from barrierbench_analysis.program.verbs import renewed
 from barrierbench_analysis.studies.claims.words import number
 from barrierbench_analysis.studies.kit.formulations import REFERENCE
 from barrierbench_analysis.studies.kit.metrics import METRICS as MEANINGS
@@ -122,7 +123,7 @@ def _head(runs: Runs) -> list[str]:
     scales = sorted({row["scale"] for row in runs.rows})
     lines = [
         HEAD.format(
-            command=about["command"],
+            command=renewed(about["command"]),
             decades=about["decades"],
             rule=about["rule"],
             starts=about["starts"],

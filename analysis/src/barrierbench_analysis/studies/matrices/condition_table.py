@@ -1,4 +1,4 @@
-"""Who finds the condition numbers, and at what price: the verb `bench condition-table` writes
+"""Who finds the condition numbers, and at what price: the verb `bench study condition-table` writes
 results/CONDITION.md.
 
 Tier 2 (Spectra) and tier 4 (our Lanczos) estimate the same matrices: those of every diagnosed iteration of
@@ -205,7 +205,7 @@ def page(groups: dict[str, list[Pair]], note: str) -> str:
     lines = [
         "# Condition numbers by Spectra and by Lanczos",
         "",
-        f"{datetime.date.today()}, {processor()}. Made by `./bench condition-table`{note}.",
+        f"{datetime.date.today()}, {processor()}. Made by `./bench study condition-table`{note}.",
         "",
         (
             "Every line compares tier 2 with tier 4 on the same matrices, in every scaling that their run"
@@ -239,9 +239,9 @@ def processor() -> str:
     return "unknown processor"
 
 
-@tells("condition-table")
+@tells("study condition-table")
 def main(words: list[str]) -> int:
-    parser = parser_of("condition-table", __doc__)
+    parser = parser_of("study condition-table", __doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "results/CONDITION.md")
     parser.add_argument(
         "--sweeps", nargs="*", default=list(SWEEPS), help="of configs/sweeps; none: the corpus alone"

@@ -1,4 +1,4 @@
-"""The corpus of hard systems: the verb `bench matrix-corpus` makes results/matrices and its table from
+"""The corpus of hard systems: the verb `bench study matrix-corpus` makes results/matrices and its table from
 configs/matrices/corpus.json.
 
 Every system is that of one Newton iteration of a small run, written by /output/matrices; only its `cause` is
@@ -37,12 +37,12 @@ the vertex coordinates, where the system comes from, the condition numbers that 
 the matrices.
 
 ```sh
-./bench matrix results/matrices/*.mtx --json replay.json   # every solver, preconditioner and estimator, with times
-./bench matrix-corpus                                      # makes all of this folder again, this page included
-./bench matrix-corpus --table                              # this page alone, from the files that are here
+./bench data matrices results/matrices/*.mtx --json replay.json   # every solver, preconditioner and estimator, with times
+./bench study matrix-corpus                                      # makes all of this folder again, this page included
+./bench study matrix-corpus --table                              # this page alone, from the files that are here
 ```
 
-A dump of a run of your own: `--set /passes/diagnose=true --set /output/matrices=true`, then `./bench matrix results/runs/NAME/matrices/*.mtx`. A matrix
+A dump of a run of your own: `--set /passes/diagnose=true --set /output/matrices=true`, then `./bench data matrices results/runs/NAME/matrices/*.mtx`. A matrix
 without a side-car will do: blocks of 3 if that divides its rows, and b = A * ones.
 """
 
@@ -196,9 +196,9 @@ def write_readme(out: Path) -> None:
     write_whole(out / "README.md", f"{HEAD}{notes}\n{table(matrices)}\n")
 
 
-@tells("matrix-corpus")
+@tells("study matrix-corpus")
 def main(argv: list[str]) -> int:
-    parser = parser_of("matrix-corpus")
+    parser = parser_of("study matrix-corpus")
     parser.add_argument("--spec", type=Path, default=ROOT / "configs/matrices/corpus.json")
     parser.add_argument("--out", type=Path, default=ROOT / "results/matrices")
     parser.add_argument("--table", action="store_true", help="only README.md, from the files that are there")

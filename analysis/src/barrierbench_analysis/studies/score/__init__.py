@@ -1,1 +1,2 @@
-"""One page for a new barrier: matched beside four others, what it takes, where it fails (`bench score`)."""
+"""One page for a new barrier: matched beside four others, what it takes, where it fails (`bench study
+score`)."""

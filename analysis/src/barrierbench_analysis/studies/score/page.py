@@ -60,7 +60,8 @@ def _compared(rows: list[dict], label: str) -> str:
                     ]
                 )
     return table(
-        "Candidate over each other, geometric mean over scenes (how many, at least 2); better: 10 % less in the mean, less in every one",
+        "Candidate over each other, geometric mean over scenes (how many, at least 2); better: 10 % less in"
+        " the mean, less in every one",
         head,
         body,
     )

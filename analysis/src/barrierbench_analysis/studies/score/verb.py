@@ -1,4 +1,4 @@
-"""`bench score`: one page for a new barrier."""
+"""`bench study score`: one page for a new barrier."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ cases of the stress suite. Writes score.json and score.html into the folder. Fin
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "score", DOC, "./bench score cubic_dynamic_lagged", "./bench score build/plugin/inverse_shape.so"
+        "study score",
+        DOC,
+        "./bench study score cubic_dynamic_lagged",
+        "./bench study score build/plugin/inverse_shape.so",
     )
     parser.formula_argument("what", "WHAT")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder (default: results/runs/score/LABEL)")
@@ -51,7 +54,7 @@ def _score(
     return {
         "schema": SCHEMA,
         "candidate": {"label": of.label, "formulation": of.formulation, "about": of.about},
-        "command": shlex.join(["./bench", "score", *of.place]),
+        "command": shlex.join(["./bench", "study", "score", *of.place]),
         "machine": machine_of(some) if some else "",
         "seconds": round(time.monotonic() - begun, 1),
         "decides": judge.decides(rows, starts, cases, of.label),
@@ -67,7 +70,7 @@ def _score(
     }
 
 
-@tells("score")
+@tells("study score")
 def main(argv: list[str]) -> int:
     """0: scored; 2: nothing that can be scored."""
     args = _arguments(argv)

@@ -1,5 +1,5 @@
-"""./bench step-corpus: the states of results/steps, their record results/steps.json, results/STEPS.md and
-docs/steps.png.
+"""./bench study step-corpus: the states of results/steps, their record results/steps.json, results/STEPS.md
+and docs/steps.png.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .step_corpus_states import make
 SCHEMA = "barrierbench.step_corpus/1"
 RESULTS = ROOT / "results"
 DOC = """Makes the states from configs/steps/corpus.json, takes each by every step solver and Hessian
-(`./bench steps --corpus`), and writes the page and the figure."""
+(`./bench data steps --corpus`), and writes the page and the figure."""
 
 
 def take(states: Path, record: Path) -> None:
@@ -34,14 +34,14 @@ def take(states: Path, record: Path) -> None:
 
 
 def write_page(results: Path) -> None:
-    record = read_of_schema(results / "steps.json", SCHEMA, "; ./bench steps --corpus --out makes it")
+    record = read_of_schema(results / "steps.json", SCHEMA, "; ./bench data steps --corpus --out makes it")
     write_whole(results / "STEPS.md", page(record))
     paint(record, (ROOT / "docs" if results.resolve() == RESULTS.resolve() else results) / "steps.png")
 
 
-@tells("step-corpus")
+@tells("study step-corpus")
 def main(argv: list[str]) -> int:
-    parser = parser_of("step-corpus", DOC)
+    parser = parser_of("study step-corpus", DOC)
     parser.add_argument(
         "--spec", type=Path, default=ROOT / "configs/steps/corpus.json", help="the list of states"
     )

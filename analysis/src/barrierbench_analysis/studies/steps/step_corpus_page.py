@@ -1,4 +1,4 @@
-"""results/STEPS.md of a record of ./bench steps --corpus."""
+"""results/STEPS.md of a record of ./bench data steps --corpus."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Single time steps of runs that take many iterations for different reasons, each 
 `NAME.json` its config, calibration, step, scene hash and what it is hard for.
 
 ```sh
-./bench steps --corpus results/steps             # every step solver and Hessian, as tables
-./bench steps --corpus results/steps --split tune # the half that options are tuned on
-./bench steps CONFIG --at 12 --keep out/mine     # a state of your own: two files
-./bench step-corpus                              # states, record, page and figure anew
-./bench step-corpus --make                       # the states alone
-./bench step-corpus --table                      # page and figure, from results/steps.json
+./bench data steps --corpus results/steps             # every step solver and Hessian, as tables
+./bench data steps --corpus results/steps --split tune # the half that options are tuned on
+./bench data steps CONFIG --at 12 --keep out/mine     # a state of your own: two files
+./bench study step-corpus                              # states, record, page and figure anew
+./bench study step-corpus --make                       # the states alone
+./bench study step-corpus --table                      # page and figure, from results/steps.json
 ```
 
 Halves: in alphabetical order every other state belongs to the half `tune`, beginning with the first, and

@@ -93,7 +93,9 @@ def _head(results: dict[str, Result], command: str) -> list[str]:
     ]
 
 
-def markdown(results: dict[str, Result], tests: dict[str, Test], command: str = "./bench stress") -> str:
+def markdown(
+    results: dict[str, Result], tests: dict[str, Test], command: str = "./bench study stress"
+) -> str:
     """The whole page."""
     results = {name: results[name] for name in tests if name in results}
     text = _head(results, command)

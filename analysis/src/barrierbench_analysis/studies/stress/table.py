@@ -20,7 +20,7 @@ from .run import Row
 
 FILE = ROOT / "results" / "stress.json"
 NAME = "barrierbench.stress_results/1"
-AGAIN = "; remove it, then ./bench stress"
+AGAIN = "; remove it, then ./bench study stress"
 KEPT = [f.name for f in dataclasses.fields(Row) if f.name not in ("test", "reason")]
 
 

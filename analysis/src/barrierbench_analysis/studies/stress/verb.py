@@ -64,7 +64,11 @@ def about(folder: Path) -> dict:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "stress", __doc__, "./bench stress", "./bench stress --quick", "./bench stress S18 --full"
+        "study stress",
+        __doc__,
+        "./bench study stress",
+        "./bench study stress --quick",
+        "./bench study stress S18 --full",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="configs/stress/ID.json (default: all)")
     parser.add_argument("--list", action="store_true", help="print the tests and run nothing")
@@ -97,7 +101,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
-@tells("stress")
+@tells("study stress")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     names = args.ids or ids()
@@ -123,7 +127,10 @@ def write_all(results: dict[str, Result], runs: Path, full: bool) -> None:
     write(results, runs / "stress.json" if full else FILE)
     page = runs / "STRESS.md" if full else ROOT / "results" / "STRESS.md"
     write_whole(
-        page, report.markdown(results, everything, "./bench stress --full" if full else "./bench stress")
+        page,
+        report.markdown(
+            results, everything, "./bench study stress --full" if full else "./bench study stress"
+        ),
     )
 
 
@@ -135,7 +142,7 @@ def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
     if args.no_run:
         if missing := [name for name in tests if name not in kept]:
             raise UserError(
-                f"{file}: nothing kept of {missing[0]}: ./bench stress"
+                f"{file}: nothing kept of {missing[0]}: ./bench study stress"
                 f" {missing[0]}{' --full' if args.full else ''}"
             )
         results = {name: kept[name] for name in tests}

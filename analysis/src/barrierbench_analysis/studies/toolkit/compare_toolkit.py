@@ -206,7 +206,7 @@ def load_mesh(name: str, size: int, d_hat: float):
 
 
 def arguments(argv: list[str] | None) -> argparse.Namespace:
-    parser = parser_of("compare-toolkit", __doc__)
+    parser = parser_of("study compare-toolkit", __doc__)
     parser.add_argument(
         "--mesh",
         choices=["cloth_ball", "sheets"],
@@ -241,7 +241,7 @@ def measured(args: argparse.Namespace, x0, x1, faces) -> tuple[dict, float]:
     return answers, load
 
 
-@tells("compare-toolkit")
+@tells("study compare-toolkit")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     try:

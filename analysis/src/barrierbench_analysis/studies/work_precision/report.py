@@ -23,7 +23,7 @@ from .judge import (
 
 HEAD = """# Work and precision
 
-Made by `./bench work-precision` from results/work_precision.json; docs/results/method/accuracy.md, has the rules. Each scene has an anchor (time step, d_hat,
+Made by `./bench study work-precision` from results/work_precision.json; docs/results/method/accuracy.md, has the rules. Each scene has an anchor (time step, d_hat,
 tolerance) and varies one of these, or every kappa, at a time by a factor. A run counts when it ended ok and is valid; the others are named below
 their table and reach nothing. Errors below the uncertainty of the reference are not ranked: they count as that uncertainty. Costs are
 those of the cheapest run that reaches the error: seconds, Newton iterations and factorisations with the direct solver, products with conjugate gradients and block

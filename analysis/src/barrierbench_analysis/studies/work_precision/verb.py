@@ -29,7 +29,7 @@ TABLE = "barrierbench.work_precision_table/1"
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
-        "work-precision", __doc__, "./bench work-precision my_spec.json --out results/runs/mine"
+        "study work-precision", __doc__, "./bench study work-precision my_spec.json --out results/runs/mine"
     )
     parser.add_argument(
         "spec",
@@ -97,7 +97,7 @@ def table_text(table: dict) -> str:
 
 def read_table(file: Path) -> dict:
     """Errors: UserError."""
-    return read_of_schema(file, TABLE, "; ./bench work-precision makes it")
+    return read_of_schema(file, TABLE, "; ./bench study work-precision makes it")
 
 
 def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
@@ -111,7 +111,7 @@ def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
     copy_to_page((path for paths in drawn for path in paths), docs)
 
 
-@tells("work-precision")
+@tells("study work-precision")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     spec = read_spec(args.spec)
@@ -127,7 +127,8 @@ def main(argv: list[str]) -> int:
     if table.get("spec_sha256") != spec.sha256:
         raise UserError(
             f"{file}: /spec_sha256: found {table.get('spec_sha256')!r}; allowed: {spec.sha256!r}, of"
-            f" {args.spec}: its numbers are of another spec; ./bench work-precision {args.spec} makes them"
+            f" {args.spec}: its numbers are of another spec; ./bench study work-precision {args.spec} makes"
+            f" them"
         )
     print(report.text(table))
     write_all(table, results, docs, args.runs / "figure")

@@ -141,7 +141,7 @@ def _say_what_is_not_there(folder: Path, rows: list[dict], unreadable: list[str]
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("collect", __doc__, "./bench collect results/runs/my_sweep my_sweep.parquet")
+    parser = parser_of("data collect", __doc__, "./bench data collect results/runs/my_sweep my_sweep.parquet")
     parser.add_argument(
         "folder",
         type=Path,
@@ -157,7 +157,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells("collect")
+@tells("data collect")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     _check_out(args.out)

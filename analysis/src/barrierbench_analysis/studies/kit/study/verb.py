@@ -9,26 +9,28 @@ Exit codes: 0 done, 2 a spec that cannot be read, or a page whose cells are not 
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from barrierbench_analysis.io.errors import tells
 from barrierbench_analysis.program.arguments import parser_of
 from barrierbench_analysis.program.start import built_program
+from barrierbench_analysis.program.verbs import of_spec
 from barrierbench_analysis.tables.words import counted
 
 from . import page, store
 from .collect import missing, run_cells
-from .spec import Cell, Study, known, read_study
+from .spec import Cell, Study, read_study
 
 AT_ONCE = 60  # runs whose rows are kept together: what an interrupt loses at most is their reading
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("study", __doc__, "./bench study answer plan", "./bench study drift run")
-    parser.add_argument("study", help=f"{', '.join(known())}, or the path of a spec")
-    parser.add_argument(
-        "what", nargs="?", default="run", choices=("run", "plan", "page"), help="default: run"
-    )
-    return parser.parse_args(argv)
+    """argv: the spec, which the front door puts first, and the options of a mode."""
+    row = of_spec(Path(argv[0]))
+    parser = parser_of(row.name, __doc__, row=row)
+    parser.add_argument("--plan", action="store_true", help="counts cells and expected seconds; runs nothing")
+    parser.add_argument("--no-run", action="store_true", help="writes the page from the kept rows")
+    return parser.parse_args(argv[1:])
 
 
 def planned(study: Study) -> list[str]:
@@ -77,11 +79,11 @@ def make_rows(study: Study) -> int:
 @tells("study")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
-    study = read_study(args.study)
-    if args.what == "plan":
+    study = read_study(argv[0])
+    if args.plan:
         print("\n".join(planned(study)))
         return 0
-    if args.what == "run":
+    if not args.no_run:
         built_program()
         made = make_rows(study)
         print(f"{study.name}: {counted(made, 'new row')} in {store.file_of(study.name).name}")

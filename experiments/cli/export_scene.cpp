@@ -1,4 +1,4 @@
-// The verb neutral: the scene of a config for engines of others, on the standard output.
+// The verb export-scene: the scene of a config for engines of others, on the standard output.
 #include <fmt/format.h>
 
 #include "experiments/cli/options.hpp"
@@ -8,7 +8,7 @@
 
 namespace bb::cli {
 
-Action verb::neutral(CLI::App& app) {
+Action verb::export_scene(CLI::App& app) {
   const auto verb = std::make_shared<RunVerb>();
   config_arguments(app, *verb);
   return [verb](const CommonOptions&) {
