@@ -19,6 +19,7 @@ from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.kit.metrics import FOLDER, METRICS
 from barrierbench_analysis.studies.kit.success import RESIDUAL, read_for
 from barrierbench_analysis.tables.gap_rule import gaps_of
+from barrierbench_analysis.tables.numbers import rounded
 
 from .ends import ENDS, end_of_run
 from .entry import ROOT, Claim, Sweep
@@ -96,27 +97,19 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     return {sweep: sorted(names) for sweep, names in used.items()}
 
 
-def _rounded(value, digits: int = 6):
-    if isinstance(value, dict):
-        return {key: _rounded(one, digits) for key, one in value.items()}
-    if isinstance(value, list):
-        return [_rounded(one, digits) for one in value]
-    return float(f"{value:.{digits}g}") if isinstance(value, float) else value
-
-
 def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
     comparability, status = record["comparability"], record["status"]
     row = dict(zip(PLACE, place))
     row |= {
         "outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
         "comparability": comparability["verdict"],
-        "gap_rel": _rounded(comparability.get("gap_rel")),
+        "gap_rel": rounded(comparability.get("gap_rel")),
         "run": record["ids"]["run_id"][:ID_DIGITS],
         "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "",
-        "gaps": _rounded(gaps_of(record)),
-        **_rounded(end_of_run(record)),
+        "gaps": rounded(gaps_of(record)),
+        **rounded(end_of_run(record)),
     }
-    return row | {name: _rounded(METRICS[name][3](record), DIGITS) for name in metrics}
+    return row | {name: rounded(METRICS[name][3](record), DIGITS) for name in metrics}
 
 
 def _records(sweep: Sweep, folder: Path, metrics: list[str]) -> Iterator[tuple[dict, dict]]:

@@ -28,6 +28,7 @@ from barrierbench_analysis.studies.matching.spec import read_spec as read_pareto
 from barrierbench_analysis.studies.work_precision import figure as work_figure
 from barrierbench_analysis.studies.work_precision import verb as work_precision
 from barrierbench_analysis.studies.work_precision.spec import read_spec as read_work
+from barrierbench_analysis.tables.numbers import rounded
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def _work_table(spec, kept: Path):
 
 def _work_make(spec, kept: Path, _: int) -> None:
     made = work_precision.made(spec, kept.parent / "records")
-    write_whole(kept, work_precision.table_text(work_precision.rounded(made)))
+    write_whole(kept, work_precision.table_text(rounded(made)))
 
 
 STUDIES = {

@@ -13,6 +13,7 @@ import numpy as np
 
 from barrierbench_analysis.studies.kit.front import Point, value_at
 from barrierbench_analysis.tables.estimate import student
+from barrierbench_analysis.tables.numbers import interval
 
 from .rows import CANNOT, NOT_RUN
 from .spec import REFERENCE
@@ -102,8 +103,7 @@ class Ratio:
         return Ratio(1 / self.value, *ends, self.scenes)
 
     def __str__(self) -> str:
-        ends = "" if self.lower is None else f" [{self.lower:.3g}, {self.upper:.3g}]"
-        return f"{self.value:.3g}{ends}"
+        return interval(self.value, self.lower, self.upper)
 
 
 def over_scenes(logs: dict[Place, float]) -> Ratio:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from barrierbench_analysis.tables.estimate import student
+from barrierbench_analysis.tables.numbers import interval
 
 from .compare import METRICS, Place, Ratio, over_scenes, samples
 from .rows import NOT_RUN
@@ -115,8 +116,7 @@ class Slope:
         return "falls" if self.upper < 0 else "grows"
 
     def __str__(self) -> str:
-        ends = "" if self.lower is None else f" [{self.lower:.3g}, {self.upper:.3g}]"
-        return f"{self.value:.3g}{ends}"
+        return interval(self.value, self.lower, self.upper)
 
 
 def slope(sizes: list[Size], metric: str) -> Slope | None:

@@ -10,6 +10,7 @@ from barrierbench_analysis.studies.kit.formulations import REFERENCE
 from barrierbench_analysis.studies.kit.front import Point, log_ratio, reached, segments, value_at
 from barrierbench_analysis.studies.kit.runs import check_equal, check_varied, metric
 from barrierbench_analysis.tables.estimate import of_scenes, student
+from barrierbench_analysis.tables.numbers import rounded
 
 from .spec import Spec, label
 
@@ -86,10 +87,6 @@ class OverScenes:
     of: int
 
 
-def _rounded(x: float | None) -> float | None:
-    return None if x is None else float(f"{x:.6g}")
-
-
 def gather(spec: Spec, notes: tuple[str, ...], records: dict[str, dict]) -> list[dict]:
     """Rows in the order of the sweep. Errors: UserError where records of one scene are of different
     configs."""
@@ -116,10 +113,10 @@ def gather(spec: Spec, notes: tuple[str, ...], records: dict[str, dict]) -> list
                             "scale": scale,
                             "seed": seed,
                             "outcome": outcome,
-                            "gap": _rounded(metric(record, spec.gap_metric)),
+                            "gap": rounded(metric(record, spec.gap_metric)),
                             "run": record["ids"]["run_id"][:16],
                         }
-                        | {m: _rounded(metric(record, m)) for m in METRICS}
+                        | {m: rounded(metric(record, m)) for m in METRICS}
                     )
     return rows
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_of_schema
 from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.tables.numbers import rounded
 
 from .entry import ROOT, order
 from .geometry import Count
@@ -49,12 +50,8 @@ class Result:
         )
 
 
-def _rounded(value):
-    return float(f"{value:.6g}") if isinstance(value, float) else value
-
-
 def _row(row: Row) -> list:
-    values = {name: _rounded(getattr(row, name)) for name in KEPT}
+    values = {name: rounded(getattr(row, name)) for name in KEPT}
     values["expected"], values["state_hash"] = list(row.expected), row.state_hash[:16]
     return [values[name] for name in KEPT]
 

@@ -18,6 +18,7 @@ from barrierbench_analysis.io.json_file import read_of_schema
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.tables.numbers import rounded
 
 from . import figure, report
 from .runs import RUNS, collect, run_scene
@@ -73,15 +74,6 @@ def made(spec: Spec, runs: Path) -> dict:
         "spec_sha256": spec.sha256,
         "scenes": [collect(spec, scene, runs) for scene in spec.scenes],
     }
-
-
-def rounded(value):
-    """Six digits are what a machine repeats of a time, and more than a figure shows."""
-    if isinstance(value, float):
-        return float(f"{value:.6g}")
-    if isinstance(value, dict):
-        return {key: rounded(v) for key, v in value.items()}
-    return [rounded(v) for v in value] if isinstance(value, list) else value
 
 
 def table_text(table: dict) -> str:
