@@ -9,7 +9,7 @@ from barrierbench_analysis.io.digests import BLOCK, of_file, of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.figures.figure_files import copy_to_page
 from barrierbench_analysis.io.json_file import lines_of, read_object, read_of_schema, rows_of
-from barrierbench_analysis.io.origin import machine_of, origin, seconds_of_run
+from barrierbench_analysis.io.origin import machine_of, origin, seconds_of_run, stamp
 
 REMEDY = "; ./bench made makes it"
 
@@ -55,6 +55,7 @@ def test_the_origin_of_numbers_names_every_day_machine_and_program_once():
 
     records = [record("2024-01-02", "f"), record("2024-01-01", "e"), record("2024-01-02", "f")]
     assert origin(records) == {"date": "2024-01-01, 2024-01-02", "machine": machine_of(records[0]), "commit": "0123456789", "build": f"{'e' * 16}, {'f' * 16}"}
+    assert stamp(records[0], "commit", "machine") == {"commit": "0123456789", "machine": "a cpu, 2 cores"}
     assert machine_of(records[0]) == "a cpu, 2 cores, 1 thread a run" and seconds_of_run(records[0]) == 2.5
 
 

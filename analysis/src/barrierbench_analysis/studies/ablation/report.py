@@ -7,6 +7,7 @@ from collections import Counter
 
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.tables.numbers import interval, significant
+from barrierbench_analysis.tables.outcomes import counted_as
 
 from .construction import by_construction
 from .design import drawn, seldom
@@ -150,9 +151,7 @@ def _outcomes(table: Table) -> list[str]:
     rows = []
     for scene in scenes:
         mine = [row for row in table.rows if row["scene"] == scene]
-        words = Counter(
-            row["outcome"] if row["outcome"] != "ok" or row["valid"] else "not valid" for row in mine
-        )
+        words = Counter(counted_as(row["outcome"], row["valid"], "not valid") for row in mine)
         rows.append(
             [
                 scene,

@@ -12,6 +12,7 @@ from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.kit.success import FAILURES
+from barrierbench_analysis.tables.outcomes import OK, counted_as
 
 from .factors import Factorial
 
@@ -65,7 +66,7 @@ def row_of(scene: str, case: str, record: dict) -> dict:
 
 
 def got_through(row: dict) -> bool:
-    return row["outcome"] == "ok" and row["valid"]
+    return counted_as(row["outcome"], row["valid"]) == OK
 
 
 def write(table: Table, file: Path = FILE) -> None:

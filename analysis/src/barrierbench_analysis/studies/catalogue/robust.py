@@ -20,6 +20,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import fitted
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of, set_argument
+from barrierbench_analysis.tables.outcomes import OK, outcome_of
 
 from .checks import judge, no_crossing
 from .entry import Entry, entries
@@ -67,12 +68,11 @@ def _setting(text: str) -> tuple[str, object]:
 
 def failure(entry: Entry, done: Done) -> str:
     """Why a start did not pass; empty where it did."""
-    status = done.record["status"]
     if entry.is_rejected:
         red = [finding.saw for _, finding in judge(done.record, entry.data["expect"]) if finding.red]
         return red[0] if red else ""
-    if status["outcome"] != "ok" or not status["valid"]:
-        return "not_valid" if status["outcome"] == "ok" else status["outcome"]
+    if (outcome := outcome_of(done.record)) != OK:
+        return outcome
     crossing = no_crossing(done.record)
     return crossing.saw if crossing.red else ""
 

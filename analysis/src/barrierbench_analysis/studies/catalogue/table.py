@@ -9,9 +9,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from barrierbench_analysis.io.json_file import read_of_schema
-from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run
+from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run, stamp
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.tables.outcomes import OK, outcome_of
 
 from .checks import judge
 from .entry import Entry
@@ -40,13 +41,12 @@ def row_of(entry: Entry, done: Done) -> Row:
     that starts.
     """
     record = done.record
-    status, found = record["status"], judge(record, entry.data["expect"])
-    outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
-    ends = [] if outcome == "ok" or entry.is_rejected else [f"ends_ok: {outcome}"]
+    outcome, found = outcome_of(record), judge(record, entry.data["expect"])
+    ends = [] if outcome == OK or entry.is_rejected else [f"ends_ok: {outcome}"]
     return Row(
         done.formulation,
         outcome,
-        status["detail"],
+        record["status"]["detail"],
         round(seconds_of_run(record), 1),
         record["summary"]["newton_iterations"],
         [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
@@ -56,14 +56,8 @@ def row_of(entry: Entry, done: Done) -> Row:
 
 
 def origin_of(record: dict) -> dict:
-    machine = record["machine"]
-    return {
-        "date": record["status"]["started_utc"][:10],
-        "machine": f"{machine['cpu_model']}, {machine['cores']} cores",
-        "commit": record["provenance"].get("git_commit", "")[:10],
-        "vertices": record["scene"]["vertices"],
-        "triangles": record["scene"]["triangles"],
-    }
+    size = {key: record["scene"][key] for key in ("vertices", "triangles")}
+    return stamp(record, "date", "machine", "commit") | size
 
 
 def read(file: Path = FILE) -> dict[str, dict]:

@@ -20,6 +20,7 @@ from barrierbench_analysis.studies.kit.metrics import FOLDER, METRICS
 from barrierbench_analysis.studies.kit.success import RESIDUAL, read_for
 from barrierbench_analysis.tables.gap_rule import gaps_of
 from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from .ends import ENDS, end_of_run
 from .entry import ROOT, Claim, Sweep
@@ -98,10 +99,10 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
 
 
 def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
-    comparability, status = record["comparability"], record["status"]
+    comparability = record["comparability"]
     row = dict(zip(PLACE, place))
     row |= {
-        "outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
+        "outcome": outcome_of(record),
         "comparability": comparability["verdict"],
         "gap_rel": rounded(comparability.get("gap_rel")),
         "run": record["ids"]["run_id"][:ID_DIGITS],

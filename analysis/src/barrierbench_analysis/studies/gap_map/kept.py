@@ -12,7 +12,7 @@ from pathlib import Path
 
 from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.origin import ID_DIGITS, machine_of
+from barrierbench_analysis.io.origin import ONE_THREAD, stamp
 from barrierbench_analysis.io.record_file import other_meanings
 from barrierbench_analysis.studies.kit.runs import inputs_sha256
 
@@ -22,12 +22,6 @@ from .spec import Spec, make_sweep
 from .table import Map, read
 
 Place = tuple[str, str]  # scene, resolution
-SOURCE = (
-    "build",
-    "date",
-    "machine",
-    "version",
-)  # of a run: program, day, processor and threads, version of the record
 
 
 def digests(spec: Spec) -> dict[Place, str]:
@@ -46,12 +40,7 @@ def digests(spec: Spec) -> dict[Place, str]:
 
 
 def source_of(record: dict) -> dict[str, str]:
-    return {
-        "build": record["ids"]["build_id"][:ID_DIGITS],
-        "date": record["status"]["started_utc"][:10],
-        "machine": machine_of(record),
-        "version": record["schema"]["version"],
-    }
+    return stamp(record, "build", "date", "machine", "version", threads=ONE_THREAD)
 
 
 @dataclass(frozen=True)

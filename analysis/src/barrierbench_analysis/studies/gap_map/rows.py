@@ -13,6 +13,7 @@ from barrierbench_analysis.io.origin import seconds_of_run
 from barrierbench_analysis.io.record_file import RecordError, read_record, read_trace
 from barrierbench_analysis.program.start import evaluated
 from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from .spec import Cell, Spec
 
@@ -174,10 +175,9 @@ def row(cell: Cell, record: dict | None, folder: Path | None = None, outcome: st
     }
     if record is None:
         return found
-    status = record["status"]
     gap = reached(record)
     found |= {
-        "outcome": "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"],
+        "outcome": outcome_of(record),
         "run": record["ids"]["run_id"][:16],
         "unknowns": record["scene"]["free_dofs"],
         "seconds": seconds_of_run(record),

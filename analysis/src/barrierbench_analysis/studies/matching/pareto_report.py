@@ -6,11 +6,11 @@ from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.studies.kit.formulations import REFERENCE
 from barrierbench_analysis.studies.kit.metrics import METRICS as MEANINGS
 from barrierbench_analysis.tables.numbers import interval, ratio
+from barrierbench_analysis.tables.statistics import Ratio
 
 from .fronts import (
     METRICS,
     Estimate,
-    OverScenes,
     Runs,
     at_gap,
     failures,
@@ -42,11 +42,15 @@ def _cell(e: Estimate | None) -> str:
     return ratio(e.value) + scatter + (f" ({e.n}/{e.of})" if e.n < e.of else "")
 
 
-def _cell_over_scenes(e: OverScenes | None) -> str:
+def _cell_over_scenes(e: Ratio | None, of: int) -> str:
     if e is None:
         return "-"
     alone = " (one scene: no interval)" if e.lower is None else ""
-    return interval(e.value, e.lower, e.upper, ratio) + alone + (f" ({e.n}/{e.of})" if 1 < e.n < e.of else "")
+    return (
+        interval(e.value, e.lower, e.upper, ratio)
+        + alone
+        + (f" ({e.scenes}/{of})" if 1 < e.scenes < of else "")
+    )
 
 
 def _reached(runs: Runs, scene: str) -> list[str]:
@@ -112,7 +116,13 @@ def _ratios_over_scenes(runs: Runs, gaps: list[float]) -> list[str]:
                 found.append(
                     over_scenes([over_shared(runs, scene, formulation, name) for scene in runs.scenes])
                 )
-                rows.append([name, f"{formulation} / {REFERENCE}", *map(_cell_over_scenes, found)])
+                rows.append(
+                    [
+                        name,
+                        f"{formulation} / {REFERENCE}",
+                        *(_cell_over_scenes(e, len(runs.scenes)) for e in found),
+                    ]
+                )
     return table_lines(_heading(gaps), rows)
 
 

@@ -15,6 +15,7 @@ from barrierbench_analysis.studies.gap_map.spec import COMMON, Cell, Scene, Spec
 from barrierbench_analysis.studies.kit.runs import Sweep, sweep
 from barrierbench_analysis.studies.stress.entry import Formulation, Test, read_test
 from barrierbench_analysis.studies.stress.run import Row, run_case
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from .candidate import RIVALS, Candidate
 
@@ -137,7 +138,7 @@ def starts(of: Candidate, records: dict[str, tuple[dict, Path] | None]) -> list[
     out = []
     for label in methods(of):
         mine = [records[f"score_starts: {label} main={seed}"] for seed in SEEDS]
-        ends = ["no record" if one is None else _outcome(one[0]) for one in mine]
+        ends = ["no record" if one is None else outcome_of(one[0]) for one in mine]
         newton = [one[0]["summary"]["newton_iterations"] for one in mine if one is not None]
         out.append(
             {
@@ -149,11 +150,6 @@ def starts(of: Candidate, records: dict[str, tuple[dict, Path] | None]) -> list[
             }
         )
     return out
-
-
-def _outcome(record: dict) -> str:
-    status = record["status"]
-    return "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
 
 
 def _of_test(test: Test, of: Candidate) -> list[Formulation]:

@@ -17,6 +17,7 @@ from barrierbench_analysis.io.errors import TRY_AGAIN, UserError
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.start import built_program, run_sweep, started
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from .entry import ROOT, Case, Formulation, Test
 
@@ -133,13 +134,12 @@ def _fall(steps: list[dict]) -> float | None:
 def row_of(record: dict, test: str, case: str, formulation: str) -> Row:
     """The numbers of a record that the tables and relations read."""
     status, summary, steps = record["status"], record["summary"], record["steps"]
-    outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
     last = steps[-1] if steps else {}
     return Row(
         test,
         case,
         formulation,
-        outcome,
+        outcome_of(record),
         status["detail"],
         record["ids"]["run_id"][:16],
         status["valid"],

@@ -25,6 +25,7 @@ from barrierbench_analysis.tables.accuracy.reference import (
     refined,
 )
 from barrierbench_analysis.tables.accuracy.state import Motion, read_motion
+from barrierbench_analysis.tables.outcomes import OK, outcome_of
 
 from .spec import REFERENCE_D_HAT, SOLVERS, Scene, Spec
 
@@ -96,7 +97,7 @@ def _records(spec: Spec, scene: Scene, runs: Path) -> dict[str, Path]:
 def _reference_motion(scene: Scene, label: str, folder: Path) -> Motion:
     motion = read_motion(folder)
     status = motion.record["status"]
-    if status["outcome"] != "ok" or not status["valid"]:
+    if outcome_of(motion.record) != OK:
         raise UserError(
             f"scene {scene.name}: reference run {label!r} ended {status['outcome']} {status['detail']}; a"
             " reference has to be ok and valid"
@@ -124,13 +125,13 @@ def references(scene: Scene, folders: dict[str, Path]) -> dict[float, Reference]
 def _row(scene: Scene, key: tuple, folder: Path, reference: Reference) -> dict:
     formulation, variation, solver = key
     record = read_record(folder / "run.json")
-    status, summary = record["status"], record["summary"]
+    summary = record["summary"]
     row = {
         "formulation": formulation.label,
         "axis": variation.axis,
         "factor": variation.factor,
         "solver": solver,
-        "outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
+        "outcome": outcome_of(record),
         "error": None,
         "seconds": summary["wall_s"],
         "newton": summary["newton_iterations"],
