@@ -52,15 +52,6 @@ def read_of_schema(path: Path, schema: str, remedy: str = "") -> dict:
     return data
 
 
-def lines_of(rows: list[dict], columns: tuple[str, ...]) -> str:
-    """The rows as JSON arrays in the order of the columns, one a line. Errors: ValueError for a number that
-    is none.
-    """
-    return ",\n  ".join(
-        json.dumps([row[c] for c in columns], separators=(",", ":"), allow_nan=False) for row in rows
-    )
-
-
 def rows_of(data: dict, columns: tuple[str, ...], path: Path, remedy: str = "") -> list[dict]:
     """The rows of an object that has `columns` and `rows`. Errors: UserError where the columns are others."""
     if data.get("columns") != list(columns):

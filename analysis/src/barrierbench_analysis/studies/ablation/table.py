@@ -7,9 +7,10 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from barrierbench_analysis.io.json_file import lines_of, read_of_schema, rows_of
+from barrierbench_analysis.io.json_file import rows_of
 from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.kit.success import FAILURES
 from barrierbench_analysis.tables.outcomes import OK, counted_as
@@ -18,6 +19,7 @@ from .factors import Factorial
 
 FILE = ROOT / "results" / "ablation.json"
 NAME = "barrierbench.ablation_results/1"
+REMEDY = "; ./bench ablation makes it"
 METRICS = {  # of runs that ended ok and valid: where a record has it
     "newton": ("summary", "newton_iterations"),
     "bj_p95": ("summary", "cond", "full/block_jacobi", "log10_cond", "p95"),
@@ -73,13 +75,15 @@ def write(table: Table, file: Path = FILE) -> None:
     head = json.dumps(
         {"schema": NAME, "digest": table.digest, "about": table.about, "columns": COLUMNS}, indent=1
     )
-    write_whole(file, f'{head[:-2]},\n "rows": [\n  {lines_of(table.rows, COLUMNS)}\n ]\n}}\n')
+    rows = a_line_each(in_columns(table.rows, COLUMNS), 2, ("[", "\n ]"))
+    write_whole(file, f'{head[:-2]},\n "rows": {rows}\n}}\n')
 
 
 def read(file: Path = FILE) -> Table:
     """Errors: UserError where it is not there, or of another schema or other columns."""
-    data = read_of_schema(file, NAME, "; ./bench ablation makes it")
-    return Table(data["digest"], data["about"], rows_of(data, COLUMNS, file))
+    return read_store(
+        file, NAME, lambda data: Table(data["digest"], data["about"], rows_of(data, COLUMNS, file)), REMEDY
+    )
 
 
 def levels_of(factorial: Factorial, row: dict) -> tuple[int, ...]:

@@ -18,9 +18,10 @@ from pathlib import Path
 from barrierbench_analysis.figures.figure_files import copy_to_page
 from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.io.json_file import lines_of, read_of_schema, rows_of
+from barrierbench_analysis.io.json_file import rows_of
 from barrierbench_analysis.io.origin import origin, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of, plugin_argument
 from barrierbench_analysis.studies.kit.runs import collect, inputs_sha256, run
@@ -57,13 +58,15 @@ def _about(spec: Spec, command: str, records: list[dict], plugins: list[str]) ->
 def to_json(runs: Runs) -> str:
     return (
         f'{{"schema": "{SCHEMA}", "about": {json.dumps(runs.about)},\n "columns": {json.dumps(COLUMNS)},'
-        f' "rows": [\n  {lines_of(runs.rows, COLUMNS)}]}}\n'
+        f' "rows": {a_line_each(in_columns(runs.rows, COLUMNS), 2)}}}\n'
     )
 
 
 def from_json(path: Path) -> Runs:
-    data = read_of_schema(path, SCHEMA, REMEDY)
-    return Runs(data["about"], rows_of(data, COLUMNS, path, REMEDY))
+    """Errors: UserError."""
+    return read_store(
+        path, SCHEMA, lambda data: Runs(data["about"], rows_of(data, COLUMNS, path, REMEDY)), REMEDY
+    )
 
 
 def make(spec: Spec, command: str, folder: Path, run_missing: bool, plugins: list[str]) -> Runs:

@@ -16,6 +16,7 @@ from barrierbench_analysis.figures.figure_files import copy_to_page
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.json_file import read_of_schema
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import a_line_each
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
 from barrierbench_analysis.tables.numbers import rounded
@@ -81,10 +82,10 @@ def table_text(table: dict) -> str:
     scenes = []
     for scene in table["scenes"]:
         head = json.dumps({k: v for k, v in scene.items() if k != "rows"})[:-1]
-        rows = ",\n   ".join(json.dumps(row, separators=(",", ":")) for row in scene["rows"])
-        scenes.append(f'  {head}, "rows": [\n   {rows}]}}')
+        rows = a_line_each((json.dumps(row, separators=(",", ":")) for row in scene["rows"]), 3)
+        scenes.append(f'{head}, "rows": {rows}}}')
     head = json.dumps({k: v for k, v in table.items() if k != "scenes"})[:-1]
-    return f'{head}, "scenes": [\n' + ",\n".join(scenes) + "]}\n"
+    return f'{head}, "scenes": {a_line_each(scenes, 2)}}}\n'
 
 
 def read_table(file: Path) -> dict:
