@@ -8,10 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from barrierbench_analysis.io.cases import read_cases
-from barrierbench_analysis.io.errors import UserError, passed_on
-from barrierbench_analysis.io.record_file import RecordError, read_record
+from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.start import run_sweep
+from barrierbench_analysis.program.start import check_ended, run_sweep
 
 from .design import drawn
 from .factors import Factorial
@@ -43,12 +42,7 @@ def run_shard(factorial: Factorial, scene: str, shard: int, folder: Path) -> Non
     """One of the shards of a scene, from 1. Errors: UserError with what the program says."""
     file, shards = write_sweep(factorial, scene, folder), factorial.spec["shards"]
     done = run_sweep(file, folder / scene, "--shard", f"{shard}/{shards}", "--progress", "none")
-    if done.returncode != 0:
-        first = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
-        raise UserError(
-            f"{file}: shard {shard}/{shards} ended with {done.returncode}: {first}",
-            passed_on(done.returncode),
-        )
+    check_ended(done, f"{file}: shard {shard}/{shards}: ")
     print(f"ablation: {scene}, shard {shard} of {shards}", file=sys.stderr, flush=True)
 
 
@@ -73,10 +67,7 @@ def records_of(folder: Path) -> dict[str, dict]:
     for case in read_cases(folder):
         if not case.record.is_file():
             continue
-        try:
-            record = read_record(case.record)
-        except RecordError as error:
-            raise UserError(str(error)) from None
+        record = read_record(case.record)
         if record["ids"]["config_id"] == case.config_id:
             out[case.label] = record
     return out

@@ -10,7 +10,7 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.origin import seconds_of_run
-from barrierbench_analysis.io.record_file import RecordError, read_record, read_trace
+from barrierbench_analysis.io.record_file import read_record, read_trace
 from barrierbench_analysis.program.start import evaluated
 from barrierbench_analysis.tables.numbers import rounded
 from barrierbench_analysis.tables.outcomes import outcome_of
@@ -239,10 +239,7 @@ def records_in(folders: Iterable[Path]) -> dict[str, tuple[dict, Path]]:
     found: dict[str, tuple[dict, Path]] = {}
     for folder in folders:
         for path in sorted(folder.glob("*/run.json")):
-            try:
-                record = read_record(path)
-            except RecordError as error:
-                raise UserError(str(error)) from None
+            record = read_record(path)
             note = record["labels"].get("note", "")
             if note in found:
                 raise UserError(f"{path}: a second record of {note!r}, beside {found[note][1]}: remove one")

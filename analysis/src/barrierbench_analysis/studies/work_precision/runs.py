@@ -10,12 +10,12 @@ import sys
 import time
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.start import built_program, run_sweep
+from barrierbench_analysis.program.start import built_program, check_ended, run_sweep
 from barrierbench_analysis.tables.accuracy.errors import NotFinite
 from barrierbench_analysis.tables.accuracy.reference import (
     CLOSED_FORMS,
@@ -44,12 +44,7 @@ def _sweep(spec: Spec, scene: Scene, runs: Path, *words: str) -> str:
     folder = runs / sweep_name(spec, scene)
     built_program(NEEDED)
     done = run_sweep(runs / f"{folder.name}.sweep.json", folder, "--progress", "none", *words)
-    if done.returncode != 0:
-        raise UserError(
-            f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}:"
-            f" {done.stderr.strip()[-2000:]}",
-            passed_on(done.returncode),
-        )
+    check_ended(done, f"{spec.file}: scene {scene.name}: ")
     return done.stdout
 
 
