@@ -34,7 +34,7 @@ def spec_file(tmp_path, **edit) -> Path:
     ({"formulations": ["cubic", "quadratic"]}, "'log' among them"), ({"formulations": ["log", "cubci"]}, "#/formulations/1: formulation 'cubci'"),
     ({"formulations": ["log", "log"]}, "at least two names, each once"), ({"scenes": []}, "#/scenes: found []; a list"), ({"scenes": [{"label": "a b", "set": {}}]}, "one word, each once"),
     ({"scenes": [{"label": "a", "set": {"/formulation": "log"}}]}, "#/scenes/a/set: found '/formulation'; the sweep sets formulation, matching, passes and seeds itself"), ({"jitter_m": -1}, "a length >= 0"),
-    ({"gap": "max"}, "#/gap: found 'max'; one of min, median"), ({"set": []}, "#/set: found []; overrides, {\"/POINTER\": value}, are needed"),
+    ({"gap": "max"}, "#/gap: found 'max'; one of min, median"), ({"set": []}, "#/set: found []; overrides, {\"/POINTER\": value}, is needed"),
     ({"base": 3}, "#/base: found 3; the path of a config, relative to this file, is needed"), ({"base": "none.json"}, "#/base: found 'none.json'; the path of a config, relative to this file, is needed"),
     ({"starts": True}, "#/starts: found True; a whole number from 1 to 100"), ({"doc": 3}, "#/doc: found 3; text is needed"),
     *(({"set": {pointer: 1}}, f"#/set: found '{pointer}'; the sweep sets formulation, matching, passes and seeds itself")
