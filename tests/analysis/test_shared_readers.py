@@ -8,7 +8,7 @@ import pytest
 from barrierbench_analysis.io.digests import BLOCK, of_file, of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io.json_file import read_object, read_of_schema, rows_of
+from barrierbench_analysis.io.json_file import is_number, number_at, read_object, read_of_schema, rows_of
 from barrierbench_analysis.io.store import a_line_each, in_columns
 from barrierbench_analysis.io.origin import machine_of, origin, seconds_of_run, stamp
 
@@ -66,3 +66,8 @@ def test_a_page_gets_picture_and_caption_alone(tmp_path):
         path.write_text(path.suffix)
     copy_to_page(paths, tmp_path / "new" / "docs")
     assert {path.name: path.read_text() for path in (tmp_path / "new/docs").iterdir()} == {"figure.png": ".png", "figure.txt": ".txt"}
+
+
+@pytest.mark.parametrize("value, number", [(0, True), (1.5, True), (10**400, True), (True, False), (float("nan"), False), (float("inf"), False), ("1", False), (None, False)])
+def test_what_is_a_number(value, number):
+    assert is_number(value) is number and number_at({"a": {"b": value}}, ("a", "b")) == (value if number else None) and number_at({"a": 3}, ("a", "b")) is None

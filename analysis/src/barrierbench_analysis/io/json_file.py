@@ -3,10 +3,26 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Iterable
 from pathlib import Path
 
 from . import input_file
 from .errors import UserError
+
+
+def is_number(value) -> bool:
+    """A finite number: no truth value, NaN or infinity."""
+    if isinstance(value, int):
+        return not isinstance(value, bool)
+    return isinstance(value, float) and math.isfinite(value)
+
+
+def number_at(data, place: Iterable[str]) -> int | float | None:
+    """The number at a place of an object; None where there is none."""
+    for name in place:
+        data = data.get(name) if isinstance(data, dict) else None
+    return data if is_number(data) else None
 
 
 class RepeatedKey(ValueError):

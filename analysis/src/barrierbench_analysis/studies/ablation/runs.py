@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -11,6 +10,7 @@ from barrierbench_analysis.io.cases import read_cases
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.start import check_ended, run_sweep
+from barrierbench_analysis.studies.kit.runs import sweep
 
 from .design import drawn
 from .factors import Factorial
@@ -20,21 +20,14 @@ def write_sweep(factorial: Factorial, scene: str, folder: Path) -> Path:
     """The sweep file of a scene: one axis, a case a combination, labelled by its levels. Its configs are
     those of the factorial, so their config_ids are too.
     """
-    base = (factorial.sweep_path.parent / factorial.sweep["base"]).resolve()
+    base, given = factorial.sweep_path.parent / factorial.sweep["base"], factorial.sweep
     cases = [
         {"label": " ".join(factorial.labels_of(one)), "set": factorial.settings_of(scene, one)}
         for one in drawn(factorial, scene)
     ]
-    data = {
-        "schema": "barrierbench.sweep/1",
-        "name": f"{factorial.sweep['name']}_{scene}",
-        "base": str(base),
-        "set": factorial.sweep["set"],
-        "axes": [{"cases": cases}],
-        "budget": factorial.sweep["budget"],
-    }
+    made = sweep(f"{given['name']}_{scene}", base, given["set"], cases, budget=given["budget"])
     file = folder / f"{scene}.json"
-    write_whole(file, json.dumps(data, indent=1) + "\n")
+    write_whole(file, made.text)
     return file
 
 

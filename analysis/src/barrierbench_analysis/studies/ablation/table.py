@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from barrierbench_analysis.io.json_file import rows_of
+from barrierbench_analysis.io.json_file import number_at, rows_of
 from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
@@ -38,19 +37,11 @@ class Table:
     rows: list[dict]
 
 
-def _number(record: dict, place: tuple[str, ...]) -> float | None:
-    found = record
-    for name in place:
-        found = found.get(name) if isinstance(found, dict) else None
-    number = isinstance(found, (int, float)) and not isinstance(found, bool) and math.isfinite(found)
-    return found if number else None
-
-
 def row_of(scene: str, case: str, record: dict) -> dict:
     """`failed`: words of kit/success.py in which the common success fell short. bj_p95 is the condition
     number itself, not its logarithm.
     """
-    row = {name: _number(record, place) for name, place in METRICS.items()}
+    row = {name: number_at(record, place) for name, place in METRICS.items()}
     if row["bj_p95"] is not None:
         row["bj_p95"] = round(10.0 ** row["bj_p95"], 6)
     status = record["status"]

@@ -46,8 +46,15 @@ class Sweep:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
 
-def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[int] | None = None) -> Sweep:
-    """One axis of cases {label, set}, and one of seeds where they are given."""
+def sweep(
+    name: str,
+    base: Path,
+    common: dict,
+    cases: list[dict],
+    seeds: list[int] | None = None,
+    budget: dict | None = None,
+) -> Sweep:
+    """One axis of cases {label, set}, and one of seeds where they are given. budget: of the sweep file."""
     axes: list[dict] = [{"cases": cases}]
     notes = [f"{name}: {case['label']}" for case in cases]
     if seeds:
@@ -59,7 +66,7 @@ def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[in
         "base": str(base.resolve()),
         "set": common,
         "axes": axes,
-    }
+    } | ({"budget": budget} if budget is not None else {})
     return Sweep(name, json.dumps(data, indent=1) + "\n", tuple(notes))
 
 

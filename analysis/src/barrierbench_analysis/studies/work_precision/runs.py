@@ -4,7 +4,6 @@ against its reference.
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import time
@@ -16,6 +15,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.start import built_program, check_ended, run_sweep
+from barrierbench_analysis.studies.kit.runs import sweep
 from barrierbench_analysis.tables.accuracy.errors import NotFinite
 from barrierbench_analysis.tables.accuracy.reference import (
     CLOSED_FORMS,
@@ -53,14 +53,8 @@ def run_scene(spec: Spec, scene: Scene, runs: Path) -> None:
     folder = runs / sweep_name(spec, scene)
     file = runs / f"{folder.name}.sweep.json"
     cases = spec.cases(scene)
-    sweep = {
-        "schema": "barrierbench.sweep/1",
-        "name": folder.name,
-        "base": os.path.relpath(scene.base, runs),
-        "set": {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}},
-        "axes": [{"cases": cases}],
-    }
-    write_whole(file, json.dumps(sweep, indent=1) + "\n")
+    common = {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}}
+    write_whole(file, sweep(folder.name, scene.base, common, cases).text)
     start = time.monotonic()
     print(f"work-precision: {scene.name}: {len(cases)} runs", file=sys.stderr)
     _sweep(spec, scene, runs)
