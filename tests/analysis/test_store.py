@@ -57,3 +57,9 @@ def test_a_store_is_read_by_its_schema(tmp_path):
     assert store.read_store(tmp_path / "none.json", "made/1", dict, "; make it", {}) == {}
     with pytest.raises(UserError, match="none.json"):
         store.read_store(tmp_path / "none.json", "made/1", dict, "; make it")
+
+
+def test_numbers_of_another_spec_are_refused_with_both_digests(tmp_path):
+    store.check_digest(tmp_path / "s.json", "about/spec_sha256", "abc", "abc", "spec", "./bench made")
+    with pytest.raises(UserError, match=r"s.json#/about/spec_sha256: found 'abc'; 'abd' is needed: its numbers are of another spec; ./bench made makes them"):
+        store.check_digest(tmp_path / "s.json", "about/spec_sha256", "abc", "abd", "spec", "./bench made")

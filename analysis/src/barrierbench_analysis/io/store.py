@@ -30,6 +30,17 @@ def read_store(path: Path, schema: str, of: Callable[[dict], T], remedy: str, em
         raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}){remedy}") from None
 
 
+def check_digest(path: Path, key: str, found: str | None, needed: str, what: str, again: str) -> None:
+    """Errors: UserError where the numbers of a store are of another `what` than is asked for now, by its
+    digest at a key of the store. again: the command that makes them.
+    """
+    if found != needed:
+        raise UserError(
+            f"{path}#/{key}: found {found!r}; {needed!r} is needed: its numbers are of another {what};"
+            f" {again} makes them"
+        )
+
+
 def a_line_each(texts: Iterable[str], indent: int, ends: Sequence[str] = "[]") -> str:
     """A JSON list, or an object with the ends {}, of texts that are JSON already, each on its own line."""
     pad = "\n" + " " * indent

@@ -14,6 +14,7 @@ from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.origin import ONE_THREAD, stamp
 from barrierbench_analysis.io.record_file import other_meanings
+from barrierbench_analysis.io.store import check_digest
 from barrierbench_analysis.studies.kit.runs import inputs_sha256
 
 from .rows import PLACE, READ
@@ -140,7 +141,6 @@ def about(spec: Spec, command: str, rows: list[dict], sources: list[dict]) -> di
 
 def read_for(path: Path, spec: Spec) -> Map:
     """The kept map. Errors: UserError where it is of another spec."""
-    found = read(path)
-    if found.about["spec_sha256"] != spec.sha256:
-        raise UserError(f"{path}: its numbers are of another {spec.path}: ./bench gap-map")
+    found, again = read(path), f"./bench gap-map {spec.path}"
+    check_digest(path, "about/spec_sha256", found.about["spec_sha256"], spec.sha256, "spec", again)
     return found

@@ -13,10 +13,10 @@ import json
 from pathlib import Path
 
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import tells
 from barrierbench_analysis.io.json_file import read_of_schema
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.io.store import a_line_each
+from barrierbench_analysis.io.store import a_line_each, check_digest
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
 from barrierbench_analysis.tables.numbers import rounded
@@ -93,6 +93,13 @@ def read_table(file: Path) -> dict:
     return read_of_schema(file, TABLE, "; ./bench work-precision makes it")
 
 
+def read_for(file: Path, spec: Spec) -> dict:
+    """The kept table. Errors: UserError where it is of another spec."""
+    table, again = read_table(file), f"./bench work-precision {spec.file}"
+    check_digest(file, "spec_sha256", table.get("spec_sha256"), spec.sha256, "spec", again)
+    return table
+
+
 def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
     """Page and figures; the pictures with their captions go to docs."""
     write_whole(results / "WORK_PRECISION.md", report.markdown(table))
@@ -116,12 +123,7 @@ def main(argv: list[str]) -> int:
     file = results / "work_precision.json"
     if not args.no_run:
         write_whole(file, table_text(rounded(made(spec, args.runs))))
-    table = read_table(file)
-    if table.get("spec_sha256") != spec.sha256:
-        raise UserError(
-            f"{file}: /spec_sha256: found {table.get('spec_sha256')!r}; allowed: {spec.sha256!r}, of"
-            f" {args.spec}: its numbers are of another spec; ./bench work-precision {args.spec} makes them"
-        )
+    table = read_for(file, spec)
     print(report.text(table))
     write_all(table, results, docs, args.runs / "figure")
     return 0
