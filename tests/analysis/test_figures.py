@@ -218,7 +218,7 @@ def test_demo_makes_everything_and_names_failures(program, tmp_path, monkeypatch
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
     write_set(tmp_path / "runs")
 
-    text = demo.make_all(tmp_path / "runs", tmp_path / "out")
+    text = demo.make_all_of(load(tmp_path / "runs"), tmp_path / "out")
 
     assert "strip: quadratic ended newton_stall: step 2 ended at its cap" in text
     names = {p.name for p in (tmp_path / "out").iterdir()}

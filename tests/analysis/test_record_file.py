@@ -12,7 +12,6 @@ from barrierbench_analysis.figures.pictures import render, stills
 from barrierbench_analysis.figures.plots import newton_steps
 from barrierbench_analysis.figures.plots import verb as figures
 from barrierbench_analysis.studies.gate import compare
-from barrierbench_analysis.studies.kit.runs import read_strictly
 from barrierbench_analysis.io.record_file import CHANGED, RecordError, bound_file, other_meanings, read_record, read_trace
 from barrierbench_analysis.io.record_rule import RecordRule
 from barrierbench_analysis.tables.run import Run
@@ -95,7 +94,7 @@ def test_every_verb_refuses_a_wrong_record_and_says_where(folder, tmp_path, caps
         assert render.main([str(folder)]) == 2
         said.append(capsys.readouterr().err)
         with pytest.raises(UserError) as error:
-            read_strictly(folder / "run.json")
+            read_record(folder / "run.json")
         said.append(str(error.value))
     for text in said:
         assert str(folder) in text and place in text and value in text and "allowed" in text, text

@@ -8,8 +8,9 @@ import pytest
 from barrierbench_analysis.io.digests import BLOCK, of_file, of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io.json_file import lines_of, read_object, read_of_schema, rows_of
-from barrierbench_analysis.io.origin import machine_of, origin, seconds_of_run
+from barrierbench_analysis.io.json_file import is_number, number_at, read_object, read_of_schema, rows_of
+from barrierbench_analysis.io.store import a_line_each, in_columns
+from barrierbench_analysis.io.origin import machine_of, origin, seconds_of_run, stamp
 
 REMEDY = "; ./bench made makes it"
 
@@ -38,14 +39,14 @@ def test_what_is_no_file_of_the_schema_is_told_with_what_makes_one(tmp_path, tex
 def test_rows_survive_writing_and_other_columns_are_refused(tmp_path):
     columns, rows = ("a", "b"), [{"b": 0.1, "a": "x", "left out": 1}, {"a": None, "b": 1e-300}]
     file = tmp_path / "made.json"
-    file.write_text(f'{{"schema": "made/1", "columns": {json.dumps(columns)}, "rows": [{lines_of(rows, columns)}]}}')
+    file.write_text(f'{{"schema": "made/1", "columns": {json.dumps(columns)}, "rows": {a_line_each(in_columns(rows, columns), 1)}}}')
     data = read_of_schema(file, "made/1")
     assert rows_of(data, columns, file) == [{"a": "x", "b": 0.1}, {"a": None, "b": 1e-300}]
-    assert lines_of(rows, columns).count("\n") == 1 and read_object(file) == data
+    assert read_object(file) == data
     with pytest.raises(UserError, match=r"made.json#/columns: found \['a', 'b'\]; \['b', 'a'\] are needed; ./bench made"):
         rows_of(data, ("b", "a"), file, REMEDY)
     with pytest.raises(ValueError):
-        lines_of([{"a": 1, "b": float("nan")}], columns)
+        in_columns([{"a": 1, "b": float("nan")}], columns)
 
 
 def test_the_origin_of_numbers_names_every_day_machine_and_program_once():
@@ -55,6 +56,7 @@ def test_the_origin_of_numbers_names_every_day_machine_and_program_once():
 
     records = [record("2024-01-02", "f"), record("2024-01-01", "e"), record("2024-01-02", "f")]
     assert origin(records) == {"date": "2024-01-01, 2024-01-02", "machine": machine_of(records[0]), "commit": "0123456789", "build": f"{'e' * 16}, {'f' * 16}"}
+    assert stamp(records[0], "commit", "machine") == {"commit": "0123456789", "machine": "a cpu, 2 cores"}
     assert machine_of(records[0]) == "a cpu, 2 cores, 1 thread a run" and seconds_of_run(records[0]) == 2.5
 
 
@@ -64,3 +66,8 @@ def test_a_page_gets_picture_and_caption_alone(tmp_path):
         path.write_text(path.suffix)
     copy_to_page(paths, tmp_path / "new" / "docs")
     assert {path.name: path.read_text() for path in (tmp_path / "new/docs").iterdir()} == {"figure.png": ".png", "figure.txt": ".txt"}
+
+
+@pytest.mark.parametrize("value, number", [(0, True), (1.5, True), (10**400, True), (True, False), (float("nan"), False), (float("inf"), False), ("1", False), (None, False)])
+def test_what_is_a_number(value, number):
+    assert is_number(value) is number and number_at({"a": {"b": value}}, ("a", "b")) == (value if number else None) and number_at({"a": 3}, ("a", "b")) is None

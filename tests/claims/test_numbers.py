@@ -8,7 +8,8 @@ from barrierbench_analysis.studies.claims.entry import read_sweep
 from barrierbench_analysis.studies.claims.judge import judge_part
 from barrierbench_analysis.studies.claims.numbers import _line, level, ratio, slope
 from barrierbench_analysis.studies.claims.parts import check
-from barrierbench_analysis.studies.claims.table import DIGITS, Table, _rounded
+from barrierbench_analysis.studies.claims.table import DIGITS, Table
+from barrierbench_analysis.tables.numbers import rounded
 from barrierbench_analysis.studies.claims.threshold import Threshold
 from barrierbench_analysis.studies.claims.verdict import HOLDS, NOT, ONLY_IF, OPEN
 
@@ -249,7 +250,7 @@ def test_a_number_on_the_threshold(kind, lower, upper, verdict):
 
 
 def test_a_metric_keeps_the_digits_that_a_threshold_needs():
-    assert _rounded(0.9999999, DIGITS) < 1 < _rounded(1.0000001, DIGITS) and _rounded({"a": [0.12345678]}) == {"a": [0.123457]}
+    assert rounded(0.9999999, DIGITS) < 1 < rounded(1.0000001, DIGITS) and rounded({"a": [0.12345678]}) == {"a": [0.123457]}
 
 
 def test_a_number_without_a_logarithm_is_left_out_of_a_slope():

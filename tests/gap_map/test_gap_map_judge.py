@@ -126,7 +126,7 @@ def test_a_ratio_averages_resolutions_before_scenes():
         assert found.value == pytest.approx(4.0) and found.scenes == 2
         # Student's t with one degree of freedom: 12.706 times the standard error ln 2 of the mean of ln 2 and ln 8
         assert (math.log(found.upper / 4), math.log(4 / found.lower)) == pytest.approx([12.7062 * math.log(2)] * 2, rel=1e-4)
-    with pytest.raises(ValueError, match="no place"):
+    with pytest.raises(ValueError, match="one scene"):
         compare.over_scenes({})
 
 

@@ -58,7 +58,11 @@ def test_a_limit_that_is_the_same_in_every_run_undoes_theta():
 
 
 @pytest.mark.parametrize("edit, words", [({"gaps": [0.1, 0.5]}, "gaps"), ({"gaps": [0.5, 0.0]}, "gaps"), ({"limits": ["of"]}, "on, contact, off"), ({"main": ["cubic"]}, "main"),
-                                         ({"base": "nowhere.json"}, "base"), ({"extra": 1}, "extra"), ({"scenes": [{"label": "x"}]}, "obstacle"), ({"quick": {}}, ""), ({"quick": []}, "quick")])
+                                         ({"base": "nowhere.json"}, "base"), ({"extra": 1}, "extra"), ({"scenes": [{"label": "x"}]}, "obstacle"), ({"quick": {}}, "quick/scenes: is missing"), ({"quick": []}, "quick: found"),
+                                         ({"gaps": [0.5, 1.0]}, "gaps/1: found 1.0; a gap in"), ({"gaps": [0.5, 0.5]}, "gaps: found .0.5, 0.5.; a falling list"), ({"limits": ["on", "on"]}, "limits: found"),
+                                         ({"shapes": [{"label": "log", "shape": "log", "argument": "gaps"}]}, "shapes/0/argument: found 'gaps'; one of gap, squared_gap"),
+                                         ({"scenes": [{"label": "x", "obstacle": "none", "set": {}, "resolutions": {"1": {"set": {}}}}]}, "scenes/0/resolutions/1/unknowns: is missing"),
+                                         ({"quick": {"scenes": {"block": ["2"]}, "shapes": ["log"], "gaps": [0.5], "limits": ["off"]}}, "quick/scenes/block: found .'2'.; a list of some of 1, each once")])
 def test_a_bad_spec_is_refused_with_its_place(tmp_path, edit, words):
     file = small(tmp_path, **edit)
     with pytest.raises(UserError, match=re.escape(str(file)) + f".*{words}"):

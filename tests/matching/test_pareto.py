@@ -34,7 +34,7 @@ def spec_file(tmp_path, **edit) -> Path:
     ({"formulations": ["cubic", "quadratic"]}, "'log' among them"), ({"formulations": ["log", "cubci"]}, "#/formulations/1: formulation 'cubci'"),
     ({"formulations": ["log", "log"]}, "at least two names, each once"), ({"scenes": []}, "#/scenes: found []; a list"), ({"scenes": [{"label": "a b", "set": {}}]}, "one word, each once"),
     ({"scenes": [{"label": "a", "set": {"/formulation": "log"}}]}, "#/scenes/a/set: found '/formulation'; the sweep sets formulation, matching, passes and seeds itself"), ({"jitter_m": -1}, "a length >= 0"),
-    ({"gap": "max"}, "#/gap: found 'max'; one of min, median"), ({"set": []}, "#/set: found []; overrides, {\"/POINTER\": value}, are needed"),
+    ({"gap": "max"}, "#/gap: found 'max'; one of min, median"), ({"set": []}, "#/set: found []; overrides, {\"/POINTER\": value}, is needed"),
     ({"base": 3}, "#/base: found 3; the path of a config, relative to this file, is needed"), ({"base": "none.json"}, "#/base: found 'none.json'; the path of a config, relative to this file, is needed"),
     ({"starts": True}, "#/starts: found True; a whole number from 1 to 100"), ({"doc": 3}, "#/doc: found 3; text is needed"),
     *(({"set": {pointer: 1}}, f"#/set: found '{pointer}'; the sweep sets formulation, matching, passes and seeds itself")
@@ -99,11 +99,11 @@ def test_scenes_are_the_samples_and_starts_are_not():
     widths = [math.log(e.upper / e.lower) for e in (three, thirty)]
     logs = [math.log(r) for r in (2, 3, 4)]
     spread = math.sqrt(sum((x - sum(logs) / 3) ** 2 for x in logs) / 2)
-    assert widths == [pytest.approx(2 * 4.302653 * spread / math.sqrt(3))] * 2 and (three.n, three.of) == (3, 3)  # t of 2 degrees of freedom
+    assert widths == [pytest.approx(2 * 4.302653 * spread / math.sqrt(3))] * 2 and three.scenes == 3  # t of 2 degrees of freedom
     assert three.value == pytest.approx(24 ** (1 / 3) * 1.001**2) and three.lower < 2 < 4 < three.upper
     alone = found({"a": 2})
-    assert (alone.lower, alone.upper, alone.n) == (None, None, 1)
-    assert over_scenes([None, None]) is None and over_scenes([None, over_shared(of_scenes({"a": 2}), "a", "cubic", "newton")]).of == 2
+    assert (alone.lower, alone.upper, alone.scenes) == (None, None, 1)
+    assert over_scenes([None, None]) is None and over_scenes([None, over_shared(of_scenes({"a": 2}), "a", "cubic", "newton")]).scenes == 1
 
 
 def test_the_page_calls_no_scatter_an_interval():

@@ -206,7 +206,7 @@ def test_numbers_of_another_spec_are_refused(draw_no_more, tmp_path, capsys):
         (out / "work_precision.json").write_text(json.dumps({**{k: v for k, v in kept.items() if k != "spec_sha256"}, **sha}))
         assert verb.main(words) == 2
         said = capsys.readouterr().err
-        assert "/spec_sha256: found" in said and f"its numbers are of another spec; ./bench study work-precision {file}" in said and read_spec(file).sha256 in said
+        assert "#/spec_sha256: found" in said and f"its numbers are of another spec; ./bench study work-precision {file}" in said and read_spec(file).sha256 in said
         assert not (out / "WORK_PRECISION.md").exists() and not list(out.glob("*.png"))
     (out / "work_precision.json").write_text(json.dumps({**kept, "spec_sha256": read_spec(file).sha256}))
     draw_no_more()

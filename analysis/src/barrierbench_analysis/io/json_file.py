@@ -3,10 +3,26 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Iterable
 from pathlib import Path
 
 from . import input_file
 from .errors import UserError
+
+
+def is_number(value) -> bool:
+    """A finite number: no truth value, NaN or infinity."""
+    if isinstance(value, int):
+        return not isinstance(value, bool)
+    return isinstance(value, float) and math.isfinite(value)
+
+
+def number_at(data, place: Iterable[str]) -> int | float | None:
+    """The number at a place of an object; None where there is none."""
+    for name in place:
+        data = data.get(name) if isinstance(data, dict) else None
+    return data if is_number(data) else None
 
 
 class RepeatedKey(ValueError):
@@ -50,15 +66,6 @@ def read_of_schema(path: Path, schema: str, remedy: str = "") -> dict:
     if data.get("schema") != schema:
         raise UserError(f"{path}#/schema: found {data.get('schema')!r}; {schema!r} is needed{remedy}")
     return data
-
-
-def lines_of(rows: list[dict], columns: tuple[str, ...]) -> str:
-    """The rows as JSON arrays in the order of the columns, one a line. Errors: ValueError for a number that
-    is none.
-    """
-    return ",\n  ".join(
-        json.dumps([row[c] for c in columns], separators=(",", ":"), allow_nan=False) for row in rows
-    )
 
 
 def rows_of(data: dict, columns: tuple[str, ...], path: Path, remedy: str = "") -> list[dict]:

@@ -7,20 +7,33 @@ from datetime import datetime
 ID_DIGITS = 16  # of run_id and build_id, in tables
 
 
+ONE_THREAD = ", 1 thread a run"  # behind the machine of a sweep, which gives every run one processor
+PLACES = {
+    "date": lambda record: record["status"]["started_utc"][:10],
+    "machine": lambda record: f"{record['machine']['cpu_model']}, {record['machine']['cores']} cores",
+    "commit": lambda record: record["provenance"].get("git_commit", "")[:10],
+    "build": lambda record: record["ids"]["build_id"][:ID_DIGITS],
+    "version": lambda record: record["schema"]["version"],
+}
+
+
+def stamp(record: dict, *keys: str, threads: str = "") -> dict[str, str]:
+    """What made a record, of PLACES, in the order of the keys: day, machine, commit and build of the program,
+    version of the record. threads: behind the machine.
+    """
+    found = {key: PLACES[key](record) for key in keys}
+    return found | {"machine": found["machine"] + threads} if "machine" in found else found
+
+
 def machine_of(record: dict) -> str:
-    machine = record["machine"]
-    return f"{machine['cpu_model']}, {machine['cores']} cores, 1 thread a run"
+    return stamp(record, "machine", threads=ONE_THREAD)["machine"]
 
 
 def origin(records: list[dict]) -> dict[str, str]:
-    """date, machine, commit and build of all records, every value once."""
-    found = {
-        "date": {r["status"]["started_utc"][:10] for r in records},
-        "machine": set(map(machine_of, records)),
-        "commit": {r["provenance"].get("git_commit", "")[:10] for r in records},
-        "build": {r["ids"]["build_id"][:ID_DIGITS] for r in records},
-    }
-    return {name: ", ".join(sorted(values)) for name, values in found.items()}
+    """date, machine, commit and build of all records of a sweep, every value once."""
+    keys = ("date", "machine", "commit", "build")
+    stamps = [stamp(record, *keys, threads=ONE_THREAD) for record in records]
+    return {key: ", ".join(sorted({one[key] for one in stamps})) for key in keys}
 
 
 def seconds_of_run(record: dict) -> float:

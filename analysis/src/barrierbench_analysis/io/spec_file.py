@@ -5,14 +5,13 @@ JSON Schema in configs/schema/. What no schema can say, a reader checks after it
 
 from __future__ import annotations
 
-import math
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from . import fields
 from .errors import UserError
-from .json_file import read_object
+from .json_file import is_number, read_object
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator
@@ -24,11 +23,6 @@ def _is_integer(_, value) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def _is_number(_, value) -> bool:
-    """NaN, Infinity and 1e999, which Python reads, are none."""
-    return _is_integer(_, value) or isinstance(value, float) and math.isfinite(value)
-
-
 @cache
 def _validator(kind: str) -> Draft202012Validator:
     from jsonschema import (  # takes as long as all else that a verb begins with
@@ -37,7 +31,7 @@ def _validator(kind: str) -> Draft202012Validator:
     )
 
     types = Draft202012Validator.TYPE_CHECKER
-    types = types.redefine("integer", _is_integer).redefine("number", _is_number)
+    types = types.redefine("integer", _is_integer).redefine("number", lambda _, value: is_number(value))
     return validators.extend(Draft202012Validator, type_checker=types)(fields.schema(kind))
 
 

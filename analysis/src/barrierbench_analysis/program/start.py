@@ -12,7 +12,7 @@ import threading
 from pathlib import Path
 from typing import NoReturn
 
-from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.errors import UserError, passed_on
 from barrierbench_analysis.io.places import ROOT
 
 RELEASE = ROOT / "build/release/experiments/barrierbench"
@@ -116,6 +116,19 @@ def run_sweep(
 ) -> subprocess.CompletedProcess:
     """Runs what is missing of a sweep file into `out`; otherwise as `started`."""
     return started("sweep", str(file), "--out", str(out), *words, plugins=plugins, **options)
+
+
+def check_ended(done: subprocess.CompletedProcess, what: str) -> None:
+    """Errors: UserError, with the first line of what the program said, where it did not end with 0. what: the
+    file or run that it was started for, at the beginning of the message.
+    """
+    if done.returncode != 0:
+        said = (done.stderr or "").strip() or (done.stdout or "").strip()
+        first, *more = said.splitlines() or ["it said nothing"]
+        others = f" (and {len(more)} more lines)" if more else ""
+        raise UserError(
+            f"{what}the program ended with {done.returncode}: {first}{others}", passed_on(done.returncode)
+        )
 
 
 def evaluated(queries: list[dict], plugins: list[str] = ()) -> list[dict]:

@@ -19,6 +19,7 @@ from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.program.arguments import parser_of, plugin_argument, set_argument
 from barrierbench_analysis.program.start import started
 
+from .numbers import significant
 from .records import LARGEST_COND
 
 STAGES = ["full", "without_contact", "without_contact_and_limit"]
@@ -102,10 +103,6 @@ def ratios(samples: dict[tuple[str, str], dict]) -> list[tuple[str, float]]:
     return found
 
 
-def number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.3g}"
-
-
 def end_lines(samples: dict[tuple[str, str], dict]) -> list[list[str]]:
     rows = []
     for (stage, scaling), sample in samples.items():
@@ -116,7 +113,7 @@ def end_lines(samples: dict[tuple[str, str], dict]) -> list[list[str]]:
                     stage,
                     scaling,
                     end["side"],
-                    number(end["lambda"]),
+                    significant(end["lambda"]),
                     terms,
                     f"{end['element']} ({end['element_share']:.0%})",
                     f"{end['body']} ({end['body_share']:.0%})",
@@ -159,7 +156,14 @@ def text(row: dict, count: int, scaling: str) -> str:
     lines += aligned(
         ["stage", "scaling", "cond", "lambda_min", "lambda_max", "status"],
         [
-            [stage, name, number(s["cond"]), number(s["lambda_min"]), number(s["lambda_max"]), s["status"]]
+            [
+                stage,
+                name,
+                significant(s["cond"]),
+                significant(s["lambda_min"]),
+                significant(s["lambda_max"]),
+                s["status"],
+            ]
             for (stage, name), s in samples.items()
         ],
     )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from .numbers import number as number
+
 # Words of core/base/record/outcome.hpp; a test holds the keys to the schema.
 OUTCOMES = {
     "invalid_scene": (
@@ -65,12 +67,3 @@ def listed(words: list[str], most: int = 8) -> str:
     if len(words) > most:
         return f"{', '.join(words[:most])} and {len(words) - most} others"
     return f"{', '.join(words[:-1])} and {words[-1]}" if len(words) > 1 else "".join(words)
-
-
-def number(value: float | None, digits: int = 3) -> str:
-    """So many digits, without a power of ten up to 1e5; `-` without a value."""
-    if value is None or value != value:
-        return "-"
-    if value != 0 and not 1e-3 <= abs(value) < 1e5:
-        return f"{value:.{digits - 1}e}".replace("e+0", "e").replace("e-0", "e-").replace("e+", "e")
-    return f"{float(f'{value:.{digits}g}'):g}" if abs(value) < 10**digits else f"{value:.0f}"

@@ -59,13 +59,8 @@ def _picture(draw: Callable, group: str) -> list[Path]:
     return draw(records, group, out)
 
 
-def make_all(runs: Path, out: Path) -> str:
-    """Writes everything to `out`; returns the text for the terminal."""
-    return make_all_of(load(runs), out)
-
-
 def make_all_of(records: Records, out: Path) -> str:
-    """The same of records that are loaded."""
+    """Writes everything to `out`; returns the text for the terminal."""
     groups = sorted(records.runs["group"].unique())
     of, draw = zip(*itertools.product(groups, OF_A_GROUP), strict=True)
     with processes.pool(

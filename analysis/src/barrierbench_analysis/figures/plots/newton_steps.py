@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -13,7 +12,7 @@ import pandas as pd
 
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.json_file import read_of_schema
+from barrierbench_analysis.io.json_file import is_number, read_of_schema
 
 SCHEMA = "barrierbench.steps/1"
 # colour and dash of each choice; black is the default of line_search
@@ -44,18 +43,14 @@ RING = "ring"  # gid
 AFTER_SADDLE = ", after a direction below the tolerance: the step goes on from a saddle"
 
 
-def _is_number(value) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-
-
 # what a figure needs of a trial: is it so, and what is allowed
 TRIAL = {
     "step": (lambda value: isinstance(value, int) and value >= 0, "an integer of 0 or more"),
     "hessian": (lambda value: value in LOOKS, f"one of {', '.join(LOOKS)}"),
     "status": (lambda value: isinstance(value, str), "a word"),
-    "tolerance_m": (_is_number, "a finite number"),
+    "tolerance_m": (is_number, "a finite number"),
     "dx_inf_m": (
-        lambda value: isinstance(value, list) and all(_is_number(dx) for dx in value),
+        lambda value: isinstance(value, list) and all(is_number(dx) for dx in value),
         "a list of finite numbers",
     ),
 }

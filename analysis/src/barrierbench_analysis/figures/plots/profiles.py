@@ -13,6 +13,7 @@ import pandas as pd
 from barrierbench_analysis.figures import panels, style
 from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.tables.robustness import Trial, profile
+from barrierbench_analysis.tables.statistics import spread
 from barrierbench_analysis.tables.words import reservations
 
 from .drawing import Drawing, common, formulations, outcomes
@@ -92,7 +93,7 @@ def pairwise(found: pd.DataFrame) -> pd.DataFrame:
             both = (
                 (logs[over] - logs[under]).dropna() if {over, under} <= set(logs) else pd.Series(dtype=float)
             )
-            mean = float(np.exp(both.mean())) if len(both) else math.nan
+            mean = spread(both)[0] if len(both) else math.nan
             rows.append({"over": over, "under": under, "ratio": mean, "n": len(both)})
     return pd.DataFrame(rows)
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from barrierbench_analysis.figures import style
+from barrierbench_analysis.tables import statistics
 
 
 def slope(x, y) -> float | None:
     """Least squares of log y over log x; None with fewer than two different x above 0."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     good = (x > 0) & (y > 0) & np.isfinite(x) & np.isfinite(y)
-    if len(np.unique(x[good])) < 2:
-        return None
-    return float(np.polyfit(np.log(x[good]), np.log(y[good]), 1)[0])
+    return statistics.slope(zip(np.log(x[good]), np.log(y[good])))
 
 
 def words(of: dict[str, float | None]) -> str:

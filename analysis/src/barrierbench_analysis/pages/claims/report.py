@@ -12,8 +12,9 @@ from barrierbench_analysis.studies.claims.entry import Claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import Answer
 from barrierbench_analysis.studies.claims.table import Table
 from barrierbench_analysis.studies.claims.verdict import IN_PART, ONLY_IF, OPEN, Judged
-from barrierbench_analysis.studies.claims.words import interval, number
+from barrierbench_analysis.studies.claims.words import interval
 from barrierbench_analysis.studies.kit.metrics import METRICS
+from barrierbench_analysis.tables.numbers import ratio
 
 WIDTH = 140
 MANY = 4  # parts: of more a table says how many hold
@@ -65,7 +66,7 @@ def _part(j: Judged, rests: dict[str, str]) -> list[str]:
         lines.append(
             "  By scene (least and largest of its levels): "
             + "; ".join(
-                f"{name} {number(v)} ({number(low)} to {number(high)} at {levels}, n = {n})"
+                f"{name} {ratio(v)} ({ratio(low)} to {ratio(high)} at {levels}, n = {n})"
                 for name, v, low, high, levels, n in j.per_scene
             )
             + "."

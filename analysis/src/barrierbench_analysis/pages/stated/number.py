@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.tables.numbers import interval
 
 ALIKE = 1.02
 OWN, SAME, OFF = "limit of the shape's own form", "the same log limit in every run", "no strain limit"
@@ -45,8 +46,7 @@ class Number:
         return "confirmed" if self.confirmed else "exploratory"
 
     def __str__(self) -> str:
-        ends = "" if self.lower is None else f" [{self.lower:.3g}, {self.upper:.3g}]"
-        return f"{self.value:.3g}{ends}"
+        return interval(self.value, self.lower, self.upper)
 
 
 def strength(number: Number) -> tuple[bool, int, int]:

@@ -12,7 +12,8 @@ from itertools import combinations
 
 import numpy as np
 
-from barrierbench_analysis.tables.estimate import sign_test, student
+from barrierbench_analysis.tables.estimate import sign_test
+from barrierbench_analysis.tables.statistics import mean_over
 
 from .bound import Contexts, Part, contexts, direct, is_bound, left_out, told_by
 from .factors import Factorial
@@ -133,12 +134,12 @@ def fitted(
 def over_scenes(metric: str, term: Term, scenes: dict[str, float]) -> Effect:
     """Mean, Student's interval and p of the scene values, where rounding is taken for nothing."""
     scenes = {scene: value if abs(value) > NOTHING else 0.0 for scene, value in scenes.items()}
+    if not scenes:
+        return Effect(metric, term, scenes, None)
     values = np.array(list(scenes.values()))
-    if len(values) < 2:
-        return Effect(metric, term, scenes, float(values[0]) if len(values) else None)
-    low, high = student(values)
+    mean = mean_over(values)
     p = sign_flip(values) if len(values) >= LEAST_SCENES else None
-    return Effect(metric, term, scenes, float(values.mean()), float(low), float(high), p)
+    return Effect(metric, term, scenes, mean.value, mean.lower, mean.upper, p)
 
 
 def with_holm(effects: list[Effect]) -> list[Effect]:

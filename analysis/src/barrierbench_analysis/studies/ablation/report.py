@@ -6,6 +6,8 @@ import math
 from collections import Counter
 
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.tables.numbers import interval, significant
+from barrierbench_analysis.tables.outcomes import counted_as
 
 from .construction import by_construction
 from .design import drawn, seldom
@@ -38,10 +40,8 @@ def value_of(effect: Effect) -> str:
     if effect.mean is None:
         return "no scene tells it"
     share = effect.metric in SHARES
-    one = (lambda v: f"{v:+.2f}") if share else (lambda v: f"{math.exp(v):.3g}")
-    if effect.low is None:
-        return one(effect.mean)
-    return f"{one(effect.mean)} [{one(effect.low)}, {one(effect.high)}]"
+    one = (lambda v: f"{v:+.2f}") if share else (lambda v: significant(math.exp(v)))
+    return interval(effect.mean, effect.low, effect.high, one)
 
 
 def _without(factorial: Factorial, effect: Effect) -> str:
@@ -137,7 +137,7 @@ def _main_table(factorial: Factorial, study: Study, metric: str) -> list[str]:
                 f"{name_of(factorial, effect.term)} against {against(factorial, effect.term)}",
                 value_of(effect),
                 f"{up} up, {down} down, p {effect.sign_p:.2g}",
-                "" if effect.holm is None else f"{effect.holm:.2g}",
+                significant(effect.holm, 2, none=""),
                 verdict_of(factorial, effect),
             ]
         )
@@ -151,9 +151,7 @@ def _outcomes(table: Table) -> list[str]:
     rows = []
     for scene in scenes:
         mine = [row for row in table.rows if row["scene"] == scene]
-        words = Counter(
-            row["outcome"] if row["outcome"] != "ok" or row["valid"] else "not valid" for row in mine
-        )
+        words = Counter(counted_as(row["outcome"], row["valid"], "not valid") for row in mine)
         rows.append(
             [
                 scene,

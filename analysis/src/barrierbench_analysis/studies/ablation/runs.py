@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from barrierbench_analysis.io.cases import read_cases
-from barrierbench_analysis.io.errors import UserError, passed_on
-from barrierbench_analysis.io.record_file import RecordError, read_record
+from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.start import run_sweep
+from barrierbench_analysis.program.start import check_ended, run_sweep
+from barrierbench_analysis.studies.kit.runs import sweep
 
 from .design import drawn
 from .factors import Factorial
@@ -21,21 +20,14 @@ def write_sweep(factorial: Factorial, scene: str, folder: Path) -> Path:
     """The sweep file of a scene: one axis, a case a combination, labelled by its levels. Its configs are
     those of the factorial, so their config_ids are too.
     """
-    base = (factorial.sweep_path.parent / factorial.sweep["base"]).resolve()
+    base, given = factorial.sweep_path.parent / factorial.sweep["base"], factorial.sweep
     cases = [
         {"label": " ".join(factorial.labels_of(one)), "set": factorial.settings_of(scene, one)}
         for one in drawn(factorial, scene)
     ]
-    data = {
-        "schema": "barrierbench.sweep/1",
-        "name": f"{factorial.sweep['name']}_{scene}",
-        "base": str(base),
-        "set": factorial.sweep["set"],
-        "axes": [{"cases": cases}],
-        "budget": factorial.sweep["budget"],
-    }
+    made = sweep(f"{given['name']}_{scene}", base, given["set"], cases, budget=given["budget"])
     file = folder / f"{scene}.json"
-    write_whole(file, json.dumps(data, indent=1) + "\n")
+    write_whole(file, made.text)
     return file
 
 
@@ -43,12 +35,7 @@ def run_shard(factorial: Factorial, scene: str, shard: int, folder: Path) -> Non
     """One of the shards of a scene, from 1. Errors: UserError with what the program says."""
     file, shards = write_sweep(factorial, scene, folder), factorial.spec["shards"]
     done = run_sweep(file, folder / scene, "--shard", f"{shard}/{shards}", "--progress", "none")
-    if done.returncode != 0:
-        first = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
-        raise UserError(
-            f"{file}: shard {shard}/{shards} ended with {done.returncode}: {first}",
-            passed_on(done.returncode),
-        )
+    check_ended(done, f"{file}: shard {shard}/{shards}: ")
     print(f"ablation: {scene}, shard {shard} of {shards}", file=sys.stderr, flush=True)
 
 
@@ -73,10 +60,7 @@ def records_of(folder: Path) -> dict[str, dict]:
     for case in read_cases(folder):
         if not case.record.is_file():
             continue
-        try:
-            record = read_record(case.record)
-        except RecordError as error:
-            raise UserError(str(error)) from None
+        record = read_record(case.record)
         if record["ids"]["config_id"] == case.config_id:
             out[case.label] = record
     return out

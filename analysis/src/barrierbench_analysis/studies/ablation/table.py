@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from barrierbench_analysis.io.json_file import lines_of, read_of_schema, rows_of
+from barrierbench_analysis.io.json_file import number_at, rows_of
 from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.kit.success import FAILURES
+from barrierbench_analysis.tables.outcomes import OK, counted_as
 
 from .factors import Factorial
 
 FILE = ROOT / "results" / "ablation.json"
 NAME = "barrierbench.ablation_results/1"
+REMEDY = "; ./bench study ablation makes it"
 METRICS = {  # of runs that ended ok and valid: where a record has it
     "newton": ("summary", "newton_iterations"),
     "bj_p95": ("summary", "cond", "full/block_jacobi", "log10_cond", "p95"),
@@ -35,19 +37,11 @@ class Table:
     rows: list[dict]
 
 
-def _number(record: dict, place: tuple[str, ...]) -> float | None:
-    found = record
-    for name in place:
-        found = found.get(name) if isinstance(found, dict) else None
-    number = isinstance(found, (int, float)) and not isinstance(found, bool) and math.isfinite(found)
-    return found if number else None
-
-
 def row_of(scene: str, case: str, record: dict) -> dict:
     """`failed`: words of kit/success.py in which the common success fell short. bj_p95 is the condition
     number itself, not its logarithm.
     """
-    row = {name: _number(record, place) for name, place in METRICS.items()}
+    row = {name: number_at(record, place) for name, place in METRICS.items()}
     if row["bj_p95"] is not None:
         row["bj_p95"] = round(10.0 ** row["bj_p95"], 6)
     status = record["status"]
@@ -65,20 +59,22 @@ def row_of(scene: str, case: str, record: dict) -> dict:
 
 
 def got_through(row: dict) -> bool:
-    return row["outcome"] == "ok" and row["valid"]
+    return counted_as(row["outcome"], row["valid"]) == OK
 
 
 def write(table: Table, file: Path = FILE) -> None:
     head = json.dumps(
         {"schema": NAME, "digest": table.digest, "about": table.about, "columns": COLUMNS}, indent=1
     )
-    write_whole(file, f'{head[:-2]},\n "rows": [\n  {lines_of(table.rows, COLUMNS)}\n ]\n}}\n')
+    rows = a_line_each(in_columns(table.rows, COLUMNS), 2, ("[", "\n ]"))
+    write_whole(file, f'{head[:-2]},\n "rows": {rows}\n}}\n')
 
 
 def read(file: Path = FILE) -> Table:
     """Errors: UserError where it is not there, or of another schema or other columns."""
-    data = read_of_schema(file, NAME, "; ./bench study ablation makes it")
-    return Table(data["digest"], data["about"], rows_of(data, COLUMNS, file))
+    return read_store(
+        file, NAME, lambda data: Table(data["digest"], data["about"], rows_of(data, COLUMNS, file)), REMEDY
+    )
 
 
 def levels_of(factorial: Factorial, row: dict) -> tuple[int, ...]:

@@ -15,6 +15,7 @@ from pathlib import Path
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.origin import origin
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import check_digest
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
 from barrierbench_analysis.program.start import started
@@ -75,8 +76,8 @@ def main(argv: list[str]) -> int:
     args = _arguments(argv)
     factorial = read_factorial(args.spec.absolute())
     kept = read() if FILE.is_file() else None
-    if kept and kept.digest != factorial.digest and args.no_run:
-        raise UserError(f"{FILE}: made of other files than {args.spec} and its sweep; ./bench study ablation")
+    if kept and args.no_run:
+        check_digest(FILE, "digest", kept.digest, factorial.digest, "spec or sweep", "./bench study ablation")
     plan = kept.about.get("plan", "") if kept and kept.digest == factorial.digest else ""
     if not args.no_run:
         shards = 0 if args.gather else args.shards or factorial.spec["shards"]

@@ -15,11 +15,12 @@ import sys
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.io.json_file import read_of_schema
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import a_line_each, merged, read_store
 from barrierbench_analysis.io.text_table import fitted
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of, set_argument
+from barrierbench_analysis.tables.outcomes import OK, outcome_of
 
 from .checks import judge, no_crossing
 from .entry import Entry, entries
@@ -67,12 +68,11 @@ def _setting(text: str) -> tuple[str, object]:
 
 def failure(entry: Entry, done: Done) -> str:
     """Why a start did not pass; empty where it did."""
-    status = done.record["status"]
     if entry.is_rejected:
         red = [finding.saw for _, finding in judge(done.record, entry.data["expect"]) if finding.red]
         return red[0] if red else ""
-    if status["outcome"] != "ok" or not status["valid"]:
-        return "not_valid" if status["outcome"] == "ok" else status["outcome"]
+    if (outcome := outcome_of(done.record)) != OK:
+        return outcome
     crossing = no_crossing(done.record)
     return crossing.saw if crossing.red else ""
 
@@ -98,15 +98,16 @@ def rows_of(entry: Entry, runs: list[Done]) -> list[dict]:
 
 def read(file: Path = FILE) -> dict[str, list[dict]]:
     """Scene -> rows; empty where nothing is kept."""
-    return read_of_schema(file, NAME)["scenes"] if file.is_file() else {}
+    return read_store(file, NAME, lambda data: data["scenes"], "; ./bench study robust makes it", {})
 
 
 def write(scenes: dict[str, list[dict]], file: Path = FILE) -> None:
     lines = [
-        f"  {json.dumps(name)}: [\n   " + ",\n   ".join(map(json.dumps, rows)) + "]"
+        f"{json.dumps(name)}: {a_line_each(map(json.dumps, rows), 3)}"
         for name, rows in sorted(scenes.items())
     ]
-    write_whole(file, f'{{\n "schema": "{NAME}",\n "scenes": {{\n' + ",\n".join(lines) + "\n }\n}\n")
+    scenes = a_line_each(lines, 2, ("{", "\n }"))
+    write_whole(file, f'{{\n "schema": "{NAME}",\n "scenes": {scenes}\n}}\n')
 
 
 @tells("study robust")
@@ -116,7 +117,7 @@ def main(argv: list[str]) -> int:
     for entry in entries(args.names):
         print(f"robust: {entry.name}", file=sys.stderr)
         rows = rows_of(entry, run_scene(entry, args.formulations, args.runs, seeds, args.given))
-        kept[entry.name] = rows
+        kept[entry.name] = merged(kept.get(entry.name, []), rows, ("formulation",), replace=True)
         if not args.given:
             write(kept)  # an interrupt leaves what is over
         lines += [

@@ -7,11 +7,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.io.record_file import RecordError, read_record
+from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.start import run_sweep
+from barrierbench_analysis.program.start import check_ended, run_sweep
 from barrierbench_analysis.studies.kit.runs import sweep
 
 from .entry import MINI, Entry, write_config
@@ -47,17 +46,10 @@ def run_scene(
     write_whole(file, sweep(entry.name, base, ONE_PASS | start | (given or {}), cases(labels), seeds).text)
     said = ("--progress", "none", "--time-limit", str(LIMIT_S))
     done = run_sweep(file, out, *said)
-    if done.returncode != 0:
-        first = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
-        raise UserError(
-            f"{entry.path}: the program ended with {done.returncode}: {first}", passed_on(done.returncode)
-        )
+    check_ended(done, f"{entry.path}: ")
     planned = run_sweep(file, out, *said, "--dry-run").stdout.splitlines()
     keys = [(label, seed) for label in labels for seed in seeds or [None]]
-    try:
-        records = [read_record(Path(place) / "run.json") for place in planned]
-    except RecordError as error:
-        raise UserError(str(error)) from None
+    records = [read_record(Path(place) / "run.json") for place in planned]
     return [
         Done(*key, Path(place), record) for key, place, record in zip(keys, planned, records, strict=True)
     ]

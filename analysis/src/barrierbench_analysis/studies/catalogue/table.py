@@ -8,10 +8,11 @@ import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.json_file import read_of_schema
-from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run
+from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run, stamp
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import a_line_each, merged, read_store
 from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.tables.outcomes import OK, outcome_of
 
 from .checks import judge
 from .entry import Entry
@@ -19,6 +20,7 @@ from .runs import Done
 
 FILE = ROOT / "results" / "catalogue.json"
 NAME = "barrierbench.catalogue_results/1"
+REMEDY = "; ./bench study catalogue makes it"
 
 
 @dataclass
@@ -40,13 +42,12 @@ def row_of(entry: Entry, done: Done) -> Row:
     that starts.
     """
     record = done.record
-    status, found = record["status"], judge(record, entry.data["expect"])
-    outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
-    ends = [] if outcome == "ok" or entry.is_rejected else [f"ends_ok: {outcome}"]
+    outcome, found = outcome_of(record), judge(record, entry.data["expect"])
+    ends = [] if outcome == OK or entry.is_rejected else [f"ends_ok: {outcome}"]
     return Row(
         done.formulation,
         outcome,
-        status["detail"],
+        record["status"]["detail"],
         round(seconds_of_run(record), 1),
         record["summary"]["newton_iterations"],
         [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
@@ -56,33 +57,27 @@ def row_of(entry: Entry, done: Done) -> Row:
 
 
 def origin_of(record: dict) -> dict:
-    machine = record["machine"]
-    return {
-        "date": record["status"]["started_utc"][:10],
-        "machine": f"{machine['cpu_model']}, {machine['cores']} cores",
-        "commit": record["provenance"].get("git_commit", "")[:10],
-        "vertices": record["scene"]["vertices"],
-        "triangles": record["scene"]["triangles"],
-    }
+    size = {key: record["scene"][key] for key in ("vertices", "triangles")}
+    return stamp(record, "date", "machine", "commit") | size
 
 
 def read(file: Path = FILE) -> dict[str, dict]:
     """Scene -> {"about", "rows"}; empty where nothing is kept."""
-    return read_of_schema(file, NAME)["scenes"] if file.is_file() else {}
+    return read_store(file, NAME, lambda data: data["scenes"], REMEDY, {})
 
 
 def write(scenes: dict[str, dict], file: Path = FILE) -> None:
     lines = [
-        f'  {json.dumps(name)}: {{"about": {json.dumps(kept["about"])},\n   "rows": [\n    '
-        + ",\n    ".join(json.dumps(one) for one in kept["rows"])
-        + "]}"
+        f'{json.dumps(name)}: {{"about": {json.dumps(kept["about"])},\n   "rows": '
+        + a_line_each(map(json.dumps, kept["rows"]), 4)
+        + "}"
         for name, kept in sorted(scenes.items())
     ]
-    write_whole(file, f'{{\n "schema": "{NAME}",\n "scenes": {{\n' + ",\n".join(lines) + "\n }\n}\n")
+    scenes = a_line_each(lines, 2, ("{", "\n }"))
+    write_whole(file, f'{{\n "schema": "{NAME}",\n "scenes": {scenes}\n}}\n')
 
 
 def kept_of(entry: Entry, runs: list[Done], before: dict | None) -> dict:
     """Rows of these runs, and of other formulations that were kept before."""
-    rows = {row["formulation"]: row for row in (before or {}).get("rows", [])}
-    rows |= {done.formulation: asdict(row_of(entry, done)) for done in runs}
-    return {"about": origin_of(runs[0].record), "rows": list(rows.values())}
+    new, kept = [asdict(row_of(entry, done)) for done in runs], (before or {}).get("rows", [])
+    return {"about": origin_of(runs[0].record), "rows": merged(kept, new, ("formulation",), replace=True)}

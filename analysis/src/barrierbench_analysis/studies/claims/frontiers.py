@@ -20,6 +20,7 @@ from barrierbench_analysis.studies.kit.metrics import METRICS
 from barrierbench_analysis.studies.kit.success import read_for
 from barrierbench_analysis.tables import series
 from barrierbench_analysis.tables.estimate import wilson
+from barrierbench_analysis.tables.numbers import significant
 from barrierbench_analysis.tables.robustness import Frontier, Trial, expected_cost, frontier, profile, success
 
 from .ends import end_of_case
@@ -183,7 +184,7 @@ def lines(claim: Claim, table: Table) -> list[str]:
         reaches = [
             _reach(frontier(along(runs, case, axis, middle, bad), middle)) for axis, middle in axes.items()
         ]
-        rows.append([label, _share(runs, case, every, bad), "-" if ert is None else f"{ert:.4g}", *reaches])
+        rows.append([label, _share(runs, case, every, bad), significant(ert, 4), *reaches])
     head = ["case", "gets through", f"ert ({cost})", *(f"frontier of {axis}" for axis in axes)]
     return [*found, *table_lines(head, rows), ""]
 

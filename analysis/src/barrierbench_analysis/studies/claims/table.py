@@ -12,13 +12,16 @@ from pathlib import Path
 
 from barrierbench_analysis.io.digests import of_file
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.json_file import read_object, read_of_schema
+from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
 from barrierbench_analysis.io.record_file import RecordError, other_meanings, read_record
+from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.kit.metrics import FOLDER, METRICS
 from barrierbench_analysis.studies.kit.success import RESIDUAL, read_for
 from barrierbench_analysis.tables.gap_rule import gaps_of
+from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from .ends import ENDS, end_of_run
 from .entry import ROOT, Claim, Sweep
@@ -96,27 +99,19 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     return {sweep: sorted(names) for sweep, names in used.items()}
 
 
-def _rounded(value, digits: int = 6):
-    if isinstance(value, dict):
-        return {key: _rounded(one, digits) for key, one in value.items()}
-    if isinstance(value, list):
-        return [_rounded(one, digits) for one in value]
-    return float(f"{value:.{digits}g}") if isinstance(value, float) else value
-
-
 def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
-    comparability, status = record["comparability"], record["status"]
+    comparability = record["comparability"]
     row = dict(zip(PLACE, place))
     row |= {
-        "outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
+        "outcome": outcome_of(record),
         "comparability": comparability["verdict"],
-        "gap_rel": _rounded(comparability.get("gap_rel")),
+        "gap_rel": rounded(comparability.get("gap_rel")),
         "run": record["ids"]["run_id"][:ID_DIGITS],
         "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "",
-        "gaps": _rounded(gaps_of(record)),
-        **_rounded(end_of_run(record)),
+        "gaps": rounded(gaps_of(record)),
+        **rounded(end_of_run(record)),
     }
-    return row | {name: _rounded(METRICS[name][3](record), DIGITS) for name in metrics}
+    return row | {name: rounded(METRICS[name][3](record), DIGITS) for name in metrics}
 
 
 def _records(sweep: Sweep, folder: Path, metrics: list[str]) -> Iterator[tuple[dict, dict]]:
@@ -181,38 +176,28 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
 
 
 def write(table: Table, path: Path) -> None:
-    lines = ["{", f' "schema": "{NAME}",', ' "sweeps": {']
     blocks = []
     for name, runs in sorted(table.sweeps.items()):
         columns = list(runs.rows[0]) if runs.rows else list(PLACE + STATE)
-        rows = ",\n   ".join(
-            json.dumps([row[c] for c in columns], separators=(",", ":")) for row in runs.rows
-        )
         blocks.append(
-            f'  "{name}": {{"about": {json.dumps(runs.about)}, "expected": {runs.expected},\n   "columns":'
-            f' {json.dumps(columns)}, "rows": [\n   {rows}]}}'
+            f'"{name}": {{"about": {json.dumps(runs.about)}, "expected": {runs.expected},\n   "columns":'
+            f' {json.dumps(columns)}, "rows": {a_line_each(in_columns(runs.rows, columns), 3)}}}'
         )
-    lines += [",\n".join(blocks), " },", ' "answers": {']
-    lines += [
-        ",\n".join(
-            f"  {json.dumps(query)}: {json.dumps(answer)}" for query, answer in sorted(table.answers.items())
-        ),
-        " }",
-        "}",
+    answers = [
+        f"{json.dumps(query)}: {json.dumps(answer)}" for query, answer in sorted(table.answers.items())
     ]
-    write_whole(path, "\n".join(lines) + "\n")
+    sweeps, answers = (a_line_each(texts, 2, ("{", "\n }")) for texts in (blocks, answers))
+    write_whole(path, f'{{\n "schema": "{NAME}",\n "sweeps": {sweeps},\n "answers": {answers}\n}}\n')
 
 
 def read(path: Path) -> Table:
     """The kept table; empty when there is none."""
-    if not path.is_file():
-        return Table()
-    data = read_of_schema(path, NAME, AGAIN)
-    try:
+
+    def of(data: dict) -> Table:
         sweeps = {
             name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"])
             for name, s in data["sweeps"].items()
         }
         return Table(sweeps, data["answers"])
-    except (KeyError, TypeError, AttributeError) as error:
-        raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}){AGAIN}") from None
+
+    return read_store(path, NAME, of, AGAIN, Table())

@@ -18,11 +18,11 @@ from barrierbench_analysis.figures.plots.subjects import Place, Spectrum, SweepR
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.cases import has_list, read_cases
 from barrierbench_analysis.io.digests import of_text
-from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.matrix_market import read_matrix
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.program.start import run_sweep
+from barrierbench_analysis.program.start import check_ended, run_sweep
 from barrierbench_analysis.studies.kit.runs import Sweep, inputs_sha256
 from barrierbench_analysis.tables.records import load
 
@@ -65,11 +65,7 @@ def sweep(wanted: Wanted, place: Place) -> SweepRecords:
     jobs = 1 if wanted.alone else place.jobs
     if place.may_run and _missing(folder):
         done = run_sweep(file, folder, "--progress", "none", "--jobs", str(jobs))
-        if done.returncode != 0:
-            said = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
-            raise UserError(
-                f"{file}: the program ended with {done.returncode}: {said}", passed_on(done.returncode)
-            )
+        check_ended(done, f"{file}: ")
     if missing := _missing(folder):
         raise UserError(
             f"{folder}: {missing}; this makes them: ./bench sweep {_shown(file)} --out {_shown(folder)}"

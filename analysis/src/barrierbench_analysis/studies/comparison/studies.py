@@ -28,6 +28,7 @@ from barrierbench_analysis.studies.matching.spec import read_spec as read_pareto
 from barrierbench_analysis.studies.work_precision import figure as work_figure
 from barrierbench_analysis.studies.work_precision import verb as work_precision
 from barrierbench_analysis.studies.work_precision.spec import read_spec as read_work
+from barrierbench_analysis.tables.numbers import rounded
 
 
 @dataclass(frozen=True)
@@ -45,11 +46,7 @@ class Study:
 
 
 def _pareto_table(spec, kept: Path):
-    runs = pareto.from_json(kept)
-    inputs = inputs_sha256(make_sweep(spec))
-    if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
-        raise UserError(f"{kept}: its numbers are of another {spec.path}, base config or preset")
-    return runs
+    return pareto.read_for(kept, spec, inputs_sha256(make_sweep(spec)))
 
 
 def _pareto_make(spec, kept: Path, _: int) -> None:
@@ -62,16 +59,13 @@ def _gap_make(spec, kept: Path, jobs: int) -> None:
     gap_map.make_map(gap_map.arguments(words), spec, kept)
 
 
-def _work_table(spec, kept: Path):
-    table = work_precision.read_table(kept)
-    if table.get("spec_sha256") != spec.sha256:
-        raise UserError(f"{kept}: its numbers are of another {spec.file}")
-    return table
+def _work_read(spec, kept: Path) -> dict:
+    return work_precision.read_for(kept, spec)
 
 
 def _work_make(spec, kept: Path, _: int) -> None:
     made = work_precision.made(spec, kept.parent / "records")
-    write_whole(kept, work_precision.table_text(work_precision.rounded(made)))
+    write_whole(kept, work_precision.table_text(rounded(made)))
 
 
 STUDIES = {
@@ -91,7 +85,7 @@ STUDIES = {
         "work_precision.json",
         work_precision.DEFAULT,
         read_work,
-        _work_table,
+        _work_read,
         _work_make,
     ),
 }

@@ -18,7 +18,7 @@ from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.io.record_file import RecordError, read_record
+from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
 
 SCHEMA = "barrierbench.gpu_evidence/1"
@@ -87,10 +87,7 @@ def scene_numbers(folder: Path) -> dict | None:
     path = folder / "run.json"
     if not path.exists():
         return None
-    try:
-        run = read_record(path)
-    except RecordError as error:
-        raise UserError(str(error)) from None
+    run = read_record(path)
     summary, steps = run["summary"], max(run["summary"]["steps"], 1)
     newton, pcg = summary["newton_iterations"], summary["linear_iterations"]
     wall, solve = (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from barrierbench_analysis.tables.numbers import whole
+
 from .gpu_evidence import OF_SOLVE
 
 LARGE = "drape_1m"
@@ -19,10 +21,8 @@ COUNTERS = {
 WORDS = {"passed": "passed", "failed": "**failed**", "timed_out": "**timed out**", "left_out": "not run"}
 
 
-def number(value: float | None, digits: int = 3) -> str:
-    return (
-        "not measured" if value is None else f"{value:,.{digits}g}" if abs(value) < 1000 else f"{value:,.0f}"
-    )
+def number(value: float | None) -> str:
+    return whole(value, none="not measured", comma=",")
 
 
 def _scene(record: dict, name: str, key: str) -> float | None:

@@ -20,6 +20,7 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.tables.statistics import geometric
 
 from .judged import width_of
 from .launch import positions
@@ -186,9 +187,7 @@ class Tests:
         static = {name: scene for name, scene in self.scenes.items() if name != "drape"}
         bends = "bending" in fit and "bend" in static
         states = simulate(static, {})
-        factors = {
-            fit["stretch"]: float(np.exp(np.mean([np.log(self.ratio(n, states[n])) for n in TENSILE])))
-        }
+        factors = {fit["stretch"]: geometric(self.ratio(n, states[n]) for n in TENSILE)}
         if bends:
             factors[fit["bending"]] = self.ratio("bend", states["bend"])
         best = None

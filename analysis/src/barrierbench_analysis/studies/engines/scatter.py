@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from barrierbench_analysis.tables.numbers import significant
+
 
 def depth_of(row: dict) -> float:
     """The largest depth in an obstacle or a closed body, m."""
@@ -20,8 +22,8 @@ def spread(values: list[float]) -> tuple[float, float, float] | None:
     return (min(values), float(np.median(values)), max(values)) if values else None
 
 
-def number(value, scale: float = 1.0, digits: int = 3) -> str:
-    return "" if value is None else f"{value * scale:.{digits}g}"
+def number(value: float | None, scale: float = 1.0) -> str:
+    return "" if value is None else significant(value * scale)
 
 
 def ranged(found: tuple[float, float, float] | None, scale: float) -> str:

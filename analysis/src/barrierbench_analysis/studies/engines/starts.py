@@ -15,6 +15,7 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.store import merged
 
 from .compare import RECORD, Study, of_scene
 from .judged import error_of
@@ -113,8 +114,9 @@ def _merged(one: dict, made: list[dict]) -> list[dict]:
     order = [_who(row) for row in one["rows"]]
     out = []
     for start in made:
-        rows = {_who(row): row for row in [*known.get(start["start"], {}).get("rows", []), *start["rows"]]}
-        out.append(start | {"rows": sorted(rows.values(), key=lambda row: order.index(_who(row)))})
+        before = known.get(start["start"], {}).get("rows", [])
+        rows = merged(before, start["rows"], ("engine", "variant", "level"), replace=True)
+        out.append(start | {"rows": sorted(rows, key=lambda row: order.index(_who(row)))})
     return out
 
 

@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 
 from barrierbench_analysis.studies.kit.front import Point, value_at
-from barrierbench_analysis.tables.estimate import student
+from barrierbench_analysis.tables.statistics import Ratio, ratio_over
 
 from .rows import CANNOT, NOT_RUN
 from .spec import REFERENCE
@@ -86,41 +86,14 @@ def common(found: dict[Key, dict[Place, Value | None]]) -> Common:
     )
 
 
-@dataclass(frozen=True)
-class Ratio:
-    """Geometric mean over scenes, the resolutions of a scene and the scenes of a FAMILY averaged first, with
-    its 95% interval (Student's t over scenes), which one scene does not have."""
-
-    value: float
-    lower: float | None
-    upper: float | None
-    scenes: int
-
-    def turned(self) -> Ratio:
-        """The same the other way round: what stands below goes above."""
-        ends = (None, None) if self.lower is None else (1 / self.upper, 1 / self.lower)
-        return Ratio(1 / self.value, *ends, self.scenes)
-
-    def __str__(self) -> str:
-        ends = "" if self.lower is None else f" [{self.lower:.3g}, {self.upper:.3g}]"
-        return f"{self.value:.3g}{ends}"
-
-
 def over_scenes(logs: dict[Place, float]) -> Ratio:
-    """logs: logarithms of a ratio by place. Errors: ValueError without any."""
-    if not logs:
-        raise ValueError("a mean over scenes of no place")
+    """logs: logarithms of a ratio by place; the resolutions of a scene and the scenes of a FAMILY are
+    averaged first. Errors: ValueError without any.
+    """
     by_scene: dict[str, list[float]] = {}
     for (scene, _), value in logs.items():
         by_scene.setdefault(scene, []).append(value)
-    means = samples({scene: float(np.mean(values)) for scene, values in by_scene.items()})
-    ends = (_exp(x) for x in student(means)) if len(means) > 1 else (None, None)
-    return Ratio(math.exp(np.mean(means)), *ends, len(means))
-
-
-def _exp(x: float) -> float:
-    """Intervals of few scenes are wide: what a double cannot hold is infinite."""
-    return math.exp(x) if x < 700 else math.inf
+    return ratio_over(samples({scene: float(np.mean(values)) for scene, values in by_scene.items()}))
 
 
 def runs_of(rows: list[dict], limit: str, shape: str) -> dict[Place, list[dict]]:

@@ -12,8 +12,9 @@ from pathlib import Path
 
 from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.origin import ID_DIGITS, machine_of
+from barrierbench_analysis.io.origin import ONE_THREAD, stamp
 from barrierbench_analysis.io.record_file import other_meanings
+from barrierbench_analysis.io.store import check_digest
 from barrierbench_analysis.studies.kit.runs import inputs_sha256
 
 from .rows import PLACE, READ
@@ -22,12 +23,6 @@ from .spec import Spec, make_sweep
 from .table import Map, read
 
 Place = tuple[str, str]  # scene, resolution
-SOURCE = (
-    "build",
-    "date",
-    "machine",
-    "version",
-)  # of a run: program, day, processor and threads, version of the record
 
 
 def digests(spec: Spec) -> dict[Place, str]:
@@ -46,12 +41,7 @@ def digests(spec: Spec) -> dict[Place, str]:
 
 
 def source_of(record: dict) -> dict[str, str]:
-    return {
-        "build": record["ids"]["build_id"][:ID_DIGITS],
-        "date": record["status"]["started_utc"][:10],
-        "machine": machine_of(record),
-        "version": record["schema"]["version"],
-    }
+    return stamp(record, "build", "date", "machine", "version", threads=ONE_THREAD)
 
 
 @dataclass(frozen=True)
@@ -151,7 +141,6 @@ def about(spec: Spec, command: str, rows: list[dict], sources: list[dict]) -> di
 
 def read_for(path: Path, spec: Spec) -> Map:
     """The kept map. Errors: UserError where it is of another spec."""
-    found = read(path)
-    if found.about["spec_sha256"] != spec.sha256:
-        raise UserError(f"{path}: its numbers are of another {spec.path}: ./bench study gap-map")
+    found, again = read(path), f"./bench study gap-map {spec.path}"
+    check_digest(path, "about/spec_sha256", found.about["spec_sha256"], spec.sha256, "spec", again)
     return found

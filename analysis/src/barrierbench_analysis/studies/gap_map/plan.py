@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 
+from barrierbench_analysis.tables.statistics import slope
+
 from .rows import PLACE
 from .spec import Cell
 
@@ -20,8 +22,7 @@ def growth(measured: list[tuple[float, float]]) -> float:
     sizes = {n for n, _ in measured}
     if len(sizes) < FEWEST or max(sizes) < 3 * min(sizes):
         return GROWTH
-    x, y = (np.log([m[k] for m in measured]) for k in (0, 1))
-    return float(max(1.0, np.polyfit(x, y, 1)[0]))
+    return max(1.0, slope((math.log(n), math.log(seconds)) for n, seconds in measured))
 
 
 def estimate(

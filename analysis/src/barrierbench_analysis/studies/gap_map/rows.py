@@ -10,8 +10,10 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.origin import seconds_of_run
-from barrierbench_analysis.io.record_file import RecordError, read_record, read_trace
+from barrierbench_analysis.io.record_file import read_record, read_trace
 from barrierbench_analysis.program.start import evaluated
+from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from .spec import Cell, Spec
 
@@ -159,10 +161,6 @@ def _load(record: dict) -> float | None:
     return float(np.median(loads)) if loads else None
 
 
-def _rounded(value):
-    return float(f"{value:.6g}") if isinstance(value, float) else value
-
-
 def row(cell: Cell, record: dict | None, folder: Path | None = None, outcome: str = NOT_RUN) -> dict:
     """One row. Without a record nothing but its outcome is known. Errors: RecordError for a trace that is not
     the record's.
@@ -177,10 +175,9 @@ def row(cell: Cell, record: dict | None, folder: Path | None = None, outcome: st
     }
     if record is None:
         return found
-    status = record["status"]
     gap = reached(record)
     found |= {
-        "outcome": "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"],
+        "outcome": outcome_of(record),
         "run": record["ids"]["run_id"][:16],
         "unknowns": record["scene"]["free_dofs"],
         "seconds": seconds_of_run(record),
@@ -190,7 +187,7 @@ def row(cell: Cell, record: dict | None, folder: Path | None = None, outcome: st
     if gap is None and found["outcome"] == "ok":
         found["outcome"] = NO_CONTACT
     found |= {"gap": gap, "gap_p05": reached(record, 0.05)} | conditions(read_trace(record, folder))
-    return {key: _rounded(value) for key, value in found.items()}
+    return {key: rounded(value) for key, value in found.items()}
 
 
 def cannot_reach(spec: Spec) -> set[tuple[str, float]]:
@@ -232,7 +229,7 @@ def add_rho(spec: Spec, rows: list[dict]) -> None:
         ]
     )
     for (r, name), answer in zip(places, answers):
-        r["rho" if name == "gap" else "rho_p05"] = _rounded(answer["rho"])
+        r["rho" if name == "gap" else "rho_p05"] = rounded(answer["rho"])
 
 
 def records_in(folders: Iterable[Path]) -> dict[str, tuple[dict, Path]]:
@@ -242,10 +239,7 @@ def records_in(folders: Iterable[Path]) -> dict[str, tuple[dict, Path]]:
     found: dict[str, tuple[dict, Path]] = {}
     for folder in folders:
         for path in sorted(folder.glob("*/run.json")):
-            try:
-                record = read_record(path)
-            except RecordError as error:
-                raise UserError(str(error)) from None
+            record = read_record(path)
             note = record["labels"].get("note", "")
             if note in found:
                 raise UserError(f"{path}: a second record of {note!r}, beside {found[note][1]}: remove one")

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
+from barrierbench_analysis.tables.statistics import Mean, Ratio, mean_over
+from barrierbench_analysis.tables.statistics import slope as line_slope
 
-from barrierbench_analysis.tables.estimate import student
-
-from .compare import METRICS, Place, Ratio, over_scenes, samples
+from .compare import METRICS, Place, over_scenes, samples
 from .rows import NOT_RUN
 from .spec import REFERENCE
 
@@ -97,14 +96,10 @@ def drawn_sizes(rows: list[dict]) -> list[Size]:
 
 
 @dataclass(frozen=True)
-class Slope:
+class Slope(Mean):
     """d ln(ratio)/d ln(unknowns): of each scene the least-squares line through its meshes, and the mean over
-    scenes, those of a FAMILY averaged first, with its 95% interval (Student's t over scenes), which one scene
-    does not have."""
+    scenes, those of a FAMILY averaged first."""
 
-    value: float
-    lower: float | None
-    upper: float | None
     by_scene: dict[str, float]
 
     @property
@@ -114,26 +109,17 @@ class Slope:
             return ""
         return "falls" if self.upper < 0 else "grows"
 
-    def __str__(self) -> str:
-        ends = "" if self.lower is None else f" [{self.lower:.3g}, {self.upper:.3g}]"
-        return f"{self.value:.3g}{ends}"
-
 
 def slope(sizes: list[Size], metric: str) -> Slope | None:
     """Over all that is given, of one target. None where no scene has two sizes."""
     lines: dict[str, list[tuple[float, float]]] = {}
     for s in sizes:
         lines.setdefault(s.scene, []).append((math.log(s.unknowns), math.log(s.ratios[metric])))
-    of = {
-        scene: float(np.polyfit(*np.transpose(line), 1)[0])
-        for scene, line in lines.items()
-        if len({x for x, _ in line}) > 1
-    }
+    of = {scene: found for scene, line in lines.items() if (found := line_slope(line)) is not None}
     if not of:
         return None
-    values = samples(of)
-    ends = map(float, student(values)) if len(values) > 1 else (None, None)
-    return Slope(float(np.mean(values)), *ends, of)
+    mean = mean_over(samples(of))
+    return Slope(mean.value, mean.lower, mean.upper, mean.scenes, of)
 
 
 def slopes(rows: list[dict]) -> dict[float, dict[str, Slope]]:

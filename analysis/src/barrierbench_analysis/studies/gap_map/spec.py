@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -24,9 +24,6 @@ PARTS = {
     "quick": "minutes, where the whole takes hours",
     "large": "the larger resolutions of few shapes and gaps",
 }  # of a spec that may be run alone; quick has to be there
-OF_SCENE = ("label", "obstacle", "set", "resolutions")
-OBSTACLES = ("analytic", "mesh", "none")
-MAIN_MOST = 5  # series of a panel, the reference among them
 
 
 @dataclass(frozen=True)
@@ -73,129 +70,62 @@ class Spec:
     scenes: tuple[Scene, ...]
 
 
-def _gaps(values, path: Path, place: str) -> tuple[float, ...]:
-    good = (
-        isinstance(values, list)
-        and values
-        and all(
-            isinstance(x, (int, float)) and not isinstance(x, bool) and math.isfinite(x) and 0 < x < 1
-            for x in values
-        )
-    )
-    if not good or sorted(set(values), reverse=True) != values:
+def _falling(values: list, path: Path, place: str) -> tuple[float, ...]:
+    if sorted(values, reverse=True) != values:
         raise refused(path, place, values, "a falling list of gaps in (0, 1), each once,")
     return tuple(map(float, values))
 
 
-def _words(values, allowed, path: Path, place: str) -> tuple[str, ...]:
-    if (
-        not isinstance(values, list)
-        or not values
-        or len(set(map(str, values))) < len(values)
-        or any(v not in allowed for v in values)
-    ):
+def _some(values: list, allowed: Iterable[str], path: Path, place: str) -> tuple[str, ...]:
+    if any(value not in allowed for value in values):
         raise refused(path, place, values, f"a list of some of {', '.join(allowed)}, each once,")
     return tuple(values)
 
 
-def _shapes(data: dict, path: Path) -> dict[str, tuple[str, str]]:
-    shapes = data["shapes"]
-    good = isinstance(shapes, list) and all(
-        isinstance(s, dict)
-        and set(s) == {"label", "shape", "argument"}
-        and s["argument"] in ("gap", "squared_gap")
-        for s in shapes
-    )
-    if (
-        not good
-        or REFERENCE not in [s["label"] for s in shapes]
-        or len({s["label"] for s in shapes}) < len(shapes)
-    ):
-        raise refused(
-            path,
-            "shapes",
-            shapes,
-            f'a list of {{"label", "shape", "argument"}}, each label once, {REFERENCE!r} among them,',
-        )
-    return {s["label"]: (s["shape"], s["argument"]) for s in shapes}
-
-
-def _scene(found, path: Path, limits: tuple[str, ...]) -> Scene:
-    place = f"scenes/{found.get('label') if isinstance(found, dict) else found}"
-    if (
-        not isinstance(found, dict)
-        or not set(OF_SCENE) <= set(found) <= {*OF_SCENE, "limits"}
-        or found["obstacle"] not in OBSTACLES
-    ):
-        raise refused(
-            path,
-            place,
-            sorted(found) if isinstance(found, dict) else found,
-            f"{', '.join(OF_SCENE)} (obstacle one of {', '.join(OBSTACLES)}), and limits where not all are"
-            " asked for,",
-        )
-    resolutions = found["resolutions"]
-    if (
-        not isinstance(resolutions, dict)
-        or not resolutions
-        or not all(isinstance(r, dict) and set(r) == {"unknowns", "set"} for r in resolutions.values())
-    ):
-        raise refused(
-            path, f"{place}/resolutions", resolutions, '{"LABEL": {"unknowns": number, "set": overrides}}'
-        )
-    return Scene(
-        found["label"],
-        found["obstacle"],
-        found["set"],
-        {label: r["set"] for label, r in resolutions.items()},
-        {label: r["unknowns"] for label, r in resolutions.items()},
-        _words(found.get("limits", list(limits)), limits, path, f"{place}/limits"),
-    )
+def _with_reference(values: Sequence[str], path: Path, place: str) -> None:
+    """Each label once, the reference among them."""
+    if REFERENCE not in values or len(set(values)) < len(values):
+        raise refused(path, place, list(values), f"labels, each once, {REFERENCE!r} among them,")
 
 
 def read_spec(path: Path) -> Spec:
     """Errors: UserError with file, place, what was found and what is allowed."""
     data = read_json_spec(path, "gap_map")
     base = require_base(data, path)
-    shapes = _shapes(data, path)
-    limits = _words(data["limits"], tuple(LIMITS), path, "limits")
-    scenes = tuple(_scene(found, path, limits) for found in data["scenes"])
+    _with_reference([s["label"] for s in data["shapes"]], path, "shapes")
+    shapes = {s["label"]: (s["shape"], s["argument"]) for s in data["shapes"]}
+    limits = tuple(data["limits"])
+    scenes = tuple(
+        Scene(
+            s["label"],
+            s["obstacle"],
+            s["set"],
+            {label: r["set"] for label, r in s["resolutions"].items()},
+            {label: r["unknowns"] for label, r in s["resolutions"].items()},
+            _some(s.get("limits", data["limits"]), limits, path, f"scenes/{s['label']}/limits"),
+        )
+        for s in data["scenes"]
+    )
     if len({s.label for s in scenes}) < len(scenes):
         raise refused(path, "scenes", [s.label for s in scenes], "labels, each once,")
-    main = _words(data["main"], tuple(shapes), path, "main")
-    if len(main) > MAIN_MOST or REFERENCE not in main:
-        raise refused(path, "main", list(main), f"at most {MAIN_MOST} shapes, {REFERENCE!r} among them,")
+    main = _some(data["main"], shapes, path, "main")
+    _with_reference(main, path, "main")
+    gaps = _falling(data["gaps"], path, "gaps")
     return Spec(
-        path,
-        of_file(path),
-        data["name"],
-        data["doc"],
-        base,
-        data["set"],
-        shapes,
-        main,
-        _gaps(data["gaps"], path, "gaps"),
-        limits,
-        scenes,
+        path, of_file(path), data["name"], data["doc"], base, data["set"], shapes, main, gaps, limits, scenes
     )
 
 
 def part(spec: Spec, name: str) -> Spec:
     """A documented part of a spec, one of PARTS. Errors: UserError."""
-    asked = read_object(spec.path).get(name)
-    if (
-        not isinstance(asked, dict)
-        or set(asked) != {"scenes", "shapes", "gaps", "limits"}
-        or not isinstance(asked["scenes"], dict)
-    ):
-        raise refused(spec.path, name, asked, "scenes, shapes, gaps, limits")
-    limits = _words(asked["limits"], spec.limits, spec.path, f"{name}/limits")
-    scenes = []
-    for label in _words(
-        list(asked["scenes"]), tuple(s.label for s in spec.scenes), spec.path, f"{name}/scenes"
-    ):
-        whole = next(s for s in spec.scenes if s.label == label)
-        kept = _words(asked["scenes"][label], tuple(whole.resolutions), spec.path, f"{name}/scenes/{label}")
+    path, asked = spec.path, read_object(spec.path).get(name)
+    if asked is None:
+        raise refused(path, name, asked, "a part: scenes, shapes, gaps, limits")
+    limits = _some(asked["limits"], spec.limits, path, f"{name}/limits")
+    wholes, scenes = {s.label: s for s in spec.scenes}, []
+    for label in _some(list(asked["scenes"]), wholes, path, f"{name}/scenes"):
+        whole = wholes[label]
+        kept = _some(asked["scenes"][label], whole.resolutions, path, f"{name}/scenes/{label}")
         scenes.append(
             replace(
                 whole,
@@ -204,12 +134,11 @@ def part(spec: Spec, name: str) -> Spec:
                 limits=tuple(x for x in whole.limits if x in limits),
             )
         )
-    shapes = _words(asked["shapes"], tuple(spec.shapes), spec.path, f"{name}/shapes")
-    if REFERENCE not in shapes:
-        raise refused(spec.path, f"{name}/shapes", list(shapes), f"{REFERENCE!r} among them")
-    gaps = _gaps(asked["gaps"], spec.path, f"{name}/gaps")
+    shapes = _some(asked["shapes"], spec.shapes, path, f"{name}/shapes")
+    _with_reference(shapes, path, f"{name}/shapes")
+    gaps = _falling(asked["gaps"], path, f"{name}/gaps")
     if not set(gaps) <= set(spec.gaps):
-        raise refused(spec.path, f"{name}/gaps", list(gaps), f"some of {list(spec.gaps)}")
+        raise refused(path, f"{name}/gaps", list(gaps), f"some of {list(spec.gaps)}")
     return replace(
         spec,
         shapes={s: spec.shapes[s] for s in shapes},

@@ -6,7 +6,8 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.json_file import lines_of, read_of_schema, rows_of
+from barrierbench_analysis.io.json_file import rows_of
+from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
 from barrierbench_analysis.io.whole_file import write_whole
 
 from .rows import COLUMNS
@@ -40,15 +41,18 @@ class Map:
 
 
 def write(found: Map, path: Path) -> None:
-    about = ",\n  ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in found.about.items())
+    about = a_line_each(
+        (f"{json.dumps(key)}: {json.dumps(value)}" for key, value in found.about.items()), 2, "{}"
+    )
     write_whole(
         path,
-        f'{{"schema": "{SCHEMA}",\n "about": {{\n  {about}}},\n "columns": {json.dumps(COLUMNS)},\n "rows":'
-        f" [\n  {lines_of(found.rows, COLUMNS)}]}}\n",
+        f'{{"schema": "{SCHEMA}",\n "about": {about},\n "columns": {json.dumps(COLUMNS)},\n "rows":'
+        f" {a_line_each(in_columns(found.rows, COLUMNS), 2)}}}\n",
     )
 
 
 def read(path: Path) -> Map:
     """Errors: UserError."""
-    data = read_of_schema(path, SCHEMA, REMEDY)
-    return Map(data["about"], rows_of(data, COLUMNS, path, REMEDY))
+    return read_store(
+        path, SCHEMA, lambda data: Map(data["about"], rows_of(data, COLUMNS, path, REMEDY)), REMEDY
+    )

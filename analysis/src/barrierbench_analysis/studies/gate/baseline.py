@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.json_file import is_number
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import checked
 from barrierbench_analysis.io.whole_file import write_whole
@@ -101,14 +101,10 @@ def _first(place: str, line: dict, made_by: str) -> First | None:
     first = line.get("first")
     if first is None:
         return None
-    if not isinstance(first, dict) or not _finite(first.get("value")):
+    if not isinstance(first, dict) or not is_number(first.get("value")):
         raise UserError(f"{place}/first: {first!r}; an object with a finite value is needed")
     words = {key: str(first.get(key, "")) for key in ("date", "commit", "reason", "made_by")}
     return First(first["value"], **words, here=bool(made_by) and words["made_by"] == made_by)
-
-
-def _finite(value) -> bool:
-    return not isinstance(value, bool) and isinstance(value, (int, float)) and math.isfinite(value)
 
 
 def _line(path: Path, name: str, line, made_by: str) -> Kept:
@@ -116,7 +112,7 @@ def _line(path: Path, name: str, line, made_by: str) -> Kept:
     if not isinstance(line, dict):
         raise UserError(f"{place}: no object")
     for key in ("value", "lower", "upper"):
-        if not _finite(line.get(key)):
+        if not is_number(line.get(key)):
             raise UserError(f"{place}/{key}: {line.get(key)!r}; a finite number is needed")
     if not line["lower"] <= line["value"] <= line["upper"]:
         raise UserError(

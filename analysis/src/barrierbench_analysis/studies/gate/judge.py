@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from barrierbench_analysis.tables.statistics import geometric
+
 from . import drift, shares
 from .baseline import Kept, keep
 from .envelope import calibrate, holm, ks_p_value
@@ -112,7 +114,7 @@ def _cost(case: str, name: str, kept: Kept, value: float, same_build_kind: bool)
 
 def _together(case: str, ratios: list[float], scatter: list[float]) -> Finding:
     """scatter: what copies of each cost reach, over its value."""
-    mean, copies = (float(np.exp(np.mean(np.log(values)))) for values in (ratios, scatter))
+    mean, copies = geometric(ratios), geometric(scatter)
     upper = max(COST_TOGETHER, copies)
     return Finding(
         case,

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.tables.numbers import significant
 
 from .finding import ALL_CLASSES, JUDGED, Finding, failures, judged
 
@@ -16,11 +17,7 @@ NUMBERS = {3, 4}  # columns of HEADINGS
 
 
 def number(value) -> str:
-    if value is None:
-        return "-"
-    if isinstance(value, str):
-        return value[:12]
-    return f"{value:.6g}"
+    return value[:12] if isinstance(value, str) else significant(value, 6)
 
 
 def _allowed(f: Finding) -> str:

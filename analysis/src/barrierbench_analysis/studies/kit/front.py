@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from barrierbench_analysis.tables.statistics import spread
+
 LEAST_OVERLAP = 1.25  # largest over smallest shared gap: two paths that share less are not compared
 SHARED_GAPS = 9  # gaps at which paths are compared, evenly spaced in the logarithm over what they share
 
@@ -69,7 +71,7 @@ def value_at(points: list[Point], gap: float) -> float | None:
     back to a gap it reached with less stiffness, the geometric mean of all its passes.
     """
     passes = [y for segment in segments(points) if (y := _on(segment, gap)) is not None]
-    return math.exp(float(np.mean(passes))) if passes else None
+    return spread(passes)[0] if passes else None
 
 
 def shared(a: list[Point], b: list[Point]) -> np.ndarray:

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file, places
-from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
-from barrierbench_analysis.io.record_file import RecordError, read_record
-from barrierbench_analysis.program.start import run_sweep
+from barrierbench_analysis.io.record_file import read_record
+from barrierbench_analysis.program.start import check_ended, run_sweep
 from barrierbench_analysis.studies.gate.configs import differences
 
 from . import formulations
@@ -46,8 +46,15 @@ class Sweep:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
 
-def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[int] | None = None) -> Sweep:
-    """One axis of cases {label, set}, and one of seeds where they are given."""
+def sweep(
+    name: str,
+    base: Path,
+    common: dict,
+    cases: list[dict],
+    seeds: list[int] | None = None,
+    budget: dict | None = None,
+) -> Sweep:
+    """One axis of cases {label, set}, and one of seeds where they are given. budget: of the sweep file."""
     axes: list[dict] = [{"cases": cases}]
     notes = [f"{name}: {case['label']}" for case in cases]
     if seeds:
@@ -59,7 +66,7 @@ def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[in
         "base": str(base.resolve()),
         "set": common,
         "axes": axes,
-    }
+    } | ({"budget": budget} if budget is not None else {})
     return Sweep(name, json.dumps(data, indent=1) + "\n", tuple(notes))
 
 
@@ -121,29 +128,15 @@ def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: lis
         for override in overrides or []:
             words += ["--set", override]
         done = run_sweep(file, out, *words, plugins=plugins or [])
-    if done.returncode != 0:
-        first, *more = (done.stderr.strip() or done.stdout.strip()).splitlines() or ["it said nothing"]
-        first = first.removeprefix(f"{file} ")
-        raise UserError(
-            f"the program ended with {done.returncode}: {first}"
-            + (f" (and {len(more)} more lines)" if more else ""),
-            passed_on(done.returncode),
-        )
-
-
-def read_strictly(path: Path) -> dict:
-    """A record. Errors: UserError."""
-    try:
-        return read_record(path)
-    except RecordError as error:
-        raise UserError(str(error)) from None
+    done.stderr = done.stderr.strip().removeprefix(f"{file} ")
+    check_ended(done, "")
 
 
 def collect(made: Sweep, out: Path) -> dict[str, dict]:
     """note -> record, of every case of the sweep. Errors: UserError when one is missing or there twice."""
     found: dict[str, dict] = {}
     for path in sorted(out.glob("*/run.json")):
-        record = read_strictly(path)
+        record = read_record(path)
         note = record["labels"].get("note", "")
         if note not in made.notes:
             continue

@@ -9,7 +9,10 @@ from dataclasses import dataclass, field
 from barrierbench_analysis.studies.kit.formulations import REFERENCE
 from barrierbench_analysis.studies.kit.front import Point, log_ratio, reached, segments, value_at
 from barrierbench_analysis.studies.kit.runs import check_equal, check_varied, metric
-from barrierbench_analysis.tables.estimate import of_scenes, student
+from barrierbench_analysis.tables.estimate import of_scenes
+from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.tables.outcomes import outcome_of
+from barrierbench_analysis.tables.statistics import Ratio, ratio_over
 
 from .spec import Spec, label
 
@@ -75,21 +78,6 @@ class Estimate:
     of: int
 
 
-@dataclass(frozen=True)
-class OverScenes:
-    """Geometric mean over scenes with its 95% interval, None of one scene, and how many scenes it is of."""
-
-    value: float
-    lower: float | None
-    upper: float | None
-    n: int
-    of: int
-
-
-def _rounded(x: float | None) -> float | None:
-    return None if x is None else float(f"{x:.6g}")
-
-
 def gather(spec: Spec, notes: tuple[str, ...], records: dict[str, dict]) -> list[dict]:
     """Rows in the order of the sweep. Errors: UserError where records of one scene are of different
     configs."""
@@ -104,22 +92,17 @@ def gather(spec: Spec, notes: tuple[str, ...], records: dict[str, dict]) -> list
                     note = notes[k]
                     assert label(scene, name, scale) in note
                     record, k = records[note], k + 1
-                    outcome = (
-                        record["status"]["outcome"]
-                        if record["status"]["valid"] or record["status"]["outcome"] != "ok"
-                        else "not_valid"
-                    )
                     rows.append(
                         {
                             "scene": scene,
                             "formulation": name,
                             "scale": scale,
                             "seed": seed,
-                            "outcome": outcome,
-                            "gap": _rounded(metric(record, spec.gap_metric)),
+                            "outcome": outcome_of(record),
+                            "gap": rounded(metric(record, spec.gap_metric)),
                             "run": record["ids"]["run_id"][:16],
                         }
-                        | {m: _rounded(metric(record, m)) for m in METRICS}
+                        | {m: rounded(metric(record, m)) for m in METRICS}
                     )
     return rows
 
@@ -157,13 +140,10 @@ def over_shared(runs: Runs, scene: str, formulation: str, name: str) -> Estimate
     return _estimate({seed: x for seed, x in found.items() if x is not None}, len(seeds))
 
 
-def over_scenes(of_each: list[Estimate | None]) -> OverScenes | None:
+def over_scenes(of_each: list[Estimate | None]) -> Ratio | None:
     """Of the same number in every scene, None where a scene has none."""
     logs = [math.log(e.value) for e in of_each if e is not None]
-    if not logs:
-        return None
-    lower, upper = (math.exp(x) for x in student(logs)) if len(logs) > 1 else (None, None)
-    return OverScenes(math.exp(sum(logs) / len(logs)), lower, upper, len(logs), len(of_each))
+    return ratio_over(logs) if logs else None
 
 
 def range_of(runs: Runs, scene: str, formulation: str) -> tuple[float, float] | None:

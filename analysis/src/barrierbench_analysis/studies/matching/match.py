@@ -31,6 +31,7 @@ from barrierbench_analysis.studies.kit.runs import (
     run,
     sweep,
 )
+from barrierbench_analysis.tables.numbers import significant
 
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 RULES = ("equal_force", "equal_curvature")
@@ -136,13 +137,9 @@ def judge(made: Sweep, records: dict[str, dict], vary: str) -> dict:
     }
 
 
-def _number(x: float | None, unit: str = "") -> str:
-    return "-" if x is None else f"{x:.4g}{unit}"
-
-
 def _stiffness(kappa: float | None, scale: float | None) -> str:
     if kappa is not None:
-        return _number(kappa, " N/m")
+        return significant(kappa, 4, unit=" N/m")
     return "as given" if scale is None else f"own x {scale:.4g}"
 
 
@@ -166,13 +163,13 @@ def text(answer: dict) -> str:
             (
                 row["formulation"],
                 _stiffness(m["kappa_N_per_m"], m["scale"]),
-                _number(m["load_N"]),
+                significant(m["load_N"], 4),
                 (
                     _stiffness(m["limit_stiffness_N_per_m"], m["limit_scale"])
                     if m["limit_load_N_per_m"] is not None
                     else "-"
                 ),
-                _number(row["gap_min_rel"], " d_hat"),
+                significant(row["gap_min_rel"], 4, unit=" d_hat"),
                 _farthest(row),
                 row["outcome"],
                 row["verdict"],

@@ -18,9 +18,10 @@ from pathlib import Path
 from barrierbench_analysis.figures.figure_files import copy_to_page
 from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.io.json_file import lines_of, read_of_schema, rows_of
+from barrierbench_analysis.io.json_file import rows_of
 from barrierbench_analysis.io.origin import origin, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import a_line_each, check_digest, in_columns, read_store
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of, plugin_argument
 from barrierbench_analysis.studies.kit.runs import collect, inputs_sha256, run
@@ -57,13 +58,26 @@ def _about(spec: Spec, command: str, records: list[dict], plugins: list[str]) ->
 def to_json(runs: Runs) -> str:
     return (
         f'{{"schema": "{SCHEMA}", "about": {json.dumps(runs.about)},\n "columns": {json.dumps(COLUMNS)},'
-        f' "rows": [\n  {lines_of(runs.rows, COLUMNS)}]}}\n'
+        f' "rows": {a_line_each(in_columns(runs.rows, COLUMNS), 2)}}}\n'
     )
 
 
 def from_json(path: Path) -> Runs:
-    data = read_of_schema(path, SCHEMA, REMEDY)
-    return Runs(data["about"], rows_of(data, COLUMNS, path, REMEDY))
+    """Errors: UserError."""
+    return read_store(
+        path, SCHEMA, lambda data: Runs(data["about"], rows_of(data, COLUMNS, path, REMEDY)), REMEDY
+    )
+
+
+def read_for(path: Path, spec: Spec, inputs: str) -> Runs:
+    """The kept runs. inputs: inputs_sha256 of the sweep, which earlier files do not have. Errors: UserError
+    where they are of another spec, or of other inputs.
+    """
+    runs, again = from_json(path), f"./bench study pareto {spec.path}"
+    check_digest(path, "about/spec_sha256", runs.about["spec_sha256"], spec.sha256, "spec", again)
+    kept = runs.about.get("inputs_sha256", inputs)
+    check_digest(path, "about/inputs_sha256", kept, inputs, "base config, mesh or preset", again)
+    return runs
 
 
 def make(spec: Spec, command: str, folder: Path, run_missing: bool, plugins: list[str]) -> Runs:
@@ -132,13 +146,7 @@ def main(argv: list[str]) -> int:
     folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{digest[:8]}"
     kept = results / "pareto.json"
     if args.no_run and not any(folder.glob("*/run.json")) and kept.is_file():
-        runs = from_json(kept)
-        if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
-            raise UserError(
-                f"{kept}: its numbers are of another {args.spec}, base config, mesh or preset: ./bench study"
-                f" pareto"
-                f" {args.spec}"
-            )
+        runs = read_for(kept, spec, inputs)
         if "inputs_sha256" not in runs.about:
             print(
                 f"bench study pareto: {kept} does not say of which base config and presets its numbers are",

@@ -11,6 +11,7 @@ import pandas as pd
 
 from barrierbench_analysis.figures import panels, style
 from barrierbench_analysis.tables import series
+from barrierbench_analysis.tables.statistics import geometric
 
 from .fronts import Runs
 
@@ -35,10 +36,6 @@ SHOWN = (
 FAILED = "Not drawn, since runs that failed or were never in contact at a step end have no gap: {runs}."
 
 
-def _geometric(values: list[float]) -> float:
-    return float(np.exp(np.mean(np.log(values))))
-
-
 def _is_good(row: dict) -> bool:
     return row["outcome"] == "ok" and bool(row["gap"])
 
@@ -50,7 +47,7 @@ def _means(rows: list[dict], name: str) -> dict[float, tuple[float, float] | Non
         of_scale = [row for row in rows if row["scale"] == scale]
         good = [row for row in of_scale if _is_good(row) and row[name]]
         found[scale] = (
-            (_geometric([r["gap"] for r in good]), _geometric([r[name] for r in good]))
+            (geometric(r["gap"] for r in good), geometric(r[name] for r in good))
             if len(good) == len(of_scale)
             else None
         )

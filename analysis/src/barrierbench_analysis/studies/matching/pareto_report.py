@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.program.verbs import renewed
-from barrierbench_analysis.studies.claims.words import number
 from barrierbench_analysis.studies.kit.formulations import REFERENCE
 from barrierbench_analysis.studies.kit.metrics import METRICS as MEANINGS
+from barrierbench_analysis.tables.numbers import interval, ratio
+from barrierbench_analysis.tables.statistics import Ratio
 
 from .fronts import (
     METRICS,
     Estimate,
-    OverScenes,
     Runs,
     at_gap,
     failures,
@@ -39,15 +39,19 @@ caption of its figure. At equal load instead of equal gap, and over more scenes,
 def _cell(e: Estimate | None) -> str:
     if e is None:
         return "-"
-    scatter = f" ({number(e.low)} to {number(e.high)})" if e.n > 1 else ""
-    return number(e.value) + scatter + (f" ({e.n}/{e.of})" if e.n < e.of else "")
+    scatter = f" ({ratio(e.low)} to {ratio(e.high)})" if e.n > 1 else ""
+    return ratio(e.value) + scatter + (f" ({e.n}/{e.of})" if e.n < e.of else "")
 
 
-def _cell_over_scenes(e: OverScenes | None) -> str:
+def _cell_over_scenes(e: Ratio | None, of: int) -> str:
     if e is None:
         return "-"
-    interval = " (one scene: no interval)" if e.lower is None else f" [{number(e.lower)}, {number(e.upper)}]"
-    return number(e.value) + interval + (f" ({e.n}/{e.of})" if 1 < e.n < e.of else "")
+    alone = " (one scene: no interval)" if e.lower is None else ""
+    return (
+        interval(e.value, e.lower, e.upper, ratio)
+        + alone
+        + (f" ({e.scenes}/{of})" if 1 < e.scenes < of else "")
+    )
 
 
 def _reached(runs: Runs, scene: str) -> list[str]:
@@ -58,7 +62,7 @@ def _reached(runs: Runs, scene: str) -> list[str]:
             f"x{scale:g}: {', '.join(f'{n} {word}' for word, n in sorted(words.items()))}"
             for scale, words in sorted(failed.items())
         )
-        reached = f"{number(span[0])} to {number(span[1])}" if span else "none"
+        reached = f"{ratio(span[0])} to {ratio(span[1])}" if span else "none"
         rows.append([name, reached, said or "none"])
     return table_lines(
         ["formulation", "gaps reached", "runs that failed or touched nothing, by stiffness"], rows
@@ -68,11 +72,11 @@ def _reached(runs: Runs, scene: str) -> list[str]:
 def _nobody(runs: Runs, scene: str) -> str:
     said = [
         (
-            f"below {number(high)}"
+            f"below {ratio(high)}"
             if low == 0
-            else f"above {number(low)}"
+            else f"above {ratio(low)}"
             if high == 1
-            else f"{number(low)} to {number(high)}"
+            else f"{ratio(low)} to {ratio(high)}"
         )
         for low, high in unreached(runs, scene)
     ]
@@ -91,7 +95,7 @@ def _ratios(runs: Runs, scene: str, gaps: list[float]) -> list[str]:
     rows = []
     for name in METRICS:
         values = [at_gap(runs, scene, REFERENCE, name, gap)[0] for gap in gaps]
-        shown = ["-" if v is None else number(v.value) for v in values]
+        shown = ["-" if v is None else ratio(v.value) for v in values]
         rows.append([name, f"{REFERENCE}: value", *shown, ""])
         for formulation in runs.formulations:
             if formulation != REFERENCE:
@@ -113,7 +117,13 @@ def _ratios_over_scenes(runs: Runs, gaps: list[float]) -> list[str]:
                 found.append(
                     over_scenes([over_shared(runs, scene, formulation, name) for scene in runs.scenes])
                 )
-                rows.append([name, f"{formulation} / {REFERENCE}", *map(_cell_over_scenes, found)])
+                rows.append(
+                    [
+                        name,
+                        f"{formulation} / {REFERENCE}",
+                        *(_cell_over_scenes(e, len(runs.scenes)) for e in found),
+                    ]
+                )
     return table_lines(_heading(gaps), rows)
 
 

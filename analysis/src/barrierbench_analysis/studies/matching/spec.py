@@ -10,7 +10,7 @@ from barrierbench_analysis.io.digests import of_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.spec_file import read_spec as read_json_spec
 from barrierbench_analysis.io.spec_file import refused, require_base
-from barrierbench_analysis.studies.kit.formulations import REFERENCE, preset, settings
+from barrierbench_analysis.studies.kit.formulations import preset, settings
 from barrierbench_analysis.studies.kit.runs import Sweep, sweep
 
 DECADES = 4.0  # a sweep over stiffness spans at least these
@@ -44,20 +44,14 @@ class Spec:
         return GAPS[self.gap]
 
 
-def _numbers(data: dict, key: str, allowed: str, ok, path: Path) -> tuple[float, ...]:
-    values = data[key]
-    if not isinstance(values, list) or not values:
-        raise refused(path, key, values, "a list of numbers")
-    for k, x in enumerate(values):
-        if isinstance(x, bool) or not isinstance(x, (int, float)) or not math.isfinite(x) or not ok(x):
-            raise refused(path, f"{key}/{k}", x, allowed)
-    if list(values) != sorted(set(values)):
+def _growing(values: list, path: Path, key: str) -> tuple[float, ...]:
+    if values != sorted(values):
         raise refused(path, key, values, "a list of growing numbers, each once,")
     return tuple(map(float, values))
 
 
 def _scales(data: dict, path: Path) -> tuple[float, ...]:
-    scales = _numbers(data, "scales", "a number > 0", lambda x: x > 0, path)
+    scales = _growing(data["scales"], path, "scales")
     decades = math.log10(scales[-1] / scales[0])
     if decades < DECADES - 1e-9 or not scales[0] < 1 < scales[-1]:
         raise UserError(
@@ -67,15 +61,7 @@ def _scales(data: dict, path: Path) -> tuple[float, ...]:
     return scales
 
 
-def _formulations(data: dict, path: Path) -> tuple[str, ...]:
-    names = data["formulations"]
-    if (
-        not isinstance(names, list)
-        or REFERENCE not in names
-        or len(set(map(str, names))) < max(2, len(names))
-    ):
-        needed = f"a list of at least two names, each once, {REFERENCE!r} among them,"
-        raise refused(path, "formulations", names, needed)
+def _formulations(names: list, path: Path) -> tuple[str, ...]:
     for k, name in enumerate(names):
         try:
             preset(name)
@@ -84,10 +70,8 @@ def _formulations(data: dict, path: Path) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _overrides(found, place: str) -> dict:
+def _overrides(found: dict, place: str) -> dict:
     """Settings that are not the sweep's own; d_hat is the scene's."""
-    if not isinstance(found, dict):
-        raise UserError(f'{place}: found {found!r}; overrides, {{"/POINTER": value}}, are needed')
     for pointer in found:
         if (
             pointer.startswith(("/matching", "/passes", "/seeds", "/formulation"))
@@ -100,50 +84,31 @@ def _overrides(found, place: str) -> dict:
     return found
 
 
-def _scenes(data: dict, path: Path) -> dict[str, dict]:
-    scenes = data["scenes"]
-    good = (
-        isinstance(scenes, list)
-        and scenes
-        and all(
-            isinstance(s, dict)
-            and set(s) == {"label", "set"}
-            and isinstance(s["label"], str)
-            and s["label"].isidentifier()
-            and isinstance(s["set"], dict)
-            for s in scenes
-        )
-    )
-    if not good or len({s["label"] for s in scenes}) != len(scenes):
-        needed = 'a list of {"label": one word, each once, "set": overrides}'
-        raise refused(path, "scenes", scenes, needed)
-    for s in scenes:
-        _overrides(s["set"], f"{path}#/scenes/{s['label']}/set")
-    return {s["label"]: s["set"] for s in scenes}
+def _scenes(scenes: list, path: Path) -> dict[str, dict]:
+    if len({s["label"] for s in scenes}) < len(scenes):
+        raise refused(path, "scenes", [s["label"] for s in scenes], "labels, each once,")
+    return {s["label"]: _overrides(s["set"], f"{path}#/scenes/{s['label']}/set") for s in scenes}
 
 
 def read_spec(path: Path) -> Spec:
     """Errors: UserError with file, place, what was found and what is allowed."""
     data = OPTIONAL | read_json_spec(path, "pareto")
     base = require_base(data, path)
-    jitter = _numbers({"jitter_m": [data["jitter_m"]]}, "jitter_m", "a length >= 0", lambda x: x >= 0, path)[
-        0
-    ]
     return Spec(
         path,
         of_file(path),
         data["name"],
         data["doc"],
         base,
-        _formulations(data, path),
+        _formulations(data["formulations"], path),
         data["vary"],
         _scales(data, path),
         data["starts"],
-        jitter,
+        float(data["jitter_m"]),
         data["gap"],
-        _numbers(data, "gaps", "a number in (0, 1)", lambda x: 0 < x < 1, path),
+        _growing(data["gaps"], path, "gaps"),
         _overrides(data["set"], f"{path}#/set"),
-        _scenes(data, path),
+        _scenes(data["scenes"], path),
     )
 
 

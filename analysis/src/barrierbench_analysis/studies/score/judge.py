@@ -8,7 +8,8 @@ import math
 from dataclasses import dataclass
 from statistics import median
 
-from barrierbench_analysis.studies.gap_map.compare import Ratio, at_gap
+from barrierbench_analysis.studies.gap_map.compare import at_gap
+from barrierbench_analysis.tables.statistics import Ratio, spread
 
 from .candidate import RIVALS
 
@@ -68,12 +69,7 @@ def comparisons(rows: list[dict], label: str) -> list[Comparison]:
             for rival in RIVALS:
                 logs = _logs(rows, metric, theta, label, rival)
                 if logs:
-                    mean = math.exp(sum(logs) / len(logs))
-                    found.append(
-                        Comparison(
-                            metric, theta, rival, mean, math.exp(min(logs)), math.exp(max(logs)), len(logs)
-                        )
-                    )
+                    found.append(Comparison(metric, theta, rival, *spread(logs), len(logs)))
     return found
 
 

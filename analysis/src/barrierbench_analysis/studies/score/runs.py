@@ -6,15 +6,16 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import BAD_INPUT, TRY_AGAIN, UserError, passed_on
-from barrierbench_analysis.io.record_file import RecordError, read_record, read_trace
+from barrierbench_analysis.io.errors import BAD_INPUT, TRY_AGAIN
+from barrierbench_analysis.io.record_file import read_record, read_trace
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.start import evaluated, run_sweep
+from barrierbench_analysis.program.start import check_ended, evaluated, run_sweep
 from barrierbench_analysis.studies.gap_map.rows import row
 from barrierbench_analysis.studies.gap_map.spec import COMMON, Cell, Scene, Spec, cells
 from barrierbench_analysis.studies.kit.runs import Sweep, sweep
 from barrierbench_analysis.studies.stress.entry import Formulation, Test, read_test
 from barrierbench_analysis.studies.stress.run import Row, run_case
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from .candidate import RIVALS, Candidate
 
@@ -100,14 +101,10 @@ def run(made: Sweep, of: Candidate, out: Path, jobs: int) -> dict[str, tuple[dic
     words = ("--progress", "none", "--time-limit", str(LIMIT_S), "--jobs", str(jobs))
     done = run_sweep(file, out / made.name, *words, plugins=list(of.plugins))
     if done.returncode in (BAD_INPUT, TRY_AGAIN):
-        said = (done.stderr.strip() or done.stdout.strip()).splitlines()[0]
-        raise UserError(said, passed_on(done.returncode))
+        check_ended(done, "")
     found: dict[str, tuple[dict, Path] | None] = dict.fromkeys(made.notes)
     for path in sorted((out / made.name).glob("*/run.json")):
-        try:
-            record = read_record(path)
-        except RecordError as error:
-            raise UserError(str(error)) from None
+        record = read_record(path)
         if record["labels"].get("note", "") in found:
             found[record["labels"]["note"]] = (record, path.parent)
     return found
@@ -137,7 +134,7 @@ def starts(of: Candidate, records: dict[str, tuple[dict, Path] | None]) -> list[
     out = []
     for label in methods(of):
         mine = [records[f"score_starts: {label} main={seed}"] for seed in SEEDS]
-        ends = ["no record" if one is None else _outcome(one[0]) for one in mine]
+        ends = ["no record" if one is None else outcome_of(one[0]) for one in mine]
         newton = [one[0]["summary"]["newton_iterations"] for one in mine if one is not None]
         out.append(
             {
@@ -149,11 +146,6 @@ def starts(of: Candidate, records: dict[str, tuple[dict, Path] | None]) -> list[
             }
         )
     return out
-
-
-def _outcome(record: dict) -> str:
-    status = record["status"]
-    return "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
 
 
 def _of_test(test: Test, of: Candidate) -> list[Formulation]:

@@ -6,6 +6,7 @@ from itertools import groupby
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.tables.numbers import significant
 
 from .step_corpus_states import HALVES
 
@@ -176,7 +177,7 @@ def _solvers(record: dict) -> list[str]:
         for t in state["trials"]:
             if t["step_solver"] == SOLVER or "refused" in t:
                 continue
-            error = "-" if t["error_m"] is None else f"{t['error_m'] / state['tolerance_m']:.2g}"
+            far = None if t["error_m"] is None else t["error_m"] / state["tolerance_m"]
             work = (t["linear_solves"], t["factorizations"], t["linear_iterations"])
             rows.append(
                 [
@@ -186,7 +187,7 @@ def _solvers(record: dict) -> list[str]:
                     _count(t["iterations_to_tolerance"]),
                     *(str(n) for n in work),
                     f"{t['seconds']:.2f}",
-                    error,
+                    significant(far, 2),
                     t["minimum"] or "-",
                     t["status"].replace("_", " "),
                 ]

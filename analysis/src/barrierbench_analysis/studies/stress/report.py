@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections import Counter
 
 from barrierbench_analysis.io.text_table import markdown as table_lines
+from barrierbench_analysis.tables.numbers import significant
 
 from .entry import Test, left_out
 from .run import WAITS, Row
 from .table import Result
-
-
-def _short(value, digits: int = 2) -> str:
-    return "-" if value is None else f"{value:.{digits}g}"
 
 
 def _cell(rows: list[Row]) -> str:
@@ -37,7 +34,8 @@ def _numbers(rows: list[Row]) -> str:
         return min((getattr(row, name) for row in rows if getattr(row, name) is not None), default=None)
 
     newton, seconds = [sum(getattr(row, name) or 0 for row in rows) for name in ("newton", "seconds")]
-    return f"{_short(least('gap_min_rel'))}, {_short(least('gap_min_ulps'), 1)}, {newton}, {_short(seconds)}"
+    gap, ulps = significant(least("gap_min_rel"), 2), significant(least("gap_min_ulps"), 1)
+    return f"{gap}, {ulps}, {newton}, {significant(seconds, 2)}"
 
 
 def _table(head: list[str], lines: list[list[str]]) -> list[str]:
@@ -159,7 +157,7 @@ def _own_tables(results, tests) -> list[str]:
                             f.label,
                             _cell(rows := _by_formulation(results[name], f.label)),
                             _numbers(rows),
-                            _short(sum(row.linear or 0 for row in rows), 6),
+                            significant(sum(row.linear or 0 for row in rows), 6),
                         ]
                         for f in tests[name].formulations
                     ],

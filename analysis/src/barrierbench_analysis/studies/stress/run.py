@@ -14,9 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import TRY_AGAIN, UserError
+from barrierbench_analysis.io.json_file import number_at
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.start import built_program, run_sweep, started
+from barrierbench_analysis.studies.kit.runs import Sweep, sweep
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from .entry import ROOT, Case, Formulation, Test
 
@@ -98,7 +101,7 @@ def known(need: dict, schema: dict) -> bool:
     return allowed is None or need["value"] in allowed
 
 
-def spec_of(test: Test, formulation: Formulation, case: Case, folder: Path) -> dict:
+def spec_of(test: Test, formulation: Formulation, case: Case, folder: Path) -> Sweep:
     """The sweep of this one case, which lies in `folder`."""
     settings = {
         **formulation.set,
@@ -107,53 +110,42 @@ def spec_of(test: Test, formulation: Formulation, case: Case, folder: Path) -> d
         **case.set,
         **formulation.by_case.get(case.label, {}),
     }
-    return {
-        "schema": "barrierbench.sweep/1",
-        "name": f"stress {test.id}",
-        "base": str(test.write_base(folder)),
-        "axes": [
-            {"cases": [{"label": f"{formulation.label} {case.label}".replace("/", " per "), "set": settings}]}
-        ],
-    }
+    label = f"{formulation.label} {case.label}".replace("/", " per ")
+    return sweep(f"stress {test.id}", test.write_base(folder), {}, [{"label": label, "set": settings}])
 
 
 def _folder(text: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.=-]+", "_", text)
 
 
-def _number(value):
-    return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None
-
-
 def _fall(steps: list[dict]) -> float | None:
-    ends = [_number(step.get("gravity_J")) for step in (steps[:1] + steps[-1:])]
+    ends = [number_at(step, ["gravity_J"]) for step in (steps[:1] + steps[-1:])]
     return None if not ends or None in ends else ends[0] - ends[1]
 
 
 def row_of(record: dict, test: str, case: str, formulation: str) -> Row:
     """The numbers of a record that the tables and relations read."""
     status, summary, steps = record["status"], record["summary"], record["steps"]
-    outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
     last = steps[-1] if steps else {}
     return Row(
         test,
         case,
         formulation,
-        outcome,
+        outcome_of(record),
         status["detail"],
         record["ids"]["run_id"][:16],
         status["valid"],
-        seconds=_number(summary["wall_s"]),
+        seconds=number_at(summary, ["wall_s"]),
         newton=summary["newton_iterations"],
-        linear=_number(summary["linear_per_solve"]["sum"]),
-        contacts=int(_number(summary["contacts"]["max"]) or 0),
-        gap_min_rel=_number(summary["gap_min_rel"]["min"]),
-        gap_min_iterates_rel=_number(summary["gap_min_iterates_rel"]),
-        gap_min_ulps=_number(summary.get("gap_min_ulps")),
-        gap_end_rel=_number(last.get("gap_min_rel")),
-        load_end_N=_number(last.get("contact_load_sum_N")),
-        max_stretch=_number(summary["max_stretch"]),
-        kinetic_end_J=_number(last.get("kinetic_J")),
+        linear=number_at(summary, ["linear_per_solve", "sum"]),
+        contacts=int(number_at(summary, ["contacts", "max"]) or 0),
+        gap_min_rel=number_at(summary, ["gap_min_rel", "min"]),
+        gap_min_iterates_rel=number_at(summary, ["gap_min_iterates_rel"]),
+        gap_min_ulps=number_at(summary, ["gap_min_ulps"]),
+        gap_end_rel=number_at(last, ["gap_min_rel"]),
+        load_end_N=number_at(last, ["contact_load_sum_N"]),
+        max_stretch=number_at(summary, ["max_stretch"]),
+        kinetic_end_J=number_at(last, ["kinetic_J"]),
         gravity_work_J=_fall(steps),
         state_hash=summary["state_hash"],
     )
@@ -182,7 +174,7 @@ def run_case(
     """One run, or its record if it is there. Raises UserError when the test itself is wrong."""
     place = folder / test.id / _folder(formulation.label) / _folder(case.label)
     spec = place / "spec.json"
-    write_whole(spec, json.dumps(spec_of(test, formulation, case, place), indent=1) + "\n")
+    write_whole(spec, spec_of(test, formulation, case, place).text)
 
     def blank(outcome, detail):
         return Row(test.id, case.label, formulation.label, outcome, detail)

@@ -9,9 +9,9 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.json_file import read_of_schema
+from barrierbench_analysis.io.store import a_line_each, read_store
 from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.tables.numbers import rounded
 
 from .entry import ROOT, order
 from .geometry import Count
@@ -49,12 +49,8 @@ class Result:
         )
 
 
-def _rounded(value):
-    return float(f"{value:.6g}") if isinstance(value, float) else value
-
-
 def _row(row: Row) -> list:
-    values = {name: _rounded(getattr(row, name)) for name in KEPT}
+    values = {name: rounded(getattr(row, name)) for name in KEPT}
     values["expected"], values["state_hash"] = list(row.expected), row.state_hash[:16]
     return [values[name] for name in KEPT]
 
@@ -68,30 +64,20 @@ def write(results: dict[str, Result], path: Path) -> None:
     blocks = []
     for name in sorted(results, key=order):
         result = results[name]
-        rows = ",\n   ".join(one(_row(row)) for row in result.rows)
-        counts = ",\n   ".join(one(dataclasses.asdict(count)) for count in result.counts)
-        relations = ",\n   ".join(one(dataclasses.asdict(relation)) for relation in result.relations)
+        rows = a_line_each((one(_row(row)) for row in result.rows), 3)
+        counts = a_line_each((one(dataclasses.asdict(count)) for count in result.counts), 3)
+        relations = a_line_each((one(dataclasses.asdict(relation)) for relation in result.relations), 3)
         blocks.append(
-            f'  "{name}": {{"about": {one(result.about)},\n  "rows": [\n   {rows}],\n  "counts": [\n  '
-            f' {counts}],\n  "relations": [\n   {relations}]}}'
+            f'"{name}": {{"about": {one(result.about)},\n  "rows": {rows},\n  "counts": {counts},\n '
+            f' "relations": {relations}}}'
         )
-    write_whole(
-        path,
-        f'{{\n "schema": "{NAME}",\n "columns": {one(KEPT)},\n "tests": {{\n'
-        + ",\n".join(blocks)
-        + "\n }\n}\n",
-    )
+    tests = a_line_each(blocks, 2, ("{", "\n }"))
+    write_whole(path, f'{{\n "schema": "{NAME}",\n "columns": {one(KEPT)},\n "tests": {tests}\n}}\n')
 
 
 def read(path: Path) -> dict[str, Result]:
     """The kept results; empty when there are none."""
-    if not path.is_file():
-        return {}
-    data = read_of_schema(path, NAME, AGAIN)
-    try:
-        return _results(data)
-    except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}){AGAIN}") from None
+    return read_store(path, NAME, _results, AGAIN, {})
 
 
 def _results(data: dict) -> dict[str, Result]:

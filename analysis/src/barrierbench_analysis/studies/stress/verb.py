@@ -15,6 +15,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.origin import stamp
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
@@ -54,11 +55,7 @@ def run_one(test: Test, runs: Path, quick: bool = False, limit_s: float = 60.0) 
 def about(folder: Path) -> dict:
     """Machine and commit of one of the records below."""
     for path in sorted(folder.glob("*/*/runs/*/run.json")):
-        record = read_record(path)
-        return {
-            "machine": f"{record['machine']['cpu_model']}, {record['machine']['cores']} cores",
-            "commit": record["provenance"]["git_commit"][:10],
-        }
+        return stamp(read_record(path), "machine", "commit")
     return {}
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.json_file import is_number, read_object
 from barrierbench_analysis.io.spec_file import refused
 
 KEY, STANDARD = "gravity_m_per_s2", 9.81  # of a scene, and m/s^2 without it
@@ -56,7 +56,6 @@ def gravity_of(base: Path, settings: dict, file: Path, place: str) -> float:
         given = _placed(given, key, settings[key], file, place + key)
     found = given.gravity
     parts = found if isinstance(found, list) else [found]
-    numbers = all(isinstance(g, (int, float)) and not isinstance(g, bool) and math.isfinite(g) for g in parts)
-    if not numbers or (len(parts) != 3 if isinstance(found, list) else found < 0):
+    if not all(map(is_number, parts)) or (len(parts) != 3 if isinstance(found, list) else found < 0):
         raise refused(given.file, given.place, found, "a number >= 0 or an array of three numbers")
     return math.hypot(*parts)

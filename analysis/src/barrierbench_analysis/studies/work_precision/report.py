@@ -8,6 +8,7 @@ import math
 
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.tables.accuracy.errors import MEANING
+from barrierbench_analysis.tables.numbers import whole
 
 from .judge import (
     COSTS,
@@ -38,9 +39,7 @@ A closed form has no time step, and there all runs are ranked.
 
 
 def number(x: float | None) -> str:
-    if x is None or not math.isfinite(x):
-        return "never"
-    return f"{x:.0f}" if x >= 100 else f"{x:.3g}"
+    return whole(x, none="never")
 
 
 def intervals(s: Standing) -> str:

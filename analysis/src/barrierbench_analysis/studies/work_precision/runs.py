@@ -4,18 +4,18 @@ against its reference.
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import time
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.start import built_program, run_sweep
+from barrierbench_analysis.program.start import built_program, check_ended, run_sweep
+from barrierbench_analysis.studies.kit.runs import sweep
 from barrierbench_analysis.tables.accuracy.errors import NotFinite
 from barrierbench_analysis.tables.accuracy.reference import (
     CLOSED_FORMS,
@@ -25,6 +25,7 @@ from barrierbench_analysis.tables.accuracy.reference import (
     refined,
 )
 from barrierbench_analysis.tables.accuracy.state import Motion, read_motion
+from barrierbench_analysis.tables.outcomes import OK, outcome_of
 
 from .spec import REFERENCE_D_HAT, SOLVERS, Scene, Spec
 
@@ -43,12 +44,7 @@ def _sweep(spec: Spec, scene: Scene, runs: Path, *words: str) -> str:
     folder = runs / sweep_name(spec, scene)
     built_program(NEEDED)
     done = run_sweep(runs / f"{folder.name}.sweep.json", folder, "--progress", "none", *words)
-    if done.returncode != 0:
-        raise UserError(
-            f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}:"
-            f" {done.stderr.strip()[-2000:]}",
-            passed_on(done.returncode),
-        )
+    check_ended(done, f"{spec.file}: scene {scene.name}: ")
     return done.stdout
 
 
@@ -57,14 +53,8 @@ def run_scene(spec: Spec, scene: Scene, runs: Path) -> None:
     folder = runs / sweep_name(spec, scene)
     file = runs / f"{folder.name}.sweep.json"
     cases = spec.cases(scene)
-    sweep = {
-        "schema": "barrierbench.sweep/1",
-        "name": folder.name,
-        "base": os.path.relpath(scene.base, runs),
-        "set": {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}},
-        "axes": [{"cases": cases}],
-    }
-    write_whole(file, json.dumps(sweep, indent=1) + "\n")
+    common = {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}}
+    write_whole(file, sweep(folder.name, scene.base, common, cases).text)
     start = time.monotonic()
     print(f"work-precision: {scene.name}: {len(cases)} runs", file=sys.stderr)
     _sweep(spec, scene, runs)
@@ -96,7 +86,7 @@ def _records(spec: Spec, scene: Scene, runs: Path) -> dict[str, Path]:
 def _reference_motion(scene: Scene, label: str, folder: Path) -> Motion:
     motion = read_motion(folder)
     status = motion.record["status"]
-    if status["outcome"] != "ok" or not status["valid"]:
+    if outcome_of(motion.record) != OK:
         raise UserError(
             f"scene {scene.name}: reference run {label!r} ended {status['outcome']} {status['detail']}; a"
             " reference has to be ok and valid"
@@ -124,13 +114,13 @@ def references(scene: Scene, folders: dict[str, Path]) -> dict[float, Reference]
 def _row(scene: Scene, key: tuple, folder: Path, reference: Reference) -> dict:
     formulation, variation, solver = key
     record = read_record(folder / "run.json")
-    status, summary = record["status"], record["summary"]
+    summary = record["summary"]
     row = {
         "formulation": formulation.label,
         "axis": variation.axis,
         "factor": variation.factor,
         "solver": solver,
-        "outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
+        "outcome": outcome_of(record),
         "error": None,
         "seconds": summary["wall_s"],
         "newton": summary["newton_iterations"],

@@ -13,11 +13,13 @@ import json
 from pathlib import Path
 
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import tells
 from barrierbench_analysis.io.json_file import read_of_schema
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import a_line_each, check_digest
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.tables.numbers import rounded
 
 from . import figure, report
 from .runs import RUNS, collect, run_scene
@@ -75,29 +77,27 @@ def made(spec: Spec, runs: Path) -> dict:
     }
 
 
-def rounded(value):
-    """Six digits are what a machine repeats of a time, and more than a figure shows."""
-    if isinstance(value, float):
-        return float(f"{value:.6g}")
-    if isinstance(value, dict):
-        return {key: rounded(v) for key, v in value.items()}
-    return [rounded(v) for v in value] if isinstance(value, list) else value
-
-
 def table_text(table: dict) -> str:
     """One line a run."""
     scenes = []
     for scene in table["scenes"]:
         head = json.dumps({k: v for k, v in scene.items() if k != "rows"})[:-1]
-        rows = ",\n   ".join(json.dumps(row, separators=(",", ":")) for row in scene["rows"])
-        scenes.append(f'  {head}, "rows": [\n   {rows}]}}')
+        rows = a_line_each((json.dumps(row, separators=(",", ":")) for row in scene["rows"]), 3)
+        scenes.append(f'{head}, "rows": {rows}}}')
     head = json.dumps({k: v for k, v in table.items() if k != "scenes"})[:-1]
-    return f'{head}, "scenes": [\n' + ",\n".join(scenes) + "]}\n"
+    return f'{head}, "scenes": {a_line_each(scenes, 2)}}}\n'
 
 
 def read_table(file: Path) -> dict:
     """Errors: UserError."""
     return read_of_schema(file, TABLE, "; ./bench study work-precision makes it")
+
+
+def read_for(file: Path, spec: Spec) -> dict:
+    """The kept table. Errors: UserError where it is of another spec."""
+    table, again = read_table(file), f"./bench study work-precision {spec.file}"
+    check_digest(file, "spec_sha256", table.get("spec_sha256"), spec.sha256, "spec", again)
+    return table
 
 
 def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
@@ -123,13 +123,7 @@ def main(argv: list[str]) -> int:
     file = results / "work_precision.json"
     if not args.no_run:
         write_whole(file, table_text(rounded(made(spec, args.runs))))
-    table = read_table(file)
-    if table.get("spec_sha256") != spec.sha256:
-        raise UserError(
-            f"{file}: /spec_sha256: found {table.get('spec_sha256')!r}; allowed: {spec.sha256!r}, of"
-            f" {args.spec}: its numbers are of another spec; ./bench study work-precision {args.spec} makes"
-            f" them"
-        )
+    table = read_for(file, spec)
     print(report.text(table))
     write_all(table, results, docs, args.runs / "figure")
     return 0

@@ -60,10 +60,6 @@ class Motion:
         return mass
 
     @cached_property
-    def knows_masses(self) -> bool:
-        return bool(self.record["config"]["scene"].get("bodies"))
-
-    @cached_property
     def com(self) -> np.ndarray:
         """[frames, bodies, 3] m."""
         return self.com_of(self.x)
