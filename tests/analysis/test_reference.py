@@ -90,4 +90,6 @@ def test_no_field_kind_or_verb_is_left_out(program):
     schema = json.loads(subprocess.run([program, "eval", "--schema"], capture_output=True, text=True, check=True).stdout)
     found = [name for name, _, _ in kinds.kinds(schema)]
     assert len(found) >= 13 and found == re.findall(r"^## `(\w+)`", pages("eval"), re.M)
-    assert {verb.name for verb in verbs.every()} == set(re.findall(r"^\| `./bench ([\w-]+)", pages("verbs"), re.M))
+    lines = re.findall(r"^\| `./bench (.*)$", pages("verbs"), re.M)
+    assert len(lines) == len(verbs.every()) > 50
+    assert [verb.name for verb in verbs.every() if not any(re.match(rf"{verb.name}[` ]", line) for line in lines)] == []

@@ -55,13 +55,15 @@ def test_no_page_of_ours_loses_a_link():
     assert len(site_pages.staged(ROOT)) > 120
     config, recipe = (ROOT / "mkdocs.yml").read_text(), site.REQUIREMENTS.read_text()
     assert all(re.search(rf"^{name}==", recipe, re.M) for name in ("mkdocs", "mkdocs-material", "django-static-mathjax", "mdx_truly_sane_lists"))
-    assert "arithmatex" in config and "mathjax/tex-svg.js" in config and "http" not in config
+    assert "arithmatex" in config and "scripts/tex-svg.js" in config and "http" not in config
 
 
 def test_the_site_is_built_without_a_warning():
     if not (site.ENVIRONMENT / "recipe").is_file():
         pytest.skip("the packages of the site are not installed: ./bench site")
     assert site.main([]) == 0 and (site.SITE / "docs/guides/index.html").is_file()
+    text = (site.SITE / "docs/guides/index.html").read_text()
+    assert re.findall(r'src="([^"]+)"', text) and [of for of in re.findall(r'(?:src|href)="(https?://[^"]+)"', text) if "squidfunk" not in of] == []
     page = site.PAGES / "docs/words.md"
     page.write_text(page.read_text() + "\n[x](limits.md#nowhere)\n")
     assert not site.built(site.ENVIRONMENT / "bin/python")

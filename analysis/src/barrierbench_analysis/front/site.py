@@ -28,6 +28,7 @@ PAGES = ROOT / "build/site-pages"
 CONFIG = ROOT / "build/site.yml"  # mkdocs.yml with the navigation
 SITE = ROOT / "build/site"
 MATHJAX = "lib/python*/site-packages/mathjax/static/mathjax/es5/tex-svg.js"
+WORKER = Path(__file__).with_name("site_worker.js")
 # Which elements hold formulas: those of the extension arithmatex.
 CONFIGURATION = """window.MathJax = {
   tex: {inlineMath: [["\\\\(", "\\\\)"]], displayMath: [["\\\\[", "\\\\]"]], processEscapes: true},
@@ -70,14 +71,15 @@ def built(python: Path) -> bool:
 
 
 def prepare() -> int:
-    """Stages the pages, MathJax and the configuration. Returns the number of pages. Errors: UserError."""
+    """Stages the pages, the scripts and the configuration. Returns the number of pages. Errors: UserError."""
     names = stage(ROOT, PAGES)
     found = sorted(ENVIRONMENT.glob(MATHJAX))
     if not found:
         raise UserError(f"{ENVIRONMENT}: found no {MATHJAX}; allowed: the packages of {REQUIREMENTS}")
-    (PAGES / "mathjax").mkdir(exist_ok=True)
-    shutil.copyfile(found[0], PAGES / "mathjax/tex-svg.js")
-    write_whole(PAGES / "mathjax/configuration.js", CONFIGURATION)
+    (PAGES / "scripts").mkdir(exist_ok=True)
+    shutil.copyfile(found[0], PAGES / "scripts/tex-svg.js")
+    shutil.copyfile(WORKER, PAGES / "scripts/iframe-worker.js")
+    write_whole(PAGES / "scripts/mathjax.js", CONFIGURATION)
     own = {
         "INHERIT": "../mkdocs.yml",
         "docs_dir": str(PAGES),
