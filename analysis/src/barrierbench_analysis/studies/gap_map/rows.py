@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.origin import seconds_of_run
+from barrierbench_analysis.io.origin import run_of, seconds_of_run
 from barrierbench_analysis.io.record_file import read_record, read_trace
 from barrierbench_analysis.program.start import evaluated
 from barrierbench_analysis.tables.numbers import rounded
@@ -178,7 +178,7 @@ def row(cell: Cell, record: dict | None, folder: Path | None = None, outcome: st
     gap = reached(record)
     found |= {
         "outcome": outcome_of(record),
-        "run": record["ids"]["run_id"][:16],
+        "run": run_of(record),
         "unknowns": record["scene"]["free_dofs"],
         "seconds": seconds_of_run(record),
         "newton": record["summary"]["newton_iterations"],
