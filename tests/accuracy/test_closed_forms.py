@@ -8,9 +8,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.tables.accuracy.bounce import BarrierBounce, rigid_gap
 from barrierbench_analysis.tables.accuracy.catenary import chain_nodes
+from barrierbench_analysis.tables.accuracy.reference import rigid_gap
 from barrierbench_analysis.tables.accuracy.shapes import SHAPES, barrier, gap_of_load
+from bounce import BarrierBounce
 
 D_HAT = 0.01
 

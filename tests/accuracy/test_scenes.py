@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from barrierbench_analysis.tables.accuracy.bounce import BarrierBounce
 from barrierbench_analysis.tables.accuracy.reference import CLOSED_FORMS, NoReference, measure, refined
 from barrierbench_analysis.tables.accuracy.state import read_motion
+from bounce import BarrierBounce
 from motions import ROOT
 
 

@@ -25,6 +25,11 @@ def stamp(record: dict, *keys: str, threads: str = "") -> dict[str, str]:
     return found | {"machine": found["machine"] + threads} if "machine" in found else found
 
 
+def run_of(record: dict) -> str:
+    """Its run_id, as tables have it."""
+    return record["ids"]["run_id"][:ID_DIGITS]
+
+
 def machine_of(record: dict) -> str:
     return stamp(record, "machine", threads=ONE_THREAD)["machine"]
 

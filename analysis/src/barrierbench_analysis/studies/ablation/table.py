@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from barrierbench_analysis.io.json_file import number_at, rows_of
-from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run
+from barrierbench_analysis.io.origin import ID_DIGITS, run_of, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
 from barrierbench_analysis.io.whole_file import write_whole
@@ -54,7 +54,7 @@ def row_of(scene: str, case: str, record: dict) -> dict:
         "failed": " ".join(failed),
         "core_s": round(seconds_of_run(record), 2),
         "config_id": record["ids"]["config_id"][:ID_DIGITS],
-        "run_id": record["ids"]["run_id"][:ID_DIGITS],
+        "run_id": run_of(record),
     }
 
 

@@ -15,6 +15,7 @@ import sys
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.origin import stamp
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.store import a_line_each, merged, read_store
 from barrierbench_analysis.io.text_table import fitted
@@ -90,8 +91,8 @@ def rows_of(entry: Entry, runs: list[Done]) -> list[dict]:
                 "passed": len(mine) - len(failed),
                 "jitter_m": entry.data["jitter_m"],
                 "failed": "; ".join(failed),
-                "date": mine[0].record["status"]["started_utc"][:10],
             }
+            | stamp(mine[0].record, "date")
         )
     return rows
 

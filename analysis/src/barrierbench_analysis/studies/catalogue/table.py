@@ -8,7 +8,7 @@ import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.origin import ID_DIGITS, seconds_of_run, stamp
+from barrierbench_analysis.io.origin import run_of, seconds_of_run, stamp
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.store import a_line_each, merged, read_store
 from barrierbench_analysis.io.whole_file import write_whole
@@ -52,7 +52,7 @@ def row_of(entry: Entry, done: Done) -> Row:
         record["summary"]["newton_iterations"],
         [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
         [f"{name}: {finding.saw}" for name, finding in found if not finding.red],
-        record["ids"]["run_id"][:ID_DIGITS],
+        run_of(record),
     )
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from barrierbench_analysis.io.digests import of_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
-from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
+from barrierbench_analysis.io.origin import origin, run_of, seconds_of_run
 from barrierbench_analysis.io.record_file import RecordError, other_meanings, read_record
 from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
 from barrierbench_analysis.io.whole_file import write_whole
@@ -106,7 +106,7 @@ def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
         "outcome": outcome_of(record),
         "comparability": comparability["verdict"],
         "gap_rel": rounded(comparability.get("gap_rel")),
-        "run": record["ids"]["run_id"][:ID_DIGITS],
+        "run": run_of(record),
         "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "",
         "gaps": rounded(gaps_of(record)),
         **rounded(end_of_run(record)),

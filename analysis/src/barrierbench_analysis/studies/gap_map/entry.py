@@ -18,11 +18,12 @@ from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import finite_number, parser_of
 from barrierbench_analysis.studies.kit.formulations import ROOT
+from barrierbench_analysis.studies.kit.runs import records_in
 
 from . import figure, plan, report
 from .judge import counts
 from .kept import Kept, about, digests, kept_rows, read_for, sort_out, source_of
-from .rows import CANNOT, NOT_RUN, PLACE, add_rho, cannot_reach, records_in, row
+from .rows import CANNOT, NOT_RUN, PLACE, add_rho, cannot_reach, row
 from .runs import folder_of, run_missing
 from .skips import skips_of
 from .spec import LIMITS, PARTS, Cell, Spec, cells, limit_settings, part, read_spec

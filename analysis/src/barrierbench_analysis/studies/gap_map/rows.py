@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.origin import seconds_of_run
-from barrierbench_analysis.io.record_file import read_record, read_trace
+from barrierbench_analysis.io.origin import run_of, seconds_of_run
+from barrierbench_analysis.io.record_file import read_trace
 from barrierbench_analysis.program.start import evaluated
 from barrierbench_analysis.tables.numbers import rounded
 from barrierbench_analysis.tables.outcomes import outcome_of
@@ -178,7 +176,7 @@ def row(cell: Cell, record: dict | None, folder: Path | None = None, outcome: st
     gap = reached(record)
     found |= {
         "outcome": outcome_of(record),
-        "run": record["ids"]["run_id"][:16],
+        "run": run_of(record),
         "unknowns": record["scene"]["free_dofs"],
         "seconds": seconds_of_run(record),
         "newton": record["summary"]["newton_iterations"],
@@ -230,18 +228,3 @@ def add_rho(spec: Spec, rows: list[dict]) -> None:
     )
     for (r, name), answer in zip(places, answers):
         r["rho" if name == "gap" else "rho_p05"] = rounded(answer["rho"])
-
-
-def records_in(folders: Iterable[Path]) -> dict[str, tuple[dict, Path]]:
-    """note -> record and its folder. Errors: UserError for a file that is no record, and for two records of
-    one note.
-    """
-    found: dict[str, tuple[dict, Path]] = {}
-    for folder in folders:
-        for path in sorted(folder.glob("*/run.json")):
-            record = read_record(path)
-            note = record["labels"].get("note", "")
-            if note in found:
-                raise UserError(f"{path}: a second record of {note!r}, beside {found[note][1]}: remove one")
-            found[note] = (record, path.parent)
-    return found

@@ -8,10 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import groupby
 from pathlib import Path
 
-from barrierbench_analysis.studies.kit.runs import run
+from barrierbench_analysis.studies.kit.runs import records_in, run
 
 from .kept import Place
-from .rows import records_in
 from .skips import follows, overloaded
 from .spec import Cell, Spec, cells, make_sweep
 

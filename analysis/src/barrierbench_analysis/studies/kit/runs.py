@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -132,25 +132,33 @@ def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: lis
     check_ended(done, "")
 
 
-def collect(made: Sweep, out: Path) -> dict[str, dict]:
-    """note -> record, of every case of the sweep. Errors: UserError when one is missing or there twice."""
-    found: dict[str, dict] = {}
-    for path in sorted(out.glob("*/run.json")):
+def records_in(folders: Iterable[Path], notes: Iterable[str] = ()) -> dict[str, tuple[dict, Path]]:
+    """note -> record and its folder, of the notes alone where some are given. Errors: UserError for a file
+    that is no record, and for two records of one note.
+    """
+    found: dict[str, tuple[dict, Path]] = {}
+    for path in (path for folder in folders for path in sorted(folder.glob("*/run.json"))):
         record = read_record(path)
         note = record["labels"].get("note", "")
-        if note not in made.notes:
+        if notes and note not in notes:
             continue
         if note in found:
             raise UserError(
-                f"{path}: a second record of {note!r}: {out} holds runs with other settings; name another"
-                " folder with --out"
+                f"{path}: a second record of {note!r}, beside {found[note][1]}, with other settings; allowed:"
+                " one record a case: remove one, or name another folder"
             )
-        found[note] = record
+        found[note] = (record, path.parent)
+    return found
+
+
+def collect(made: Sweep, out: Path) -> dict[str, dict]:
+    """note -> record, of every case of the sweep. Errors: UserError when one is missing or there twice."""
+    found = records_in([out], made.notes)
     if missing := [note for note in made.notes if note not in found]:
         raise UserError(
             f"{out}: {len(missing)} of {len(made.notes)} records are missing, the first {missing[0]!r}"
         )
-    return found
+    return {note: record for note, (record, _) in found.items()}
 
 
 def check_equal(records: dict[str, dict]) -> None:

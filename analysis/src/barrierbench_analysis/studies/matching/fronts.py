@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from dataclasses import dataclass, field
 
+from barrierbench_analysis.io.origin import run_of
 from barrierbench_analysis.studies.kit.formulations import REFERENCE
 from barrierbench_analysis.studies.kit.front import Point, log_ratio, reached, segments, value_at
 from barrierbench_analysis.studies.kit.runs import check_equal, check_varied, metric
@@ -100,7 +101,7 @@ def gather(spec: Spec, notes: tuple[str, ...], records: dict[str, dict]) -> list
                             "seed": seed,
                             "outcome": outcome_of(record),
                             "gap": rounded(metric(record, spec.gap_metric)),
-                            "run": record["ids"]["run_id"][:16],
+                            "run": run_of(record),
                         }
                         | {m: rounded(metric(record, m)) for m in METRICS}
                     )

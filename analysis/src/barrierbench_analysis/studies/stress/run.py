@@ -15,6 +15,7 @@ from pathlib import Path
 
 from barrierbench_analysis.io.errors import TRY_AGAIN, UserError
 from barrierbench_analysis.io.json_file import number_at
+from barrierbench_analysis.io.origin import run_of
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.start import built_program, run_sweep, started
@@ -133,7 +134,7 @@ def row_of(record: dict, test: str, case: str, formulation: str) -> Row:
         formulation,
         outcome_of(record),
         status["detail"],
-        record["ids"]["run_id"][:16],
+        run_of(record),
         status["valid"],
         seconds=number_at(summary, ["wall_s"]),
         newton=summary["newton_iterations"],

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
+from barrierbench_analysis.io.origin import origin, run_of, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.whole_file import write_whole
@@ -102,7 +102,7 @@ def references(scene: Scene, folders: dict[str, Path]) -> dict[float, Reference]
     for factor in scene.dt_factors:
         labels = [scene.reference_case(name, factor)["label"] for name in scene.reference["refined"]]
         pair = [_reference_motion(scene, label, folders[label]) for label in labels]
-        ids = ", ".join(motion.record["ids"]["run_id"][:ID_DIGITS] for motion in pair)
+        ids = ", ".join(run_of(motion.record) for motion in pair)
         made[factor] = refined(
             *pair,
             f"middle of {' and '.join(scene.reference['refined'])} with d_hat x{REFERENCE_D_HAT:g},"
@@ -126,7 +126,7 @@ def _row(scene: Scene, key: tuple, folder: Path, reference: Reference) -> dict:
         "newton": summary["newton_iterations"],
         "factorizations": summary["factorizations"],
         "products": summary["linear_iterations"],
-        "run": record["ids"]["run_id"][:ID_DIGITS],
+        "run": run_of(record),
         "errors": {},
     }
     if row["outcome"] != "ok":

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import errors
-from .bounce import rigid_gap
 from .catenary import chain_nodes
 from .shapes import gap_of_load
 from .state import Motion
@@ -98,6 +97,18 @@ def refined(first: Motion, second: Motion, name: str) -> Reference:
 
 def _gravity(motion: Motion) -> float:
     return float(np.linalg.norm(motion.record["config"]["scene"]["gravity_m_per_s2"]))
+
+
+def rigid_gap(start: float, v0: float, acceleration: float, t: float) -> float:
+    """The limit d_hat -> 0: an elastic bounce at the gap 0. m at the time t (s)."""
+    if acceleration == 0:
+        return abs(start - v0 * t)
+    speed = float(np.sqrt(v0**2 + 2 * acceleration * start))
+    since = t - (speed - v0) / acceleration
+    if since < 0:
+        return start - v0 * t - 0.5 * acceleration * t * t
+    since %= 2 * speed / acceleration
+    return speed * since - 0.5 * acceleration * since * since
 
 
 def rigid_bounce() -> Reference:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from .shapes import barrier
+from barrierbench_analysis.tables.accuracy.shapes import barrier
 
 TOLERANCE = 1e-11
 NODES, NODES_WEIGHTS = np.polynomial.legendre.leggauss(12)
@@ -129,15 +129,3 @@ class BarrierBounce:
             return self.smallest_gap + s * s
         out = since - 2 * self.half_contact
         return self.d_hat + self.entry_speed * out - 0.5 * self.acceleration * out * out
-
-
-def rigid_gap(start: float, v0: float, acceleration: float, t: float) -> float:
-    """The limit d_hat -> 0: an elastic bounce at the gap 0. m at the time t (s)."""
-    if acceleration == 0:
-        return abs(start - v0 * t)
-    speed = float(np.sqrt(v0**2 + 2 * acceleration * start))
-    since = t - (speed - v0) / acceleration
-    if since < 0:
-        return start - v0 * t - 0.5 * acceleration * t * t
-    since %= 2 * speed / acceleration
-    return speed * since - 0.5 * acceleration * since * since
