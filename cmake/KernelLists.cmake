@@ -1,6 +1,6 @@
-# bb_kernel_rooms(OUT): short names of the rooms that have a list of kernels (kernels.inc), sorted. Of room NAME, folder_NAME is
-# its folder, library_NAME its library and test_NAME the program of its tests. The short name is that of the folder, and of the room around a folder "executor".
-function(bb_kernel_rooms out)
+# bb_kernel_modules(OUT): short names of the modules that have a list of kernels (kernels.inc), sorted. Of module NAME, folder_NAME is
+# its folder, library_NAME its library and test_NAME the program of its tests. The short name is that of the folder, and of the module around a folder "executor".
+function(bb_kernel_modules out)
   file(GLOB_RECURSE lists CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/core/kernels.inc")
   set(names "")
   foreach(list IN LISTS lists)

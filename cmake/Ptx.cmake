@@ -1,4 +1,4 @@
-# Tests that run nvcc's PTX on the CPU (tests/ptx), linked with the rooms of the program itself.
+# Tests that run nvcc's PTX on the CPU (tests/ptx), linked with the modules of the program itself.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 file(GLOB BB_PTX_TRANSLATOR CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/ptx/translator/*.py")
 
@@ -19,14 +19,14 @@ function(bb_ptx_module name)
   set_target_properties(${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
 endfunction()
 
-# bb_ptx_of_device_code(NAME ROOM): the same of the kernels of a room: the PTX in the object file that the
+# bb_ptx_of_device_code(NAME MODULE): the same of the kernels of a module: the PTX in the object file that the
 # program is linked from, which all its machine code is made of.
-function(bb_ptx_of_device_code name room)
+function(bb_ptx_of_device_code name module)
   set(ptx "${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx")
   set(script "${PROJECT_SOURCE_DIR}/tests/ptx/embedded_ptx.py")
   add_custom_command(OUTPUT "${ptx}"
-    COMMAND "${Python3_EXECUTABLE}" "${script}" "$<TARGET_OBJECTS:bb_device_${room}>" "${ptx}"
-    DEPENDS "$<TARGET_OBJECTS:bb_device_${room}>" "${script}" VERBATIM COMMENT "PTX of the program's ${room} kernels")
+    COMMAND "${Python3_EXECUTABLE}" "${script}" "$<TARGET_OBJECTS:bb_device_${module}>" "${ptx}"
+    DEPENDS "$<TARGET_OBJECTS:bb_device_${module}>" "${script}" VERBATIM COMMENT "PTX of the program's ${module} kernels")
   bb_ptx_translation(${name} "${ptx}" "")
   bb_ptx_translation(${name}_faults "${ptx}" --faults)
   set_target_properties(${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
@@ -45,12 +45,12 @@ function(bb_ptx_translation name ptx option)
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
 endfunction()
 
-# bb_ptx_test(NAME LEAST n MODULES ... [USES ...] SOURCES ... [CASES target] [ROOMS libraries ...] [SKIP cases]): test_NAME,
+# bb_ptx_test(NAME LEAST n MODULES ... [USES ...] SOURCES ... [CASES target] [LIBRARIES libraries ...] [SKIP cases]): test_NAME,
 # one test of ctest without the cases of a pattern of GoogleTest, which also fails when less than LEAST per cent of the
 # instructions of one of its MODULES ran; those that it only USES are judged elsewhere. CASES: another test, whose objects
 # are linked once more. test_NAME_faults, built on demand: the same with switches for inject_faults.py.
 function(bb_ptx_test name)
-  cmake_parse_arguments(ARG "" "CASES;LEAST;SKIP" "MODULES;USES;SOURCES;ROOMS" ${ARGN})
+  cmake_parse_arguments(ARG "" "CASES;LEAST;SKIP" "MODULES;USES;SOURCES;LIBRARIES" ${ARGN})
   add_library(${name}_cases OBJECT ${ARG_SOURCES} "${PROJECT_SOURCE_DIR}/tests/ptx/main.cpp")
   set_target_properties(${name}_cases PROPERTIES UNITY_BUILD ON)
   target_link_libraries(${name}_cases PRIVATE bb_joined)
@@ -68,7 +68,7 @@ function(bb_ptx_test name)
     list(TRANSFORM modules APPEND "${kind}")
     add_executable(test_${name}${kind} ${objects})
     set_target_properties(test_${name}${kind} PROPERTIES LINKER_LANGUAGE CXX)
-    target_link_libraries(test_${name}${kind} PRIVATE ${modules} bb_ptx_machine ${ARG_ROOMS} GTest::gtest TBB::tbb fmt::fmt)
+    target_link_libraries(test_${name}${kind} PRIVATE ${modules} bb_ptx_machine ${ARG_LIBRARIES} GTest::gtest TBB::tbb fmt::fmt)
   endforeach()
   set_target_properties(test_${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
   add_test(NAME ptx.${name} COMMAND test_${name})

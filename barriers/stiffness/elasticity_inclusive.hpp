@@ -39,7 +39,7 @@ struct ElasticityInclusive {
     // a pair that ended a step parked near contact would have m/d^2 of that gap in the next one
     list.fraction(
         "gap_floor", &P::gap_floor, "d_hat",
-        "smallest gap at which kappa is asked, in units of d_hat, or of the width of a strain limit");
+        "smallest gap at which kappa is evaluated, in units of d_hat, or of the width of a strain limit");
     list.choice("derivative", &P::derivative, {"dropped", "included"},
                 "kappa'(d) left out of the curvature, or the force derived from its potential");
   }

@@ -24,7 +24,7 @@ struct Fixed {
   template <class Refuse>
   void check(Refuse&) const {}
 
-  /// The stiffness times a factor: what the config asks for is one number.
+  /// The stiffness times a factor: what the config requests is one number.
   Fixed times(double factor) const { return {factor * stiffness}; }
   double uniform_kappa() const { return stiffness; }
   template <class T>

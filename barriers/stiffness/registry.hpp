@@ -13,7 +13,7 @@
 
 namespace bb {
 
-/// The stiffness policy that a run asks for, of its contacts or of its strain limit.
+/// The stiffness policy that a run requests, of its contacts or of its strain limit.
 struct PolicyConfig {
   std::string name = "fixed";
   double scale = 1;         // factor on every kappa of the policy

@@ -96,17 +96,17 @@ class ObstacleJudge {
   template <std::size_t N>
   void note(Verdict verdict, const std::array<int, N>& ids, PairName name, const Poses& o,
             ObstacleAudit& sum) const {
-    int free_vertex = -1, given_vertex = -1;
+    int free_vertex = -1, prescribed_vertex = -1;
     for (const int v : ids) {
       if (!obstacle_hit(o.begin, o.end, at(x0_, v), at(x1_, v))) continue;
-      int& lowest = mesh_.is_prescribed(v) ? given_vertex : free_vertex;
+      int& lowest = mesh_.is_prescribed(v) ? prescribed_vertex : free_vertex;
       lowest = lowest < 0 ? v : std::min(lowest, v);
     }
     name.proven = verdict == Verdict::violation;
-    if (const int named = given_vertex >= 0 ? given_vertex : free_vertex; named >= 0) {
+    if (const int named = prescribed_vertex >= 0 ? prescribed_vertex : free_vertex; named >= 0) {
       name.kind = PairKind::vertex_obstacle, name.first = named;
     }
-    if (given_vertex >= 0 || mesh_.all_prescribed(ids)) {
+    if (prescribed_vertex >= 0 || mesh_.all_prescribed(ids)) {
       ++sum.scene_faults;
       keep_first(sum.first_fault, name);
     } else if (verdict == Verdict::unproven) {

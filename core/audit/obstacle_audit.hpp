@@ -1,4 +1,4 @@
-// The whole surface against the analytic obstacles: which primitives have to be asked, and what was found of them in
+// The whole surface against the analytic obstacles: which primitives have to be queried, and what was found of them in
 // a state or along a motion.
 #pragma once
 

@@ -23,7 +23,7 @@ struct Effort {
 /// @param tolerance m, >= 0: spans that move less are also tried by exact signs; below it spans
 /// are still bisected
 ///                  down to rounding, so that gaps smaller than the tolerance are certified
-/// @param effort    null: not asked for
+/// @param effort    null: not requested
 /// Errors: none; input must be finite. Cost: about 0.1 us where an axis separates, 1 us where the pair is
 /// near, 0.1 ms where it touches all the time. Source: the inclusion idea of Snyder et al. 1993 and Wang et al.
 /// 2021; here the boxes in (u, v) are replaced by a direction, which is exact in (u, v) since the polygon of

@@ -43,8 +43,9 @@ struct AuditMesh {
   std::vector<std::uint8_t>
       fixed;  // [n_vertices] or empty: given and never moving. Driven vertices are not fixed
   std::vector<std::uint8_t> prescribed;  // [n_vertices] or empty: given, still or driven
-  std::vector<int> motion;  // [n_vertices] or empty: given vertices with one number >= 0 move as one rigid
-                            // body, -1: any other. Empty: fixed vertices are such a body
+  std::vector<int>
+      motion;  // [n_vertices] or empty: prescribed vertices with one number >= 0 move as one rigid
+               // body, -1: any other. Empty: fixed vertices are such a body
   std::vector<double> thickness;  // [n_vertices] or empty: half thickness, m; only surface_gap reads it
   std::vector<AuditObstacle> obstacles;
   JudgedPairs judged;

@@ -37,7 +37,7 @@ struct StiffnessBatch {
   const double* d_hat = nullptr;    // [n] m
   const double* mass = nullptr;     // [4 n] lumped vertex masses, kg
   const double* hessian = nullptr;  // [144 n] 12 x 12 column-major sub-matrix of the elastic Hessian, N/m;
-                                    // null unless the policy says needs_hessian
+                                    // null unless the policy reports needs_hessian
   StiffnessTime time;
 };
 
@@ -75,7 +75,7 @@ class StiffnessPolicy {
 
   /// Called once, at the first iterate that has contacts, when needs_globals().
   virtual void start(const StiffnessGlobals&) {}
-  /// Called where a step begins or goes on with another length, before kappa is asked for.
+  /// Called where a step begins or goes on with another length, before kappa is requested.
   virtual void set_time(const StiffnessTime&) {}
   /// kappa (N/m) of every row. Requires start() first when needs_globals().
   virtual void fill(const StiffnessBatch& rows, double* kappa) const = 0;
@@ -91,7 +91,7 @@ class StiffnessPolicy {
   /// A pair that has a row at the end of this step and of the one before.
   struct PairEnd {
     double gap = 0, gap_before = 0;  // m
-    double park = 0;                 // m, ccd_park times the row's d_hat
+    double park = 0;                 // m, min_gap_fraction times the row's d_hat
     bool closing() const { return closes(gap, gap_before); }
   };
   /// Kernels that do what fill does, and those of limited elements; null: there are none.

@@ -51,7 +51,7 @@ struct ColumnMajor {
 };
 
 /// @param n_free   N, 1..4            @param weight  [N] w_i, not all 0
-/// @param normal   [3] not 0          @param mass    [N] kg; null: w^T M w is not asked for
+/// @param normal   [3] not 0          @param mass    [N] kg; null: w^T M w is not requested
 /// @param hessian  hessian(row, column) with both below 3N, N/m; read when with_hessian
 /// Errors: none. Host-device. Cost: O(N^2), allocates nothing.
 template <class T, class Hessian>

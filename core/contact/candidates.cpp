@@ -46,7 +46,7 @@ BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<doubl
     lone_free_.push_back(surface.edges.free[static_cast<std::size_t>(e)]);
 }
 
-/// of(vertex) of the sampled points, sorted, into sample_; those that are no numbers are left out.
+/// of(vertex) of the sampled points, sorted, into sample_; NaNs are left out.
 template <class Number>
 std::vector<double>& BroadPhase::sample(int c, const Number& of) {
   const auto n = static_cast<long long>(surface_.points.size());
@@ -70,7 +70,7 @@ FoldedFrame BroadPhase::folded(const PositionsView& x0) {
 }
 
 /// The frame in which the boxes are shortest: without what the sampled points share of the motion; all of it where one of
-/// their displacements is no number.
+/// their displacements is NaN.
 BroadPhase::Frame BroadPhase::frame(const PositionsView& x0, const PositionsView& x1) {
   Frame out{folded(x0), Vec3d::Zero()};
   if (x0.data() == x1.data() || pace_ == Pace::own || surface_.points.size() == 0) return out;
@@ -232,7 +232,7 @@ void BroadPhase::find_pairs(const PositionsView& x0, const PositionsView& x1, Ca
   }
 }
 
-/// Every primitive is asked about every obstacle that it makes pairs with.
+/// Every primitive is queried about every obstacle that it makes pairs with.
 template <int N>
 void BroadPhase::update_obstacles(const Primitives<N>& primitives, const PositionsView& x0,
                                   const PositionsView& x1, std::vector<IndexPair>& out) {

@@ -52,7 +52,7 @@ struct ContactSystem::Data {
         obstacles(analytic_surfaces(s)),
         broad_phase(surface, obstacles, plan, o.precision),
         builder(surface, obstacles, plan, o.precision, {o.weighting, o.model}),
-        bound(surface, obstacles, {o.ccd_park, o.ccd_max_probes}, o.precision),
+        bound(surface, obstacles, {o.min_gap_fraction, o.ccd_max_probes}, o.precision),
         each(surface, obstacles, o.step_bound, o.bound_gamma, o.precision) {}
 
   const Scene& scene;

@@ -20,7 +20,7 @@ namespace bb {
 
 struct ContactOptions {
   Mollifier mollifier = Mollifier::ipc;
-  double ccd_park = 1e-6;  // stop level in units of d_hat
+  double min_gap_fraction = 1e-6;  // stop level in units of d_hat
   int ccd_max_probes = 4096;
   Precision precision = Precision::full;  // scalar of rows and step bound
   StepBoundRule step_bound = StepBoundRule::accd;
@@ -66,7 +66,7 @@ class ContactSystem {
   void update_candidates(const PositionsView& x0, const PositionsView& x1);
 
   /// The same for states up to the step bound of the motion alone, which step_bound and find_rows need no more
-  /// than: pairs of the last rows are asked first, and boxes end where the earliest of them stops the motion.
+  /// than: pairs of the last rows are queried first, and boxes end where the earliest of them stops the motion.
   /// Which candidates there are depends on those rows; alpha and rows do not. Motions finite.
   void update_candidates_to_bound(const PositionsView& x0, const PositionsView& x1);
 

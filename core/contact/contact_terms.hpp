@@ -34,18 +34,18 @@ void mollified_terms(const MollifiedTable& rows, const PositionsView& x, Project
                      std::vector<double>& grad, std::vector<double>& hess,
                      Precision precision = Precision::full);
 /// Adds to the free columns of `force` [3 x n] (N) how the gradient of B at x changes, to first order, when
-/// its given vertices move by `motion` [3 x n] (m, 0 at free vertices): they have no block in the matrix.
+/// its prescribed vertices move by `motion` [3 x n] (m, 0 at free vertices): they have no block in the matrix.
 /// Rows of both tables count; a ContactTable's by kappa b'' w_i w_j n n^T in either Hessian mode, a
 /// mollified row's by its whole Hessian. From kappa, b', b'' in the tables. Cost O(rows).
 void add_given_motion(const ContactTable& rows, const PositionsView& motion, PositionsSpan force);
 void add_given_motion(const MollifiedTable& rows, const PositionsView& x, const PositionsView& motion,
                       PositionsSpan force);
 /// Adds to `force` [3 x n] (N) kappa b'' w_i n times what the gap of every row misses (gap_along.hpp) along dx
-/// [3 x n] (m, 0 at given vertices): with it on the right-hand side of Newton's system the gaps at x + dx are those
+/// [3 x n] (m, 0 at prescribed vertices): with it on the right-hand side of Newton's system the gaps at x + dx are those
 /// that their slopes say. Rows without mollifier alone. Returns when they hold dx. From kappa and b'' in the table, in
 /// double. Cost O(rows).
-HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const PositionsView& dx,
-                     PositionsSpan force);
+HoldTimes add_curvature_correction(const ContactTable& rows, const PositionsView& x, const PositionsView& dx,
+                                   PositionsSpan force);
 /// The mollifier e of row r at x, in double.
 double mollifier_of(const MollifiedTable& rows, std::size_t r, const PositionsView& x);
 /// Energies kappa b (and kappa e b) of every row, J.

@@ -1,4 +1,4 @@
-// Whether surfaces intersect in a state: what is asked of pairs of bodies that collide as `static` (CollisionKind::static_test).
+// Whether surfaces intersect in a state: what is required of pairs of bodies that collide as `static` (CollisionKind::static_test).
 #pragma once
 
 #include <vector>

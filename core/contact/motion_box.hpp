@@ -62,14 +62,14 @@ inline float proven_time(const MotionBox& a, const MotionBox& b) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   const auto until = [](const Four& gap, const Four& rate) -> Four {
     const Four met = gap / -rate, never = inf - Four{}, zero = {};
-    return gap > 0 ? (rate < 0 ? met : rate >= 0 ? never : zero) : zero;  // a rate may be no number
+    return gap > 0 ? (rate < 0 ? met : rate >= 0 ? never : zero) : zero;  // a rate may be NaN
   };
   const Four below = until(a.lo - b.hi, a.slowest - b.fastest);
   const Four above = until(b.lo - a.hi, b.slowest - a.fastest);
   const Four both = below > above ? below : above;
   const float xy = both[0] > both[1] ? both[0] : both[1];
   const float latest = xy > both[2] ? xy : both[2];
-  // two differences and a quotient, each rounded once; what is no number proves nothing
+  // two differences and a quotient, each rounded once; a NaN is treated as bound 0
   return latest > 0 ? latest * (1 - 0x1p-20f) : 0;
 }
 

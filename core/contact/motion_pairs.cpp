@@ -100,7 +100,7 @@ template <PairKind K>
 void MotionPairs::ask(IndexPair index, const PositionsView& x0, const PositionsView& x1, Part& part) const {
   const ContactPair<K> pair = contact_pair<K>(surface_, index);
   const Mat<double, 3, pair_points(K)> from = gather(x0, pair.vertex), to = gather(x1, pair.vertex);
-  const double park = options_.ccd_park * pair.law.d_hat;
+  const double park = options_.min_gap_fraction * pair.law.d_hat;
   const double size = std::max(from.cwiseAbs().maxCoeff(), to.cwiseAbs().maxCoeff());
   if (pair_box_distance<K>(from, to) > pair.law.offset + 2 * park + 1e-12 * size) return;
   const AccdResult<double> found = accd<K, double>(from, to, pair.law.offset, park, options_.ccd_max_probes);
@@ -118,7 +118,7 @@ void MotionPairs::ask_obstacle(const Primitives<N>& primitives, IndexPair index,
   const auto& vertex = primitives.vertices[static_cast<std::size_t>(index.first)];
   const Side law = primitives.side[static_cast<std::size_t>(index.first)];
   const AnalyticSurface<double>& obstacle = obstacles_[static_cast<std::size_t>(index.second)];
-  const double park = options_.ccd_park * law.d_hat;
+  const double park = options_.min_gap_fraction * law.d_hat;
   double time = 1;
   if constexpr (N == 1) {
     time = obstacle_toi<double>(obstacle, obstacle, gather(x0, vertex), gather(x1, vertex), law.offset, park);

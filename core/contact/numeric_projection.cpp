@@ -53,7 +53,7 @@ void project_by_eigen(Projection projection, double* hess) {
 }
 
 void project_by_lapack(Projection projection, double* hess) {
-  constexpr int n = 12, n_work = 408;  // 34 n: what dsyev asks for with blocks of 32
+  constexpr int n = 12, n_work = 408;  // 34 n: what dsyev requests with blocks of 32
   double work[n_work];
   Vec<double, 12> values;
   Matrix a = lower_triangle(hess);

@@ -135,7 +135,7 @@ constexpr int gilbert_steps = 4;
 
 /// Until when a plane with normal r keeps the pairs farther apart than `level` (m): every two points of the
 /// primitives close at a constant speed, known to `slack` (m per unit of time). 0 when it does not now, or where a
-/// height or a speed is no number.
+/// height or a speed is NaN.
 template <PairKind K, class L>
 BB_HD L plane_holds(const Heights<K, L>& height, const Heights<K, L>& speed, const L& length, const L& level,
                     const L& slack) {

@@ -37,7 +37,7 @@ BB_HD double least_apart_sq(const Mat<double, 3, pair_points(K)>& x) {
 }  // namespace detail
 
 /// Whether a pair of one body, which the rest rule gives a smaller d_hat (activation_distance), is proven to stay farther apart
-/// than that on x0 -> x1, and farther than any level at which ACCD may stop it, which is most_ccd_park d_hat or some ulps. Such a
+/// than that on x0 -> x1, and farther than any level at which ACCD may stop it, which is largest_min_gap_fraction d_hat or some ulps. Such a
 /// pair has no row and does not bound the motion. false where the rule does not act, or nothing is proven.
 /// @param eps of the scalar in which distances are evaluated
 /// @param together whether all vertices are the same part of the motion on their way; else each is at its own
@@ -50,7 +50,8 @@ BB_HD bool apart_by_rest_rule(const Side& law, const Mat<double, 3, pair_points(
                rest_sq = detail::least_apart_sq<K>(rest);
   if (!(rest_sq < acts_below * acts_below)) return false;
   // the distance at rest is no more than that of the nearest vertices; with a gap of 0 the rule does not act
-  const double row = (sqrt(rest_sq) - law.offset) / rest_rule_factor, stop = 2.5 * most_ccd_park * law.d_hat;
+  const double row = (sqrt(rest_sq) - law.offset) / rest_rule_factor,
+               stop = 2.5 * largest_min_gap_fraction * law.d_hat;
   const double moved = together ? sqrt(detail::most_apart_sq<K>(x1 - x0)) / 2
                                 : sqrt((x1 - x0).colwise().squaredNorm().maxCoeff());
   const double first = x0.cwiseAbs().maxCoeff(), last = x1.cwiseAbs().maxCoeff();

@@ -24,8 +24,8 @@ struct FoundRow : PairRow {
   std::uint8_t free;     // bit k: vertex k of the stencil is free
 };
 
-/// Whether a gap makes a row: it is less than the activation distance of its pair. What is no number does, and makes an
-/// energy that is none. T: the scalar in which gaps are compared.
+/// Whether a gap makes a row: it is less than the activation distance of its pair. A NaN gap counts as active, so that E
+/// becomes NaN. T: the scalar in which gaps are compared.
 template <class T>
 BB_HD inline bool acts(T gap, double d_hat) {
   return !(gap >= static_cast<T>(d_hat));

@@ -201,8 +201,8 @@ GapAlong gap_along(const ContactTable& rows, std::size_t r, const PositionsView&
 
 }  // namespace
 
-HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const PositionsView& dx,
-                     PositionsSpan force) {
+HoldTimes add_curvature_correction(const ContactTable& rows, const PositionsView& x, const PositionsView& dx,
+                                   PositionsSpan force) {
   HoldTimes held;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (rows.n_free[r] == 0) continue;

@@ -1,4 +1,4 @@
-// What is said of contact rows, in one pass over them: how many of each kind, extremes, the sum of the loads.
+// What is reported of contact rows, in one pass over them: how many of each kind, extremes, the sum of the loads.
 #pragma once
 
 #include "core/contact/contact_table.hpp"

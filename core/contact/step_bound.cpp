@@ -238,7 +238,7 @@ StepBound StepBoundFinder::result(const Candidates& candidates) const {
 
 StepBound StepBoundFinder::find(const Candidates& candidates, const PositionsView& x0,
                                 const PositionsView& x1) {
-  if (!x0.allFinite() || !x1.allFinite()) {  // boxes and planes below would lose what is no number
+  if (!x0.allFinite() || !x1.allFinite()) {  // boxes and planes below would lose NaN and infinite coordinates
     StepBound none;
     none.alpha = 0;
     return none;

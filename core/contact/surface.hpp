@@ -16,8 +16,8 @@ struct Side {
   double d_hat, offset;
 };
 
-/// The largest level at which a collision-free step may stop (/contact/ccd_park), in units of d_hat.
-inline constexpr double most_ccd_park = 0.1;
+/// The largest level at which a collision-free step may stop (/contact/min_gap_fraction), in units of d_hat.
+inline constexpr double largest_min_gap_fraction = 0.1;
 
 /// A pair of one body that rests closer than this many d_hat has a d_hat of its own: its gap at rest over the same number.
 inline constexpr double rest_rule_factor = 1.5;

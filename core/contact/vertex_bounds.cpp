@@ -12,7 +12,7 @@
 namespace bb {
 namespace {
 
-/// Part of a way `towards` (m) that uses up `room` (m); what is no number goes nowhere.
+/// Part of a way `towards` (m) that uses up `room` (m); a NaN goes nowhere.
 double part_of(double room, double towards) {
   if (!(towards > 0)) return towards <= 0 ? 1 : 0;
   if (!(room > 0)) return 0;

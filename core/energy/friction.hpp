@@ -1,5 +1,5 @@
 // Friction of one contact over one time step (docs/theory/friction.md): mu load f0(|u|), u the slide of its two closest points
-// in the tangent plane. Load, normal and weights are those of the lag, so this is one function of x, convex with one coefficient.
+// in the tangent plane. Load, normal and weights are those of the lagged contact state, so this is one function of x, convex with one coefficient.
 #pragma once
 
 #include <cmath>

@@ -19,7 +19,7 @@ BB_HD TriangleRest<T> placed_rest(const TriangleRest<T>& given, const T* plastic
 }
 
 /// plastic_inv (column-major) becomes what it is after a step that ended at x: F V diag(crept/sigma) V^T has the singular values that
-/// are left. Nothing happens where none creeps, or where a factor is no number > 0. Host-device: yes.
+/// are left. Nothing happens where none creeps, or where a factor is not a number > 0. Host-device: yes.
 /// @param rest  of the step   @param yield, kept  as those of crept(), of sigma - 1
 template <class T>
 BB_HD void creep_plastic(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], T yield, T kept,

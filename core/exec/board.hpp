@@ -1,5 +1,5 @@
 // The numbers of an executor that its host reads: they lie side by side and come down together. So what several launches
-// found is one wait, where all of them are launched before the first number is asked for.
+// found is one wait, where all of them are launched before the first number is requested.
 #pragma once
 
 #include <cstddef>

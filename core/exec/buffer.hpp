@@ -101,7 +101,7 @@ class Buffer {
 template <class T>
 void Buffer<T>::swap(Buffer& other) noexcept {
   std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(room_, other.room_);
-  std::swap(name_, other.name_);  // the ledger knows memory by the name that it was asked for under
+  std::swap(name_, other.name_);  // the ledger knows memory by the name that it was requested under
 }
 
 }  // namespace bb::exec

@@ -17,7 +17,7 @@ std::string bytes_text(std::size_t bytes) {
 
 std::string MemoryLedger::refusal(const std::string& name, std::size_t bytes) const {
   std::string text =
-      "no memory for " + name + ": " + bytes_text(bytes) + " asked for, " + bytes_text(bytes_) + " in use";
+      "no memory for " + name + ": " + bytes_text(bytes) + " requested, " + bytes_text(bytes_) + " in use";
   if (limit_ > 0) text += " of " + bytes_text(limit_);
   return text;
 }

@@ -8,7 +8,7 @@
 
 namespace bb::exec {
 
-/// What was asked of an executor. Launches of a graph are counted apart, and by kernel all together.
+/// What was required of an executor. Launches of a graph are counted apart, and by kernel all together.
 struct ExecutionCounts {
   struct Launches {
     Index launches = 0, items = 0;

@@ -68,7 +68,7 @@ BB_HD inline T relative_speed(const Mat<T, 3, pair_points(K)>& dx) {
 }
 
 /// First t > 0 with a + b t + c t^2 = 0, for a > 0; infinite when there is none, and 0 where the numbers do not tell:
-/// one of them is no number, or their squares are beyond the largest.
+/// one of them is NaN, or their squares are beyond the largest.
 template <class T>
 BB_HD inline T first_root(T a, T b, T c) {
   using std::sqrt;
@@ -147,7 +147,7 @@ BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3
 /// @param computed_from  largest |coordinate| of what x0 and x1 were computed from with a few roundings, m; 0: they are
 /// given
 /// @return toi > 0 unless the pair starts below the ulp floor; at toi the gap is at least the stop level
-/// Errors: none; a motion that is not finite (or whose squares are not), an offset or a park that is no number, give hit
+/// Errors: none; a motion that is not finite (or whose squares are not), an offset or a stop level that is NaN, give hit
 /// and toi 0: only what is proven is free.
 /// Host-device.   Cost: 1 to 5 probes are usual; no allocation.
 /// Source: Li, Kaufman, Jiang 2021 (codimensional IPC), section 4 for the speed bound over all of a pair; the

@@ -12,9 +12,10 @@ namespace bb {
 
 /// A supernodal symbolic factor, and what a numeric factorisation with it takes.
 struct BlockAnalysis {
-  cholmod_factor* factor = nullptr;  // owned by the caller; null when CHOLMOD failed, and its status says why
-  int orderings = 0;                 // that were tried: 1, or 2 where METIS was asked
-  bool nested_dissection = false;    // the ordering is that of METIS
+  cholmod_factor* factor =
+      nullptr;        // owned by the caller; null when CHOLMOD failed, and its status reports why
+  int orderings = 0;  // that were tried: 1, or 2 where METIS was queried
+  bool nested_dissection = false;  // the ordering is that of METIS
   // Without the zeros of relaxed supernodes. Where vertices differ in size, every block but the diagonal one counts
   // with their mean size.
   double nonzeros = 0, flops = 0;

@@ -1,4 +1,4 @@
-// The condition estimator: shares one factorisation between scalings and sends each request to its tier.
+// The condition estimator: shares one factorisation between scalings and sends each request to the estimator that it names.
 #include "core/linear/condition.hpp"
 
 #include <chrono>
@@ -55,6 +55,11 @@ std::string_view to_string(ProvenEnds proof) {
   return words[static_cast<std::size_t>(proof)];
 }
 
+std::string_view to_string(Estimator estimator) {
+  constexpr std::string_view words[] = {"ritz", "inverse_power", "spectra", "dense", "lanczos"};
+  return words[static_cast<std::size_t>(estimator)];
+}
+
 std::string_view to_string(Scaling scaling) {
   switch (scaling) {
     case Scaling::none:
@@ -82,9 +87,10 @@ struct ConditionEstimator::Data {
   ReducedSystem completed;  // a copy with explicit zeros, when a diagonal entry is not stored
   BlockScaling scaling;
 
-  /// Checks, completes and, for all tiers but 3, factorises. Returns false for entries that are not finite.
-  bool prepare(const ReducedSystem& system, int tier) {
-    if (tier < 1 || tier > 4) throw ConfigError("condition tier", std::to_string(tier), "1, 2, 3 or 4");
+  /// Checks, completes and, for all estimators but dense, factorises. Returns false for entries that are not finite.
+  bool prepare(const ReducedSystem& system, Estimator estimator) {
+    if (estimator == Estimator::ritz)
+      throw ConfigError("condition estimator", "ritz", "inverse_power, spectra, dense or lanczos");
     matrix.system = &system;
     if (!has_full_diagonal(system.lower)) {
       completed = system;
@@ -95,7 +101,7 @@ struct ConditionEstimator::Data {
     }
     matrix.product.update(*matrix.system);
     if (!matrix.product.all_finite()) return false;
-    if (tier != 3 && matrix.product.n() > 0) {
+    if (estimator != Estimator::dense && matrix.product.n() > 0) {
       matrix.positive = matrix.factor.factorize(*matrix.system) == LinearStatus::ok;
     }
     return true;
@@ -103,14 +109,14 @@ struct ConditionEstimator::Data {
 
   ConditionEstimate run(const ConditionOptions& options) {
     constexpr const char* methods[] = {"", "inverse_power+lanczos", "spectra", "dense", "lanczos"};
-    const int tier = options.tier;
-    const char* method = methods[tier];
+    const Estimator estimator = options.estimator;
+    const char* method = methods[static_cast<std::size_t>(estimator)];
     if (matrix.product.n() == 0) return unknown(ConditionStatus::not_converged, method);
     const LinearStatus status = scaling.setup(*matrix.system, options.scaling);
     if (status == LinearStatus::matrix_indefinite) return unknown(ConditionStatus::not_pd, method);
     if (status != LinearStatus::ok) return unknown(ConditionStatus::singular, method);
-    if (tier == 1) return estimate_tier1(matrix, scaling, options.seed);
-    if (tier == 3) return estimate_dense(*matrix.system, scaling);
+    if (estimator == Estimator::inverse_power) return estimate_inverse_power(matrix, scaling, options.seed);
+    if (estimator == Estimator::dense) return estimate_dense(*matrix.system, scaling);
     return estimate_ends(matrix, scaling, options);
   }
 };
@@ -122,7 +128,7 @@ ConditionEstimate ConditionEstimator::estimate(const ReducedSystem& system, cons
   const Clock::time_point start = Clock::now();
   ConditionEstimate e = unknown(ConditionStatus::not_converged, "entries that are not finite");
   try {
-    if (data_->prepare(system, options.tier)) e = data_->run(options);
+    if (data_->prepare(system, options.estimator)) e = data_->run(options);
   } catch (const FactorTooLarge&) {
     e = unknown(ConditionStatus::not_converged, "a factor that is too large");
   }

@@ -1,4 +1,4 @@
-// Tier 3 of the condition estimate: all eigenvalues of the dense matrix. For tests and small systems.
+// The estimator dense of the condition number: all eigenvalues of the dense matrix. For tests and small systems.
 #pragma once
 
 #include "core/linear/block_scaling.hpp"

@@ -23,7 +23,7 @@ struct Definiteness {
   VecXd direction;  // negative: v
 };
 
-/// A positive definite matrix with the pattern of the one in question and close to it, made when it is asked for.
+/// A positive definite matrix with the pattern of the one in question and close to it, made when it is requested.
 using NearMatrix = std::function<const ReducedSystem&()>;
 
 /// While all curvature met is positive, the part of the residual along a direction of negative curvature only grows, so

@@ -69,7 +69,7 @@ void estimate_without_factor(ScaledMatrix& b, const SpectrumEndPair& top, double
 /// The large end of B, before it is proven.
 SpectrumEndPair largest_end(ScaledMatrix& b, const ConditionOptions& options) {
   SpectrumEndPair end;
-  if (options.tier == 2) {
+  if (options.estimator == Estimator::spectra) {
     SpectraEnd found = spectra_largest(products_with(b), seeded_vector(b.n(), options.seed),
                                        options.max_products, end_tolerance);
     if (found.converged) {
@@ -80,7 +80,7 @@ SpectrumEndPair largest_end(ScaledMatrix& b, const ConditionOptions& options) {
   }
   double unused = 0;
   end = largest_by_lanczos(b, options.seed, most_lanczos_products - 2, unused);
-  end.by_lanczos = options.tier == 2;
+  end.by_lanczos = options.estimator == Estimator::spectra;
   return end;
 }
 
@@ -89,7 +89,7 @@ SpectrumEndPair smallest_end(ScaledMatrix& b, const ConditionOptions& options, i
   const SymmetricOperator solve = [&b](const VecXd& x, VecXd& y) { b.solve(b.matrix().factor, x, y); };
   const VecXd start = seeded_vector(b.n(), options.seed + 1);
   SpectrumEndPair end;
-  if (options.tier == 2) {
+  if (options.estimator == Estimator::spectra) {
     SpectraEnd found = spectra_smallest_inverted(solve, start, options.max_solves, end_tolerance);
     if (found.converged) {
       end.lambda = 1 / found.value;
@@ -102,7 +102,7 @@ SpectrumEndPair smallest_end(ScaledMatrix& b, const ConditionOptions& options, i
   const LanczosEnd ritz = lanczos_largest(solve, start, n_solves, end_tolerance);
   take(ritz, end);
   end.lambda = 1 / ritz.value;
-  end.by_lanczos = options.tier == 2;
+  end.by_lanczos = options.estimator == Estimator::spectra;
   return end;
 }
 
@@ -116,8 +116,9 @@ void settle(ScaledMatrix& b, double sign, double largest, SpectrumEndPair& end) 
 }
 
 /// What found both ends, and which of them a factor proves.
-void name_method(const SpectrumEndPair& bottom, const SpectrumEndPair& top, int tier, ConditionEstimate& e) {
-  e.method = tier == 2 ? "spectra" : "lanczos";
+void name_method(const SpectrumEndPair& bottom, const SpectrumEndPair& top, Estimator estimator,
+                 ConditionEstimate& e) {
+  e.method = estimator == Estimator::spectra ? "spectra" : "lanczos";
   const auto add = [&e](const SpectrumEndPair& end, const std::string& name) {
     if (end.by_lanczos) e.method += ", " + name + " by lanczos";
     if (end.shifted) e.method += ", " + name + " shifted to";
@@ -155,7 +156,8 @@ void classify(ConditionEstimate& e, bool resolved) {
   }
 }
 
-ConditionEstimate estimate_tier1(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed) {
+ConditionEstimate estimate_inverse_power(FactoredMatrix& matrix, const BlockScaling& scaling,
+                                         std::uint64_t seed) {
   ConditionEstimate e = start_estimate("inverse_power+lanczos");
   ScaledMatrix b(matrix, scaling, e);
   double smallest_ritz = 0;
@@ -207,7 +209,7 @@ ConditionEstimate estimate_ends(FactoredMatrix& matrix, const BlockScaling& scal
   e.lambda_min = bottom_stands ? rayleigh_min : bottom.lambda;
   const bool top_stands = !(rayleigh_max < top.proven_inside);
   e.lambda_max = top_stands ? rayleigh_max : top.lambda;
-  name_method(bottom, top, options.tier, e);
+  name_method(bottom, top, options.estimator, e);
   classify(e, bottom.resolved && top.resolved);
   e.residual /= std::abs(e.lambda_max);
   return e;

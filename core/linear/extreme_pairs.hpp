@@ -1,4 +1,4 @@
-// The two ends of the spectrum of B = L^-1 A L^-T by solves and products: tiers 1 and 2 of the condition
+// The two ends of the spectrum of B = L^-1 A L^-T by solves and products: the estimators inverse_power, spectra and lanczos of the condition
 // estimate. The factor of A serves every scaling, since B^-1 = L^T A^-1 L.
 #pragma once
 
@@ -19,11 +19,12 @@ struct FactoredMatrix {
   ReducedSystem shifted_system;
 };
 
-/// Tier 1: four inverse-power steps and twenty Lanczos products. Both ends from inside the spectrum:
+/// inverse_power: four inverse-power steps and twenty Lanczos products. Both ends from inside the spectrum:
 /// lambda_min by a Rayleigh quotient in long double, lambda_max a Ritz value lowered by its rounding.
-ConditionEstimate estimate_tier1(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed);
+ConditionEstimate estimate_inverse_power(FactoredMatrix& matrix, const BlockScaling& scaling,
+                                         std::uint64_t seed);
 
-/// Tiers 2 and 4: Spectra's solvers, or Lanczos with full reorthogonalisation of our own, on B and on B^-1. Ours takes
+/// spectra and lanczos: Spectra's solvers, or Lanczos with full reorthogonalisation of our own, on B and on B^-1. Ours takes
 /// over for an end that Spectra leaves unresolved within its budget, and for a matrix without a factor. A factorisation
 /// shifted just beyond each end proves that nothing lies there; an end that stays unresolved or is disproven is
 /// shifted to.

@@ -19,7 +19,7 @@ namespace bb {
 
 class Archive;
 
-/// A Cholesky factor has more entries than the indices of its library hold. what() says how large the matrix is.
+/// A Cholesky factor has more entries than the indices of its library hold. what() reports how large the matrix is.
 struct FactorTooLarge : std::length_error {
   using std::length_error::length_error;
 };

@@ -29,7 +29,7 @@ class ScaledMatrix {
     ++counts_.solves;
   }
   /// Rayleigh quotient of B at v in long double: accurate to 1e-18 |B|, where double would leave 1e-16 |B|.
-  /// The residual |B v - lambda v| / |v| is raised in counts.residual, still absolute.
+  /// The residual |B v - lambda v| / |v| becomes counts.residual where it is larger, still absolute.
   double rayleigh(const VecXd& v) {
     u_ = v;
     s_.solve_upper(u_);

@@ -59,7 +59,7 @@ BB_HD inline double angle_of(double n, double d, bool steep, bool backwards) {
 
 /// Where n/d is none, too small to matter beside a right angle, or at an end of what can be held.
 BB_HD inline double angle_apart(double n, double d, bool steep, bool backwards) {
-  if (!(n >= 0 && d >= 0)) return n + d;  // no number
+  if (!(n >= 0 && d >= 0)) return n + d;  // NaN
   if (n > std::numeric_limits<double>::max()) n = d = 1;
   const double scale = d > 1 ? 0x1p-200 : 0x1p300;
   if (n > 0 && n * scale >= d * scale * 0x1p-60) return angle_of(n * scale, d * scale, steep, backwards);

@@ -7,7 +7,7 @@
 
 namespace bb {
 
-/// A matrix that was raised to be positive definite may be stiffer than E along dx, which is flat there or bends down, as on the
+/// A regularised Hessian may be stiffer than E along dx, which is flat there or bends down, as on the
 /// side of a saddle. A whole step is then as short as the matrix is stiff: E falls along it by more than 3/4 of what its slope
 /// alone says, where the model promises half, and hundreds of such steps follow each other. After some of them in a row dx is
 /// tried twice as long, then twice as long again, as long as E goes on to fall so; the valley bends, and a step that has met

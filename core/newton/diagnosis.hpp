@@ -1,4 +1,4 @@
-// Terms and matrices of the iterate on the host, for observers: condition numbers, dumps, eigenvectors, pilots. Nothing
+// Terms and matrices of the iterate on the host, for observers: condition numbers, dumps, eigenvectors, calibration runs. Nothing
 // here is needed for a step.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Where numbers that are no numbers began: for the message of a step that ended with them.
+// Where NaN or infinite numbers began: for the message of a step that ended with them.
 #include "core/newton/element_name.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Names of vertices and elements, for messages of a step that ended with numbers that are no numbers.
+// Names of vertices and elements, for messages of a step that ended with NaN or infinite numbers.
 #pragma once
 
 #include <span>

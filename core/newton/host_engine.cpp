@@ -30,7 +30,7 @@ void HostEngine::make_solver() {
   if (plan_.linear_solver.needed) solver_ = make_linear_solver(plan_.linear);
 }
 
-// Families that come and go are numbered apart from those that stay.
+// Contact families change every iteration and are numbered separately from those that stay.
 void HostEngine::set_fixed_families(const Method& method) {
   std::vector<Stencils> families;
   std::size_t n_changing = 0;

@@ -37,12 +37,12 @@ class HostEngine final : public IncrementalPotential {
 
   void leave_secants(const Column& x, const Column& g) override;
   bool pattern_changed() const override { return pattern_changed_; }
-  void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
+  void fill_matrix(const Column& x, const HessianRegularisation& level, const Column& force) override;
   void fill_exact(const Column& x, const Column& force) override;
   double add_tikhonov(double relative, double absolute) override;
   void multiply(const Column& v, Column& out) override;
   void solve(const Column& b, RightSide of, Column& step, SolveReport& report) override;
-  Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
+  Definiteness examine(const Column& x, const HessianRegularisation& near, const Column& force, Column& b,
                        Column& step, Column& direction) override;
   std::size_t nnz() const override { return nnz_; }
 

@@ -110,7 +110,7 @@ void HostEngine::sum_clamped(TermSet set) {
   sum_matrices(set, clamped_hessians);
 }
 
-void HostEngine::fill_matrix(const Column&, const HessianLevel& level, const Column& force) {
+void HostEngine::fill_matrix(const Column&, const HessianRegularisation& level, const Column& force) {
   for (Slot& slot : slots_) {
     if (needs_clamped(slot.hessian, level)) clamp(slot);
   }
@@ -174,8 +174,8 @@ void HostEngine::solve(const Column& b, RightSide of, Column& step, SolveReport&
 
 // Where the exact matrix was solved, what that has set up proves the end. Ways out of a saddle are found with one preconditioner alone, so that
 // they are the same after every solve: that of a matrix that was solved, or of the clamped one where that was exact.
-Definiteness HostEngine::examine(const Column&, const HessianLevel& near, const Column&, Column&, Column&,
-                                 Column& direction) {
+Definiteness HostEngine::examine(const Column&, const HessianRegularisation& near, const Column&, Column&,
+                                 Column&, Column& direction) {
   std::optional<Definiteness> solved;
   if (exact_is_solved_) solved = solver_->examine_solved();
   if (solved && solved->verdict == Definiteness::Verdict::positive) return *solved;

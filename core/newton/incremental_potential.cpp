@@ -24,9 +24,9 @@ bool IncrementalPotential::take_secant(double share) {
   return taken;
 }
 
-bool IncrementalPotential::renew_lag(const Column& x) {
+bool IncrementalPotential::renew_lagged_state(const Column& x) {
   const bool renewed =
-      std::any_of(terms_.begin(), terms_.end(), [&x](Term* term) { return term->renew_lag(x); });
+      std::any_of(terms_.begin(), terms_.end(), [&x](Term* term) { return term->renew_lagged_state(x); });
   energies_known_ = energies_known_ && !renewed;
   announced_ = announced_ && !renewed;
   return renewed;
@@ -98,22 +98,23 @@ StepBound IncrementalPotential::prove_step(const Column& x_n, const Column& x) {
   return smallest;
 }
 
-bool IncrementalPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {
+bool IncrementalPotential::curvature_correction(const Column& x, const Column& dx, double bound,
+                                                Column& force) {
   force.fill_zero();
   bool held = false;
-  for (Term* term : terms_) held = term->add_detour(x, dx, bound, force) || held;
+  for (Term* term : terms_) held = term->add_curvature_correction(x, dx, bound, force) || held;
   if (held) room_was_made(x);
   return held;
 }
 
-bool IncrementalPotential::admits(const Column& x, Column& trial) {
+bool IncrementalPotential::is_feasible(const Column& x, Column& trial) {
   trial_evaluated_ = false;
   const bool seen =
       std::any_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->sees_non_finite(); });
   if (!is_finite(trial, seen)) return false;
   for (Term* term : terms_) term->look_at(x, trial, clock_);
   for (Term* term : terms_) {
-    if (!term->admits(trial, clock_)) return false;
+    if (!term->is_feasible(trial, clock_)) return false;
   }
   for (Term* term : terms_) term->freeze(clock_);
   return true;

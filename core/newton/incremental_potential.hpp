@@ -11,7 +11,7 @@
 #include "core/linear/definiteness.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/newton/energy_change.hpp"
-#include "core/newton/hessian_level.hpp"
+#include "core/newton/hessian_regularisation.hpp"
 #include "core/newton/report.hpp"
 #include "core/terms/term.hpp"
 
@@ -42,9 +42,9 @@ class IncrementalPotential {
   /// The terms give their secants up in the middle of the linearised iterate x: matrices that are filled from here on have none.
   /// g: N, the gradient there. A matrix engine that keeps Hessians of an iterate makes these terms' anew.
   virtual void leave_secants(const Column& /*x*/, const Column& /*g*/) { take_secant(0); }
-  /// The step has converged at x: whether terms take what they lag from there, so that it has to go on. One term at a time: what
+  /// The step has converged at x: whether terms take their lagged contact state from there, so that it has to go on. One term at a time: what
   /// friction takes from contact, and how often, does not depend on how often contact was renewed.
-  bool renew_lag(const Column& x);
+  bool renew_lagged_state(const Column& x);
   void end_step(const Column& x);
   /// What the terms remember from step to step.
   void keep(Archive& archive);
@@ -58,7 +58,7 @@ class IncrementalPotential {
   void linearise(const Column& x, Column& g);
   virtual bool pattern_changed() const = 0;
   /// The matrix of all terms at x, at a level. force: [n_vertices] N, what a level that asks vertices compares.
-  virtual void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) = 0;
+  virtual void fill_matrix(const Column& x, const HessianRegularisation& level, const Column& force) = 0;
   /// The matrix with the Hessian that every term begins with: the exact one where its choice has it.
   virtual void fill_exact(const Column& x, const Column& force) = 0;
   /// Adds eps I to the matrix, eps = max(relative trace/n, absolute), N/m; returns eps.
@@ -71,15 +71,15 @@ class IncrementalPotential {
   virtual void solve(const Column& b, RightSide of, Column& step, SolveReport& report) = 0;
   /// Whether the exact matrix at x is positive definite; if not, `direction` becomes one of negative curvature. near: the
   /// level of a matrix that was solved. b, step: for its own use.
-  virtual Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
-                               Column& step, Column& direction) = 0;
+  virtual Definiteness examine(const Column& x, const HessianRegularisation& near, const Column& force,
+                               Column& b, Column& step, Column& direction) = 0;
   /// Entries of the lower triangle that was solved last.
   virtual std::size_t nnz() const = 0;
 
   // --- the motion x0 -> x1, x1 = x0 + dx up to rounding
-  /// Before the calls below. to_bound: bound() will be asked for, and no trial goes beyond it.
+  /// Before the calls below. to_bound: bound() will be requested, and no trial goes beyond it.
   void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound);
-  /// Largest feasible fraction, in [0, 1]; each term says its own in the report.
+  /// Largest feasible fraction, in [0, 1]; each term reports its own in the report.
   double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
     return smallest_bound({x0, x1, dx}, report, false);
   }
@@ -96,18 +96,18 @@ class IncrementalPotential {
   /// As Term::prove_step: the smallest of all terms, with the queries and probes of all.
   StepBound prove_step(const Column& x_n, const Column& x);
   std::string describe_bound() const { return holder_ ? holder_->describe_bound() : std::string(); }
-  /// force (N) becomes what makes room for gaps that are curved along dx, of a motion that bound() ends at `bound`. Whether
+  /// force (N) becomes the curvature correction for gaps that are curved along dx, of a motion that bound() ends at `bound`. Whether
   /// curvature is what holds it. The matrix is that of the last fill_matrix() again, whatever was filled since.
-  bool make_room(const Column& x, const Column& dx, double bound, Column& force);
+  bool curvature_correction(const Column& x, const Column& dx, double bound, Column& force);
   /// Whether the trial, which is rounded to the precision of the run first, is finite and feasible, and what the terms
   /// keep of it then. No energy of the trial is evaluated.
-  bool admits(const Column& x, Column& trial);
+  bool is_feasible(const Column& x, Column& trial);
   /// E(trial) - E(x) of the trial that was admitted last.
   EnergyChange change(const Column& x, const Column& trial);
-  /// The trial that was admitted last is the iterate. What is said of it holds whether its energies were asked for or not.
+  /// The trial that was admitted last is the iterate. What is reported of it holds whether its energies were requested or not.
   void accept();
 
-  // --- what is said of the iterate x
+  // --- what is reported of the iterate x
   /// As StepView::announce.
   void announce(const Column& x);
   double energy(TermSet set, const Column& x);
@@ -134,11 +134,11 @@ class IncrementalPotential {
   /// Rounds the trial; whether all its numbers are finite, as far as no term sees that.
   virtual bool is_finite(Column& trial, bool seen_by_terms) = 0;
   virtual bool bounds_each_vertex_of(const Term&) const { return false; }
-  /// What add_detour() needed may be gone: the matrix is filled again.
+  /// What add_curvature_correction() needed may be gone: the matrix is filled again.
   virtual void room_was_made(const Column& /*x*/) {}
   /// Sums of what the terms evaluated at x and at the trial.
   virtual EnergyChange sum_change(const Column& x, const Column& trial) = 0;
-  /// Whether what is said of a state is launched before it is read; then announce_energy() launches the sum of E at x.
+  /// Whether what is reported of a state is launched before it is read; then announce_energy() launches the sum of E at x.
   virtual bool launches() const { return false; }
   virtual void announce_energy(const Column& /*x*/) {}
   /// announced: announce_energy() was of this x.

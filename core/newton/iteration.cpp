@@ -26,7 +26,7 @@ void fill_work(IterationReport& report) {
   }
   report.hessian_t = report.solve.t;
   report.hessian_fallbacks = std::max(0, report.solve.fallbacks());  // without a solve there are none
-  report.linear_solves = report.solve.attempts + report.solve.detours;
+  report.linear_solves = report.solve.attempts + report.solve.corrections;
   report.linear_iterations = linear.iterations;
   report.factorizations = report.solve.factorizations;
   report.factor_flop = std::llround(report.solve.factor_flop);
@@ -217,7 +217,7 @@ void measure_end(StepSystem& system, StepReport& step) {
   if (const std::string moving = step.describe_unsettled(); !moving.empty()) {
     step.detail = moving + (step.detail.empty() ? "" : "; " + step.detail);
     step.contact_overload = step.limit_overload = Number::missing("kappa_unsettled");
-    return;  // what a kappa that moves can carry is no number
+    return;  // what a kappa that moves can carry is not one number
   }
   system.take_secant(0);
   system.assemble();  // the rows that were accepted last and their gradients, of one state

@@ -17,7 +17,7 @@ void require_on_host(const StepSystem& system, std::string_view solver);
 void require_unmoved(const Scene& scene, std::string_view solver);
 /// Errors: ConfigError for stitches that break, of a step solver that has no tension of them.
 void require_unbreakable(const Scene& scene, std::string_view solver);
-/// Predicts and hands the step to the system, with the poses at its end as the target. The report says iteration_cap
+/// Predicts and hands the step to the system, with the poses at its end as the target. The report has iteration_cap
 /// until something better is known.
 StepReport start_step(StepSystem& system, const StepTask& task, Prediction& used);
 /// The end-of-step poses of a step of length dt become the target of the system.
@@ -28,7 +28,7 @@ bool within_rounding(const EnergyChange& change, Precision precision = Precision
 /// Ends a step whose direction was of no use.
 void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report);
 
-/// Begins a lap of the system's clock and assembles at system.x(). What is said of the iterate comes with its direction.
+/// Begins a lap of the system's clock and assembles at system.x(). What is reported of the iterate comes with its direction.
 IterationReport begin_iteration(StepSystem& system, int step, int iteration);
 /// Solves for the direction, fills |dx|_inf, the decrement -g . dx / 2 over free degrees of freedom, and E, gradient, pattern
 /// and the terms' numbers of the iterate (one wait for all of them), and lets the observer look at the matrices.
@@ -52,7 +52,7 @@ void show_motion(const StepSystem& system, int step, StepObserver& observer);
 std::string describe_bound(const StepSystem& system);
 std::string describe_short_pin(const StepSystem& system, const StepTask& task);
 
-/// Fills what a step report says of its end state.
+/// Fills the part of a step report that is of its end state.
 void measure_end(StepSystem& system, StepReport& step);
 
 }  // namespace bb

@@ -17,7 +17,7 @@ constexpr IterationCause all_iteration_causes[] = {
     IterationCause::armijo, IterationCause::noise,      IterationCause::failed};
 std::string_view to_string(IterationCause cause);
 
-/// Whether the first matrix of the iteration was refused, or the level of the Hessian was still raised from iterations before.
+/// Whether the first matrix of the iteration was refused, or the Hessian was still regularised from iterations before.
 bool is_regularised(const IterationReport& report);
 
 /// What shortened the step decides before what changed its direction. cap_fraction: the part of a binding bound that the step

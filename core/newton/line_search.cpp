@@ -9,8 +9,8 @@
 //   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds. Where contact bounds each
 //     vertex by itself, dx of each is cut to what it may go, as long as that descends
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
-//     with a detour round them; where steps crawl, first along a longer dx
-//   6 accept; what converged goes on where terms renew what they lag. A step that was shortened asks for the secant of terms
+//     with a curvature correction for them; where steps crawl, first along a longer dx
+//   6 accept; what converged goes on where terms renew their lagged contact state. A step that was shortened asks for the secant of terms
 //     that have one (secant_rule.hpp), and so does one along which E falls nowhere, before the step fails
 
 #include <fmt/format.h>
@@ -66,7 +66,7 @@ class LineSearch final : public StepSolver {
       if (moved && after_motion_ && after_motion_(system)) {
         begin_anew(iteration);
       } else if (small && (level_ || is_enough(report, moved, tolerance))) {
-        if (!system.renew_lag()) {
+        if (!system.renew_lagged_state()) {
           end_in_minimum(step, end, report, task.dt);
           return step;
         }
@@ -104,7 +104,7 @@ class LineSearch final : public StepSolver {
     return true;
   }
 
-  // 4 to 6: a motion along dx, or a detour or lengthening of it, and what it says about the rate. True where one was
+  // 4 to 6: a motion along dx, or a curvature correction or lengthening of it, and what it says about the rate. True where one was
   // accepted.
   bool follow_direction(StepSystem& system, IterationReport& report, bool at_pose, bool small) {
     const bool moved = search_.along_direction(system, report, at_pose, small, crawl_.length());
@@ -195,7 +195,7 @@ class LineSearch final : public StepSolver {
   // Whether no part of a direction that is free to be taken was: E falls nowhere along it, or no trial is feasible.
   bool falls_nowhere(bool moved) const { return !moved && search_.bound() >= collapsed_step; }
 
-  // Before a step fails by that, the whole secant is asked for. Returns whether another iteration follows, whose matrix has
+  // Before a step fails by that, the whole secant is requested. Returns whether another iteration follows, whose matrix has
   // more of it than this one. last: none can follow.
   bool turn_to_secant(StepSystem& system, bool moved, bool at_pose, bool last) {
     if (!at_pose || last || !falls_nowhere(moved)) return false;

@@ -74,7 +74,7 @@ double NewtonSystem::set_up_system() {
   return state_.level.t();
 }
 
-// One attempt. False when the matrix is not positive definite, or dx does not descend: that is asked for only
+// One attempt. False when the matrix is not positive definite, or dx does not descend: that is requested only
 // where no prescribed motion does work.
 bool NewtonSystem::find_one_direction(SolveReport& report) {
   const ScopedPhase timer(clock(), Phase::assembly);
@@ -89,7 +89,7 @@ bool NewtonSystem::find_one_direction(SolveReport& report) {
          state_.vectors.free_max(state_.b) == 0;
 }
 
-// dx += the solution; what is asked of both next is launched with it.
+// dx += the solution; what is required of both next is launched with it.
 void NewtonSystem::take_solution() {
   state_.vectors.take_solution(state_.step, state_.b, state_.g, state_.dx);
   look_at_direction();
@@ -203,15 +203,15 @@ void NewtonSystem::aim_at_escape(double length) {
 
 // With d_i(x + s) = d_i + slope_i - loss_i + grad d_i . s, s with A s = sum of kappa b'' (what is missing) grad d_i makes
 // up for the loss where the barrier is stiff, at the least cost to the other terms. A state that is asked for its end
-// makes no detour, so the column of escapes is free.
-bool NewtonSystem::make_detour(double bound, SolveReport& report) {
+// makes no curvature correction, so the column of escapes is free.
+bool NewtonSystem::correct_curvature(double bound, SolveReport& report) {
   const ScopedPhase timer(clock(), Phase::assembly);
-  if (!state_.potential->make_room(state_.x, state_.dx, bound, state_.b)) return false;
-  SolveReport detour;
-  state_.potential->solve(state_.b, RightSide::residual, state_.step, detour);
-  factored_ = detour.linear.factorized;
-  report.add_detour(detour);
-  if (detour.linear.status != LinearStatus::ok) return false;
+  if (!state_.potential->curvature_correction(state_.x, state_.dx, bound, state_.b)) return false;
+  SolveReport correction;
+  state_.potential->solve(state_.b, RightSide::residual, state_.step, correction);
+  factored_ = correction.linear.factorized;
+  report.add_correction(correction);
+  if (correction.linear.status != LinearStatus::ok) return false;
   state_.aside.copy_from(state_.dx);
   take_solution();
   return true;

@@ -7,7 +7,7 @@
 
 #include "core/exec/sums/vectors.hpp"
 #include "core/model/scene/scene.hpp"
-#include "core/newton/hessian_level.hpp"
+#include "core/newton/hessian_regularisation.hpp"
 #include "core/newton/incremental_potential.hpp"
 #include "core/newton/method.hpp"
 #include "core/terms/plan.hpp"
@@ -28,7 +28,7 @@ struct NewtonState {
   std::unique_ptr<IncrementalPotential> potential;
   exec::Executor& executor;
   exec::VectorTools vectors;
-  HessianLevel level;
+  HessianRegularisation level;
 
   Column x, trial;      // the iterate; the trial, or the iterate before the last accept(), m
   Column end, dx;       // x + dx, and the direction
@@ -36,7 +36,7 @@ struct NewtonState {
   Column x_n, x_tilde;  // m
   Column b, step;       // right-hand side (N) and solution (m) of a system
   Column work;
-  Column aside;      // a direction of negative curvature at the iterate, or dx before its detour
+  Column aside;  // a direction of negative curvature at the iterate, or dx before its curvature correction
   Column body_size;  // [n] m
   double shift = 0;  // N/m, what add_tikhonov added
   // A share of the secant of terms is asked of the next iterate; is in the matrices of this one.

@@ -115,7 +115,7 @@ bool NewtonSystem::try_feasible(double alpha) {
   const ScopedPhase timer(clock(), Phase::line_search);
   move(alpha, state_.trial);
   state_.trial_pins_seen = false;
-  return state_.potential->admits(state_.x, state_.trial);
+  return state_.potential->is_feasible(state_.x, state_.trial);
 }
 
 std::optional<EnergyChange> NewtonSystem::try_motion(double alpha) {
@@ -144,7 +144,7 @@ void NewtonSystem::go_to(const Positions& x) {
   state_.potential->prepare(state_.x, state_.end, state_.dx, false);
   state_.trial.upload(numbers_of(x));
   state_.trial_pins_seen = false;
-  if (!state_.potential->admits(state_.x, state_.trial)) {
+  if (!state_.potential->is_feasible(state_.x, state_.trial)) {
     throw std::logic_error("a state that is gone to is not feasible");
   }
   accept();

@@ -25,7 +25,7 @@ class NewtonSystem : public StepSystem {
   void begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor) override;
   void restart_step(const Prediction& prediction, double dt) override;
   bool take_secant(double share) override;
-  bool renew_lag() override { return state_.potential->renew_lag(state_.x); }
+  bool renew_lagged_state() override { return state_.potential->renew_lagged_state(state_.x); }
   void end_step() override;
   void set_target(const Positions& target) override;
   void keep(Archive& archive) override { state_.potential->keep(archive); }
@@ -44,7 +44,7 @@ class NewtonSystem : public StepSystem {
   void prepare_motion(MotionEnd end, bool to_bound) override;
   double bound_motion(IterationReport& report) override;
   std::optional<TruncatedMotion> truncate_motion(IterationReport& report) override;
-  bool make_detour(double bound, SolveReport& report) override;
+  bool correct_curvature(double bound, SolveReport& report) override;
   void restore_direction() override {
     state_.dx.swap(state_.aside);
     state_.direction_seen = false;

@@ -40,7 +40,7 @@ class NewtonView final : public StepView {
   std::string describe_non_finite() const override;
 
  private:
-  /// A column on the host, copied when it is asked for.
+  /// A column on the host, copied when it is requested.
   struct HostCopy {
     Positions values;
     bool valid = false;

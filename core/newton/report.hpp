@@ -1,4 +1,4 @@
-// What an iteration, a step and an observer say to each other: plain numbers, no JSON. What the record keeps
+// What an iteration, a step and an observer report to each other: plain numbers, no JSON. What the record keeps
 // of them is in TraceRow and StepRecord (core/base/record).
 #pragma once
 
@@ -13,7 +13,7 @@ namespace bb {
 struct SolveReport {
   LinearReport linear;  // of the last attempt; its iterations are sums over all
   int attempts = 0, factorizations = 0, analyses = 0;
-  int detours = 0;  // solves beyond those attempts, with the matrix of the last
+  int corrections = 0;  // solves beyond those attempts, with the matrix of the last
   double factor_flop = 0;
   double t = 0;  // of the matrix that was solved, 0 exact to 1 clamped
   int fallbacks() const { return attempts - 1; }
@@ -27,9 +27,9 @@ struct SolveReport {
     linear = attempt;
     linear.iterations += before;
   }
-  /// The work of one more solve; what is said of the direction stays.
-  void add_detour(const SolveReport& solve) {
-    ++detours;
+  /// The work of one more solve; what is reported of the direction stays.
+  void add_correction(const SolveReport& solve) {
+    ++corrections;
     factorizations += solve.factorizations;
     analyses += solve.analyses;
     factor_flop += solve.factor_flop;

@@ -91,11 +91,11 @@ void StepSearch::find_bound(StepSystem& system, IterationReport& report) {
 
 // A gap that is curved along dx, as that of an edge that rolls over a ball, ends a straight step after the root of what
 // is left of it, however soft the barrier is. Such a step presses the gap together, the next one as well, and from
-// then on every one wins no more than the energy of a gap that doubles. Room for the curvature, made by a second
+// then on every one wins no more than the energy of a gap that doubles. A curvature correction, made by a second
 // solve, lets the whole direction through. Taken where it goes at least twice as far.
 bool StepSearch::go_round(StepSystem& system, IterationReport& report) {
   const double straight = bound_;
-  if (!system.make_detour(straight, report.solve)) return false;
+  if (!system.correct_curvature(straight, report.solve)) return false;
   bound_again(system, report);
   if (go_along(system, report, 2 * straight, true)) {
     report.detours = 1;

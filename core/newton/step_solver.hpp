@@ -41,7 +41,7 @@ class StepSolver {
                              StepObserver& observer) = 0;
 };
 
-/// What it asks of the settings of a run.
+/// What it requires of the settings of a run.
 struct StepSettings {
   bool implicit_euler = false;  // no other integrator
   /// Integrators alone whose velocity is that of the step (Integrator::velocity_of_step): a contact stops what comes within one step,
@@ -72,7 +72,7 @@ struct StepSolverEntry {
   double (*promised_overlap)(const ParameterMap& complete) = nullptr;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
   void (*set_terms)(const StepSolverOptions& complete,
-                    TermOptions&) = nullptr;  // what it asks of terms by numbers
+                    TermOptions&) = nullptr;  // what it requires of terms by numbers
   std::function<std::unique_ptr<StepSolver>(const StepSolverOptions& complete)> make;
 };
 

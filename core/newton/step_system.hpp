@@ -17,7 +17,7 @@ namespace bb {
 class Archive;
 class NewtonSystem;
 
-/// Sizes of a Newton direction over free degrees of freedom; NaN where an entry is no number.
+/// Sizes of a Newton direction over free degrees of freedom; NaN where an entry is NaN.
 struct DirectionSize {
   double inf_m = 0;       // largest |dx_i|
   double beyond_m = 0;    // of those that stand out of the rounding of their vertex (rounding_room.hpp)
@@ -60,8 +60,8 @@ class StepSystem {
   /// From the next assemble() of the step on terms have that share, in [0, 1], of their secant in the matrix (Term::take_secant);
   /// whether one has one. check_end() is of the exact matrix, and those of the iterate are from then on.
   virtual bool take_secant(double /*share*/) { return false; }
-  /// The step has converged: whether terms take what they lag from this iterate (friction), so that it has to go on.
-  virtual bool renew_lag() { return false; }
+  /// The step has converged: whether terms take their lagged contact state from this iterate (friction), so that it has to go on.
+  virtual bool renew_lagged_state() { return false; }
   virtual void end_step() = 0;
   /// Where directions lead the prescribed vertices: [3 x n] m, read at these only.
   virtual void set_target(const Positions& target) = 0;
@@ -94,17 +94,17 @@ class StepSystem {
   virtual void aim_at_escape(double length) = 0;
 
   // --- the motion from the iterate along dx
-  /// Before the calls below. to_bound: the bound will be asked for, and no trial goes beyond it.
+  /// Before the calls below. to_bound: the bound will be requested, and no trial goes beyond it.
   virtual void prepare_motion(MotionEnd end, bool to_bound) = 0;
-  /// Largest feasible fraction of the motion, in [0, 1]; each term says its own in the report.
+  /// Largest feasible fraction of the motion, in [0, 1]; each term reports its own in the report.
   virtual double bound_motion(IterationReport& report) = 0;
   /// After bound_motion(), where contact bounds each vertex by itself: dx of each becomes the part that it may go, and the
   /// motion along that is the motion in progress. Nothing, and dx as it was, where one bound serves all vertices.
   virtual std::optional<TruncatedMotion> truncate_motion(IterationReport&) { return std::nullopt; }
   /// Of a direction that contact ends at `bound`, prescribed vertices at their target: where curved gaps hold it, dx gets
   /// a second-order correction from the matrix that was solved, and becomes another motion. False: it stays.
-  virtual bool make_detour(double bound, SolveReport& report) = 0;
-  /// dx as it was before make_detour(), truncate_motion() or aim_at_escape().
+  virtual bool correct_curvature(double bound, SolveReport& report) = 0;
+  /// dx as it was before correct_curvature(), truncate_motion() or aim_at_escape().
   virtual void restore_direction() = 0;
   /// Whether x + alpha dx, rounded to the precision of the run, is finite and feasible. No energy there is evaluated.
   virtual bool try_feasible(double alpha) = 0;

@@ -1,4 +1,4 @@
-// What is read of a step system: its state, and what the terms say of it. Nothing here changes a step.
+// What is read of a step system: its state, and what the terms report of it. Nothing here changes a step.
 #pragma once
 
 #include <cstdint>
@@ -46,14 +46,14 @@ class StepView {
   /// energy(), grad_inf() and report() will be asked of the assembled iterate: what they need is launched, so that all of
   /// it is read at once. Results do not depend on it.
   virtual void announce() const {}
-  /// What the terms say of the iterate, and of the end of a step.
+  /// What the terms report of the iterate, and of the end of a step.
   virtual void report(IterateNumbers& out) const = 0;
   virtual void report_end(StepNumbers& out) const = 0;
   /// Of a step without progress. with_direction: the Newton direction at the iterate is known, else it counts as 0.
   virtual void report_overload(bool with_direction, StepNumbers& out) const = 0;
   /// What held the last bound; empty where nothing did.
   virtual std::string describe_bound() const = 0;
-  /// Where numbers that are no numbers began.
+  /// Where NaN or infinite numbers began.
   virtual std::string describe_non_finite() const = 0;
 };
 

@@ -144,7 +144,7 @@ StepSolverEntry step_solver_accumulated_toi() {
   entry.guarantee =
       "no surface passes through another and no strain reaches its limit, in the motion of any iteration; "
       "how far its end is "
-      "from the solution is not asked, and a step may cover a part of dt alone";
+      "from the solution is not computed, and a step may cover a part of dt alone";
   entry.parameters = {
       {"target_toi", open_low(number_in(0, 1, "1")), 0.25, "accumulated time of impact that ends the step"},
       {"min_newton_steps", count(1, 1000000), 1, "smallest number of iterations"},

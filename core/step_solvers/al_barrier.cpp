@@ -1,7 +1,7 @@
 // One time step with a barrier-augmented Lagrangian (Guo et al. 2024, Barrier-Augmented Lagrangian for GPU-based Elastodynamic
 // Contact): Newton of line_search with its step bound, and after every iterate that was accepted a dual update: pairs
 // that are nearer than a hundredth of d_hat get a multiplier beside the barrier, which opens their gaps by a force that has
-// no curvature, and all barriers become stiffer, until no gap is that small (core/terms/barrier_multipliers.hpp, which says what
+// no curvature, and all barriers become stiffer, until no gap is that small (core/terms/barrier_multipliers.hpp, which reports what
 // differs). The set of those pairs and their multipliers are fixed while E is minimised between two updates. Otherwise
 // than there besides: matrices are factorised or solved as /linear_solver says, with the choice of Hessians that line_search has,
 // and steps end by its rule.

@@ -191,7 +191,7 @@ std::vector<SolverCounter> al_free_counters() {
 std::vector<Parameter> al_free_parameters() {
   return {
       {"al_free_standoff", open_low(number_in(0, 1, "1")), 0.1,
-       "al_free: gap that a constraint asks for, in d_hat of its pair; that of /matching/theta is comparable "
+       "al_free: gap that a constraint requires, in d_hat of its pair; that of /matching/theta is comparable "
        "with barriers"},
       {"al_free_recovery_m_per_s", positive("m/s"), 0.01,
        "al_free: speed with which a gap below its standoff opens at most, and with which a constraint that "
@@ -211,7 +211,7 @@ std::vector<Parameter> al_free_parameters() {
       {"al_free_settled", non_negative("1"), 0.0,
        "al_free: a step also goes on until anchor and iterate are one and direction and multipliers change "
        "by less than that "
-       "many tol_velocity h; 0: that is not asked, as published"},
+       "many tol_velocity h; 0: that is not required, as published"},
       {"al_free_inner", count(1, 1000), 8, "al_free: most Newton iterations for one linearisation"},
       {"al_free_decay", open_high(open_low(number_in(0, 1, "1"))), 0.9,
        "al_free: of the weight of a constraint that is not active, an update (Zheng et al. 2026)"},
@@ -228,7 +228,8 @@ StepSolverEntry step_solver_al_free() {
   StepSolverEntry entry;
   entry.guarantee =
       "no surface passes through another, in the motion of any state that a step may end in; gaps keep their "
-      "standoff as far as multipliers have converged, and how far an end is from the solution is asked only "
+      "standoff as far as multipliers have converged, and how far an end is from the solution is computed "
+      "only "
       "with "
       "al_free_settled";
   entry.parameters = al_free_parameters();

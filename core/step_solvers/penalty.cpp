@@ -2,7 +2,7 @@
 // by its formula, in implicit steps: Newton with a line search on E, without a step bound and without a test of gaps. With
 // the shape quadratic, b = (d_hat - d)^2, that is a spring of the stiffness k = 2 kappa (N/m) on every gap below d_hat. It
 // pushes apart what overlaps where a gap has a sign: at surfaces with an offset and at obstacles. The gap of surfaces
-// without thickness has none: what has come through a surface is pushed on, and only the audit says that it did.
+// without thickness has none: what has come through a surface is pushed on, and only the audit reports that it did.
 #include <algorithm>
 
 #include "core/newton/line_search.hpp"

@@ -4,7 +4,7 @@
 //
 //   1 assemble gradient g and matrix H at x, with the contacts there and every element clamped
 //   2 p = -P g + beta p, P the inverse of a preconditioner of H: jacobi, its diagonal, as published; beta by dai_kou.hpp, 0 in
-//     the first iteration and where it is no number. E falls along p to first order
+//     the first iteration and where it is NaN. E falls along p to first order
 //   3 dx = -(g.p / p.Hp) p, which ends in the minimum of the quadratic model along p
 //   4 pncg_bound accd: dx is bounded as in line_search, by ACCD and the strain limit, and halved until E falls (Armijo); after
 //     one that was bounded beta is 0;
@@ -170,8 +170,9 @@ StepSolverEntry step_solver_pncg() {
       "with pncg_bound accd no surface passes through another and no strain reaches its limit, in the motion "
       "of any iteration; with half_d_hat, as published, none: what is nearer than d_hat may pass through "
       "each "
-      "other within an iteration, and only the audit says so; how far the end of a step is from the solution "
-      "is not asked, a step that reaches max_iterations ends the run";
+      "other within an iteration, and only the audit reports it; how far the end of a step is from the "
+      "solution "
+      "is not computed, a step that reaches max_iterations ends the run";
   entry.parameters = {
       {"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"},
       {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,

@@ -1,6 +1,6 @@
 // Steps that move positions by one constraint after the other: what XPBD and projection share. From where inertia and loads
 // alone lead, all constraints that the terms offer are swept over in one order, contact found anew before each sweep. A
-// rule says how far a constraint moves its vertices along W grad C, W = h^2/m.
+// rule states how far a constraint moves its vertices along W grad C, W = h^2/m.
 #pragma once
 
 #include <vector>

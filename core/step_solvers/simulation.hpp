@@ -23,7 +23,7 @@ class Simulation {
   Simulation(const Scene& scene, Method& method, double dt, int n_steps);
 
   /// Advances one time step. One that fails is tried again from its start with half the length, as often as the
-  /// options of the step solver say; the rest of the nominal step is done in steps of that length by the next
+  /// options of the step solver report; the rest of the nominal step is done in steps of that length by the next
   /// calls (docs/reference/outcomes.md). One that ends in a state to which pairs that collide
   /// as `audited` may have passed through each other is done again from its start with every motion bounded.
   /// A status other than converged, after the last attempt,

@@ -8,7 +8,7 @@
 // Where nothing changes any more, C = -compliance lambda. That is the implicit Euler step of the energies C^2/(2 compliance) as
 // far as gradients do not turn within the step: a change acts along the gradient of its moment. Contact is C = d >= 0
 // without compliance: the barrier is not felt, and nothing keeps a step from passing through a surface. Newton matrices,
-// step bound and energies are not asked for. max_iterations is the number of sweeps.
+// step bound and energies are not requested. max_iterations is the number of sweeps.
 #include <algorithm>
 
 #include "core/step_solvers/position_sweeps.hpp"

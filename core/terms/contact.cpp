@@ -133,7 +133,7 @@ void ContactTerm::scale_multipliers() {
   multipliers_->set_scale(energy);
 }
 
-bool ContactTerm::renew_lag(const PositionsView&) {
+bool ContactTerm::renew_lagged_state(const PositionsView&) {
   carries_ = false;
   return multipliers_ && multipliers_->update(state_.rows, state_.mollified);
 }
@@ -198,9 +198,9 @@ StepBound ContactTerm::prove_step(const PositionsView& x_n, const PositionsView&
   return contacts_.prove_step(x_n, x);
 }
 
-bool ContactTerm::add_detour(const PositionsView& x, const PositionsView& dx, double bound,
-                             PositionsSpan force) {
-  return bb::add_detour(state_.rows, x, dx, force).by_curvature(bound);
+bool ContactTerm::add_curvature_correction(const PositionsView& x, const PositionsView& dx, double bound,
+                                           PositionsSpan force) {
+  return bb::add_curvature_correction(state_.rows, x, dx, force).by_curvature(bound);
 }
 
 std::span<const double> ContactTerm::vertex_parts() const {
@@ -208,7 +208,7 @@ std::span<const double> ContactTerm::vertex_parts() const {
   return {};
 }
 
-bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
+bool ContactTerm::is_feasible(const PositionsView& x, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
   trial_.gap_min = contacts_.find_rows(x, trial_.rows, trial_.mollified);
   return trial_.gap_min > 0 || options_.contact.literal || options_.overlap;

@@ -47,7 +47,7 @@ class ContactTerm final : public ContactSteps<HostTerm> {
   void begin_step(const StepColumns& step, PhaseClock& clock) override;
   void change_step(const StepColumns& step) override;
   /// Updates multipliers, where there are some (contact_multipliers.hpp).
-  bool renew_lag(const PositionsView& x) override;
+  bool renew_lagged_state(const PositionsView& x) override;
   /// Keeps the loads where multipliers are part of them.
   void end_step(const PositionsView& x, PhaseClock& clock) override;
   void adopt(const KnownStep& known) override { adopt_stiffness(known.stiffness); }
@@ -65,9 +65,9 @@ class ContactTerm final : public ContactSteps<HostTerm> {
   void bound_audited(bool bound) override { contacts_.bound_audited(bound); }
   StepBound prove_step(const PositionsView& x_n, const PositionsView& x, PhaseClock& clock) override;
   std::span<const double> vertex_parts() const override;
-  bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
-                  PositionsSpan force) override;
-  bool admits(const PositionsView& x, PhaseClock& clock) override;
+  bool add_curvature_correction(const PositionsView& x, const PositionsView& dx, double bound,
+                                PositionsSpan force) override;
+  bool is_feasible(const PositionsView& x, PhaseClock& clock) override;
   void freeze(PhaseClock& clock) override;
   void evaluate(const PositionsView& x) override;
   void evaluate_iterate(const PositionsView& x) override;

@@ -1,4 +1,4 @@
-// What the contact term says of its rows, and how far loads are beyond what they can carry.
+// What the contact term reports of its rows, and how far loads are beyond what they can carry.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,5 +1,5 @@
 // What the contact term does in a step, whichever matrix engine reads it: when its policy starts and what it learns between steps, what
-// bounds a motion, what is said of the rows and what is kept.
+// bounds a motion, what is reported of the rows and what is kept.
 #pragma once
 
 #include <functional>
@@ -35,7 +35,7 @@ class ContactSteps : public Base {
     if (!policy().adapts()) return;
     const ScopedPhase timer(clock, Phase::stiffness);
     visit_rows(x, [this](const EndRow& row) {
-      gaps_.add({row.pair, row.d, options_.contact_options.ccd_park * row.d_hat});
+      gaps_.add({row.pair, row.d, options_.contact_options.min_gap_fraction * row.d_hat});
     });
     policy().end_step(gaps_.end_step());
   }

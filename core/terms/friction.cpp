@@ -88,7 +88,7 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
   }
   /// Rows are taken next from where obstacles are at the end of the step.
   bool take_at_end() {
-    t_lag_ = t_end_;
+    t_lagged_ = t_end_;
     return true;
   }
   void step_begins(const FamilyStep& step) override {
@@ -96,15 +96,15 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
     adopted_ = false;
     kind_.secant = options_.hessian == FrictionHessian::secant ? 1 : 0;
     take_step(step);
-    t_lag_ = step.t_end - step.dt;
+    t_lagged_ = step.t_end - step.dt;
   }
   void rows_changed() override {
     find_spins();
     find_kinetic_parts();
   }
-  std::vector<double> kept() const override { return {t_lag_, kind_.secant}; }
-  void adopt_kept(const KnownLag& known) override {
-    t_lag_ = known.kept.at(0);
+  std::vector<double> kept() const override { return {t_lagged_, kind_.secant}; }
+  void adopt_kept(const LaggedState& known) override {
+    t_lagged_ = known.kept.at(0);
     kind_.secant = known.kept.at(1);
     adopted_ = true;
   }
@@ -119,7 +119,7 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
       turn.radius = o.radius;
       turn.turns = o.motion.most_turning() != 0;
       Vec3d::Map(turn.axis) = o.axis;
-      Mat3d::Map(turn.lag) = o.motion.turn(t_lag_);
+      Mat3d::Map(turn.lagged) = o.motion.turn(t_lagged_);
       Mat3d::Map(turn.begin) = o.motion.turn(t_end_ - dt_);
       Mat3d::Map(turn.end) = o.motion.turn(t_end_);
     }
@@ -149,7 +149,7 @@ class FrictionFamily final : public LaggedFamilyOf<FrictionRows<Law>> {
   exec::Buffer<double> kinetic_of_body_, kinetic_of_obstacle_, kinetic_;  // of laws with two coefficients
   exec::ExecutorSums<FrictionNumbers> numbers_;
   double t_end_ = 0, dt_ = 0;  // s
-  double t_lag_ = 0;           // s, of lagged()
+  double t_lagged_ = 0;        // s, of lagged()
   int solved_ = 0;             // times that this step converged
   bool adopted_ = false;       // rows are those of another system
 };

@@ -43,7 +43,7 @@ struct FrictionRows : LaggedRows {
 struct ObstacleTurn {
   ObstacleKind kind;
   double axis[3], radius;  // m
-  double lag[9], begin[9], end[9];
+  double lagged[9], begin[9], end[9];
   bool turns;
 };
 
@@ -63,7 +63,7 @@ struct FindSpins {
                                             of.radius, false};
       // From the point of the obstacle, which is a vertex that moves, to the other side of the contact.
       const Vec3d arm = rows.moved(lagged, r);
-      out = way_of_turn<double>(arm_to_surface<double>(surface, arm), matrix(of.lag), matrix(of.begin),
+      out = way_of_turn<double>(arm_to_surface<double>(surface, arm), matrix(of.lagged), matrix(of.begin),
                                 matrix(of.end));
     }
     for (int c = 0; c < 3; ++c) spin[c * rows.n + r] = out[c];

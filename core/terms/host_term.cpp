@@ -51,7 +51,7 @@ void HostTerm::take_energies() {
 void HostTerm::require_matrix() const {
   if (blocks_) return;
   throw std::logic_error("the term " + std::string(name()) +
-                         " reads a matrix before set_matrix() has said where it is");
+                         " reads a matrix before set_matrix() has set where it is");
 }
 
 }  // namespace bb

@@ -41,7 +41,7 @@ using EnergyParts = std::vector<EnergyPart>;
 /// Whether inequalities are rigid, or as compliant as the stiffness says that the term has.
 enum class Inequalities { rigid, compliant };
 
-/// What constraints are asked for, and what may be read for it.
+/// The requests to constraints, and what may be read for them.
 struct ConstraintRequest {
   PositionsView x;  // [3 x n] m, where those that come and go are found
   Inequalities inequalities;
@@ -94,13 +94,13 @@ class HostTerm : public Term {
   virtual void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const;
   void take_energies() override;
 
-  // --- constraints, for a step solver that asks for them in the place of all above, but for loads of vertices
+  // --- constraints, for a step solver that requests them in the place of all above, but for loads of vertices
   /// Whether constraints stand for this term.
   virtual bool offers_constraints() const { return false; }
   /// Appends them: always as many batches in the same order, which stay the term's, until the next call.
   virtual void add_constraints(const ConstraintRequest&, std::vector<const ConstraintBatch*>& /*out*/) {}
 
-  // --- what is said of it, at the iterate x
+  // --- what is reported of it, at the iterate x
   /// Adds its elements with a cusp.
   virtual void add_cusps(const PositionsView& /*x*/, Cusps& /*out*/) const {}
   /// How many times the largest force of a bounded barrier the loads of a step without progress are. others:

@@ -10,7 +10,7 @@
 namespace bb {
 
 /// The rows that a term took from the contacts of one state (lagged_family.hpp); columns as there.
-struct KnownLag {
+struct LaggedState {
   std::string_view term;
   std::vector<double> lagged;  // [3 n_vertices] m, the state
   std::vector<int> vertex;
@@ -23,7 +23,7 @@ struct KnownLag {
 
 struct KnownStep {
   KnownStiffness stiffness;  // of pairs
-  std::vector<KnownLag> lags;
+  std::vector<LaggedState> lagged;
 };
 
 }  // namespace bb

@@ -27,8 +27,8 @@ LaggedContacts::LaggedContacts(std::string_view name, std::unique_ptr<LaggedFami
 }
 
 void LaggedContacts::adopt(const KnownStep& known) {
-  for (const KnownLag& lag : known.lags) {
-    if (lag.term == name_) adopt(lag);
+  for (const LaggedState& lagged : known.lagged) {
+    if (lagged.term == name_) adopt(lagged);
   }
 }
 
@@ -39,8 +39,8 @@ void LaggedContacts::adopt_from(const HostTerm& other) {
   adopt(same.family_->known(name_));
 }
 
-void LaggedContacts::adopt(const KnownLag& lag) {
-  family_->adopt(lag);
+void LaggedContacts::adopt(const LaggedState& lagged) {
+  family_->adopt(lagged);
   make_elements();
 }
 
@@ -88,7 +88,8 @@ void LaggedContacts::learn_loads() {
   if (family_->loads_known()) return;
   const exec::Buffer<double>& lagged = family_->lagged();
   const ContactLoads now = contacts_at(PositionsView(lagged.data(), lagged.size() / 3));
-  if (now.pair != pairs_) throw std::logic_error("the rows of a lag changed before their loads");
+  if (now.pair != pairs_)
+    throw std::logic_error("the rows of a lagged contact state changed before their loads");
   double* const load = family_->rows().load.data();
   for (std::size_t e = 0; e < contact_.size(); ++e) load[e] = now.load[contact_[e]];
   family_->know_loads();

@@ -36,7 +36,7 @@ class LaggedContacts final : public LaggedSteps<HostTerm> {
   void take_rows(const PositionsView& x) override;
   void learn_loads();
   ContactLoads contacts_at(const PositionsView& x) const;
-  void adopt(const KnownLag& lag);
+  void adopt(const LaggedState& lagged);
   void make_elements();
 
   std::vector<const HostTerm*> before_;

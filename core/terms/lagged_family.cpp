@@ -44,8 +44,8 @@ void LaggedFamily::know_loads() {
   loads_known_ = true;
 }
 
-KnownLag LaggedFamily::known(std::string_view term) const {
-  KnownLag out;
+LaggedState LaggedFamily::known(std::string_view term) const {
+  LaggedState out;
   out.term = term;
   out.lagged = lagged_.download();
   out.vertex = rows_.vertex.download(), out.weight = rows_.weight.download();
@@ -56,7 +56,7 @@ KnownLag LaggedFamily::known(std::string_view term) const {
   return out;
 }
 
-void LaggedFamily::adopt(const KnownLag& known) {
+void LaggedFamily::adopt(const LaggedState& known) {
   lagged_.upload(known.lagged);
   rows_.vertex.upload(known.vertex), rows_.weight.upload(known.weight), rows_.normal.upload(known.normal);
   rows_.pair.upload(known.pair), rows_.load.upload(known.load), rows_.strength.upload(known.strength);

@@ -70,8 +70,8 @@ class LaggedFamily {
   /// What it remembers from step to step.
   virtual void keep(Archive&) {}
   /// Its rows, as they are, for the same term of another system, which looks at this step.
-  KnownLag known(std::string_view term) const;
-  void adopt(const KnownLag& known);
+  LaggedState known(std::string_view term) const;
+  void adopt(const LaggedState& known);
 
   // --- energies; motions are counted from the start of the step
   /// [n] J.
@@ -103,7 +103,7 @@ class LaggedFamily {
   virtual void strengthen() {}
   /// What the kind keeps of a step besides its rows, and takes over with those of another system.
   virtual std::vector<double> kept() const = 0;
-  virtual void adopt_kept(const KnownLag& known) = 0;
+  virtual void adopt_kept(const LaggedState& known) = 0;
   LaggedRows view() const {
     return {rows_.size(),
             rows_.vertex.data(),

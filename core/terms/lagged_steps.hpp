@@ -28,7 +28,7 @@ class LaggedSteps : public Base {
     if (family_->loads_known() && family_->refreshes()) take_rows(x);
   }
   bool take_secant(double share) override { return family_->take_secant(share); }
-  bool renew_lag(const PositionsView& x) override {
+  bool renew_lagged_state(const PositionsView& x) override {
     if (!family_->renews()) return false;
     const bool had_rows = family_->size() > 0;
     take_rows(x);

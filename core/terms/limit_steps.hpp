@@ -37,7 +37,7 @@ class LimitSteps : public Base {
   void look_at(const PositionsView&, const PositionsView& trial, PhaseClock&) override {
     state_->look_at(trial.data(), this->trial_energies());
   }
-  bool admits(const PositionsView&, PhaseClock&) override { return state_->admits(); }
+  bool is_feasible(const PositionsView&, PhaseClock&) override { return state_->is_feasible(); }
   void evaluate(const PositionsView& trial) override {
     state_->evaluate(trial.data(), this->trial_energies());
   }

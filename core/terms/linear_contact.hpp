@@ -69,7 +69,7 @@ class LinearContact final : public HostTerm {
   std::size_t n_constraints() const { return constraints_.size(); }
   /// max(0, -c) at the anchor, m.
   double violation() const;
-  /// The largest speed (m/s) by which a constraint with a force has opened the anchor's gap beyond what it asks for: a force at a
+  /// The largest speed (m/s) by which a constraint with a force has opened the anchor's gap beyond what it requests: a force at a
   /// distance, 0 where multipliers have converged.
   double opening_speed() const;
   int adaptations() const { return adaptations_; }

@@ -1,5 +1,5 @@
 // The plan of a run: what its scene and its options need, and why. Made once. Terms are made from it, the
-// contact room reads its contact plan, the system H, pins and axes. Step bound, preconditioner and passes are
+// contact module reads its contact plan, the system H, pins and axes. Step bound, preconditioner and passes are
 // decided by options and only described here. `bench explain` prints it and the record keeps every item.
 #pragma once
 

@@ -14,7 +14,7 @@ struct TermEntry {
   std::string_view name, doc;
   bool convex;  // no element's Hessian has a negative eigenvalue, at any state
   PlanItem (*needs)(const TermNeeds&);
-  /// Adds the terms, one or more, behind those of the lines before, which they may read. Called when the plan says that they are
+  /// Adds the terms, one or more, behind those of the lines before, which they may read. Called when the plan states that they are
   /// needed.
   void (*make)(const TermInputs&, TermList&);
 };

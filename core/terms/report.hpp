@@ -1,4 +1,4 @@
-// What terms say of an iterate and of the end of a step: the part of the trace row and of the step's record
+// What terms report of an iterate and of the end of a step: the part of the trace row and of the step's record
 // that they fill. A number that no term fills is absent: there are no contacts, there is no limit.
 #pragma once
 
@@ -37,7 +37,7 @@ struct StepNumbers : StepRecord {
   std::vector<ContactLoad> contact_loads;  // at its end
 
   StepNumbers();
-  /// Loads are measured from here on: 0 where no term says more.
+  /// Loads are measured from here on: 0 where no term reports more.
   void begin_overload() { contact_overload = limit_overload = 0; }
   /// Adds up what an iteration says.
   void add(const IterateNumbers& iterate);

@@ -65,7 +65,7 @@ class RestitutionFamily final : public LaggedFamilyOf<RestitutionRows> {
     place_.executor.copy(known_speed_.data(), met_.data(), n * sizeof(double));
   }
   std::vector<double> kept() const override { return met_.download(); }
-  void adopt_kept(const KnownLag& known) override {
+  void adopt_kept(const LaggedState& known) override {
     known_pair_.upload(known.pair);
     known_speed_.upload(known.kept);
   }

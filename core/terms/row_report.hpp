@@ -9,7 +9,7 @@ namespace bb {
 
 /// gap_min: the smallest gap of the rows, m.
 void report_rows(const RowTotals& rows, double gap_min, IterateNumbers& out);
-/// largest: the largest coordinate of the state in magnitude, m, in units of whose last place a gap is told.
+/// largest: the largest coordinate of the state in magnitude, m, in units of whose last place a gap is reported.
 void report_rows(const RowTotals& rows, double gap_min, double largest, Precision precision,
                  StepNumbers& out);
 

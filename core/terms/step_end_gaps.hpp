@@ -12,7 +12,7 @@ namespace bb {
 /// Of a pair in a row at a step end.
 struct PairGap {
   PairId pair;
-  double gap, park;  // m; park: ccd_park times d_hat of the row
+  double gap, park;  // m; park: min_gap_fraction times d_hat of the row
   void keep(Archive& archive);
 };
 

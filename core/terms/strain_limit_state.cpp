@@ -84,7 +84,7 @@ void StrainLimitState::measure(const double* x, double* energy, State state) {
 }
 
 void StrainLimitState::look_along(const double* x, const double* dx) {
-  family_->look_along(x, dx, options_.contact_options.ccd_park);
+  family_->look_along(x, dx, options_.contact_options.min_gap_fraction);
 }
 
 double StrainLimitState::bound(IterateNumbers& out) {
@@ -98,7 +98,7 @@ void StrainLimitState::look_at(const double* trial, double* energy) {
   looked_at_ = true;
 }
 
-bool StrainLimitState::admits() const { return options_.limit.literal || beyond_.first() < 0; }
+bool StrainLimitState::is_feasible() const { return options_.limit.literal || beyond_.first() < 0; }
 
 void StrainLimitState::evaluate(const double* trial, double* energy) {
   // the iterate may have been asked for since

@@ -1,5 +1,5 @@
 // What the strain limit of triangles, or of tetrahedra, is at an iterate and at a trial, on any executor: which state is measured, when
-// the stiffness is made anew, how far a motion may go, what is said of it. The host's term and an executor's ask it for all of that.
+// the stiffness is made anew, how far a motion may go, what is reported of it. The host's term and an executor's ask it for all of that.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@
 
 namespace bb {
 
-/// The calls of a step come in this order: begin_step; of an iterate refresh, then what is said of it and motions from it; of a trial
-/// look_at, admits, evaluate; accept where it becomes the iterate. Pointers are memory of the executor; x: [3 n_vertices] m;
+/// The calls of a step come in this order: begin_step; of an iterate refresh, then what is reported of it and motions from it; of a trial
+/// look_at, is_feasible, evaluate; accept where it becomes the iterate. Pointers are memory of the executor; x: [3 n_vertices] m;
 /// energy: [n] J, of the state x, written where it has to be measured.
 class StrainLimitState {
  public:
@@ -52,10 +52,10 @@ class StrainLimitState {
   }
 
   // --- a trial
-  /// Launches what admits() reads.
+  /// Launches what is_feasible() reads.
   void look_at(const double* trial, double* energy);
   /// Waits.
-  bool admits() const;
+  bool is_feasible() const;
   /// Energies of a trial; of the one that was looked at last nothing is left to do.
   void evaluate(const double* trial, double* energy);
   /// The trial becomes the iterate.
@@ -63,7 +63,7 @@ class StrainLimitState {
   /// The family has measured some other state.
   void forget() { measured_ = State::none; }
 
-  // --- what is said of the iterate
+  // --- what is reported of the iterate
   /// Launches what report() and report_end() read.
   void announce(const double* x, double* energy);
   void report(const double* x, double* energy, IterateNumbers& out);

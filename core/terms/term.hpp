@@ -1,5 +1,5 @@
-// A term of E, the incremental potential (docs/architecture.md, Terms): what the Newton step asks of it, wherever it runs. A term is one file
-// of this room and one line of registry.inc. It owns what it computes, in the memory of its executor; positions (m) are there too.
+// A term of E, the incremental potential (docs/architecture.md, Terms): what the Newton step requires of it, wherever it runs. A term is one file
+// of this module and one line of registry.inc. It owns what it computes, in the memory of its executor; positions (m) are there too.
 #pragma once
 
 #include <string>
@@ -67,7 +67,7 @@ class Term {
   /// that it would be of.
   virtual bool take_secant(double /*share*/) { return false; }
   /// The step has converged at the iterate x: what was taken from its start is taken from there, and the step goes on, if true.
-  virtual bool renew_lag(const PositionsView& /*x*/) { return false; }
+  virtual bool renew_lagged_state(const PositionsView& /*x*/) { return false; }
   /// The step is over and ended at x.
   virtual void end_step(const PositionsView& /*x*/, PhaseClock&) {}
   /// What it remembers from step to step (core/base/archive). A term that begin_step makes anew has nothing.
@@ -89,9 +89,9 @@ class Term {
   /// Largest alpha in [0, 1] up to which the motion is feasible, after look_along(). Says it in the report too.
   virtual double bound(const Motion&, IterateNumbers&, PhaseClock&) { return 1; }
   /// Of a motion dx from x that bound() ends at `bound`, prescribed vertices at rest: adds to `force` (N) what
-  /// makes room for gaps that are curved along it (core/contact/gap_along.hpp). Whether curvature is what holds it.
-  virtual bool add_detour(const PositionsView& /*x*/, const PositionsView& /*dx*/, double /*bound*/,
-                          PositionsSpan /*force*/) {
+  /// corrects for gaps that are curved along it (core/contact/gap_along.hpp). Whether curvature is what holds it.
+  virtual bool add_curvature_correction(const PositionsView& /*x*/, const PositionsView& /*dx*/,
+                                        double /*bound*/, PositionsSpan /*force*/) {
     return false;
   }
   /// What held the last bound() below 1.
@@ -107,15 +107,15 @@ class Term {
   }
 
   // --- a trial state, of the iterate x
-  /// Whether admits() refuses a trial with a number that is not finite.
+  /// Whether is_feasible() refuses a trial with a number that is not finite.
   virtual bool sees_non_finite() const { return false; }
-  /// What admits() reads is launched: for all terms before it is read of one.
+  /// What is_feasible() reads is launched: for all terms before it is read of one.
   virtual void look_at(const PositionsView& /*x*/, const PositionsView& /*trial*/, PhaseClock&) {}
   /// Whether the trial is feasible, after look_at().
-  virtual bool admits(const PositionsView& /*trial*/, PhaseClock&) { return true; }
+  virtual bool is_feasible(const PositionsView& /*trial*/, PhaseClock&) { return true; }
   /// All terms admit the trial: what it brings that the rest of the step keeps, like the kappa of pairs that turn up.
   virtual void freeze(PhaseClock&) {}
-  /// Energies at the trial, after freeze(), where they are asked for. What changes with the iterate only, like kappa, stays
+  /// Energies at the trial, after freeze(), where they are requested. What changes with the iterate only, like kappa, stays
   /// as it is.
   virtual void evaluate(const PositionsView& trial) = 0;
   /// The trial becomes the iterate. take_energies() comes next where it was evaluated.
@@ -128,7 +128,7 @@ class Term {
     take_energies();
   }
 
-  // --- what is said of it, at the iterate x
+  // --- what is reported of it, at the iterate x
   /// What report() reads is launched.
   virtual void announce(const PositionsView& /*x*/) {}
   virtual void report(const PositionsView& /*x*/, IterateNumbers&, PhaseClock&) {}

@@ -18,7 +18,7 @@
 namespace bb {
 
 /// exact: the second derivatives. adaptive: a share of the secant (core/energy/friction.hpp) after steps that the line search
-/// shortened. secant: all of it always, where nothing asks for the exact one.
+/// shortened. secant: all of it always, where nothing requests the exact one.
 enum class FrictionHessian { exact, adaptive, secant };
 
 /// When friction takes rows and loads from contact: when a step begins (and converges, lag_iterations), or at every iterate.

@@ -11,7 +11,7 @@ enum class TermGroup : unsigned {
   elastic = 2,   // what H holds: what stiffness policies read
   limit = 4,     // limits of deformation
   contact = 8,   // what keeps surfaces apart
-  friction = 16  // what brakes them: along each other, and as they meet
+  friction = 16  // friction and restitution
 };
 
 /// What linearising elements that stay is charged to.

@@ -186,7 +186,7 @@ Action verb::check(CLI::App& app) {
       "render CONFIG draws it");
   app.add_flag(
       "--film", verb->film,
-      "say what films the scene has, and follow all of them, to their ends: every time and pair at which "
+      "report what films the scene has, and follow all of them, to their ends: every time and pair at which "
       "prescribed parts cross, not the first alone");
   return [verb](const CommonOptions&) { return cli::check(*verb); };
 }

@@ -91,7 +91,7 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
   const std::string folder = std::filesystem::path(verb.config).parent_path().string();
   const nlohmann::json given =
       make_document(read_input_file(verb.config, config_file), verb.config, folder, verb.set, ignored);
-  const nlohmann::json flat = nlohmann::json::parse(resolved_json(config)).flatten();
+  const nlohmann::json flat = settings_document(config).flatten();
   const std::set<std::string> by_method = of_method(config);
   show(
       "\nevery setting of the run (* given by the config or --set, m as its method has it; the others are "
@@ -107,7 +107,8 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
 void print_card(std::size_t total) {
   const cuda::DeviceProbe probe = cuda::probe_device();
   if (!probe.usable) {
-    show("  no card to ask: {}; local memory of kernels comes on top (docs/device.md, Memory)\n", probe.why);
+    show("  no card was found: {}; local memory of kernels comes on top (docs/device.md, Memory)\n",
+         probe.why);
     return;
   }
   const std::size_t local = cuda::local_memory_of_kernels();

@@ -133,7 +133,7 @@ const std::vector<Section>& sections() {
          print_entries(
              "step_solvers (/step_solver/name; a guarantee against passing through is of pairs of bodies "
              "that collide as "
-             "ccd, which all do unless the scene says otherwise)",
+             "ccd, which all do unless the scene states otherwise)",
              step_solvers());
        }},
       {"scenes", print_scenes},

@@ -151,7 +151,7 @@ std::vector<std::pair<CLI::App*, Action>> declare_verbs(CLI::App& app, Given& gi
   return out;
 }
 
-/// What --version says.
+/// What --version reports.
 std::string version_text() {
   const bb::Provenance made = bb::collect_provenance({}, 1);
   return fmt::format("barrierbench {}, commit {}{}, {}, records {}", made.tool_version,

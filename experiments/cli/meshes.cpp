@@ -4,7 +4,7 @@
 //    "as": "frame" (default: any positions, as frames are judged) or "body" (the rules of a body's mesh),
 //    "skin": of a body, keep triangles that are faces of one tetrahedron, "objects": of a body, [names of OBJ objects and groups] alone,
 //    "fields": [names of fields of points], "uvs": of a frame, texture coordinates of an OBJ file and which of them corners have}
-// An answer is a line of JSON, {"error": ...} or notes, objects and groups where they are asked for, and the list of arrays, and then the numbers of these arrays, one after
+// An answer is a line of JSON, {"error": ...} or notes, objects and groups where they are requested, and the list of arrays, and then the numbers of these arrays, one after
 // the other, little-endian and by rows.
 #include <fmt/format.h>
 

@@ -24,7 +24,7 @@ fs::path home_of(const StoredRun& stored) {
   return fs::weakly_canonical(fs::absolute(stored.file)).parent_path();
 }
 
-/// The plugins of the record that no --plugin replaces, from where the record says that they are.
+/// The plugins of the record that no --plugin replaces, from where the record reports that they are.
 /// Errors: ConfigError: not there, or another content.
 void load_plugins(const StoredRun& stored, std::vector<PluginFile>& loaded) {
   for (std::size_t i = 0; i < stored.record.provenance.plugins.size(); ++i) {

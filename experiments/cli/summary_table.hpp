@@ -8,14 +8,14 @@
 
 namespace bb::cli {
 
-/// A dash where there is no number.
+/// A dash where the number is missing.
 std::string number_text(const Number& number, const char* format);
 
 /// One row about a finished run, and what stands above it. A terminal that is too narrow has fewer columns and shorter labels.
 std::string summary_row(const RunRecord& record);
 std::string summary_header();
 
-/// What is said of a run of a sweep when all are over.
+/// What is reported of a run of a sweep when all are over.
 struct ComparedRow {
   std::string run, outcome, verdict, why;  // why: empty of a comparable run
 };

@@ -135,7 +135,7 @@ Axis expand_axis(const std::string& where, const json& axis, std::vector<Violati
     if (labels.insert(out[k].label).second) continue;
     violations.push_back({place_of_entry(where, axis, k),
                           fmt::format("\"{}\" again", shortened(out[k].label)),
-                          "a label that no other entry of the axis has: records are told apart by it"});
+                          "a label that no other entry of the axis has: records are distinguished by it"});
   }
   if (std::count_if(out.begin(), out.end(), [](const AxisEntry& entry) { return entry.reference; }) > 1) {
     violations.push_back({where, "more than one reference", "one case with reference: true"});

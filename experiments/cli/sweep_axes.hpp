@@ -18,7 +18,7 @@ struct AxisEntry {
 };
 using Axis = std::vector<AxisEntry>;
 
-/// Entries of an axis, which has the form that the list of the file asks for, before it is expanded; of zipped axes those of
+/// Entries of an axis, which has the form that the list of the file requests, before it is expanded; of zipped axes those of
 /// the first.
 std::size_t count_entries(const nlohmann::json& axis);
 

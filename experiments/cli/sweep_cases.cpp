@@ -229,7 +229,7 @@ void check_cases(const SweepSpec& spec, const std::string& path, std::vector<Vio
   for (const SweepCase& one : spec.cases) {
     if (!labels.insert(one.label).second && violations.empty()) {
       violations.push_back({path + "#/axes", fmt::format("two cases \"{}\"", shortened(one.label)),
-                            "labels whose combinations differ: records are told apart by them"});
+                            "labels whose combinations differ: records are distinguished by them"});
     }
   }
   if (spec.cases.empty()) {

@@ -17,7 +17,7 @@ struct RunSize {
   std::string config_id, scene, formulation;
   std::string of_scene;  // SHA-256 of the settings of the scene
   double steps = 0, unknowns = 0;
-  int passes = 1;  // with the pilot of a matching rule
+  int passes = 1;  // with the calibration run of a matching rule
 };
 
 /// What the config tells without its scene being built. scene: SHA-256 of the section `scene`.

@@ -28,7 +28,7 @@ struct Sweep {
   bool whole() const { return chosen.size() == spec.cases.size(); }
 };
 
-/// Reads the file and sees which cases are asked for. Errors: those of load_sweep; ConfigError for a shard or an index that
+/// Reads the file and sees which cases are requested. Errors: those of load_sweep; ConfigError for a shard or an index that
 /// there is not, and for options that do not go together.
 Sweep open_sweep(const SweepVerb& verb, const CommonOptions& common, const SeenCase& seen = {});
 

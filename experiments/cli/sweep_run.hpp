@@ -8,7 +8,7 @@
 
 namespace bb::cli {
 
-/// What a call says whose only fault is that others are at its runs.
+/// What a call reports whose only fault is that others are at its runs.
 inline constexpr const char* made_by_others = "runs are made by other processes";
 
 /// What became of the cases of one call.

@@ -84,7 +84,7 @@ BuildValidity build_validity(const CommonOptions& common);
 /// OPENBLAS_CORETYPE = Haswell, so nothing may have been read or written before.
 /// @param request  "haswell", "native" or empty: haswell where this machine can, unless OPENBLAS_CORETYPE
 ///                 names another
-/// Errors: ConfigError when "haswell" was asked for and cannot run here.
+/// Errors: ConfigError when "haswell" was requested and cannot run here.
 void settle_blas_kernel(const std::string& request, const std::vector<std::string>& argv);
 
 }  // namespace bb::cli

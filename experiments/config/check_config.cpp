@@ -123,7 +123,7 @@ void check_model(const RunConfig& config, ContactModel model, const Complain& co
   if (solver != "line_search" && solver != "accumulated_toi")
     complain(where, found, "all_pairs, or line_search or accumulated_toi: the step solver is " + solver);
   if (config.precision != Precision::full)
-    complain(where, found, "all_pairs, or precision double: blocks are asked in double");
+    complain(where, found, "all_pairs, or precision double: blocks are computed in double");
   if (config.contact.weighting.value_or(ContactWeighting::none) != ContactWeighting::none)
     complain(where, found, "all_pairs, or weighting none: features of a block count as one");
 }
@@ -210,7 +210,7 @@ void check_adaptive_start(const RunConfig& config, const Complain& complain) {
   }
 }
 
-/// Numbers of a limit of solids, where it is asked for.
+/// Numbers of a limit of solids, where it is requested.
 void check_solid_limit(const RunConfig& config, const Complain& complain) {
   const StrainLimitConfig& limit = config.strain_limit;
   const bool by_number = limits_solids(limit) && needs_k_s(limit.stiffness_policy);
@@ -241,28 +241,30 @@ void check_tolerance(const RunConfig& config, const Complain& complain) {
   }
 }
 
-/// Tier 0 reads what PCG saw: the spectrum of the full matrix scaled by its preconditioner, and nothing else.
+/// The estimator ritz reads what PCG saw: the spectrum of the full matrix scaled by its preconditioner, and nothing else.
 void check_ritz(const RunConfig& config, const Complain& complain) {
-  if (!config.passes.diagnose || config.diagnose.tier != 0) return;
+  if (!config.passes.diagnose || config.diagnose.estimator != Estimator::ritz) return;
   if (config.diagnose.ends)
-    complain("/diagnose/ends", "true with tier 0", "tier 1, 2 or 3: tier 0 factorises nothing");
+    complain("/diagnose/ends", "true with estimator ritz", "another estimator: ritz factorises nothing");
   const std::string& preconditioner = text(config.linear_solver.parameters, "preconditioner");
   const auto& stages = config.diagnose.stages;
   const auto& scalings = config.diagnose.scalings;
   const auto is_scaling = [&](Scaling s) { return to_string(s) == preconditioner; };
   if (config.linear_solver.name != "pcg") {
-    complain("/diagnose/tier", "0", "1 to 4, or linear_solver pcg: tier 0 reads the Ritz values of PCG");
+    complain("/diagnose/estimator", "ritz",
+             "another estimator, or linear_solver pcg: ritz reads the Ritz values of PCG");
   } else if (text(config.linear_solver.parameters, "forcing") != "fixed") {
-    complain("/diagnose/tier", "0",
-             "1 to 4, or linear_solver.forcing fixed: loose solves know no ends of a spectrum");
+    complain("/diagnose/estimator", "ritz",
+             "another estimator, or linear_solver.forcing fixed: loose solves know no ends of a spectrum");
   } else if (std::none_of(scalings.begin(), scalings.end(), is_scaling)) {
     complain(
-        "/diagnose/tier", "0",
-        fmt::format("1 to 4, or a preconditioner among diagnose.scalings: tier 0 knows the matrix scaled by "
-                    "its preconditioner only, and that is {}",
-                    preconditioner));
+        "/diagnose/estimator", "ritz",
+        fmt::format(
+            "another estimator, or a preconditioner among diagnose.scalings: ritz knows the matrix scaled by "
+            "its preconditioner only, and that is {}",
+            preconditioner));
   } else if (std::find(stages.begin(), stages.end(), "full") == stages.end()) {
-    complain("/diagnose/stages", "no stage full", "full: tier 0 knows the matrix that PCG solves");
+    complain("/diagnose/stages", "no stage full", "full: ritz knows the matrix that PCG solves");
   }
 }
 
@@ -294,10 +296,10 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   check_ritz(config, complain);
   if (!config.method.empty()) {
     if (friction_of_method(config.method).empty()) {
-      refuse_friction(config, "0 with method " + config.method + ", whose file says nothing of friction",
+      refuse_friction(config, "0 with method " + config.method + ", whose file states nothing about friction",
                       complain);
     }
-    refuse_restitution(config, "1 with method " + config.method + ", whose file says nothing of it",
+    refuse_restitution(config, "1 with method " + config.method + ", whose file states nothing about it",
                        complain);
   }
   check_device(config, complain);

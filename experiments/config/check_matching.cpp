@@ -1,4 +1,4 @@
-// What matching asks of a config: barriers that have the number it reads, and loads or a pilot.
+// What matching requires of a config: barriers that have the number it reads, and loads or a calibration run.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,15 +45,16 @@ void check_matched_barrier(const MatchingConfig& matching, const MatchedBarrier&
   }
 }
 
-/// Without weight no pilot can start: loads have to be given, and a policy that makes its own stiffness has
+/// Without weight no calibration run can start: loads have to be given, and a policy that makes its own stiffness has
 /// nobody to ask about the contact that carried them.
-void check_pilot(const RunConfig& config, const MatchedBarrier& m, const Complain& complain) {
+void check_calibration_run(const RunConfig& config, const MatchedBarrier& m, const Complain& complain) {
   if (largest_gravity(config.scene.gravity, config.scene.gravity_keys) > 0) return;
-  if (!m.load) complain(m.load_pointer, "nothing", "a load: without gravity no pilot can start");
+  if (!m.load) complain(m.load_pointer, "nothing", "a load: without gravity no calibration run can start");
   if (m.by_number) return;
-  complain("/matching/rule", fmt::format("\"{}\"", to_string(config.matching.rule)),
-           fmt::format("as_given: policy {} is matched by a pilot, and without gravity none can start",
-                       m.policy.name));
+  complain(
+      "/matching/rule", fmt::format("\"{}\"", to_string(config.matching.rule)),
+      fmt::format("as_given: policy {} is matched by a calibration run, and without gravity none can start",
+                  m.policy.name));
 }
 
 /// False when no body of the scene can have a limited element.
@@ -89,7 +90,7 @@ void check_matching(const RunConfig& config, const Complain& complain) {
   if (config.matching.solid_limit_load) check_matched_barrier(config.matching, of_solids, complain);
   for (const MatchedBarrier& m : matched) {
     check_matched_barrier(config.matching, m, complain);
-    check_pilot(config, m, complain);
+    check_calibration_run(config, m, complain);
   }
 }
 

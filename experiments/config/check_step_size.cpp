@@ -32,10 +32,11 @@ void check_step_size(const RunConfig& config, const Complain& complain) {
   }
   if (!time.step_error || !integrators().find(config.integrator.name)) return;
   if (!make_integrator(config.integrator.name)->velocity_of_step()) {
-    complain("/time/step_error_m", fmt::format("{}", *time.step_error),
-             "nothing: the trapezoidal rule says how large the error of an integrator of first order is, and "
-             "this one is " +
-                 config.integrator.name);
+    complain(
+        "/time/step_error_m", fmt::format("{}", *time.step_error),
+        "nothing: the trapezoidal rule gives how large the error of an integrator of first order is, and "
+        "this one is " +
+            config.integrator.name);
   }
 }
 

@@ -1,4 +1,4 @@
-// What a step solver asks of the rest of a config.
+// What a step solver requires of the rest of a config.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

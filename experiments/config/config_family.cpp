@@ -35,7 +35,7 @@ ParameterList known_rows() {
   return rows;
 }
 
-/// Made once: a list of rows is copied whenever it is asked for.
+/// Made once: a list of rows is copied whenever it is requested.
 const std::vector<Parameter>& config_rows() {
   static const ParameterList rows = known_rows();
   return rows.rows;

@@ -17,7 +17,7 @@ struct ProceduralScene;
 /// Reads configs of one file one after the other. An override acts on one section (document.hpp) and a section is checked and
 /// read by itself, but for the defaults that scene and device decide; so only sections are read anew whose overrides are other
 /// ones than those of the config before. What sections decide and forbid each other is settled for every config. Whatever is wrong
-/// with a config is told by parse_config. Not for several threads at once: one family a thread.
+/// with a config is reported by parse_config. Not for several threads at once: one family a thread.
 class ConfigFamily {
  public:
   /// Errors: ConfigError: the file cannot be read.

@@ -3,6 +3,7 @@
 #include "core/base/input/json.hpp"
 #include "core/base/input/names.hpp"
 #include "core/base/parameters/check.hpp"
+#include "experiments/config/renamed_settings.hpp"
 
 namespace bb {
 namespace {
@@ -155,6 +156,7 @@ nlohmann::ordered_json schema_document(const std::string& format) {
   nlohmann::ordered_json out = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                                 {"$id", "barrierbench." + format + "/1"}};
   out.update(schema_of(format == "sweep" ? sweep_list() : config_list()));
+  if (format == "config") add_earlier_names(out);
   return out;
 }
 

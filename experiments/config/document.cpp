@@ -14,6 +14,7 @@
 #include "core/base/record/schema_version.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/config/reader.hpp"
+#include "experiments/config/renamed_settings.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {
@@ -140,7 +141,7 @@ void keep_duration(json& document) {
   length.erase("steps");
 }
 
-/// The settings of a method, over what the document has. A name that no method has is told when the config is checked.
+/// The settings of a method, over what the document has. A name that no method has is reported when the config is checked.
 void lay_method(json& document, const json& name) {
   const std::vector<std::string> names = method_names();
   if (!document.is_object() || !name.is_string() ||
@@ -195,6 +196,8 @@ json with_base(json document, const std::string& source, const std::string& fold
   absolute_mesh_paths(document, folder);
   if (!document.is_object()) return document;
   require_format(document, "barrierbench.config/1", source);
+  if (std::optional<Violation> twice = use_present_names(document, source + "#"))
+    throw ConfigError(std::vector<Violation>{*twice});
   if (method_above) document.erase("method");
   const bool has_method = document.contains("method");
   json base = base_of(document, source, folder, std::move(chain), method_above || has_method);
@@ -300,7 +303,10 @@ void apply_override(json& document, const std::string& text, const std::string& 
   bool placed = false;
   try {
     json value = override_value(text.substr(equals + 1), where);
-    placed = set_value(document, json::json_pointer(text.substr(0, equals)), std::move(value));
+    const std::string pointer = present_pointer(text.substr(0, equals), value);
+    placed = set_value(document, json::json_pointer(pointer), std::move(value));
+    if (const std::optional<Violation> twice = use_present_names(document, where))
+      violations.push_back(*twice);
   } catch (const JsonError& error) {
     violations.push_back({where, error.violations().front().found, error.violations().front().allowed});
     return;

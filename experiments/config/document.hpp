@@ -13,7 +13,7 @@
 
 namespace bb {
 
-/// Errors: ConfigError, alone and with the verb to use, when the document says that it is of another format of ours than
+/// Errors: ConfigError, alone and with the verb to use, when the document states that it is of another format of ours than
 /// `format`, such as "barrierbench.config/1": every key of a sweep is wrong in a config.
 void require_format(const nlohmann::json& document, std::string_view format, const std::string& source);
 

@@ -68,6 +68,13 @@ inline EnumWords<HessianMode> words_of(HessianMode) {
 inline EnumWords<Scaling> words_of(Scaling) {
   return {{Scaling::none, "none"}, {Scaling::jacobi, "jacobi"}, {Scaling::block_jacobi, "block_jacobi"}};
 }
+inline EnumWords<Estimator> words_of(Estimator) {
+  return {{Estimator::ritz, "ritz"},
+          {Estimator::inverse_power, "inverse_power"},
+          {Estimator::spectra, "spectra"},
+          {Estimator::dense, "dense"},
+          {Estimator::lanczos, "lanczos"}};
+}
 inline EnumWords<Device> words_of(Device) {
   return {{Device::cpu, "cpu"}, {Device::host, "host"}, {Device::cuda, "cuda"}};
 }

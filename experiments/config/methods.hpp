@@ -21,7 +21,7 @@ struct PublishedMethod {
   Texts differs;       // subject -> what is not as published
 };
 
-/// The settings of /friction (key -> value) that a method has; empty: its publication says nothing that is here.
+/// The settings of /friction (key -> value) that a method has; empty: its publication states nothing that is here.
 nlohmann::json friction_of_method(const std::string& name);
 
 /// Those of the folder, in the order of the alphabet.

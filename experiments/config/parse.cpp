@@ -14,6 +14,7 @@
 #include "experiments/config/formula_shapes.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/config/reader.hpp"
+#include "experiments/config/renamed_settings.hpp"
 #include "experiments/config/sections.hpp"
 
 namespace bb {
@@ -131,7 +132,9 @@ RunConfig parse_config(const std::string& text, const std::string& source, const
 RunConfig load_config(const std::string& path, std::span<const std::string> overrides) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const std::string source = path == "-" ? "the standard input" : path;
-  return parse_config(read_input_file(path, config_file), source, folder.empty() ? "." : folder, overrides);
+  const std::string text = read_input_file(path, config_file);
+  note_earlier_names(text, overrides);
+  return parse_config(text, source, folder.empty() ? "." : folder, overrides);
 }
 
 namespace {
@@ -169,13 +172,20 @@ json resolved_section(const std::string& name, const RunConfig& config) {
   json out = settings_of<RunConfig>().write_one(name, config);
   if (name == "step_solver") leave_out_later_settings(config, out);
   if (name == "hessian") leave_out_unused_hessians(config, out);
+  use_recorded_names(name, out);
+  return out;
+}
+
+json settings_document(const RunConfig& config) {
+  json out = settings_of<RunConfig>().write(config);
+  leave_out_later_settings(config, out["step_solver"]);
+  leave_out_unused_hessians(config, out["hessian"]);
   return out;
 }
 
 json resolved_document(const RunConfig& config) {
-  json out = settings_of<RunConfig>().write(config);
-  leave_out_later_settings(config, out["step_solver"]);
-  leave_out_unused_hessians(config, out["hessian"]);
+  json out = settings_document(config);
+  for (const auto& [name, section] : out.items()) use_recorded_names(name, section);
   return out;
 }
 

@@ -31,6 +31,9 @@ std::string resolved_json(const RunConfig& config);
 /// The document that it is the text of.
 nlohmann::json resolved_document(const RunConfig& config);
 
+/// The same with the present names of settings whose earlier names records keep (renamed_settings.hpp).
+nlohmann::json settings_document(const RunConfig& config);
+
 /// Identity of a run: config_id of core/base/record applied to it.
 std::string config_id(const RunConfig& config);
 

@@ -23,7 +23,7 @@
 
 namespace bb {
 
-/// Where a run computes. cpu: the pipeline of core/newton. host: the resident pipeline on threads of this
+/// Where a run computes. cpu: the pipeline of core/newton. host: the device backend on threads of this
 /// machine, the same kernels as on a device. cuda: on a device.
 enum class Device { cpu, host, cuda };
 
@@ -91,7 +91,7 @@ auto films_of(Body& body) {
 struct SceneConfig {
   std::string name;                             // registered scene, or "bodies"
   ParameterMap parameters;                      // registered scene: every declared parameter
-  bool planar = false;                          // as the registered scene says, or as given with bodies
+  bool planar = false;                          // as the registered scene states, or as given with bodies
   Vec3d gravity = Vec3d(0, 0, -9.81);           // m/s^2; registered scene: from its parameter
   Vec3d translation = Vec3d::Zero();            // m, of all that has a place, after the scene is made
   PlanarPairs pairs = PlanarPairs::point_edge;  // "bodies" only, like all that follows
@@ -116,7 +116,7 @@ struct RunConfig {
   std::string source;  // file it came from, for messages; not part of config_id
   std::string name;    // free label, for tables; not part of config_id
   std::string linear_solver_reason = "as asked for";  // or why auto chose it; no setting
-  std::string method;                                 // published method that was asked for; empty: none
+  std::string method;                                 // published method that was requested; empty: none
   SceneConfig scene;
   FormulationConfig formulation;
   StrainLimitConfig strain_limit;

@@ -213,7 +213,7 @@ void leave_out_constant_influences(json& object, const char* mix) {
   for (json& share : object[mix]) leave_out_empty(share, {"influence_schedule"});
 }
 
-/// Weights, as a config says them that has some.
+/// Weights, as a config states them that has some.
 void leave_out_of_weights(json& body) {
   leave_out_empty(body, {"weights", "pressure_mix", "stiffness_weights"});
   leave_out_constant_influences(body, "pressure_mix");

@@ -109,9 +109,9 @@ void add_arithmetic(Settings<RunConfig>& out) {
       "sums, solves and the audit stay double. The times of mixed and float are no times of such a program.",
       &RunConfig::precision);
   out.add("device", one_of<Device>(),
-          "Where it computes. cpu: the CPU pipeline. host: the resident pipeline on threads, the same "
+          "Where it computes. cpu: the CPU pipeline. host: the device backend on threads, the same "
           "kernels as on a "
-          "device. cuda: on a CUDA device (./bench device says whether there is one).",
+          "device. cuda: on a CUDA device (./bench device reports whether there is one).",
           &RunConfig::device);
 }
 

@@ -179,7 +179,7 @@ void settle_matching(const json& object, const Reader& reader, bool literal, Run
   if (out.rule != MatchingRule::as_given) {
     if (!solid_given && !out.solid_limit_load) {
       reader.missing("/matching/solid_limit_load_Pa",
-                     "a load > 0 (Pa) of the strain limit of solids, which no pilot measures, or "
+                     "a load > 0 (Pa) of the strain limit of solids, which no calibration run measures, or "
                      "/strain_limit/solid_k_s_Pa");
     }
     return;

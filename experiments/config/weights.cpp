@@ -82,7 +82,7 @@ void read_weights(const json& body, const std::string& pointer, const Reader& re
     if (group.from.has_value() != group.to.has_value()) {
       reader.missing(where + (group.from ? "/to_m" : "/from_m"), "both from_m and to_m of a ramp (m)");
     } else if (object.contains("file") + !group.boxes.empty() + !group.formula.empty() + ramp != 1) {
-      reader.complain(where, "no weights, or two ways to say them",
+      reader.complain(where, "no weights, or two ways to state them",
                       "one of file, boxes, formula, from_m with to_m");
     } else if (ramp && *group.from == *group.to) {
       reader.complain(where + "/to_m", fmt::format("{}", *group.to), "another number than from_m (m)");

@@ -11,7 +11,7 @@ namespace bb::eval {
 namespace {
 
 constexpr int kLargestIndex = 999'999;  // keeps a mistyped index from asking for all memory
-constexpr int kLargestDense = 3000;     // tier 3 is for tests
+constexpr int kLargestDense = 3000;     // the estimator dense is for tests
 
 ReducedSystem system_field(Query& q) {
   const std::vector<int> rows = q.indices("rows", kLargestIndex), cols = q.indices("cols", kLargestIndex);
@@ -43,7 +43,7 @@ ReducedSystem system_field(Query& q) {
   return system;
 }
 
-/// Tier 0: Ritz values out of the PCG that the pipeline solves with, on a seeded right-hand side.
+/// ritz: Ritz values out of the PCG that the pipeline solves with, on a seeded right-hand side.
 ConditionEstimate ritz_estimate(const ReducedSystem& system, Scaling scaling) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
@@ -62,10 +62,10 @@ ConditionEstimate ritz_estimate(const ReducedSystem& system, Scaling scaling) {
   return out;
 }
 
-ConditionEstimate estimate(const ReducedSystem& system, Scaling scaling, int tier) {
-  if (tier == 0) return ritz_estimate(system, scaling);
+ConditionEstimate estimate(const ReducedSystem& system, Scaling scaling, Estimator estimator) {
+  if (estimator == Estimator::ritz) return ritz_estimate(system, scaling);
   ConditionOptions options;
-  options.tier = tier;
+  options.estimator = estimator;
   options.scaling = scaling;
   return ConditionEstimator().estimate(system, options);
 }
@@ -76,17 +76,17 @@ template <class T>
 Answer answer::condition(Query& q) {
   const ReducedSystem system = system_field(q);
   const std::string scaling = q.choice("scaling", {"none", "jacobi", "block_jacobi"});
-  const int tier = q.integer("tier", 0, 4);
-  if (tier == 3 && system.lower.rows() > kLargestDense) {
+  const auto estimator = static_cast<Estimator>(q.integer("tier", 0, 4));
+  if (estimator == Estimator::dense && system.lower.rows() > kLargestDense) {
     q.complain("tier", "3 on " + std::to_string(system.lower.rows()) + " rows",
-               "another tier, or at most " + std::to_string(kLargestDense) + " rows");
+               "another estimator, or at most " + std::to_string(kLargestDense) + " rows");
   }
   q.finish();
   const ConditionEstimate e = estimate(system,
                                        scaling == "none"     ? Scaling::none
                                        : scaling == "jacobi" ? Scaling::jacobi
                                                              : Scaling::block_jacobi,
-                                       tier);
+                                       estimator);
   Answer a;
   a.number("lambda_min", e.lambda_min);
   a.number("lambda_max", e.lambda_max);

@@ -28,7 +28,7 @@ std::string shown(const json& value) {
   return text.size() > 60 ? text.substr(0, 60) + "..." : text;
 }
 
-/// Reads keys of one object and remembers what it was asked for.
+/// Reads keys of one object and remembers which keys were requested.
 class Keys {
  public:
   Keys(const json& object, std::string where) : object_(object), where_(std::move(where)) {
@@ -79,7 +79,7 @@ class Keys {
     if (!list->is_array()) throw ConfigError(at(key), shown(*list), "an array");
     for (std::size_t i = 0; i < list->size(); ++i) item((*list)[i], at(fmt::format("{}/{}", key, i)));
   }
-  /// Errors: ConfigError for a key that was never asked for.
+  /// Errors: ConfigError for a key that was never requested.
   void finish() const {
     for (const auto& [key, value] : object_.items()) {
       if (std::find(known_.begin(), known_.end(), key) == known_.end())

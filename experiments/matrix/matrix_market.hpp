@@ -18,7 +18,7 @@ inline constexpr double symmetry_tolerance = 1e-10;
 /// general` (both); `integer` is read as real.
 /// @param name  of the file, for messages
 /// Errors: ConfigError with file and line for another banner, a matrix that is empty, not square or not
-/// symmetric, a number that is none or not finite, an index outside the matrix or above the diagonal of a
+/// symmetric, an entry that is not a finite number, an index outside the matrix or above the diagonal of a
 /// symmetric file, an entry that is there twice, fewer or more entries than announced.
 Eigen::SparseMatrix<double> parse_matrix_market(const std::string& text, const std::string& name);
 

@@ -30,7 +30,7 @@ ReplayedSolve solve(const LinearSolverEntry& entry, const std::string& precondit
   return {entry.name, preconditioner, make_linear_solver(how)->solve(stored.system, stored.rhs, x)};
 }
 
-/// Tier 0, from a solve that was preconditioned by a scaling.
+/// ritz, from a solve that was preconditioned by a scaling.
 ConditionEstimate from_solve(const LinearReport& report) {
   ConditionEstimate e = condition_from_ritz(report.ritz_min, report.ritz_max);
   if (report.status == LinearStatus::matrix_indefinite) {
@@ -41,12 +41,12 @@ ConditionEstimate from_solve(const LinearReport& report) {
   return e;
 }
 
-void add_tier0(Replay& out) {
+void add_ritz(Replay& out) {
   for (const Scaling scaling : scalings) {
     for (const ReplayedSolve& solve : out.solves) {
       if (solve.solver != "pcg" || solve.preconditioner != to_string(scaling)) continue;
       ReplayedEstimate row;
-      row.tier = 0;
+      row.estimator = Estimator::ritz;
       row.scaling = scaling;
       row.estimate = from_solve(solve.report);
       out.estimates.push_back(std::move(row));
@@ -56,9 +56,9 @@ void add_tier0(Replay& out) {
 
 void compare_with_dense(Replay& out) {
   for (ReplayedEstimate& row : out.estimates) {
-    if (row.tier == 3) continue;
+    if (row.estimator == Estimator::dense) continue;
     for (const ReplayedEstimate& dense : out.estimates) {
-      if (dense.tier != 3 || dense.scaling != row.scaling) continue;
+      if (dense.estimator != Estimator::dense || dense.scaling != row.scaling) continue;
       row.agreement = compare(row.estimate, dense.estimate);
       const bool both = std::isfinite(row.estimate.cond) && std::isfinite(dense.estimate.cond);
       row.cond_change_rel =
@@ -121,16 +121,17 @@ Replay replay(const StoredSystem& stored, const ReplayOptions& options) {
       out.solves.push_back(solve(entry, preconditioner, stored, options));
     }
   }
-  add_tier0(out);
-  ConditionEstimator estimator;
-  for (const int tier : {1, 2, 4, 3}) {
-    if (tier == 3 && stored.system.lower.rows() > options.dense_rows) continue;
+  add_ritz(out);
+  ConditionEstimator conditions;
+  for (const Estimator estimator :
+       {Estimator::inverse_power, Estimator::spectra, Estimator::lanczos, Estimator::dense}) {
+    if (estimator == Estimator::dense && stored.system.lower.rows() > options.dense_rows) continue;
     for (const Scaling scaling : scalings) {
       ReplayedEstimate row;
-      row.tier = tier;
+      row.estimator = estimator;
       row.scaling = scaling;
-      row.estimate =
-          estimator.estimate(stored.system, {.tier = tier, .scaling = scaling, .seed = options.seed});
+      row.estimate = conditions.estimate(stored.system,
+                                         {.estimator = estimator, .scaling = scaling, .seed = options.seed});
       out.estimates.push_back(std::move(row));
     }
   }

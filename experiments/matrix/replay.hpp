@@ -31,12 +31,12 @@ enum class Agreement {
   no_dense,  // too many rows, or the estimate is the dense one
 };
 std::string_view to_string(Agreement agreement);
-/// Relative difference up to which two cond are the same: what tier 2 promises, beside 8 eps cond for the
+/// Relative difference up to which two cond are the same: what spectra promises, beside 8 eps cond for the
 /// rounding of the dense matrix.
 inline constexpr double same_cond = 1e-3;
 
 struct ReplayedEstimate {
-  int tier = 2;  // 0 from the Ritz values of pcg, 3 dense
+  Estimator estimator = Estimator::spectra;  // ritz: of the Ritz values of pcg
   Scaling scaling = Scaling::none;
   ConditionEstimate estimate;
   Agreement agreement = Agreement::no_dense;
@@ -45,7 +45,7 @@ struct ReplayedEstimate {
 
 struct Replay {
   std::vector<ReplayedSolve> solves;  // of the solvers that can run here, in the order of the registries
-  std::vector<ReplayedEstimate> estimates;  // by tier, then by scaling
+  std::vector<ReplayedEstimate> estimates;  // by estimator, then by scaling
 };
 
 /// Agreement of `estimate` with `dense`, of one matrix and scaling. not_converged agrees with nothing.

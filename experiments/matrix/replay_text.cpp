@@ -56,7 +56,7 @@ ordered_json to_json(const ReplayedSolve& row) {
 
 ordered_json to_json(const ReplayedEstimate& row) {
   const ConditionEstimate& e = row.estimate;
-  return {{"tier", row.tier},
+  return {{"tier", static_cast<int>(row.estimator)},
           {"scaling", to_string(row.scaling)},
           {"status", to_string(e.status)},
           {"cond", number(e.cond)},
@@ -92,15 +92,15 @@ std::string replay_table(const std::string& path, const StoredSystem& stored, co
                    to_string(r.status), r.iterations, shown(r.residual_true), r.analyze_s, r.factor_s,
                    r.solve_s, r.detail.empty() ? "" : "  ", r.detail);
   }
-  fmt::format_to(out, "  {:<5} {:<13} {:<14} {:>10} {:>11} {:>10} {:>9} {:>10} {:>10}  {}\n", "tier",
+  fmt::format_to(out, "  {:<13} {:<13} {:<14} {:>10} {:>11} {:>10} {:>9} {:>10} {:>10}  {}\n", "estimator",
                  "scaling", "status", "cond", "lambda_min", "lambda_max", "dense", "change", "seconds",
                  "method");
   for (const ReplayedEstimate& row : replay.estimates) {
     const ConditionEstimate& e = row.estimate;
-    fmt::format_to(out, "  {:<5} {:<13} {:<14} {:>10} {:>11} {:>10} {:>9} {:>10} {:>10.2e}  {}\n", row.tier,
-                   to_string(row.scaling), to_string(e.status), shown(e.cond), shown(e.lambda_min),
-                   shown(e.lambda_max), to_string(row.agreement), shown(row.cond_change_rel.value), e.seconds,
-                   e.method);
+    fmt::format_to(out, "  {:<13} {:<13} {:<14} {:>10} {:>11} {:>10} {:>9} {:>10} {:>10.2e}  {}\n",
+                   to_string(row.estimator), to_string(row.scaling), to_string(e.status), shown(e.cond),
+                   shown(e.lambda_min), shown(e.lambda_max), to_string(row.agreement),
+                   shown(row.cond_change_rel.value), e.seconds, e.method);
   }
   return text;
 }

@@ -1,4 +1,4 @@
-// Condition tiers on the matrix of a cloth: what each costs in triangular solves, products and numeric
+// Condition estimators on the matrix of a cloth: what each costs in triangular solves, products and numeric
 // factorisations of the same matrix.
 #include <algorithm>
 
@@ -44,8 +44,8 @@ void count(benchmark::State& state, const Matrix& matrix, const ConditionEstimat
   state.SetLabel(std::string(to_string(estimate.status)));
 }
 
-/// Tier 0 is what a PCG solve leaves behind: its time is that of the solve.
-void tier0(benchmark::State& state, const std::string& preconditioner) {
+/// ritz is what a PCG solve leaves behind: its time is that of the solve.
+void ritz(benchmark::State& state, const std::string& preconditioner) {
   const Matrix matrix(static_cast<int>(state.range(0)));
   LinearOptions options;
   options.name = "pcg";
@@ -67,13 +67,14 @@ void tier0(benchmark::State& state, const std::string& preconditioner) {
 
 /// The factor is shared with a direct solver's: `per_factorization` includes it, so 1 is the price
 /// of the factor.
-void tier(benchmark::State& state, int number, Scaling scaling) {
+void estimated(benchmark::State& state, Estimator estimator, Scaling scaling) {
   const Matrix matrix(static_cast<int>(state.range(0)));
-  ConditionEstimator estimator;
+  ConditionEstimator conditions;
   double seconds = 0;
-  ConditionEstimate estimate = estimator.estimate(*matrix.system, {number, scaling, 1});  // warm-up: analysis
+  ConditionEstimate estimate =
+      conditions.estimate(*matrix.system, {estimator, scaling, 1});  // warm-up: analysis
   for (auto _ : state) {
-    estimate = estimator.estimate(*matrix.system, {number, scaling, 1});
+    estimate = conditions.estimate(*matrix.system, {estimator, scaling, 1});
     seconds += estimate.seconds;
   }
   count(state, matrix, estimate, seconds);
@@ -86,12 +87,12 @@ void register_condition() {
     b->ArgName("side")->Arg(16)->Arg(107)->Unit(benchmark::kMillisecond);
   };
   for (const std::string& label : preconditioners().names()) {
-    sizes(add("condition/tier:0/" + label, [label](benchmark::State& state) { tier0(state, label); }));
+    sizes(add("condition/ritz/" + label, [label](benchmark::State& state) { ritz(state, label); }));
   }
-  for (const int number : {1, 2}) {
+  for (const Estimator estimator : {Estimator::inverse_power, Estimator::spectra}) {
     for (const Scaling scaling : kScalings) {
-      sizes(add("condition/tier:" + std::to_string(number) + "/" + std::string(to_string(scaling)),
-                [number, scaling](benchmark::State& state) { tier(state, number, scaling); }));
+      sizes(add("condition/" + std::string(to_string(estimator)) + "/" + std::string(to_string(scaling)),
+                [estimator, scaling](benchmark::State& state) { estimated(state, estimator, scaling); }));
     }
   }
 }

@@ -1,4 +1,4 @@
-// The linear room on a generated cloth grid with contacts: assembly, factorisation, every solver
+// The linear module on a generated cloth grid with contacts: assembly, factorisation, every solver
 // with every preconditioner.
 #include <memory>
 #include <vector>

@@ -16,7 +16,7 @@ namespace {
 
 using namespace bb;
 
-/// Prints what was asked of the executor since the last iteration.
+/// Prints what was required of the executor since the last iteration.
 class Printer final : public StepObserver {
  public:
   exec::MeteredExecutor* executor = nullptr;

@@ -58,7 +58,7 @@ ContactFields contact_fields(const ContactState& state, int n_vertices) {
   ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0), std::nullopt};
   const auto gather = [&fields](const auto& rows) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      for (const int id : rows.key(r)) {  // given vertices included; an obstacle is negative
+      for (const int id : rows.key(r)) {  // prescribed vertices included; an obstacle is negative
         if (id < 0) continue;
         double& gap = fields.gap_rel[static_cast<std::size_t>(id)];
         gap = std::min(gap, rows.d[r] / rows.d_hat[r]);

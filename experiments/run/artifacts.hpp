@@ -16,7 +16,7 @@ struct ContactFields {
   std::vector<double> gap_rel;  // [n vertices] smallest d/d_hat of the rows at the vertex; 1 without a row
   std::vector<double> load;     // [n vertices] N, sum of |w_i| kappa |b'| over those rows; 0 without a row
   std::optional<Positions>
-      friction;  // [3 x n vertices] N, force of friction on the vertex, where it is asked for
+      friction;  // [3 x n vertices] N, force of friction on the vertex, where it is requested
 };
 
 /// Both fields from the rows of a state. A nearly parallel edge pair has a gap, but, as in the records, no

@@ -75,8 +75,8 @@ audit::AuditMesh make_audit_mesh(const Scene& scene, double dt, bool only_points
   return mesh;
 }
 
-double audit_tolerance(const Scene& scene, double ccd_park) {
-  return 0.1 * ccd_park * *std::min_element(scene.d_hat.begin(), scene.d_hat.end());
+double audit_tolerance(const Scene& scene, double min_gap_fraction) {
+  return 0.1 * min_gap_fraction * *std::min_element(scene.d_hat.begin(), scene.d_hat.end());
 }
 
 audit::AuditMesh audit_mesh_of(const RunConfig& config, const Scene& scene) {

@@ -29,13 +29,13 @@ static void keep(Archive& archive, AuditLedger& ledger) {
 
 }  // namespace audit
 
-AuditWatch::AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record,
+AuditWatch::AuditWatch(const Scene& scene, double dt, double min_gap_fraction, AuditRecord& record,
                        double promised_overlap, bool only_points)
     : scene_(scene),
       record_(record),
       mesh_(make_audit_mesh(scene, dt, only_points)),
       audit_(mesh_, promised_overlap),
-      tolerance_(audit_tolerance(scene, ccd_park)),
+      tolerance_(audit_tolerance(scene, min_gap_fraction)),
       reach_(*std::max_element(scene.d_hat.begin(), scene.d_hat.end())) {
   if (promised_overlap > 0) record_.promised_m = promised_overlap;
   if (only_points) record_.obstacles_judge = "points";

@@ -14,8 +14,8 @@ class AuditWatch {
  public:
   /// Judges the start. scene and record must outlive it. dt: of a whole step, s.
   /// promised_overlap: as of Audit; only_points: as of AuditMesh.
-  AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record, double promised_overlap = 0,
-             bool only_points = false);
+  AuditWatch(const Scene& scene, double dt, double min_gap_fraction, AuditRecord& record,
+             double promised_overlap = 0, bool only_points = false);
 
   void on_motion(const Positions& x0, const Positions& x1, int step);
   /// Fills the counts of the step that ended at x.

@@ -9,7 +9,7 @@
 #include "core/barrier/slope_scan.hpp"
 #include "core/math/error.hpp"
 #include "experiments/config/policy_request.hpp"
-#include "experiments/run/pilot_demand.hpp"
+#include "experiments/run/calibration_demand.hpp"
 
 namespace bb {
 namespace {
@@ -41,7 +41,7 @@ struct Matching {
   const Scene& scene;
   const RunOptions& options;
   MatchingRecord& record;
-  std::shared_ptr<const Pilot> pilot =
+  std::shared_ptr<const CalibrationRun> calibration_run =
       nullptr;  // null: every load is given and nothing makes its own stiffness
 };
 
@@ -73,7 +73,7 @@ void note_left_out(MatchingRecord& record, const Demand& demand, const char* wha
 /// Why a policy that makes its own stiffness was not scaled: nobody could be asked.
 std::string why_as_given(const char* policy, const Demand& demand, const char* never) {
   return fmt::format("{} policy stays as given: {}", policy,
-                     demand.left_out > 0 ? "no force of the pilot is a load" : never);
+                     demand.left_out > 0 ? "no force of the calibration run is a load" : never);
 }
 
 /// The stiffness of the rule for a load and a width; a given load goes with a given width.
@@ -86,7 +86,7 @@ MatchedStiffness matched_stiffness(const Match& match, const BarrierFunction& ba
   };
 }
 
-/// The policy whose own kappa the contacts are asked for; null where the stiffness is one number.
+/// The policy that gives the contacts their own kappa; null where the stiffness is one number.
 std::unique_ptr<StiffnessPolicy> asked_policy(const RunConfig& config) {
   PolicyConfig policy = config.formulation.stiffness_policy;
   if (needs_kappa(policy) || has_one_kappa(policy)) return nullptr;
@@ -95,11 +95,12 @@ std::unique_ptr<StiffnessPolicy> asked_policy(const RunConfig& config) {
 }
 
 Demand ask_contacts(const Matching& m, const Match& match, const BarrierFunction& barrier) {
-  if (!m.pilot || (m.config.matching.load && needs_kappa(m.config.formulation.stiffness_policy))) return {};
+  if (!m.calibration_run || (m.config.matching.load && needs_kappa(m.config.formulation.stiffness_policy)))
+    return {};
   const std::unique_ptr<StiffnessPolicy> policy = asked_policy(m.config);
-  const Demand demand =
-      contact_demand(*m.pilot, m.scene, matched_stiffness(match, barrier, m.config.formulation.d_hat),
-                     policy.get(), match.at(), m.options.limits());
+  const Demand demand = contact_demand(*m.calibration_run, m.scene,
+                                       matched_stiffness(match, barrier, m.config.formulation.d_hat),
+                                       policy.get(), match.at(), m.options.limits());
   m.record.contacts_considered = demand.considered;
   m.record.contacts_left_out = demand.left_out;
   note_left_out(m.record, demand, "contact", "N");
@@ -125,7 +126,7 @@ void match_contact(const Matching& m, Calibration& out) {
   m.record.load_source = "given";
   if (!matching.load) {  // a measured load belongs to the contact that carried it, and so does the width
     m.record.load_source = measured ? "pilot" : "static_weight";
-    match.load = measured ? demand.load : m.pilot->rest.contact;
+    match.load = measured ? demand.load : m.calibration_run->rest.contact;
     if (measured) d_hat = demand.width;
   }
   m.record.load_N = match.load;
@@ -141,7 +142,7 @@ void match_contact(const Matching& m, Calibration& out) {
     return;
   }
   if (!measured) {
-    return note(m.record, why_as_given("the contact", demand, "the pilot met no contact"));
+    return note(m.record, why_as_given("the contact", demand, "the calibration run met no contact"));
   }
   if (has_one_kappa(policy)) {
     const std::optional<double> start = policy_start(m.config, m.scene, out, m.options);
@@ -164,10 +165,10 @@ std::unique_ptr<StiffnessPolicy> asked_limit_policy(PolicyConfig policy) {
 
 Demand ask_elements(const Matching& m, const Match& match, const BarrierFunction& barrier) {
   const PolicyConfig& policy = m.config.strain_limit.stiffness_policy;
-  if (!m.pilot || (m.config.matching.limit_load && needs_k_s(policy))) return {};
+  if (!m.calibration_run || (m.config.matching.limit_load && needs_k_s(policy))) return {};
   const std::unique_ptr<StiffnessPolicy> own = asked_limit_policy(policy);
   const MatchedStiffness matched = matched_stiffness(match, barrier, m.scene.limit.width.front());
-  const Demand demand = limit_demand(*m.pilot, m.scene, matched, own.get(), m.options.limits());
+  const Demand demand = limit_demand(*m.calibration_run, m.scene, matched, own.get(), m.options.limits());
   m.record.elements_considered = demand.considered;
   m.record.elements_left_out = demand.left_out;
   note_left_out(m.record, demand, "limit", "N/m");
@@ -192,7 +193,7 @@ void match_limit(const Matching& m, Calibration& out) {
   m.record.limit_load_source = "given";
   if (!matching.limit_load) {
     m.record.limit_load_source = measured ? "pilot" : "static_weight";
-    match.load = measured ? demand.load : m.pilot->rest.limit;
+    match.load = measured ? demand.load : m.calibration_run->rest.limit;
     if (measured) width = demand.width;
   }
   m.record.limit_load_N_per_m = match.load;
@@ -203,7 +204,7 @@ void match_limit(const Matching& m, Calibration& out) {
     out.k_s = match.stiffness(barrier, width);
     m.record.limit_stiffness_N_per_m = *out.k_s;
   } else if (!measured) {
-    note(m.record, why_as_given("the limit's", demand, "the limit was never active in the pilot"));
+    note(m.record, why_as_given("the limit's", demand, "the limit was never active in the calibration run"));
   } else {
     out.limit_scale = demand.largest;
     m.record.limit_scale = out.limit_scale;
@@ -215,7 +216,8 @@ void match_solid_limit(const Matching& m, Calibration& out) {
   const MatchingConfig& matching = m.config.matching;
   const StrainLimitConfig& limit = m.config.strain_limit;
   if (!needs_k_s(limit.stiffness_policy)) {
-    note(m.record, "the policy of the limit stays as given in solids: no pilot measures their load");
+    note(m.record,
+         "the policy of the limit stays as given in solids: no calibration run measures their load");
     return;
   }
   if (matching.solid_limit_load) {
@@ -230,7 +232,7 @@ void match_solid_limit(const Matching& m, Calibration& out) {
 }
 
 /// Whether a load is missing, or a policy has to be asked about the contacts or elements that carried it.
-bool needs_pilot(const RunConfig& config, bool limited) {
+bool needs_calibration_run(const RunConfig& config, bool limited) {
   const bool contact = !config.matching.load || !needs_kappa(config.formulation.stiffness_policy);
   const bool limit = !config.matching.limit_load || !needs_k_s(config.strain_limit.stiffness_policy);
   return contact || (limited && limit);
@@ -254,11 +256,11 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOpti
   }
   record.theta = config.matching.theta;
   Matching matching{config, scene, options, record};
-  if (needs_pilot(config, out.limited)) {
-    matching.pilot = run_pilot(config, scene, options);
-    record.pilot_config_id = matching.pilot->config_id;
-    record.pilot_note = matching.pilot->stopped;
-    if (const int steps = matching.pilot->unanswered; steps > 0)
+  if (needs_calibration_run(config, out.limited)) {
+    matching.calibration_run = run_calibration(config, scene, options);
+    record.pilot_config_id = matching.calibration_run->config_id;
+    record.pilot_note = matching.calibration_run->stopped;
+    if (const int steps = matching.calibration_run->unanswered; steps > 0)
       note(record, fmt::format("of {} steps it is not known which forces are loads: all count", steps));
   }
   if (!scene.solid_limit.tetrahedra.empty()) match_solid_limit(matching, out);

@@ -57,7 +57,7 @@ FilePrefix trace_of(const fs::path& folder, std::string_view line) {
   const auto size = fs::file_size(part, unreachable);
   throw ConfigError(part.string(),
                     unreachable          ? "not there"
-                    : size < trace.bytes ? "shorter than the checkpoint beside it says"
+                    : size < trace.bytes ? "shorter than the checkpoint beside it states"
                                          : "not as the checkpoint beside it has it",
                     fmt::format("{}, or no --resume", line));
 }

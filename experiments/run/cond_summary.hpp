@@ -14,7 +14,7 @@ class Archive;
 class CondSummary {
  public:
   /// A matrix that is singular or not positive definite has no finite condition number: it counts with the
-  /// largest that is claimed, 1e14. An estimate that did not converge has no number and is only counted.
+  /// largest that is claimed, 1e14. An estimate that did not converge has no value and is only counted.
   void add(const ConditionSample& sample);
   /// Adds all samples of `other`, after those that are here.
   void append(const CondSummary& other);

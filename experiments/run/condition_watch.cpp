@@ -38,7 +38,7 @@ std::optional<Scaling> scaling_of(const LinearSolverConfig& solver) {
 }
 
 /// A value that is unknown is absent for the reason that the estimate itself gives.
-ConditionSample sample_of(MatrixForm matrix, MatrixStage stage, Scaling scaling, int tier,
+ConditionSample sample_of(MatrixForm matrix, MatrixStage stage, Scaling scaling, Estimator estimator,
                           const ConditionEstimate& e) {
   const auto known = [&e](double v) {
     return std::isfinite(v) ? Number(v) : Number::missing(to_string(e.status).data());  // a literal
@@ -46,7 +46,7 @@ ConditionSample sample_of(MatrixForm matrix, MatrixStage stage, Scaling scaling,
   return {matrix,
           stage,
           scaling,
-          tier,
+          static_cast<int>(estimator),
           known(e.lambda_min),
           known(e.lambda_max),
           known(e.cond),
@@ -72,11 +72,11 @@ bool ConditionWatch::due(int iteration) const {
 }
 
 void ConditionWatch::estimate(const ReducedSystem& matrix, MatrixForm form, MatrixStage stage) {
-  const int tier = config_.diagnose.tier;
+  const Estimator estimator = config_.diagnose.estimator;
   for (const Scaling scaling : config_.diagnose.scalings) {
     samples_.push_back(
-        sample_of(form, stage, scaling, tier,
-                  estimator_.estimate(matrix, {tier, scaling, config_.diagnose.seed,
+        sample_of(form, stage, scaling, estimator,
+                  estimator_.estimate(matrix, {estimator, scaling, config_.diagnose.seed,
                                                config_.diagnose.max_solves, config_.diagnose.max_products})));
   }
 }
@@ -99,7 +99,7 @@ void ConditionWatch::on_matrix(StepSystem& step_system, int step, int iteration)
   Diagnosis& system = step_system.on_host().diagnosis();
   form_ = system.solved_is_clamped() ? MatrixForm::clamped : MatrixForm::solved;
   const double start = now_s();
-  if (config_.diagnose.tier > 0) {  // tier 0 reads what the solve leaves
+  if (config_.diagnose.estimator != Estimator::ritz) {  // ritz reads what the solve leaves
     for (const std::string& name : config_.diagnose.stages) {
       for (const Stage& stage : stages) {
         const auto has_elements = [&](TermGroup group) { return system.active(group); };
@@ -129,8 +129,9 @@ void ConditionWatch::write_matrices(Diagnosis& system, int step, int iteration) 
 
 void ConditionWatch::on_iteration(const LinearReport& linear, TraceRow& row) {
   const std::optional<Scaling> scaling = scaling_of(config_.linear_solver);
-  if (due_ && config_.diagnose.tier == 0 && scaling) {  // the full matrix scaled by the preconditioner
-    samples_.push_back(sample_of(form_, MatrixStage::full, *scaling, 0,
+  if (due_ && config_.diagnose.estimator == Estimator::ritz &&
+      scaling) {  // the full matrix scaled by the preconditioner
+    samples_.push_back(sample_of(form_, MatrixStage::full, *scaling, Estimator::ritz,
                                  condition_from_ritz(linear.ritz_min, linear.ritz_max)));
   }
   for (const ConditionSample& sample : samples_) step_cond_.add(sample);

@@ -1,4 +1,4 @@
-// What is asked of a device before a run, and how it ends one.
+// What is required of a device before a run, and how it ends one.
 #pragma once
 
 #include <optional>
@@ -30,7 +30,7 @@ std::optional<std::string> card_of(const RunConfig& config);
 /// The kernel that the contact's shape brings, where the run is on a card. Errors: ConfigError without nvcc.
 const DeviceCode* device_code_in(const RunConfig& config);
 
-/// Whether everything that the config asks for has a device form. Errors: ConfigError naming what has none.
+/// Whether everything that the config requests has a device form. Errors: ConfigError naming what has none.
 void check_device_forms(const RunConfig& config, const Scene& scene);
 /// The same, and whether the device is there. Errors: ConfigError with the reason.
 void require_device(const RunConfig& config, const Scene& scene);

@@ -68,7 +68,7 @@ std::vector<Guarantee> guarantees(const StepSolverEntry& solver, const Scene& sc
   if (model == ContactModel::points) {
     out.push_back({"points only",
                    "this holds for vertices at obstacles; edges and triangles between them may be in an "
-                   "obstacle (the record says how deep), and surfaces may pass through each other"});
+                   "obstacle (the record reports how deep), and surfaces may pass through each other"});
   }
   return out;
 }

@@ -16,7 +16,7 @@ struct Guarantee {
 };
 
 /// One entry where every pair of bodies collides as `ccd`; else the step solver's of those that do, then one a kind that bounds less.
-/// Of the contact model points an entry more, which says what is not constrained. Cost: O(owners^2) where the scene chooses.
+/// Of the contact model points an entry more, which reports what is not constrained. Cost: O(owners^2) where the scene chooses.
 std::vector<Guarantee> guarantees(const StepSolverEntry& solver, const Scene& scene, ContactModel model);
 
 }  // namespace bb

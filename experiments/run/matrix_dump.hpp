@@ -11,9 +11,9 @@ namespace bb {
 
 /// What the conditioning comes from, as far as the samples of an iteration tell: "contact" or "strain_limit"
 /// when the (clamped, unscaled) matrix without those terms has a cond less than a tenth of that with them
-/// ("contact_or_strain_limit" where only the matrix without both was asked for), "elasticity_and_inertia" when
-/// neither counts that much. Empty when no stage was asked for. A matrix without a cond counts with 1e14.
-/// @param stages  those asked for; one without a sample has no active terms, and is the stage before it
+/// ("contact_or_strain_limit" where only the matrix without both was requested), "elasticity_and_inertia" when
+/// neither counts that much. Empty when no stage was requested. A matrix without a cond counts with 1e14.
+/// @param stages  those requested; one without a sample has no active terms, and is the stage before it
 std::string cause_of(const std::vector<ConditionSample>& samples, const std::vector<std::string>& stages);
 
 /// @param matrix   solved or exact, as `form` says; copied

@@ -90,7 +90,7 @@ std::unique_ptr<StiffnessPolicy> make_solid_limit_policy(const StrainLimitConfig
 ContactOptions contact_options(const ContactConfig& contact) {
   ContactOptions out;
   out.mollifier = contact.mollifier;
-  out.ccd_park = contact.ccd_park;
+  out.min_gap_fraction = contact.min_gap_fraction;
   out.weighting = contact.weighting.value_or(ContactWeighting::none);
   out.model = contact.model.value_or(ContactModel::all_pairs);
   out.rest_rule = contact.rest_rule.value_or(RestRule::on);

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Terms that the file says everything of.
+/// Terms that the file states everything of.
 const std::set<std::string_view> said = {"inertia", "external_force", "membrane", "hinges", "contact"};
 
 json to_json(const Positions& x) {
@@ -36,7 +36,7 @@ void check_terms(const Scene& scene, const Plan& plan) {
     const std::string_view name = term_entries()[entry].name;
     if (item.needed && !said.contains(name)) {
       refuse(scene, fmt::format("{} ({})", name, item.reason),
-             "membranes, hinges, contact, gravity and given vertices: engines share no other term");
+             "membranes, hinges, contact, gravity and prescribed vertices: engines share no other term");
     }
   }
 }
@@ -157,7 +157,7 @@ json obstacles_json(const Scene& scene) {
   return out;
 }
 
-/// Of given vertices, at the start and at the end of every step.
+/// Of prescribed vertices, at the start and at the end of every step.
 json given_json(const Scene& scene, double dt, int steps) {
   json vertices = json::array(), positions = json::array();
   for (const Pin& pin : scene.pins) vertices.push_back(pin.vertex);

@@ -45,7 +45,7 @@ struct Resumed {
 };
 
 /// The head of a checkpoint's archive. Errors: ConfigError when it is of another config, machine, plugin ...
-/// than `now`, the record of the run that is asked for, naming what differs.
+/// than `now`, the record of the run that is requested, naming what differs.
 std::optional<Resumed> read_resumed(Checkpoint& checkpoint, const RunRecord& now);
 
 /// Runs all passes, or what a checkpoint leaves of them, and fills the record. No time of the second pass is

@@ -68,7 +68,7 @@ std::vector<PrescribedCrossing> prescribed_crossings(const RunConfig& config, co
   const double dt = config.time.dt;
   const audit::AuditMesh mesh = prescribed_part(audit_mesh_of(config, scene));
   if (mesh.points.empty()) return out;  // no more than obstacles are prescribed
-  const double tolerance = audit_tolerance(scene, config.contact.ccd_park);
+  const double tolerance = audit_tolerance(scene, config.contact.min_gap_fraction);
   double last_end = 0;  // from then on every motion has ended
   for (const PrescribedMotion& motion : scene.motions) last_end = std::max(last_end, motion.last_change());
   std::optional<audit::Audit> judge(std::in_place, mesh);

@@ -21,8 +21,8 @@ Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& recor
   if (artifacts_ && config.output.frames_every > 0) artifacts_->start();
   record_.audit.enabled = config.passes.audit;
   if (config.passes.audit)
-    audit_.emplace(scene, config.time.dt, config.contact.ccd_park, record_.audit, promised_overlap(config),
-                   config.contact.model == ContactModel::points);
+    audit_.emplace(scene, config.time.dt, config.contact.min_gap_fraction, record_.audit,
+                   promised_overlap(config), config.contact.model == ContactModel::points);
 }
 
 void Recorder::on_matrix(StepSystem& system, int step, int iteration) {

@@ -19,7 +19,7 @@ struct TimeOver {
 struct RunLimits {
   const std::atomic<bool>* interrupted = nullptr;  // may be null
   double deadline_s = 0;                           // as now_s() counts; 0: none
-  double time_limit_s = 0;                         // what was asked for, for the message
+  double time_limit_s = 0;                         // what was requested, for the message
 
   /// Between two parts of what comes before the first step: of `part`, at a place such as "before its step 3 of 20".
   /// Errors: Interrupted; TimeOver.

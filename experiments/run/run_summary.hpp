@@ -1,4 +1,4 @@
-// What a summary says of the steps of a run.
+// What a summary reports of the steps of a run.
 #pragma once
 
 #include "core/base/record/run_record.hpp"

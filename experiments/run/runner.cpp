@@ -49,7 +49,7 @@ std::vector<PluginFile> with_formulas(const RunConfig& config, std::vector<Plugi
 }
 
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
-// geometry or its pilot can show that.
+// geometry or its calibration run can show that.
 void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, Checkpoint& checkpoint,
               Resumed* resumed, RunRecord& record, RunFiles& files) {
   fill_scene(scene, record);
@@ -121,7 +121,7 @@ std::optional<Resumed> resumed_from(Checkpoint& checkpoint, const RunRecord& ask
   return std::nullopt;
 }
 
-/// The record of this very run, where the folder has it and it is asked for: that of a process that was killed behind it, or
+/// The record of this very run, where the folder has it and it is requested: that of a process that was killed behind it, or
 /// of one that had the folder a moment ago.
 std::optional<RunRecord> recorded(const RunRecord& asked_for, const RunOptions& options) {
   if (options.resume == Resume::no) return std::nullopt;
@@ -144,7 +144,7 @@ void put_finished_in_place(const std::filesystem::path& folder, Checkpoint& chec
   put_in_place(folder);
 }
 
-/// simulate(); where memory or a device fails before the first step, the record says so. Interrupted: nothing of this run is left
+/// simulate(); where memory or a device fails before the first step, the record reports it. Interrupted: nothing of this run is left
 /// but what it can go on from.
 void simulate_or_say(const RunConfig& config, const Scene& scene, const RunOptions& options,
                      Checkpoint& checkpoint, Resumed* resumed, RunRecord& record, RunFiles& files) {
@@ -167,7 +167,7 @@ void simulate_or_say(const RunConfig& config, const Scene& scene, const RunOptio
   }
 }
 
-/// What a record says of a whole run, once its last step is over.
+/// What a record reports of a whole run, once its last step is over.
 void complete(const RunConfig& config, const RunOptions& options, const RunFiles& files, RunRecord& record) {
   record.artifacts = files.written();  // also where memory ran out beside a step
   fill_labels(config, options, record);
@@ -256,7 +256,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   if (options.note.empty()) options.note = own_note(config);
   if (options.time_limit_s > 0) options.deadline_s = now_s() + options.time_limit_s;
   const auto threads = threads_of(config);
-  set_one_blas_thread();  // before the record says how many there are, and before anything computes
+  set_one_blas_thread();  // before the record reports how many there are, and before anything computes
   // before anything is written: what config and files can tell is refused here
   const Scene scene = build_scene(config);
   require_device(config, scene);

@@ -19,7 +19,7 @@ namespace bb {
 /// What a progress line shows.
 struct Progress {
   std::string label;      // the note of the run
-  const char* pass = "";  // "pilot", "time" or "diagnose"
+  const char* pass = "";  // "calibration", "time" or "diagnose"
   int step = 0, steps = 0;
   double t_s = 0, t_end_s = 0;  // simulated
   int newton = 0;               // iterations of the step
@@ -51,9 +51,10 @@ struct RunOptions {
   std::function<void(const std::string&)> tell;   // what the user should know beside the record; may be empty
   const std::atomic<bool>* interrupted = nullptr;
   Resume resume = Resume::no;
-  double time_limit_s = 0;  // of this process, looked at between two steps, those of the pilot too; 0: none
-  int step_limit = 0;       // of this process in each pass; 0: none
-  double deadline_s = 0;    // set by run_config: when that is over, as now_s() counts
+  double time_limit_s =
+      0;  // of this process, looked at between two steps, those of the calibration run too; 0: none
+  int step_limit = 0;     // of this process in each pass; 0: none
+  double deadline_s = 0;  // set by run_config: when that is over, as now_s() counts
 
   RunLimits limits() const { return {interrupted, deadline_s, time_limit_s}; }
 };

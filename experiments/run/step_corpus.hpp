@@ -17,7 +17,7 @@ namespace bb {
 struct CorpusTrial {
   std::string step_solver,
       hessian;                  // hessian: of line_search; empty: that of the config, or the solver's own
-  bool exact_friction = false;  // /friction/hessian is exact here, and not as the config says
+  bool exact_friction = false;  // /friction/hessian is exact here, and not as the config states
   std::string refused;          // why this step solver cannot take the state; empty: it was taken
   StepStatus status = StepStatus::converged;
   bool has_memory = true;  // TakenStep

@@ -32,7 +32,7 @@ struct StepStart {
 inline constexpr double reference_finer = 1000;
 
 struct StepVariant {
-  std::optional<StepHessian> hessian = std::nullopt;  // of all terms; absent: as the config says
+  std::optional<StepHessian> hessian = std::nullopt;  // of all terms; absent: as the config states
   double finer = 1;                                   // the tolerance is divided by it
   bool keeps_states = false;
 };

@@ -1,5 +1,5 @@
 // How the forces of barriers answer to their stiffness: what the world puts on a contact stays when the barrier gets
-// stiffer, what only the barrier's own stiffness makes, as between given bodies at a fixed distance, grows with it.
+// stiffer, what only the barrier's own stiffness makes, as between prescribed bodies at a fixed distance, grows with it.
 #pragma once
 
 #include <utility>

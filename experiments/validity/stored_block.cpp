@@ -36,7 +36,7 @@ BlockCheck check_of(const Json& j) {
   return check;
 }
 
-/// What a stored report says, if it is one of this build with exactly the checks of the block. `pass` is not read: it
+/// What a stored report holds, if it is one of this build with exactly the checks of the block. `pass` is not read: it
 /// follows from the numbers.
 std::optional<BuildValidity> read_report(const std::filesystem::path& file, const BuildKey& build,
                                          std::string& text) {

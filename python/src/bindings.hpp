@@ -1,4 +1,4 @@
-// What the files of this room share: arrays as numpy has them, and the part of the module that each file makes.
+// What the files of this module share: arrays as numpy has them, and the part of the module that each file makes.
 #pragma once
 
 #include <nanobind/nanobind.h>

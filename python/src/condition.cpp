@@ -39,7 +39,8 @@ auto condition(const Indices& starts, const Indices& rows, const Column& values,
                int tier, std::uint64_t seed) {
   const ReducedSystem system = system_of(starts, rows, values);
   ConditionOptions options;
-  options.tier = tier;
+  if (tier < 1 || tier > 4) throw ConfigError("condition tier", std::to_string(tier), "1, 2, 3 or 4");
+  options.estimator = static_cast<Estimator>(tier);
   options.seed = seed;
   bool known = false;
   for (const Scaling each : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {

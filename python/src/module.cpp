@@ -1,4 +1,4 @@
-// The module _core: what src/*.cpp bind, and how errors of the rooms are told. The package barrierbench wraps it.
+// The module _core: what src/*.cpp bind, and how errors of the modules are reported. The package barrierbench wraps it.
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 

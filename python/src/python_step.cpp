@@ -105,7 +105,7 @@ void PythonStep::set_up() {
 
 PythonStep::System PythonStep::system() {
   require_iteration();
-  if (directed_) throw std::runtime_error("the iteration has a direction: ask for its matrix first");
+  if (directed_) throw std::runtime_error("the iteration has a direction: request its matrix first");
   return call([&] {
     set_up();
     const Eigen::SparseMatrix<double>& lower = system_->diagnosis().solved().lower;

@@ -98,7 +98,7 @@ StepSolverEntry entry_of(const std::string& name, const std::string& doc, const 
   entry.asked_to_converge = false;  // that is its own word: how far an end is from the solution is measured
   entry.settings.unbounded = [](const ParameterMap&) {
     return true;
-  };  // whether it asks for bounds nobody knows
+  };  // whether it requests bounds nobody knows
   entry.make = [&call](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<PythonStepSolver>(options, call);
   };

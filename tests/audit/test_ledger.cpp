@@ -137,7 +137,7 @@ TEST(Ledger, AKindThatWasNeverAskedLeavesNothingJudged) {
     EXPECT_EQ(missing.judged(), 0);
     EXPECT_TRUE(missing.clean());
     EXPECT_FALSE(missing.ok());
-    missing.subjects.at_obstacles.*kind = 0;  // not asked for, so not missed
+    missing.subjects.at_obstacles.*kind = 0;  // not requested, so not missed
     EXPECT_GT(missing.judged(), 0);
     EXPECT_TRUE(missing.ok());
   }

@@ -1,4 +1,4 @@
-// Shared by the tests of this room: every registered shape on both arguments, and gaps spaced
+// Shared by the tests of this module: every registered shape on both arguments, and gaps spaced
 // towards both ends.
 #pragma once
 

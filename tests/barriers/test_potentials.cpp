@@ -182,7 +182,7 @@ TEST(FoldedBarrier, IsRefusedWhereThereIsNoPotential) {
   EXPECT_TRUE(has_potential(barrier("cubic")));
 }
 
-/// What a policy says of its own settings: place, value and what is allowed.
+/// What a policy reports of its own settings: place, value and what is allowed.
 TEST(KappaDerivative, IsIncludedOnlyPerStepAndWhereKappaDependsOnTheGap) {
   const auto refusal = [](const char* mass_term, const char* refresh) -> std::vector<Violation> {
     PolicyConfig config;

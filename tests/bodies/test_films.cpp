@@ -69,7 +69,7 @@ TEST(Films, AreRefusedByName) {
   expect(of(film_to(Positions(x.colwise() + Vec3d(0, 0, 0.1)), raised)),
          {"vertex", "0.1 m from where", "do not jump"});
   expect(of(film_to(Positions(1000 * x), raised)), {"1000 times as large", "unit may be another"});
-  expect(of(film_to(x, [](const Vec3d&) { return Vec3d(NAN, 0, 0); })), {"no number", "at 1 s", "finite"});
+  expect(of(film_to(x, [](const Vec3d&) { return Vec3d(NAN, 0, 0); })), {"NaN", "at 1 s", "finite"});
   BodySpec flat = cloth("flat");
   PinSpec pin;
   pin.all = true;

@@ -40,7 +40,7 @@ TEST(scene_checks, refuse_free_vertices_without_mass) {
   expect_complaint(found, "body \"loose\": found 1 free vertices without mass, the first is 12");
 }
 
-/// What is said of a material of a body with this mesh and nothing else wrong.
+/// What is reported of a material of a body with this mesh and nothing else wrong.
 std::string said_of(const TriangleMesh& mesh, const std::function<void(Material&)>& change) {
   BodySpec body = cloth("body");
   body.mesh = mesh;

@@ -1,4 +1,4 @@
-// Of the tests of the rooms with kernels on a card: every launch runs on the host and on the card, from the same memory, and
+// Of the tests of the modules with kernels on a card: every launch runs on the host and on the card, from the same memory, and
 // both have to leave the same bits. A kernel that does not is a failure of the test, once, and the test goes on with the
 // host's numbers, so that one run names them all.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Small configs as text, and what the parser says of them.
+// Small configs as text, and what the parser reports of them.
 #pragma once
 
 #include <gtest/gtest.h>

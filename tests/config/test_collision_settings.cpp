@@ -1,4 +1,4 @@
-// Collision kinds and groups: what a config says of them, and what it may not.
+// Collision kinds and groups: what a config states of them, and what it may not.
 #include "tests/config/config_text.hpp"
 
 namespace bb::test::collision_settings_test {

@@ -178,7 +178,7 @@ const std::vector<Overrides>& settings() {
       {"", "/linear_solver/name=pcg", "/linear_solver/name=auto"},
       {"", "/device=host", "/precision=float", "/precision=mixed", "/threads=3", "/threads=0"},
       {"", "/seeds/jitter_m=-0.0", "/seeds/jitter_m=0.0", "/seeds/jitter_m=1e-6", "/seeds/main=5"},
-      {"", "/contact/step_bound=per_vertex", "/contact/ccd_park=1e-5", "/contact/weighting=area"},
+      {"", "/contact/step_bound=per_vertex", "/contact/min_gap_fraction=1e-5", "/contact/weighting=area"},
       {"", "/method=nowhere", "/nowhere=1", "/extends=a", "time=1", "/name=a", "/doc=b"},
       {"", "/scene/translate_m=[0,0,-0.0]", "/scene/translate_m=[0,0,1]"}};
   return all;

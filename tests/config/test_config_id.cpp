@@ -22,7 +22,7 @@ TEST(ConfigId, LabelsAndSpelledOutDefaultsDoNotChangeIt) {
   const std::string id = config_id(parsed(hang_config()));
   EXPECT_EQ(config_id(parsed(with(hang_config(), "/doc", "words"))), id);
   EXPECT_EQ(config_id(parsed(with(hang_config(), "/precision", "double"))), id);
-  EXPECT_EQ(config_id(parsed(with(hang_config(), "/contact/ccd_park", 1e-6))), id);
+  EXPECT_EQ(config_id(parsed(with(hang_config(), "/contact/min_gap_fraction", 1e-6))), id);
 }
 
 TEST(ConfigId, ThreadsDoNotChangeItAndStandInTheResolvedConfig) {
@@ -38,7 +38,7 @@ TEST(ConfigId, EverySettingChangesIt) {
                                                               {"/time/dt_s", 0.0123},
                                                               {"/time/steps", 3},
                                                               {"/seeds/main", 2},
-                                                              {"/contact/ccd_park", 1e-5},
+                                                              {"/contact/min_gap_fraction", 1e-5},
                                                               {"/integrator/name", "bdf2"},
                                                               {"/passes/audit", false},
                                                               {"/formulation/name", "cubic"},

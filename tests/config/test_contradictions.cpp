@@ -129,21 +129,22 @@ TEST(Contradictions, MatchingWithoutWhatItAsksFor) {
   expect_violation(config, "/matching/limit_load_N_per_m", "1e+308", "a number >= 1e-36 and <= 1e+18 (N/m)");
 }
 
-TEST(Contradictions, APilotWithoutWeight) {
+TEST(Contradictions, ACalibrationRunWithoutWeight) {
   json config = with(bodies_config(), "/scene/gravity_m_per_s2", {0, 0, 0});
   config["matching"] = {{"rule", "equal_force"}};
-  expect_violation(config, "/matching/load_N", "nothing", "without gravity no pilot can start");
+  expect_violation(config, "/matching/load_N", "nothing", "without gravity no calibration run can start");
   config["matching"]["load_N"] = 1;
   EXPECT_EQ(parsed(config).matching.load, 1);
   config["formulation"]["name"] = "cubic_dynamic";
   expect_violation(config, "/matching/rule", "\"equal_force\"", "as_given: policy elasticity_inclusive");
 }
 
-TEST(Contradictions, ALimitOnNothingNeedsNoPilot) {
+TEST(Contradictions, ALimitOnNothingNeedsNoCalibrationRun) {
   json config = with(bodies_config(), "/scene/gravity_m_per_s2", {0, 0, 0});
   config["matching"] = {{"rule", "equal_force"}, {"load_N", 1}};
   config["strain_limit"] = {{"limit", 0.1}};
-  expect_violation(config, "/matching/limit_load_N_per_m", "nothing", "without gravity no pilot can start");
+  expect_violation(config, "/matching/limit_load_N_per_m", "nothing",
+                   "without gravity no calibration run can start");
   config["scene"]["bodies"][0]["limited"] = false;
   EXPECT_TRUE(parsed(config).strain_limit.enabled);
 }
@@ -165,16 +166,16 @@ TEST(Contradictions, LimitGivenTwice) {
 TEST(Contradictions, DiagnosesWithoutTheirSource) {
   json config = hang_config();
   config["passes"] = {{"diagnose", true}};
-  config["diagnose"] = {{"tier", 0}};
-  expect_violation(config, "/diagnose/tier", "0", "pcg");
+  config["diagnose"] = {{"estimator", "ritz"}};
+  expect_violation(config, "/diagnose/estimator", "ritz", "pcg");
   config["linear_solver"] = {{"name", "pcg"}};
-  expect_violation(config, "/diagnose/tier", "0", "linear_solver.forcing fixed");
+  expect_violation(config, "/diagnose/estimator", "ritz", "linear_solver.forcing fixed");
   config["linear_solver"]["forcing"] = "fixed";
-  EXPECT_EQ(parsed(config).diagnose.tier, 0);
+  EXPECT_EQ(parsed(config).diagnose.estimator, Estimator::ritz);
   config["diagnose"]["scalings"] = {"none"};
-  expect_violation(config, "/diagnose/tier", "0", "a preconditioner among diagnose.scalings");
+  expect_violation(config, "/diagnose/estimator", "ritz", "a preconditioner among diagnose.scalings");
   config["linear_solver"]["preconditioner"] = "none";
-  EXPECT_EQ(parsed(config).diagnose.tier, 0);
+  EXPECT_EQ(parsed(config).diagnose.estimator, Estimator::ritz);
   config["diagnose"]["stages"] = {"without_contact"};
   expect_violation(config, "/diagnose/stages", "no stage full", "the matrix that PCG solves");
 }

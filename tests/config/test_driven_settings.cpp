@@ -1,4 +1,4 @@
-// Motions, pulls, obstacles that move, gravity and wind over time: what a config says of them, and what it may not.
+// Motions, pulls, obstacles that move, gravity and wind over time: what a config states of them, and what it may not.
 #include "tests/config/config_text.hpp"
 
 namespace bb::test::driven_settings_test {
@@ -97,7 +97,7 @@ TEST(DrivenSettings, ThatContradictEachOtherAreRefused) {
   expect_violation(config, "/scene/air/wind_m_per_s", "a wind beside wind_schedule", "one of both");
 }
 
-/// What building the scene of a config says, which reading it does not refuse.
+/// What building the scene of a config states, which reading it does not refuse.
 std::string refusal(const json& config) {
   try {
     build_scene(parsed(config));

@@ -128,7 +128,7 @@ TEST(Methods, FrictionIsThatOfThePublicationWhereACoefficientIsAboveZero) {
     EXPECT_TRUE(method_use(plain).overridden.empty());
   }
   expect_violation(pure_with("ipc2020", "/friction/mu", 0.3), "/friction/mu", "0.3",
-                   "0 with method ipc2020, whose file says nothing of friction");
+                   "0 with method ipc2020, whose file states nothing about friction");
 }
 
 // A family reads only the sections that changed.
@@ -199,7 +199,7 @@ class MethodFile : public testing::Test {
   }
   void TearDown() override { ::unsetenv("BARRIERBENCH_CONFIGS"); }
 
-  /// What is said of a file m.json.
+  /// What is reported of a file m.json.
   std::vector<Violation> said(const json& file) const {
     std::ofstream(folder_ / "methods/m.json") << file.dump();
     try {

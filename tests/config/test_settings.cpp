@@ -258,7 +258,7 @@ TEST(Settings, EntriesShareARowOnlyWithOneRule) {
   expect_one_rule(integrators());
 }
 
-/// What is said of step solvers that end in a minimum is of all of these, and of no other.
+/// What is reported of step solvers that end in a minimum is of all of these, and of no other.
 TEST(Settings, HelpNamesTheStepSolversThatEndInAMinimum) {
   const auto schema = schema_document("config");
   const auto& sections = schema["properties"];

@@ -1,4 +1,4 @@
-// Weight groups of a config: files with their hash, boxes, formulas, ramps; what a resolved config says of them, and what is refused with its place.
+// Weight groups of a config: files with their hash, boxes, formulas, ramps; what a resolved config states of them, and what is refused with its place.
 #include <fstream>
 
 #include "tests/config/config_text.hpp"
@@ -199,10 +199,10 @@ TEST(WeightSettings, have_one_source_each) {
     expect_violation(weighted({group("a", more)}), "/scene/bodies/0/weights/0" + place, found, allowed);
   };
   const json boxes = {{{"box_m", {{0, 0, 0}, {1, 1, 1}}}}};
-  at(json::object(), "", "no weights, or two ways to say them",
+  at(json::object(), "", "no weights, or two ways to state them",
      "one of file, boxes, formula, from_m with to_m");
-  at({{"boxes", boxes}, {"from_m", 0}, {"to_m", 1}}, "", "no weights, or two ways to say them", "one of");
-  at({{"boxes", boxes}, {"formula", "1"}}, "", "no weights, or two ways to say them", "one of");
+  at({{"boxes", boxes}, {"from_m", 0}, {"to_m", 1}}, "", "no weights, or two ways to state them", "one of");
+  at({{"boxes", boxes}, {"formula", "1"}}, "", "no weights, or two ways to state them", "one of");
   at({{"from_m", 0}}, "/to_m", "nothing", "both from_m and to_m");
   at({{"to_m", 0}}, "/from_m", "nothing", "both from_m and to_m");
   at({{"from_m", 2}, {"to_m", 2}}, "/to_m", "2", "another number than from_m");

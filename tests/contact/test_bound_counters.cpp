@@ -1,4 +1,4 @@
-// What a step bound says is of its own motion: no number of it depends on the motions before.
+// What a step bound says is of its own motion: none of its counters depends on the motions before.
 #include <gtest/gtest.h>
 
 #include "tests/contact/close_bodies.hpp"

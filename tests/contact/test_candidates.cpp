@@ -101,7 +101,7 @@ std::size_t expect_all_that_matter(const Scene& scene, const std::vector<IndexPa
       const IndexPair index{static_cast<int>(i), static_cast<int>(j)};
       const ContactPair<K> pair = contact_pair<K>(surface, index);
       const auto from = gather(scene.x0, pair.vertex), to = gather(x1, pair.vertex);
-      const double park = ContactOptions().ccd_park * pair.law.d_hat,
+      const double park = ContactOptions().min_gap_fraction * pair.law.d_hat,
                    row = activation_distance<K>(surface, pair.vertex.data(), pair.law);
       bool matters = accd<K, double>(from, to, pair.law.offset, park).hit;
       for (const double t : {0.0, 0.5, 1.0}) {

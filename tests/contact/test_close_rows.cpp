@@ -143,7 +143,7 @@ TEST(CloseRows, OfManyBodiesAreThoseOfAllPairs) {
   Tally tally;
   for (unsigned seed = 1; seed <= 100; ++seed) {
     Scene scene = mixed_scene(seed, seed % 4 == 0, seed % 2 ? 1 : 20);
-    scene.pins.clear();  // a row that only given vertices decide is left out: see Rows
+    scene.pins.clear();  // a row that only prescribed vertices decide is left out: see Rows
     expect_brute_force(scene, random_motion(scene.x0, 0, seed), tally);
   }
   EXPECT_GT(tally.rows, 1000U);

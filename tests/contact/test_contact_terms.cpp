@@ -13,7 +13,7 @@ constexpr double kappa = 3.5;
 using Matrix = Eigen::MatrixXd;
 
 struct Assembled {
-  VecXd gradient;  // [3 n_vertices], given vertices included: they must stay 0
+  VecXd gradient;  // [3 n_vertices], prescribed vertices included: they must stay 0
   Matrix hessian;
   std::size_t n_rows;
 };
@@ -102,7 +102,7 @@ double projected_error(ContactSystem& contacts, const Scene& scene, const Matrix
   return best;
 }
 
-/// Scenes of exactly one row each, one for every kind, and some with given vertices.
+/// Scenes of exactly one row each, one for every kind, and some with prescribed vertices.
 std::vector<Scene> one_row_scenes() {
   const std::vector<Vec3d> triangle{{0, 0, 0}, {1, 0.1, 0}, {0.1, 1, 0.05}};
   std::vector<Scene> scenes;

@@ -1,5 +1,5 @@
 // Queries that run out of probes among pairs that block earlier or later: what is left of the bound is proven, says that probes ran
-// out, and names the pair that it is of. Every pair is asked here by itself, and states up to the bound are measured in long double.
+// out, and names the pair that it is of. Every pair is queried here by itself, and states up to the bound are measured in long double.
 #include <gtest/gtest.h>
 
 #include <map>

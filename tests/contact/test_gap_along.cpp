@@ -56,7 +56,7 @@ Positions force_of(ContactTable rows, std::size_t r, const Positions& x, const P
   std::fill(rows.d2b.begin(), rows.d2b.end(), 0.0);
   rows.d2b[r] = d2b;
   Positions force = Positions::Zero(3, x.cols());
-  add_detour(rows, x, dx, force);
+  add_curvature_correction(rows, x, dx, force);
   return force;
 }
 
@@ -120,7 +120,7 @@ TEST(HoldTimes, NameCurvatureWhereAnEdgeRolls) {
   const auto held = [&](const Vec3d& first, const Vec3d& second, Positions* force = nullptr) {
     Positions dx(3, 2), none = Positions::Zero(3, 2);
     dx.col(0) = first, dx.col(1) = second;
-    return add_detour(rows.table, scene.x0, dx, force ? *force : none);
+    return add_curvature_correction(rows.table, scene.x0, dx, force ? *force : none);
   };
   // it turns by s about the foot, at a quarter of its length: by s^2/2 it comes nearer
   const double s = 0.02;

@@ -1,5 +1,5 @@
 // What driven vertices add to the right-hand side of the free ones: that of the Hessian of the same scene in which nobody
-// is given, whatever slots of a row the given vertices stand in.
+// is given, whatever slots of a row the prescribed vertices stand in.
 #include <gtest/gtest.h>
 
 #include "core/math/lower_blocks.hpp"

@@ -1,4 +1,4 @@
-// An obstacle that moves is a given vertex: its rows, the bound of a motion past it and what its motion adds to the
+// An obstacle that moves is a prescribed vertex: its rows, the bound of a motion past it and what its motion adds to the
 // right-hand side are those of the same obstacle at rest, seen from it.
 #include <gtest/gtest.h>
 

@@ -127,7 +127,7 @@ LongMatrix projected(const LongMatrix& h, Projection projection, Long* lowest) {
   return compose(own.vectors, values, own.vectors);
 }
 
-/// Soups with free and given vertices of several sizes of triangles, and obstacles of every kind.
+/// Soups with free and prescribed vertices of several sizes of triangles, and obstacles of every kind.
 Scene mixed_scene(unsigned seed) {
   Scene scene;
   const auto [v1, t1] = soup(60, 0.2, seed);

@@ -1,4 +1,4 @@
-// Rows of the contact table: regions, given vertices, offsets, completeness; pairs of one feature are in
+// Rows of the contact table: regions, prescribed vertices, offsets, completeness; pairs of one feature are in
 // test_rows_of_one_feature.cpp.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
@@ -114,7 +114,7 @@ TEST(Rows, EveryRegionOfTwoEdges) {
   }
 }
 
-TEST(Rows, GivenVerticesHaveNoColumns) {
+TEST(Rows, PrescribedVerticesHaveNoColumns) {
   const Scene scene = point_over_grid(Vec3d(1.7, 1.2, 0.05), d_hat, true);
   ContactSystem contacts(scene, {});
   const Rows rows = rows_at(contacts, scene.x0);

@@ -41,7 +41,7 @@ TEST(StepBound, AMotionThatIsNotFiniteIsNotTakenAtAll) {
   x1(2, 9) = 0.5;
   ASSERT_EQ(bound(scene, x1).alpha, 1);
   ContactSystem contacts(scene, {});
-  contacts.update_candidates(scene.x0, x1);  // as for a motion that becomes no number behind it
+  contacts.update_candidates(scene.x0, x1);  // as for a motion that becomes NaN behind it
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
                    inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf}) {
@@ -54,7 +54,7 @@ TEST(StepBound, AMotionThatIsNotFiniteIsNotTakenAtAll) {
   }
 }
 
-/// Planes and axes of a pair, with each number of its motion in turn no number.
+/// Planes and axes of a pair, with each number of its motion in turn NaN.
 TEST(StepBound, WhatIsNoNumberIsProvenByNoPlane) {
   constexpr PairKind K = PairKind::edge_edge;
   const PairLanes<K, double> points{{{0, 0, 0}, {1, 0, 0}, {0.5, -0.5, 1}, {0.5, 0.5, 1}}};

@@ -31,7 +31,7 @@ StepBound every_candidate(const Scene& scene, const Positions& x1) {
     for (const IndexPair index : pairs) {
       const ContactPair<K> pair = contact_pair<K>(surface, index);
       const auto r = accd<K, double>(gather(scene.x0, pair.vertex), gather(x1, pair.vertex), pair.law.offset,
-                                     options.ccd_park * pair.law.d_hat);
+                                     options.min_gap_fraction * pair.law.d_hat);
       ++out.queries;
       take(r.hit ? r.toi : 1, contact_kind<K>(), pair_key(pair.vertex));
     }
@@ -43,7 +43,7 @@ StepBound every_candidate(const Scene& scene, const Positions& x1) {
           const Side law = primitives.side[at(index.first)];
           const AnalyticSurface<double>& obstacle = obstacles[at(index.second)];
           const Mat<double, 3, N> from = gather(scene.x0, vertex), to = gather(x1, vertex);
-          const double park = options.ccd_park * law.d_hat;
+          const double park = options.min_gap_fraction * law.d_hat;
           const auto kind = static_cast<ContactKind>(static_cast<int>(ContactKind::obstacle) + N - 1);
           if constexpr (N == 1) {
             take(obstacle_toi(obstacle, obstacle, from, to, law.offset, park), kind,

@@ -1,5 +1,5 @@
 // Thickness in every bound on a time: bodies that come towards each other along an axis and end within their thickness,
-// where boxes, planes and the order in which pairs are asked decide before the pair itself is asked.
+// where boxes, planes and the order in which pairs are queried decide before the pair itself is asked.
 #include <gtest/gtest.h>
 
 #include "tests/contact/close_bodies.hpp"

@@ -61,7 +61,7 @@ inline bool closest_of_faces(const Corners& a, const Corners& b, const std::vect
   return true;
 }
 
-/// Every pair of faces is asked. Two triangles are no pair here: they have three free weights too many.
+/// Every pair of faces is queried. Two triangles are no pair here: they have three free weights too many.
 inline TrueClosest true_closest(const Corners& a, const Corners& b) {
   static const std::vector<std::vector<int>> faces[] = {
       {}, {{0}}, {{0}, {1}, {0, 1}}, {{0}, {1}, {2}, {0, 1}, {1, 2}, {2, 0}, {0, 1, 2}}};

@@ -1,4 +1,4 @@
-// Stiffness of limited elements and what is said of it, against closed forms: triangles in space and in the plane, tetrahedra.
+// Stiffness of limited elements and what is reported of it, against closed forms: triangles in space and in the plane, tetrahedra.
 #include <gtest/gtest.h>
 
 #include "barriers/shapes/registry.hpp"

@@ -28,7 +28,7 @@ const std::vector<Vec<double, 9>> states = {
     Vec<double, 9>{{0, 0, 0, 1, 0, 0, 0, 1e-9, 0}},      // nearly on a line
 };
 
-/// As numbers compare, but two that are none are the same.
+/// As numbers compare, but two NaNs are the same.
 template <class T>
 void expect_same(T got, T one) {
   EXPECT_TRUE(got == one || (got != got && one != one)) << got << " " << one;

@@ -68,7 +68,7 @@ class Compared : public Both {
   }
   /// To within rounding of its largest number, at all levels of what a step's Hessian may be.
   void expect_same_matrix() {
-    for (HessianLevel level({StepHessian::blend, StepHessian::progressive});; level.raise(2)) {
+    for (HessianRegularisation level({StepHessian::blend, StepHessian::progressive});; level.raise(2)) {
       const Eigen::MatrixXd expected = matrix(cpu, level), found = matrix(there, level);
       const double size = expected.cwiseAbs().maxCoeff();
       ASSERT_GT(size, 1e-3);
@@ -92,7 +92,7 @@ class Compared : public Both {
     EXPECT_NEAR(size[1].vertex_m, size[0].vertex_m, 1e-8 * size[0].vertex_m);
     EXPECT_NEAR(size[1].slope_J, size[0].slope_J, 1e-8 * std::abs(size[0].slope_J));
   }
-  /// What is said of a given direction, as long as motions are and as long as rounding is.
+  /// What is reported of a given direction, as long as motions are and as long as rounding is.
   void expect_same_direction(const Positions& dx) {
     for (const double scale : {1.0, 1e-14}) {
       DirectionSize size[2];
@@ -149,15 +149,15 @@ class Compared : public Both {
     }
   }
   /// The step goes on with friction of the loads at its iterate.
-  void renew_lag(Counts& counts) {
-    const bool renewed = cpu.renew_lag();
-    EXPECT_EQ(there.renew_lag(), renewed);
+  void renew_lagged_state(Counts& counts) {
+    const bool renewed = cpu.renew_lagged_state();
+    EXPECT_EQ(there.renew_lagged_state(), renewed);
     counts.renewed += renewed;
     for (StepSystem* system : systems()) system->assemble();
   }
   /// Friction has a share of its secant from here on, where there is friction.
   void take_secant(Counts& counts) {
-    const HessianLevel first({StepHessian::blend});
+    const HessianRegularisation first({StepHessian::blend});
     const Eigen::MatrixXd exact = matrix(cpu, first);
     const bool taken = cpu.take_secant(0.25);
     EXPECT_EQ(there.take_secant(0.25), taken);
@@ -241,7 +241,7 @@ class Compared : public Both {
   double rounding_;
 
   /// Rows and columns of free degrees of freedom.
-  Eigen::MatrixXd matrix(NewtonSystem& system, const HessianLevel& level) const {
+  Eigen::MatrixXd matrix(NewtonSystem& system, const HessianRegularisation& level) const {
     IncrementalPotential& potential = system.potential();
     const std::vector<std::uint8_t>& fixed = system.view().fixed();
     const auto n = static_cast<Eigen::Index>(fixed.size());

@@ -76,10 +76,10 @@ inline FrictionOptions friction_options(const std::string& law, CombineRule rule
 }
 
 /// The rows of the host at x, with loads, and how strong each is.
-struct HostLag {
+struct HostLaggedState {
   ContactLoads contacts;
   std::vector<double> strength;
-  HostLag(const Scene& scene, const Positions& x, const Sides& sides) {
+  HostLaggedState(const Scene& scene, const Positions& x, const Sides& sides) {
     ContactSystem system(scene, {});
     Rows rows = rows_at(system, x);
     evaluate_cubic(rows.table);
@@ -111,26 +111,27 @@ struct Sums {
   Matrix matrix;
 };
 
-/// terms(lag, r, motion): MotionTerms.
+/// terms(lagged, r, motion): MotionTerms.
 template <class Terms>
-Sums sums_of(const HostLag& lag, const Scene& scene, const Positions& way, const Positions& given,
+Sums sums_of(const HostLaggedState& lagged, const Scene& scene, const Positions& way, const Positions& given,
              const Terms& terms) {
   const auto n = 3 * scene.n_vertices();
   const Surface surface(scene);
   Sums out{0, VecXd::Zero(n), VecXd::Zero(n), Matrix::Zero(n, n)};
-  for (std::size_t r = 0; r < lag.contacts.size(); ++r) {
-    const MotionTerms<double> of = terms(lag, r, lag.relative(r, way));
+  for (std::size_t r = 0; r < lagged.contacts.size(); ++r) {
+    const MotionTerms<double> of = terms(lagged, r, lagged.relative(r, way));
     out.energy += of.energy;
-    const Vec3d moved = of.hess * lag.relative(r, given);
+    const Vec3d moved = of.hess * lagged.relative(r, given);
     for (std::size_t i = 4 * r; i < 4 * r + 4; ++i) {
-      const int vi = lag.contacts.stencil[i];
+      const int vi = lagged.contacts.stencil[i];
       if (vi < 0 || surface.vertex_free[at(vi)] == 0) continue;
-      out.gradient.segment<3>(3 * vi) += lag.contacts.weight[i] * of.grad;
-      out.force.segment<3>(3 * vi) += lag.contacts.weight[i] * moved;
+      out.gradient.segment<3>(3 * vi) += lagged.contacts.weight[i] * of.grad;
+      out.force.segment<3>(3 * vi) += lagged.contacts.weight[i] * moved;
       for (std::size_t j = 4 * r; j < 4 * r + 4; ++j) {
-        const int vj = lag.contacts.stencil[j];
+        const int vj = lagged.contacts.stencil[j];
         if (vj < 0 || surface.vertex_free[at(vj)] == 0) continue;
-        out.matrix.block<3, 3>(3 * vi, 3 * vj) += lag.contacts.weight[i] * lag.contacts.weight[j] * of.hess;
+        out.matrix.block<3, 3>(3 * vi, 3 * vj) +=
+            lagged.contacts.weight[i] * lagged.contacts.weight[j] * of.hess;
       }
     }
   }

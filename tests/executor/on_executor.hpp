@@ -122,7 +122,7 @@ struct OnExecutor {
     trial.upload(numbers_of(at));
     for (const auto& term : terms) term->look_at(x, trial, clock);
     for (const auto& term : terms) {
-      if (!term->admits(trial, clock)) return false;
+      if (!term->is_feasible(trial, clock)) return false;
     }
     for (const auto& term : terms) term->evaluate(trial);
     return true;
@@ -138,7 +138,7 @@ struct OnExecutor {
     for (const auto& term : terms) term->accept(clock), term->take_energies();
     x.swap(trial);
   }
-  /// options.contact_options.ccd_park is read.
+  /// options.contact_options.min_gap_fraction is read.
   /// said: what the terms report of it, where asked.
   double bound(const Positions& direction, IterateNumbers* said = nullptr) {
     dx.upload(numbers_of(direction));

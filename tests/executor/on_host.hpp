@@ -54,7 +54,7 @@ class OnHost {
     return out;
   }
   /// After linearise(). force: [n_vertices] N.
-  Eigen::MatrixXd matrix(const HessianLevel& level, const std::vector<double>& force) {
+  Eigen::MatrixXd matrix(const HessianRegularisation& level, const std::vector<double>& force) {
     force_.upload(force);
     engine_.fill_matrix(x_, level, force_);
     const Eigen::Index n = x_.size();
@@ -74,9 +74,9 @@ class OnHost {
     put(trial_, points(x_) + dx);
     return engine_.bound(x_, trial_, dx_, report);
   }
-  bool admits(const Positions& to) {
+  bool is_feasible(const Positions& to) {
     put(trial_, to);
-    return engine_.admits(x_, trial_);
+    return engine_.is_feasible(x_, trial_);
   }
   /// Of the trial that was admitted last.
   EnergyChange change() { return engine_.change(x_, trial_); }

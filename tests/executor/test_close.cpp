@@ -8,7 +8,7 @@
 namespace bb::test::executor_close_test {
 namespace {
 
-/// Calls f(scene, a state near its own): alone, and several of them side by side with partly given bodies.
+/// Calls f(scene, a state near its own): alone, and several of them side by side with partly prescribed bodies.
 template <class F>
 void for_each_scene(unsigned n_alone, unsigned n_mixed, double reach, const F& f) {
   unsigned seed = 11;

@@ -77,9 +77,9 @@ Names missing(const Names& from, const Names& of) {
 const Names given = {entry("each", "bb::exec::EvaluateGivenShape")};
 
 TEST(KernelLists, NameEveryKernelThatIsLaunched) {
-  const Names of_rooms = launched(BB_ROOM_FILES);
-  EXPECT_GT(of_rooms.size(), 100u);
-  EXPECT_EQ(missing(listed(), of_rooms), given);
+  const Names of_modules = launched(BB_MODULE_FILES);
+  EXPECT_GT(of_modules.size(), 100u);
+  EXPECT_EQ(missing(listed(), of_modules), given);
   const Names of_tests = launched(BB_TEST_FILES);
   EXPECT_GT(of_tests.size(), 100u);
   EXPECT_EQ(missing(listed(), of_tests), given);
@@ -87,7 +87,7 @@ TEST(KernelLists, NameEveryKernelThatIsLaunched) {
 
 // What nothing launches costs the device compiler its time.
 TEST(KernelLists, NameNothingElse) {
-  Names all = launched(BB_ROOM_FILES);
+  Names all = launched(BB_MODULE_FILES);
   all.merge(launched(BB_TEST_FILES));
   EXPECT_EQ(missing(all, listed()), Names());
 }

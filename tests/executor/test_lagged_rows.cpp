@@ -33,17 +33,17 @@ void expect_friction(const std::string& law_name, CombineRule rule, unsigned see
   const Sides sides(full_scene(3), rule);
   const Scene scene = rubbing_scene<Law>(sides);
   const Positions x = shaken(scene), y = random_motion(x, 0.7 * eps_m, seed), given = motion_of_given(scene);
-  const HostLag host(scene, x, sides), kinetic(scene, x, kinetic_sides<Law>(sides));
+  const HostLaggedState host(scene, x, sides), kinetic(scene, x, kinetic_sides<Law>(sides));
   int slides = 0, sticks = 0;
   double work = 0;
   const Sums expected =
-      sums_of(host, scene, y - x, given, [&](const HostLag& lag, std::size_t r, const Vec3d& way) {
-        const Vec3d slide = slide_of<double>(way, lag.normal(r));
-        const double part = lag.strength[r] > 0 ? kinetic.strength[r] / lag.strength[r] : 1;
+      sums_of(host, scene, y - x, given, [&](const HostLaggedState& lagged, std::size_t r, const Vec3d& way) {
+        const Vec3d slide = slide_of<double>(way, lagged.normal(r));
+        const double part = lagged.strength[r] > 0 ? kinetic.strength[r] / lagged.strength[r] : 1;
         const LawInTerm<Law, double> law{{eps_m, part, 10 * eps_m}};
-        if (lag.strength[r] > 0) ++(slide.norm() < eps_m ? sticks : slides);
-        work += friction_work(slide.norm(), lag.strength[r], law);
-        return friction_of_slide<double>(slide, lag.normal(r), lag.strength[r], law);
+        if (lagged.strength[r] > 0) ++(slide.norm() < eps_m ? sticks : slides);
+        work += friction_work(slide.norm(), lagged.strength[r], law);
+        return friction_of_slide<double>(slide, lagged.normal(r), lagged.strength[r], law);
       });
   ASSERT_GT(slides, 10);
   ASSERT_GT(sticks, 10);
@@ -72,20 +72,20 @@ TEST(LaggedRows, HaveTheFrictionOfTheContacts) {
 TEST(LaggedRows, HaveTheRestitutionOfTheContacts) {
   const Scene scene = with_restitution(full_scene(3));
   const Positions x = shaken(scene), y = random_motion(x, eps_m, 5), given = motion_of_given(scene);
-  const HostLag host(scene, x, restitution_sides(scene));
+  const HostLaggedState host(scene, x, restitution_sides(scene));
   constexpr double length = 5e-5;  // s, so short that contacts that open yield
   double work = 0;
   std::size_t damps = 0, yields = 0, slow = 0;
   const Sums expected =
-      sums_of(host, scene, y - x, given, [&](const HostLag& lag, std::size_t r, const Vec3d& way) {
-        const double met = -lag.relative(r, scene.v0).dot(lag.normal(r));
+      sums_of(host, scene, y - x, given, [&](const HostLaggedState& lagged, std::size_t r, const Vec3d& way) {
+        const double met = -lagged.relative(r, scene.v0).dot(lagged.normal(r));
         slow += met < 0.01;
-        const double a = lag.strength[r] / std::max(met, 0.01);
-        const ContactDamping<double> damping{a / length, lag.contacts.load[r]};
-        const double opening = way.dot(lag.normal(r));
+        const double a = lagged.strength[r] / std::max(met, 0.01);
+        const ContactDamping<double> damping{a / length, lagged.contacts.load[r]};
+        const double opening = way.dot(lagged.normal(r));
         ++(damping.force(opening) < damping.load ? damps : yields);
         work += damping.force(opening) * opening;
-        return damping_terms<double>(way, lag.normal(r), damping);
+        return damping_terms<double>(way, lagged.normal(r), damping);
       });
   ASSERT_GT(damps, 10u);
   ASSERT_GT(yields, 10u);

@@ -16,7 +16,7 @@ TEST(LaggedRows, RememberHowFastPairsMet) {
   const Positions x = shaken(scene), end = random_motion(x, 5e-3, 7);
   TestedExecutor executor;
   OnRows on = restitution_on(executor, scene, x, dt);
-  KnownLag some = on.family->known("restitution");
+  LaggedState some = on.family->known("restitution");
   const std::vector<PairId> all = some.pair;
   const std::vector<double> first = some.kept;
   some.pair.clear(), some.kept.clear();
@@ -29,8 +29,8 @@ TEST(LaggedRows, RememberHowFastPairsMet) {
   upload(on.y, end);
   on.family->end_step(on.y.data());
   on.take();
-  const KnownLag found = on.family->known("restitution");
-  const HostLag host(scene, x, restitution_sides(scene));
+  const LaggedState found = on.family->known("restitution");
+  const HostLaggedState host(scene, x, restitution_sides(scene));
   ASSERT_EQ(found.pair, all);
   std::map<PairId, std::size_t> row;
   for (std::size_t r = 0; r < all.size(); ++r) row[host.contacts.pair[r]] = r;
@@ -62,7 +62,7 @@ TEST(LaggedRows, MeetWithTheSpeedsOfTheSceneWhereAnArchiveHasNone) {
   on.family->end_step(on.y.data());
   Archive again(none.bytes());
   on.family->keep(again);
-  KnownLag nobody = on.family->known("restitution");
+  LaggedState nobody = on.family->known("restitution");
   for (PairId& pair : nobody.pair) pair = 0;  // so that all pairs are new
   on.family->adopt(nobody);
   on.take();
@@ -80,7 +80,7 @@ TEST(LaggedRows, TakeAnEndOfAnEdgeForNoObstacle) {
   EXPECT_EQ(sides.of(vertex, 1, pair_id(obstacle_pairs, 0, 0)), 7);
 }
 
-/// Every obstacle stands at a given vertex of its own.
+/// Every obstacle stands at a prescribed vertex of its own.
 Scene with_vertices_of_obstacles(Scene scene) {
   for (Obstacle& o : scene.obstacles) {
     o.vertex = scene.n_vertices();
@@ -112,7 +112,7 @@ TEST(LaggedRows, FollowTheSurfaceOfObstaclesThatTurn) {
     turn.radius = scene.obstacles[o].radius;
     Vec3d::Map(turn.axis) = scene.obstacles[o].axis;
     turn.turns = o != 2;
-    Mat3d::Map(turn.lag) = turned(0.1 + static_cast<double>(o));
+    Mat3d::Map(turn.lagged) = turned(0.1 + static_cast<double>(o));
     Mat3d::Map(turn.begin) = turned(0.3);
     Mat3d::Map(turn.end) = turned(0.7);
   }

@@ -118,7 +118,7 @@ TEST(ExecutorMemory, GivenBackBetweenStagesChangesNoBit) {
   EXPECT_TRUE(kept.x == frugal.x);
 }
 
-/// Counts what an executor is asked for, iteration by iteration.
+/// Counts the requests to an executor, iteration by iteration.
 class Meter final : public StepObserver {
  public:
   exec::MeteredExecutor* executor = nullptr;

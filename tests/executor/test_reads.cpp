@@ -30,7 +30,7 @@ class MarkingExecutor final : public exec::HostExecutor {
  private:
   using Word = std::uint32_t;
   static constexpr Word mark =
-      0xb9b9b9b9;  // no index of these scenes, and half of no number that they compute
+      0xb9b9b9b9;  // no index of these scenes, and not half of a number that they compute
 
   void* allocate_bytes(std::size_t bytes) override {
     void* memory = HostExecutor::allocate_bytes(bytes);

@@ -98,7 +98,7 @@ void add_bounds(std::vector<RunCase>& out) {
   out.push_back({"without a mollifier", thrown, 8,
                  with(accumulated, [](Method& m) { m.contact_options.mollifier = Mollifier::none; })});
   out.push_back({"parked farther away", thrown, 8,
-                 with(accumulated, [](Method& m) { m.contact_options.ccd_park = 0.05; })});
+                 with(accumulated, [](Method& m) { m.contact_options.min_gap_fraction = 0.05; })});
   out.push_back({"part of a bound", cloth_on_plate(), 8, [] {
                    return with_step_solver("line_search", {{"cap_fraction", 0.3}});
                  }});

@@ -1,4 +1,4 @@
-// Both matrix engines at equal states: energies, gradient, bound of a motion and what is said of every contact have the same bits, for every
+// Both matrix engines at equal states: energies, gradient, bound of a motion and what is reported of every contact have the same bits, for every
 // kind of scene with every kind of method. Where they have not, the test names the term and the reason:
 // - at a vertex of a mollified pair the rows of contact are summed in another order: on the host those of mollified pairs after all others,
 //   on an executor all of them in the order of their pairs;
@@ -121,7 +121,7 @@ void go_through_steps(Compared& both, const Positions& dx, Counts& counts, int& 
   both.move(0.3 * dx);
   both.expect_same_state(counts);
   both.expect_shown(counts);
-  both.renew_lag(counts);
+  both.renew_lagged_state(counts);
   both.expect_same_state(counts);
   both.take_secant(counts);
   both.expect_same_state(counts), both.expect_same_matrix();

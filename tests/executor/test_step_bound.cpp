@@ -207,7 +207,7 @@ TEST(ExecutorStepBound, AMotionThatIsNotFiniteIsNoStep) {
   }
 }
 
-/// Bodies of a given scene that slide along each other: few pairs are asked.
+/// Bodies of a given scene that slide along each other: few pairs are queried.
 TEST(ExecutorStepBound, AsksFewPairsOfSheetsThatSlide) {
   Scene scene;
   const auto [v1, t1] = grid(12, 12, 0.1);

@@ -81,7 +81,7 @@ struct Both {
   }
   /// From the iterate to a trial: whether it is feasible, how energies change, their sums once it is accepted.
   bool expect_same_trial(const Positions& to) {
-    const bool admitted = host.admits(to);
+    const bool admitted = host.is_feasible(to);
     EXPECT_EQ(there.evaluate(to), admitted);
     if (!admitted) return false;
     const EnergyChange expected = host.change();
@@ -144,7 +144,7 @@ TEST(ExecutorTerms, BoundAMotionAsTheHostDoes) {
       TermCase parked = one;
       parked.method = [&] {
         Method out = one.method();
-        out.contact_options.ccd_park = park;
+        out.contact_options.min_gap_fraction = park;
         return out;
       };
       Both both(parked);
@@ -185,7 +185,7 @@ TEST(ExecutorTerms, HaveEveryMatrixOfTheHost) {
       exec::Buffer<double> force_there(both.executor, "force");
       force_there.upload(force);
       both.linearise(both.second());
-      HessianLevel level({choice, StepHessian::blend});  // the levels of both
+      HessianRegularisation level({choice, StepHessian::blend});  // the levels of both
       for (;;) {
         const Eigen::MatrixXd expected = both.host.matrix(level, force);
         both.there.fill(TermSet::all(),
@@ -218,7 +218,7 @@ TEST(ExecutorTerms, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
   for (const TermCase& one : cases) {
     SCOPED_TRACE(one.name);
     Method method = one.method();
-    method.contact_options.ccd_park = 1e-3;
+    method.contact_options.min_gap_fraction = 1e-3;
     const Positions x = strained(one.scene, one.size), dx = wave(one.scene, 0.3);
     std::vector<double> sizes(one.scene.mass.size(), 0);  // N: some vertices have a large force
     for (std::size_t v = 0; v < sizes.size(); v += 7) sizes[v] = 1;
@@ -372,7 +372,7 @@ TEST(ExecutorTerms, AreCountedWithoutMemory) {
     EXPECT_EQ(host.memory().by_name().count(name), 1u) << name;
 }
 
-/// A vertex that is no number; two neighbours of a rod that coincide.
+/// A vertex with a NaN coordinate; two neighbours of a rod that coincide.
 TEST(ExecutorTerms, NameTheFirstElementThatIsNoNumber) {
   const auto broken = [](const Scene& scene, const Positions& x) {
     const Method method = element_method();

@@ -1,4 +1,4 @@
-// The executor of the tests of the rooms with kernels. Which one is decided when a test is linked, so that the cases are
+// The executor of the tests of the modules with kernels. Which one is decided when a test is linked, so that the cases are
 // compiled once: test_ROOM_executor runs them on the host (host_tested_executor.cpp), test_ptx_ROOM also as nvcc's PTX
 // (tests/ptx/ptx_tested_executor.cpp), test_card_ROOM also on a card (tests/card/card_tested_executor.cpp).
 #pragma once

@@ -1,4 +1,4 @@
-// Configs that are matched, and what their pilots carried: shared by the tests of matching.
+// Configs that are matched, and what their calibration runs carried: shared by the tests of matching.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "barriers/shapes/registry.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
-#include "experiments/run/pilot.hpp"
+#include "experiments/run/calibration_run.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace bb::test {
@@ -77,25 +77,25 @@ inline RunRecord run(const RunConfig& config) {
   return run_config(config, options);
 }
 
-/// A load of the pilot and the vertex that carried it, on the plane z = 0.
+/// A load of the calibration run and the vertex that carried it, on the plane z = 0.
 struct VertexLoad {
   double load, mass, d_hat;  // N, kg, m
   int body;
   std::size_t step;
 };
 
-/// Every load over the converged step ends of the pilot.
+/// Every load over the converged step ends of the calibration run.
 inline std::vector<VertexLoad> loads_on_plane(const Calibrated& c) {
-  const std::shared_ptr<const Pilot> kept = run_pilot(c.config, c.scene, {});
-  const Pilot& pilot = *kept;
+  const std::shared_ptr<const CalibrationRun> kept = run_calibration(c.config, c.scene, {});
+  const CalibrationRun& calibration_run = *kept;
   std::vector<VertexLoad> out;
-  for (std::size_t step = 1; step < pilot.x.size(); ++step) {
+  for (std::size_t step = 1; step < calibration_run.x.size(); ++step) {
     for (int v = 0; v < c.scene.n_vertices(); ++v) {
       const auto i = static_cast<std::size_t>(v);
-      const double d = pilot.x[step](2, v), d_hat = c.scene.d_hat[i];
+      const double d = calibration_run.x[step](2, v), d_hat = c.scene.d_hat[i];
       if (d >= d_hat) continue;
-      out.push_back({*pilot.stiffness.kappa * -log_barrier().eval(d, d_hat).db, c.scene.mass[i], d_hat,
-                     c.scene.body[i], step - 1});
+      out.push_back({*calibration_run.stiffness.kappa * -log_barrier().eval(d, d_hat).db, c.scene.mass[i],
+                     d_hat, c.scene.body[i], step - 1});
     }
   }
   return out;

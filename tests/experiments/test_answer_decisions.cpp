@@ -1,4 +1,4 @@
-// Numbers that decide which forces of a pilot are loads, and how large its static load is: the answer of a row between
+// Numbers that decide which forces of a calibration run are loads, and how large its static load is: the answer of a row between
 // those of its vertices, the answer of a strain limit against the state at rest, the weight of one free vertex.
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ TEST(AnswerDecisions, ARowAnswersAsItsVerticesDoByTheirWeights) {
   const double third = 1.0 / 3;
   EXPECT_DOUBLE_EQ(sums.of_contact(one_row({3, 0, 1, 2}, {1, -third, -third, -third}), 0),
                    (-0.2 + (0.1 + 0.4 + 0.9) / 3) / 2);
-  // given vertices are not in the row: the rest counts whole
+  // prescribed vertices are not in the row: the rest counts whole
   EXPECT_DOUBLE_EQ(sums.of_contact(one_row({2}, {0.2}), 0), 0.9);
   EXPECT_EQ(sums.of_contact(one_row({4}, {1}), 0), 0);  // no force was added
   EXPECT_EQ(sums.of_contact(one_row({}, {}), 0), 0);
@@ -123,7 +123,7 @@ TEST(AnswerDecisions, ALimitAnswersByTheDerivativeOfItsForceAtRest) {
   EXPECT_GT(largest, 0.6);
 }
 
-/// The weight over the free vertices: those of given bodies carry none of it, however many there are.
+/// The weight over the free vertices: those of prescribed bodies carry none of it, however many there are.
 TEST(AnswerDecisions, TheStaticLoadIsTheWeightOverTheFreeVertices) {
   const auto load = [](const std::string& given) {
     const std::string text = R"({"schema": "barrierbench.config/1", "scene": {"bodies": [
@@ -134,14 +134,14 @@ TEST(AnswerDecisions, TheStaticLoadIsTheWeightOverTheFreeVertices) {
       "time": {"dt_s": 0.01, "steps": 1}})";
     const RunConfig config = parsed(text.c_str(), {});
     const Scene scene = build_scene(config);
-    const double contact = run_pilot(config, scene, {})->rest.contact;
+    const double contact = run_calibration(config, scene, {})->rest.contact;
     double mass = 0;
     int n_free = 0;
     for (int v = 0; v < scene.n_vertices(); ++v) {
-      const bool given_vertex =
+      const bool prescribed_vertex =
           std::any_of(scene.pins.begin(), scene.pins.end(), [v](const Pin& pin) { return pin.vertex == v; });
-      mass += given_vertex ? 0 : scene.mass[static_cast<std::size_t>(v)];
-      n_free += !given_vertex;
+      mass += prescribed_vertex ? 0 : scene.mass[static_cast<std::size_t>(v)];
+      n_free += !prescribed_vertex;
     }
     EXPECT_NEAR(contact, mass * scene.gravity.norm() / n_free, 1e-12 * contact) << given;
     return contact;

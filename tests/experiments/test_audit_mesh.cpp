@@ -46,7 +46,7 @@ TEST(AuditMesh, EdgesAreComputedFromTheTriangles) {
   EXPECT_GT(whole.edges.cols(), 0);
 }
 
-TEST(AuditMesh, GivenVerticesOfOneMotionAreOneRigidBody) {
+TEST(AuditMesh, PrescribedVerticesOfOneMotionAreOneRigidBody) {
   Scene scene = drape2d("point_edge");
   scene.pins = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}};
   scene.motions.assign(5, PrescribedMotion{});

@@ -103,7 +103,7 @@ TEST(AuditWatch, AWayThatCutsACornerRoundABallIsCountedAndNoFault) {
   EXPECT_EQ(record.promised_m.value, 1e-6);
 }
 
-/// With the contact model points the same state is no failure, and the record says how deep the surface is.
+/// With the contact model points the same state is no failure, and the record reports how deep the surface is.
 TEST(AuditWatch, OfPointsJudgesVerticesAndSaysHowDeepTheSurfaceIs) {
   const Scene scene = sheet_over_ball();
   for (const double promised : {0.0, 1e-6}) {

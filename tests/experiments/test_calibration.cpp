@@ -1,5 +1,5 @@
 // Matching of contacts from config to stiffness: what every formulation carries of the loads that
-// the pilot met.
+// the calibration run met.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-TEST(Calibration, EveryContactOfThePilotIsCarriedAtTheta) {
+TEST(Calibration, EveryContactOfTheCalibrationRunIsCarriedAtTheta) {
   const Calibrated c = calibrated(two_masses);
   const std::vector<VertexLoad> loads = loads_on_plane(c);
   ASSERT_EQ(c.record.contacts_considered, static_cast<long long>(loads.size()));
@@ -81,20 +81,21 @@ TEST(Calibration, APolicyRefreshedInEveryIterationComesToRest) {
 }
 
 /// A step that did not converge is in no balance: what it holds is no load.
-TEST(Calibration, ThePilotTakesNoLoadFromAStepThatDidNotConverge) {
+TEST(Calibration, TheCalibrationRunTakesNoLoadFromAStepThatDidNotConverge) {
   const std::string cubic = R"(/formulation={"name": "cubic", "d_hat_m": 0.01})";
   const std::string later = "/scene/bodies/1/transform/translate_m=[3, 0, 0.08]";
   const Calibrated capped = calibrated(two_masses, {cubic, later, "/step_solver/max_iterations=4"});
-  const std::shared_ptr<const Pilot> kept = run_pilot(capped.config, capped.scene, {});
-  const Pilot& pilot = *kept;
-  ASSERT_NE(pilot.stopped.find("iteration_cap"), std::string::npos) << pilot.stopped;
-  ASSERT_GT(pilot.steps(), 0);
-  EXPECT_NE(pilot.stopped.find("step " + std::to_string(pilot.steps()) + " "), std::string::npos)
-      << pilot.stopped;
-  EXPECT_EQ(capped.record.pilot_note, pilot.stopped);
+  const std::shared_ptr<const CalibrationRun> kept = run_calibration(capped.config, capped.scene, {});
+  const CalibrationRun& calibration_run = *kept;
+  ASSERT_NE(calibration_run.stopped.find("iteration_cap"), std::string::npos) << calibration_run.stopped;
+  ASSERT_GT(calibration_run.steps(), 0);
+  EXPECT_NE(calibration_run.stopped.find("step " + std::to_string(calibration_run.steps()) + " "),
+            std::string::npos)
+      << calibration_run.stopped;
+  EXPECT_EQ(capped.record.pilot_note, calibration_run.stopped);
   const Calibrated shorter =
-      calibrated(two_masses, {cubic, later, "/time/steps=" + std::to_string(pilot.steps())});
-  EXPECT_EQ(run_pilot(shorter.config, shorter.scene, {})->stopped, "");
+      calibrated(two_masses, {cubic, later, "/time/steps=" + std::to_string(calibration_run.steps())});
+  EXPECT_EQ(run_calibration(shorter.config, shorter.scene, {})->stopped, "");
   EXPECT_GT(capped.record.contacts_considered, 0);
   EXPECT_EQ(capped.record.contacts_considered, shorter.record.contacts_considered);
   EXPECT_EQ(capped.record.load_N.value, shorter.record.load_N.value);
@@ -141,14 +142,15 @@ TEST(Calibration, OneKappaCarriesTheLoadsOfEveryDHat) {
   EXPECT_LT(c.record.load_N.value, largest);  // else the test shows nothing
 }
 
-/// Without a pilot's contact nobody can be asked, whatever the load.
+/// Without a calibration run's contact nobody can be asked, whatever the load.
 TEST(Calibration, TheRecordSaysWhenAPolicyStaysAsGiven) {
   const std::string dynamic = R"(/formulation/stiffness_policy={"name": "elasticity_inclusive"})";
   for (const char* load : {"/matching/load_N=0.5", "/matching/theta=0.1"}) {
     const Calibrated c = calibrated(falling, {dynamic, "/time/steps=2", load});
     EXPECT_EQ(c.calibration.scale, 1);
     EXPECT_FALSE(c.record.scale.finite());
-    EXPECT_EQ(c.record.pilot_note, "the contact policy stays as given: the pilot met no contact") << load;
+    EXPECT_EQ(c.record.pilot_note, "the contact policy stays as given: the calibration run met no contact")
+        << load;
     EXPECT_EQ(c.record.contacts_considered, 0);
     EXPECT_EQ(c.record.contact, "");
   }
@@ -183,7 +185,7 @@ TEST(Calibration, TheBoundsOfAnAdaptiveKappaComeFromTheConfig) {
 }
 
 /// A flat, unstrained block has no elastic stiffness along the normal: nothing can be scaled to the load.
-TEST(Calibration, WhatOnlyThePilotTellsIsAnOutcome) {
+TEST(Calibration, WhatOnlyTheCalibrationRunTellsIsAnOutcome) {
   const RunRecord record = run(parsed(block, {"/formulation/stiffness_policy/mass_term=none"}));
   EXPECT_EQ(record.status.outcome, Outcome::invalid_scene);
   EXPECT_NE(record.status.detail.find("matching: found kappa = "), std::string::npos) << record.status.detail;

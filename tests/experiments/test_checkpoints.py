@@ -22,7 +22,7 @@ SOLVERS = {
 }
 
 
-# A run without a pilot: its first steps come at once.
+# A run without a calibration run: its first steps come at once.
 GIVEN = {"/matching": {"rule": "as_given"}, "/strain_limit/stiffness_policy/k_s_N_per_m": 50,
          "/formulation": {"name": "log", "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 50}}}
 

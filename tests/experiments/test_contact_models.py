@@ -209,7 +209,7 @@ def test_offset_geometric_contact_is_refused_where_it_has_no_blocks(program):
     model = {"/contact/model": "offset_geometric"}
     refused(program, "stack", "its kernels know no other pairs", **model, **{"/device": "host"})
     refused(program, "stack", "features of a block count as one", **model, **{"/contact/weighting": "area"})
-    refused(program, "stack", "blocks are asked in double", **model, **{"/precision": "float"})
+    refused(program, "stack", "blocks are computed in double", **model, **{"/precision": "float"})
     refused(program, "stack", "the step solver is penalty", **model, **{"/step_solver/name": "penalty"})
     refused(program, "strip_on_disk", "the scene is planar", **model)
 

@@ -1,4 +1,4 @@
-// What the record says of a run whose first or second pass was cut off: the states of the two passes are compared only
+// What the record reports of a run whose first or second pass was cut off: the states of the two passes are compared only
 // where both went to the end.
 #include <gtest/gtest.h>
 

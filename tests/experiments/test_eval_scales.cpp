@@ -30,7 +30,7 @@ const Pair pairs[] = {
      {{-0.5, 0.1, 0.4}, {0.7, 0.2, 0.5}, {0.1, -0.6, 0}, {0.2, 0.8, -0.1}},
      {{-0.5, 0.1, 0.9}, {0.7, 0.2, 0.8}, {0.1, -0.6, 0}, {0.2, 0.8, -0.1}}}};
 
-/// Powers of two, so that nothing is rounded: beyond 2^170 (float: 2^21) the product of six lengths is no number any more.
+/// Powers of two, so that nothing is rounded: beyond 2^170 (float: 2^21) the product of six lengths overflows.
 std::vector<int> exponents(const std::string& precision) {
   return precision == "double" ? std::vector<int>{-1000, -400, -171, -30, 30, 171, 400, 1000}
                                : std::vector<int>{-100, -40, -22, -10, 10, 22, 40, 100};

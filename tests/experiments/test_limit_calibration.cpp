@@ -1,4 +1,4 @@
-// Matching of the strain limit: what its stiffness carries of the loads that the pilot met.
+// Matching of the strain limit: what its stiffness carries of the loads that the calibration run met.
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +12,8 @@ namespace {
 using namespace test;
 
 /// The limit of the pinned sheet: at its width, and frozen for a step at the wider gap that a slack element
-/// had at the step's start, its own stiffness times s carries what the pilot carried.
-TEST(Calibration, ADynamicLimitCarriesThePilotsLoads) {
+/// had at the step's start, its own stiffness times s carries what the calibration run carried.
+TEST(Calibration, ADynamicLimitCarriesTheCalibrationRunsLoads) {
   const std::string text =
       R"({"schema": "barrierbench.config/1", "scene": {"name": "drape2d", "variant": "pinned"},
     "formulation": "cubic_dynamic", "strain_limit": {"shape": "cubic"}, "matching": {"rule": "equal_force"}})";
@@ -38,7 +38,7 @@ TEST(Calibration, ADynamicLimitCarriesThePilotsLoads) {
   EXPECT_GT(scale[1], 1.2 * scale[0]);  // 1.37: asked at the width alone, frozen or not makes no difference
 }
 
-/// kappa_e = w^T M w/(c h^2) by hand for every element that the pilot stretched into its limit, and the load
+/// kappa_e = w^T M w/(c h^2) by hand for every element that the calibration run stretched into its limit, and the load
 /// that it carried there: s makes the neediest one as stiff as the fixed limit matched to its load.
 TEST(Calibration, TheScaleOfADynamicLimitIsThatOfItsNeediestElement) {
   const Calibrated c = calibrated(
@@ -46,22 +46,23 @@ TEST(Calibration, TheScaleOfADynamicLimitIsThatOfItsNeediestElement) {
     "formulation": "cubic", "strain_limit": {"shape": "cubic", "stiffness_policy":
       {"name": "elasticity_inclusive", "mass_term": "inertia", "elastic_term": false}},
     "matching": {"rule": "equal_force"}, "time": {"steps": 30}})");
-  const std::shared_ptr<const Pilot> pilot = run_pilot(c.config, c.scene, {});
+  const std::shared_ptr<const CalibrationRun> calibration_run = run_calibration(c.config, c.scene, {});
   const double h = c.config.time.dt;
   double needed = 0, smallest_area = 1, largest_area = 0;
   long long active = 0, left_out = 0;
-  for (std::size_t step = 0; step + 1 < pilot->x.size(); ++step) {
+  for (std::size_t step = 0; step + 1 < calibration_run->x.size(); ++step) {
     for (std::size_t e = 0; e < c.scene.limit.triangles.size(); ++e) {
       const auto& t = c.scene.limit.triangles[e];
       Eigen::Matrix2d rest, now;
       Eigen::Matrix<double, 2, 3> start;
-      for (int k = 0; k < 3; ++k) start.col(k) = pilot->x[step].col(t[static_cast<std::size_t>(k)]).head<2>();
+      for (int k = 0; k < 3; ++k)
+        start.col(k) = calibration_run->x[step].col(t[static_cast<std::size_t>(k)]).head<2>();
       for (int k = 0; k < 2; ++k) {
         rest.col(k) =
             (c.scene.rest.col(t[static_cast<std::size_t>(k) + 1]) - c.scene.rest.col(t[0])).head<2>();
-        now.col(k) =
-            (pilot->x[step + 1].col(t[static_cast<std::size_t>(k) + 1]) - pilot->x[step + 1].col(t[0]))
-                .head<2>();
+        now.col(k) = (calibration_run->x[step + 1].col(t[static_cast<std::size_t>(k) + 1]) -
+                      calibration_run->x[step + 1].col(t[0]))
+                         .head<2>();
       }
       const double width = c.scene.limit.width[e], area = std::abs(rest.determinant()) / 2;
       const double sigma =
@@ -75,11 +76,11 @@ TEST(Calibration, TheScaleOfADynamicLimitIsThatOfItsNeediestElement) {
         kappa += c.scene.mass[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])] *
                  (start.col(k) - start.rowwise().mean()).squaredNorm() / (h * h);
       }
-      if (pilot->answers.of_limit(e) > 0.5) {  // no load
+      if (calibration_run->answers.of_limit(e) > 0.5) {  // no load
         ++left_out;
         continue;
       }
-      const double load = *pilot->stiffness.k_s * -log_barrier().eval(y, width).db;  // N/m
+      const double load = *calibration_run->stiffness.k_s * -log_barrier().eval(y, width).db;  // N/m
       needed = std::max(needed, load * area / (kappa * slope("cubic", 0.1 * width, width)));
     }
   }

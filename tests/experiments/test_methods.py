@@ -48,7 +48,7 @@ def test_explain_says_what_is_of_the_method(program):
     text = bench(program, "explain", BLOCK, "--set", "/method=ando2024", "--set", "/precision=double").stdout
     marks = {line[4:].split()[0]: line[2] for line in text.splitlines() if line[4:5] == "/"}
     assert "method    ando2024, changed: Ando 2024" in text and "  overridden: /precision" in text and "  differs, walls:" in text
-    assert (marks["/linear_solver/tol_rel"], marks["/precision"], marks["/time/dt_s"], marks["/scene/name"], marks["/contact/ccd_park"], marks["/seeds/main"]) == ("m", "*", "m", "*", "m", " ")
+    assert (marks["/linear_solver/tol_rel"], marks["/precision"], marks["/time/dt_s"], marks["/scene/name"], marks["/contact/min_gap_fraction"], marks["/seeds/main"]) == ("m", "*", "m", "*", "m", " ")
 
 
 @pytest.mark.parametrize("setting, where, allowed", [

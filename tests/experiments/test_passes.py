@@ -137,8 +137,8 @@ def test_the_first_record_of_a_process_knows_its_blas_threads(drape):
     assert drape["provenance"]["blas"]["threads"] == 1
 
 
-def test_tier_0_reads_the_ritz_values_of_every_solve(program, tmp_path):
-    settings = ["/linear_solver/name=pcg", "/linear_solver/forcing=fixed", "/diagnose/tier=0", "/passes/diagnose=true", "/time/steps=2", "/scene/n=6", "/scene/layers=1"]
+def test_the_estimator_ritz_reads_the_ritz_values_of_every_solve(program, tmp_path):
+    settings = ["/linear_solver/name=pcg", "/linear_solver/forcing=fixed", "/diagnose/estimator=ritz", "/passes/diagnose=true", "/time/steps=2", "/scene/n=6", "/scene/layers=1"]
     done = bench(program, "run", DRAPE, "--out", tmp_path, *(word for setting in settings for word in ("--set", setting)))
     assert done.returncode == 0, done.stderr
     summary = json.loads((tmp_path / "run.json").read_text())["summary"]
@@ -153,7 +153,7 @@ def test_tier_0_reads_the_ritz_values_of_every_solve(program, tmp_path):
 
 def test_every_estimate_says_who_found_it_and_what_is_proven(program, tmp_path):
     found = {}
-    for name, more in (("spectra", []), ("cut", ["/diagnose/max_solves=3", "/diagnose/max_products=3"]), ("lanczos", ["/diagnose/tier=4"])):
+    for name, more in (("spectra", []), ("cut", ["/diagnose/max_solves=3", "/diagnose/max_products=3"]), ("lanczos", ["/diagnose/estimator=lanczos"])):
         settings = ["/passes/diagnose=true", "/passes/time=false", "/passes/audit=false", "/diagnose/pcg=false", "/time/steps=3", "/scene/n=6",
                     "/scene/layers=1", *more]
         done = bench(program, "run", DRAPE, "--out", tmp_path / name, *(word for setting in settings for word in ("--set", setting)))

@@ -5,7 +5,7 @@ import re
 from test_cli import BLOCK, ROOT, bench, sweep_spec
 
 DRAPE = [ROOT / "configs/scenes/drape.json", "--set", "/scene/n=8", "--set", "/scene/layers=2", "--set", "/time/steps=8", "--set", "/passes/diagnose=true"]
-LINE = re.compile(r"\[(pilot|time|diagnose)\] step (\d+)/8  t ([\d.e-]+) of 0.\d+ s .* eta (\d+) s  after \d+ s$")
+LINE = re.compile(r"\[(calibration|time|diagnose)\] step (\d+)/8  t ([\d.e-]+) of 0.\d+ s .* eta (\d+) s  after \d+ s$")
 
 
 def test_lines_come_from_every_pass_and_the_estimate_covers_those_that_follow(program, tmp_path):
@@ -16,7 +16,7 @@ def test_lines_come_from_every_pass_and_the_estimate_covers_those_that_follow(pr
     assert lines and all(found or "before the end of the first step" in line for line, found in zip(lines, told)), lines[:5]
     passes = [found[1] for found in told if found]
     assert {"time", "diagnose"} <= set(passes)
-    assert passes == sorted(passes, key=["pilot", "time", "diagnose"].index)
+    assert passes == sorted(passes, key=["calibration", "time", "diagnose"].index)
     steps = [int(found[2]) for found in told if found and found[1] == "diagnose"]
     assert steps == sorted(steps) and steps
 

@@ -278,9 +278,9 @@ TEST(Recorder, a_trace_line_is_the_iteration_that_newton_reported) {
 TEST(Recorder, an_estimate_without_a_value_is_counted_and_is_no_condition_number) {
   const Scene scene = test::particle_over_plane(mass, 0.9 * d_hat, d_hat);
   Method method = test::fixed_method("cubic", kappa);
-  const RunConfig config =
-      observed({"/passes/audit=false", "/passes/diagnose=true", "/diagnose/pcg=false", "/diagnose/tier=0",
-                R"(/linear_solver={"name": "pcg", "preconditioner": "block_jacobi", "forcing": "fixed"})"});
+  const RunConfig config = observed(
+      {"/passes/audit=false", "/passes/diagnose=true", "/diagnose/pcg=false", "/diagnose/estimator=ritz",
+       R"(/linear_solver={"name": "pcg", "preconditioner": "block_jacobi", "forcing": "fixed"})"});
   RunRecord record;
   Recorder recorder(config, scene, record, nullptr);
   Simulation simulation(scene, method, dt, 1);

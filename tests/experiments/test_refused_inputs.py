@@ -68,7 +68,7 @@ def test_a_load_without_a_rule_is_matched(program, tmp_path, matching, rule):
 
 
 def test_gravity_that_comes_later_counts(program, tmp_path):
-    """The tolerance is of the largest gravity, and a pilot can start on it."""
+    """The tolerance is of the largest gravity, and a calibration run can start on it."""
     keys = [{"time_s": 0, "gravity_m_per_s2": [0, 0, 0]}, {"time_s": 0.1, "gravity_m_per_s2": [0, 0, -9.81]}]
     made = json.loads(config(tmp_path, formulation={"name": "cubic", "d_hat_m": 0.01}, matching={"rule": "equal_force"}).read_text())
     del made["scene"]["gravity_m_per_s2"]

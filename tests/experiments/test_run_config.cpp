@@ -79,14 +79,14 @@ TEST(RunConfig, a_run_ends_at_its_first_step_that_failed_and_is_not_valid) {
 
 TEST(RunConfig, the_method_has_every_number_of_its_config) {
   const std::vector<std::string> overrides = {
-      "/contact/ccd_park=3e-5",        "/step_solver/armijo=0.02",
-      "/step_solver/cap_fraction=0.7", "/step_solver/max_iterations=17",
-      "/integrator/name=bdf2",         "/step_solver/tol_velocity_m_per_s=0.003"};
+      "/contact/min_gap_fraction=3e-5", "/step_solver/armijo=0.02",
+      "/step_solver/cap_fraction=0.7",  "/step_solver/max_iterations=17",
+      "/integrator/name=bdf2",          "/step_solver/tol_velocity_m_per_s=0.003"};
   const RunConfig config = parse_config(block, "test", ".", overrides);
   Calibration calibration;
   calibration.kappa = 5;
   const Method method = make_method(config, calibration);
-  EXPECT_EQ(method.contact_options.ccd_park, 3e-5);
+  EXPECT_EQ(method.contact_options.min_gap_fraction, 3e-5);
   EXPECT_EQ(number(method.step_solver.parameters, "armijo"), 0.02);
   EXPECT_EQ(number(method.step_solver.parameters, "cap_fraction"), 0.7);
   EXPECT_EQ(method.step_solver.max_iterations, 17);

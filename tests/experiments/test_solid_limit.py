@@ -79,7 +79,7 @@ def test_k_s_is_matched_to_the_load_at_theta(program, tmp_path):
 @pytest.mark.parametrize(
     "settings, words",
     [
-        (("/matching/solid_limit_load_Pa=null",), ("#/matching/solid_limit_load_Pa", "no pilot measures")),
+        (("/matching/solid_limit_load_Pa=null",), ("#/matching/solid_limit_load_Pa", "no calibration run measures")),
         (("/strain_limit/solids=false",), ("#/matching/solid_limit_load_Pa", "read with strain_limit/solids true")),
         (("/strain_limit/solids=false", "/matching/solid_limit_load_Pa=null", "/strain_limit/solid_k_s_Pa=1"), ("#/strain_limit/solid_k_s_Pa", "nothing")),
         (("/strain_limit/enabled=false", "/matching/solid_limit_load_Pa=null"), ("#/strain_limit/solids", "not enabled")),

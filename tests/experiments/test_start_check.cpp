@@ -1,4 +1,4 @@
-// What is said of a scene before its first step: given surfaces that pass through each other in any position, given motions
+// What is reported of a scene before its first step: given surfaces that pass through each other in any position, given motions
 // that cross, and a time limit that comes first.
 #include "experiments/run/start_check.hpp"
 
@@ -128,8 +128,8 @@ TEST(StartCheck, GivenMotionsAreFollowedAsFarAsTheRunGoes) {
   EXPECT_NE(found->detail.find("sheet["), std::string::npos) << found->detail;
 }
 
-/// One given body alone, which an obstacle is in the way of, or which moves away from it.
-TEST(StartCheck, AGivenBodyThatIsDrivenIntoAnObstacleIsRefused) {
+/// One prescribed body alone, which an obstacle is in the way of, or which moves away from it.
+TEST(StartCheck, APrescribedBodyThatIsDrivenIntoAnObstacleIsRefused) {
   const auto driven = [](double speed, const std::string& obstacles) {
     const RunConfig config = config_of(
         fmt::format(

@@ -1,4 +1,4 @@
-// Which forces of a pilot are loads: those that stay when barriers get stiffer. Forces of pieces between given bodies do
+// Which forces of a calibration run are loads: those that stay when barriers get stiffer. Forces of pieces between prescribed bodies do
 // not, and a match leaves them out.
 #include "experiments/run/stiffness_answer.hpp"
 
@@ -66,7 +66,8 @@ TEST(StiffnessAnswer, WhereNoForceIsALoadTheStaticWeightStandsIn) {
       {R"(/formulation/stiffness_policy={"name": "elasticity_inclusive", "mass_term": "inertia"})"});
   EXPECT_EQ(own.calibration.scale, 1);
   EXPECT_FALSE(own.record.scale.finite());
-  EXPECT_NE(own.record.pilot_note.find("the contact policy stays as given: no force of the pilot is a load"),
+  EXPECT_NE(own.record.pilot_note.find(
+                "the contact policy stays as given: no force of the calibration run is a load"),
             std::string::npos)
       << own.record.pilot_note;
 }

@@ -1,4 +1,4 @@
-// A time limit that passes before the first step of a run: in the pilot, while its forces are read, while a policy is
+// A time limit that passes before the first step of a run: in the calibration run, while its forces are read, while a policy is
 // followed to its first contact. What waits for the limit is the progress line, so no machine is too fast or too slow.
 #include <fmt/format.h>
 
@@ -20,12 +20,12 @@ constexpr double limit_s = 0.5;
 
 struct Stopped {
   RunRecord record;
-  int steps_shown = 0;       // of pilot and policy, until the run was over
+  int steps_shown = 0;       // of calibration run and policy, until the run was over
   double after_limit_s = 0;  // how long the run went on
 };
 
 /// A run in which the step shown as number `at` (from 1) before its passes ends after the limit. d_hat_m: its own, so that no other
-/// test has left its pilot behind.
+/// test has left its calibration run behind.
 Stopped stopped_at(int at, double d_hat_m, const std::vector<std::string>& overrides = {}) {
   std::vector<std::string> all = {fmt::format("/formulation/d_hat_m={}", d_hat_m)};
   all.insert(all.end(), overrides.begin(), overrides.end());
@@ -36,7 +36,7 @@ Stopped stopped_at(int at, double d_hat_m, const std::vector<std::string>& overr
   options.time_limit_s = limit_s;
   const double begin = now_s();
   options.progress = [&](const Progress& progress) {
-    if (std::string_view(progress.pass) != "pilot" || ++out.steps_shown != at) return;
+    if (std::string_view(progress.pass) != "calibration" || ++out.steps_shown != at) return;
     while (now_s() < begin + 1.2 * limit_s) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   };
   run_config(parsed(falling, all), options);
@@ -47,16 +47,16 @@ Stopped stopped_at(int at, double d_hat_m, const std::vector<std::string>& overr
 
 void expect_a_record_without_steps(const Stopped& run, const std::string& where) {
   EXPECT_EQ(run.record.status.outcome, Outcome::timeout);
-  EXPECT_EQ(
-      run.record.status.detail,
-      fmt::format("pilot: the time limit of {:g} s was reached {}; there was no first step", limit_s, where));
+  EXPECT_EQ(run.record.status.detail,
+            fmt::format("calibration run: the time limit of {:g} s was reached {}; there was no first step",
+                        limit_s, where));
   EXPECT_FALSE(run.record.status.valid);
   EXPECT_TRUE(run.record.steps.empty());
   EXPECT_TRUE(run.record.artifacts.empty());
   EXPECT_LT(run.after_limit_s, 2);
 }
 
-TEST(TimeLimit, EndsThePilotBeforeItsNextStep) {
+TEST(TimeLimit, EndsTheCalibrationRunBeforeItsNextStep) {
   const Stopped run = stopped_at(2, 0.0101);
   EXPECT_EQ(run.steps_shown, 2);
   expect_a_record_without_steps(run, "before its step 2 of 20");

@@ -46,7 +46,7 @@ json bare(const Method& method, double dt, int steps) {
   out["time"] = {{"dt_s", dt}, {"steps", steps}};
   out["integrator"]["name"] = method.entry.name;
   out["step_solver"] = {{"name", method.solver.name}, {"tol_velocity_m_per_s", 1e-6}};
-  // what is asked of the others, and a penalty that is not small beside m/h^2
+  // what is required of the others, and a penalty that is not small beside m/h^2
   if (method.solver.name == "pncg") out["step_solver"]["pncg_epsilon"] = 1e-10;
   if (method.solver.name == "augmented_lagrangian") out["step_solver"]["al_penalty_largest_N_per_m"] = 1e10;
   out["formulation"] = {{"shape", "quadratic"}, {"argument", "gap"}, {"d_hat_m", 1e-3}};

@@ -72,7 +72,7 @@ json converging(const Method& method, json config) {
 /// What the springs of a plate that is still have let it slide by, in weights over their stiffness.
 double way_of(const Track& run) { return (run.end() - run.x[0]).row(0).mean() * 100 / g; }
 
-/// Sticks at 0.99 of its friction at rest, slides at 1.01, then by the kinetic coefficient: all to 1 % of what Coulomb's law says.
+/// Sticks at 0.99 of its friction at rest, slides at 1.01, then by the kinetic coefficient: all to 1 % of what Coulomb's law states.
 std::string slips_at(const Method& method, const Track& run, double at_rest, double kinetic) {
   const auto speed = [&](double time) { return run.velocity(run.at(time)).x(); };
   for (const double time : {0.5 * ramp_end, ramp_end, 0.5 * (ramp_end + hold_end), hold_end}) {

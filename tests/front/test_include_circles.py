@@ -26,7 +26,7 @@ core/terms/contact core/terms/linear_contact
 experiments/cli/sweep_cases experiments/cli/sweep_spec
 experiments/config/document experiments/config/methods experiments/config/parse experiments/config/presets experiments/config/sections
 experiments/matrix/side_car experiments/matrix/system_file
-experiments/run/calibration experiments/run/fill_record experiments/run/pass experiments/run/passes experiments/run/pilot experiments/run/pilot_demand experiments/run/pilot_replay experiments/run/runner
+experiments/run/calibration experiments/run/calibration_demand experiments/run/calibration_replay experiments/run/calibration_run experiments/run/fill_record experiments/run/pass experiments/run/passes experiments/run/runner
 experiments/run/device_run experiments/run/method
 tests/ptx/machine tests/ptx/machine_state
 """

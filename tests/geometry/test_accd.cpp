@@ -51,7 +51,7 @@ Long exact_gap(const Points<T, pair_points(K)>& x0, const Points<T, pair_points(
   return oracle_closest<K>(Points<Long, pair_points(K)>(a + t * (b - a))).d;
 }
 
-/// What is no number, or has no square, is proven of nothing: every input in turn.
+/// A motion that is NaN, or whose square overflows, is treated as bound 0: every input in turn.
 TYPED_TEST(Accd, WhatIsNotFiniteIsNeverFree) {
   constexpr PairKind K = TypeParam::kind;
   using T = typename TypeParam::Scalar;
@@ -79,7 +79,7 @@ TYPED_TEST(Accd, WhatIsNotFiniteIsNeverFree) {
   EXPECT_GT(asked, 30);
 }
 
-/// A direction that is no number, as that of two parallel edges with rounding to zero, proves nothing.
+/// A direction that is NaN, as that of two parallel edges with rounding to zero, proves nothing.
 TYPED_TEST(Accd, ATurnOrADirectionThatIsNotFiniteProvesNothing) {
   constexpr PairKind K = TypeParam::kind;
   using T = typename TypeParam::Scalar;
@@ -98,7 +98,7 @@ TYPED_TEST(Accd, ATurnOrADirectionThatIsNotFiniteProvesNothing) {
   }
 }
 
-/// The first root against a scan, and what is no number or has no square in each place.
+/// The first root against a scan, and NaN or a number whose square overflows in each place.
 TEST(FirstRoot, IsNeverLaterThanTheRoot) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
                    inf = std::numeric_limits<double>::infinity();

@@ -12,10 +12,10 @@
 namespace bb::condition_test {
 namespace {
 
-ConditionEstimate estimate(const ReducedSystem& system, int tier, Scaling scaling = Scaling::none,
+ConditionEstimate estimate(const ReducedSystem& system, Estimator estimator, Scaling scaling = Scaling::none,
                            std::uint64_t seed = 1) {
-  ConditionEstimator estimator;
-  return estimator.estimate(system, {tier, scaling, seed});
+  ConditionEstimator conditions;
+  return conditions.estimate(system, {estimator, scaling, seed});
 }
 
 void print_row(const std::string& kind, int n, double cond, const ConditionEstimate& e) {
@@ -35,69 +35,70 @@ void expect_close(const ConditionEstimate& e, double cond, const std::string& wh
   EXPECT_NEAR(e.lambda_max, 1, tol) << what;
 }
 
-/// Tier 2: what Spectra may take, and then our Lanczos, tier 4.
-void expect_budget(int tier, const ConditionEstimate& e, const std::string& what) {
-  EXPECT_LE(e.solves, 25 + (tier == 2 ? default_max_solves : 0)) << what;
-  EXPECT_LE(e.products, 40 + (tier == 2 ? default_max_products : 0)) << what;
+/// spectra: what Spectra may take, and then lanczos.
+void expect_budget(Estimator estimator, const ConditionEstimate& e, const std::string& what) {
+  EXPECT_LE(e.solves, 25 + (estimator == Estimator::spectra ? default_max_solves : 0)) << what;
+  EXPECT_LE(e.products, 40 + (estimator == Estimator::spectra ? default_max_products : 0)) << what;
   EXPECT_GT(e.products, 0) << what;
 }
 
-TEST(Condition, Tiers2To4MeetKnownSpectraWhenDense) {
+TEST(Condition, SpectraDenseAndLanczosMeetKnownSpectraWhenDense) {
   for (const int n : {30, 100, 300}) {
     for (const double cond : {1e1, 1e3, 1e6, 1e10, 1e12}) {
       for (const std::string& kind : spectrum_kinds()) {
         const ReducedSystem system = from_dense(with_spectrum(spectrum(kind, n, cond), 3));
         const std::string what = kind + " n " + std::to_string(n) + " cond " + std::to_string(cond);
-        for (const int tier : {2, 4}) {
-          const ConditionEstimate e = estimate(system, tier);
+        for (const Estimator estimator : {Estimator::spectra, Estimator::lanczos}) {
+          const ConditionEstimate e = estimate(system, estimator);
           print_row(kind, n, cond, e);
-          expect_close(e, cond, what + " tier " + std::to_string(tier));
-          expect_budget(tier, e, what);
+          expect_close(e, cond, what + " " + std::string(to_string(estimator)));
+          expect_budget(estimator, e, what);
         }
-        if (n <= 100) expect_close(estimate(system, 3), cond, what + " tier 3");
+        if (n <= 100) expect_close(estimate(system, Estimator::dense), cond, what + " dense");
       }
     }
   }
 }
 
-TEST(Condition, Tiers2And4MeetKnownSpectraWhenLargeAndSparse) {
+TEST(Condition, SpectraAndLanczosMeetKnownSpectraWhenLargeAndSparse) {
   // The factor of such a matrix is nearly dense, so the largest one comes with one condition number only.
   for (const auto& [n, cond] : {std::pair{1200, 1e2}, {1200, 1e6}, {3000, 1e10}, {1200, 1e12}}) {
     for (const std::string& kind : spectrum_kinds()) {
       const ReducedSystem system = from_sparse(sparse_with_spectrum(spectrum(kind, n, cond), 3));
-      for (const int tier : {2, 4}) {
-        const ConditionEstimate e = estimate(system, tier);
+      for (const Estimator estimator : {Estimator::spectra, Estimator::lanczos}) {
+        const ConditionEstimate e = estimate(system, estimator);
         print_row(kind, n, cond, e);
-        expect_close(e, cond, kind + " " + std::to_string(cond) + " tier " + std::to_string(tier));
-        expect_budget(tier, e, kind);
+        expect_close(e, cond, kind + " " + std::to_string(cond) + " " + std::string(to_string(estimator)));
+        expect_budget(estimator, e, kind);
       }
     }
   }
 }
 
-TEST(Condition, Tiers2And4HoldForOtherSeeds) {
+TEST(Condition, SpectraAndLanczosHoldForOtherSeeds) {
   std::vector<std::uint64_t> seeds(38);
   std::iota(seeds.begin(), seeds.end(), 2);
   seeds.push_back(892);  // starts almost at a right angle to the wanted eigenvector of "geometric"
   for (const std::uint64_t seed : seeds) {
     for (const std::string& kind : spectrum_kinds()) {
       const ReducedSystem system = from_dense(with_spectrum(spectrum(kind, 90, 1e4), 4));
-      for (const int tier : {2, 4}) {
-        const ConditionEstimate e = estimate(system, tier, Scaling::none, seed);
-        expect_close(e, 1e4, kind + " seed " + std::to_string(seed) + " tier " + std::to_string(tier));
-        expect_budget(tier, e, kind);
+      for (const Estimator estimator : {Estimator::spectra, Estimator::lanczos}) {
+        const ConditionEstimate e = estimate(system, estimator, Scaling::none, seed);
+        expect_close(e, 1e4,
+                     kind + " seed " + std::to_string(seed) + " " + std::string(to_string(estimator)));
+        expect_budget(estimator, e, kind);
       }
     }
   }
 }
 
-TEST(Condition, Tier1IsALowerBoundWithinAFewPercentOrWorse) {
+TEST(Condition, InversePowerIsALowerBoundWithinAFewPercentOrWorse) {
   double worst = 1;
   for (const int n : {30, 300}) {
     for (const double cond : {1e1, 1e4, 1e8, 1e12}) {
       for (const std::string& kind : spectrum_kinds()) {
         const ReducedSystem system = from_dense(with_spectrum(spectrum(kind, n, cond), 6));
-        const ConditionEstimate e = estimate(system, 1);
+        const ConditionEstimate e = estimate(system, Estimator::inverse_power);
         // The truth itself moves by the rounding of the entries: eps |A| against lambda_min.
         const double slack = 1e-10 + 1e-16 * cond;
         EXPECT_EQ(e.status, ConditionStatus::lower_bound) << kind;
@@ -110,7 +111,7 @@ TEST(Condition, Tier1IsALowerBoundWithinAFewPercentOrWorse) {
       }
     }
   }
-  std::printf("tier 1: smallest cond / truth %.3f\n", worst);
+  std::printf("inverse_power: smallest cond / truth %.3f\n", worst);
   EXPECT_GT(worst, 0.5);
   EXPECT_LT(worst, 0.9999);  // it is a bound, not the value: the test has something to bound
 }
@@ -121,15 +122,15 @@ TEST(Condition, ScalingsMeetDenseAlgebra) {
       VecXd::NullaryExpr(100, [](Eigen::Index i) { return std::pow(10.0, static_cast<double>(i % 7)); });
   a = (rows.asDiagonal() * a * rows.asDiagonal()).eval();
   const ReducedSystem system = from_dense(a);  // 100 = 33 blocks of 3 and one of 1
-  ConditionEstimator estimator;
+  ConditionEstimator conditions;
   std::vector<double> truths;
-  for (const int tier : {2, 3}) {
+  for (const Estimator estimator : {Estimator::spectra, Estimator::dense}) {
     for (const Scaling scaling : {Scaling::jacobi, Scaling::block_jacobi}) {
       const VecXd truth = test::scaled_spectrum(system, scaling);
       const double cond = truth[99] / truth[0];
-      const ConditionEstimate e = estimator.estimate(system, {tier, scaling, 1});
+      const ConditionEstimate e = conditions.estimate(system, {estimator, scaling, 1});
       EXPECT_EQ(e.status, ConditionStatus::ok);
-      EXPECT_NEAR(e.cond / cond, 1, 1e-3) << to_string(scaling) << " tier " << tier;
+      EXPECT_NEAR(e.cond / cond, 1, 1e-3) << to_string(scaling) << " " << to_string(estimator);
       EXPECT_NEAR(e.lambda_min / truth[0], 1, 1e-3);
       EXPECT_NEAR(e.lambda_max / truth[99], 1, 1e-3);
       truths.push_back(cond);
@@ -143,10 +144,10 @@ TEST(Condition, ScalingsMeetDenseAlgebra) {
 
 TEST(Condition, AnEstimatorThatHasSeenTheMatrixSaysTheSame) {
   const ReducedSystem system = grid_system(12, 1e-3, 42);
-  ConditionEstimator estimator;
+  ConditionEstimator conditions;
   for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
-    const ConditionEstimate again = estimator.estimate(system, {2, scaling, 7}),
-                            one = estimate(system, 2, scaling, 7);
+    const ConditionEstimate again = conditions.estimate(system, {Estimator::spectra, scaling, 7}),
+                            one = estimate(system, Estimator::spectra, scaling, 7);
     const VecXd truth = test::scaled_spectrum(system, scaling);
     EXPECT_EQ(again.lambda_min, one.lambda_min);
     EXPECT_EQ(again.lambda_max, one.lambda_max);
@@ -164,7 +165,7 @@ TEST(Condition, LargestEigenvalueAgreesWithSpectra) {
   const SpectraEnd spectra =
       spectra_largest(product, VecXd::LinSpaced(system.lower.rows(), -1, 2), 20000, 1e-10);
   ASSERT_TRUE(spectra.converged);
-  const ConditionEstimate e = estimate(system, 4);  // ours
+  const ConditionEstimate e = estimate(system, Estimator::lanczos);  // ours
   EXPECT_EQ(e.status, ConditionStatus::ok);
   EXPECT_NEAR(e.lambda_max / spectra.value, 1, 1e-3);
 }

@@ -1,4 +1,4 @@
-// What a condition estimate says of itself: ok only where both ends are resolved, proven only above the rounding of a
+// What a condition estimate reports of itself: ok only where both ends are resolved, proven only above the rounding of a
 // factor, and a residual that both eigenpairs keep to. Scenes on either side of each decision, for both ends alike.
 #include <gtest/gtest.h>
 
@@ -14,9 +14,10 @@ namespace {
 
 constexpr std::uint64_t seed = 7;
 
-ConditionEstimate estimate(const ReducedSystem& system, int tier, Scaling scaling = Scaling::none) {
-  ConditionEstimator estimator;
-  return estimator.estimate(system, {.tier = tier, .scaling = scaling, .seed = seed});
+ConditionEstimate estimate(const ReducedSystem& system, Estimator estimator,
+                           Scaling scaling = Scaling::none) {
+  ConditionEstimator conditions;
+  return conditions.estimate(system, {.estimator = estimator, .scaling = scaling, .seed = seed});
 }
 
 /// Eigenvalues 1 and 2, and `value` along a direction that the start vector of this seed is orthogonal to.
@@ -47,7 +48,7 @@ TEST(ConditionDecisions, OneUnresolvedEndIsALowerBound) {
                        Case{seed + 1, 0.9, true}, Case{seed + 1, 0.5, true}, Case{seed, 4.5, false},
                        Case{seed, 4.0, false}, Case{seed, 3.7, true}, Case{seed, 3.0, true}}) {
     const double cond = std::max(2.0, c.value) / std::min(1.0, c.value);
-    const ConditionEstimate e = estimate(hidden_from(c.start, c.value), 4);
+    const ConditionEstimate e = estimate(hidden_from(c.start, c.value), Estimator::lanczos);
     EXPECT_EQ(e.status, c.ok ? ConditionStatus::ok : ConditionStatus::lower_bound) << c.value << e.method;
     EXPECT_LE(e.cond, cond * (1 + (c.ok ? 1e-3 : 1e-12)))
         << c.value;  // a bound is never above what it bounds
@@ -100,8 +101,8 @@ TEST(ConditionDecisions, AnEndIsProvenOnlyAboveTheRoundingOfItsFactor) {
   for (const bool crowded : {false, true}) {
     for (const double smallest : {1e-6, 2.5e-10, 1.3e-10, 1.2e-10, 5e-11, 1e-11}) {
       const ReducedSystem system = from_sparse(sparse_with_spectrum(with_small_end(smallest, crowded), 3));
-      for (const int tier : {2, 4}) {
-        const ConditionEstimate e = estimate(system, tier);
+      for (const Estimator estimator : {Estimator::spectra, Estimator::lanczos}) {
+        const ConditionEstimate e = estimate(system, estimator);
         const bool smallest_proven = e.proof == ProvenEnds::both || e.proof == ProvenEnds::smallest;
         EXPECT_EQ(smallest_proven, smallest > 1.25e-10) << smallest << " " << e.method << " " << crowded;
         EXPECT_TRUE(e.proof == ProvenEnds::both || e.proof == ProvenEnds::largest) << smallest << e.method;
@@ -139,23 +140,23 @@ TEST(ConditionDecisions, TheResidualIsThatOfTheWorsePair) {
     }
     const ReducedSystem system = from_sparse(sparse_with_spectrum(s, 5));
     const VecXd values = test::eigenvalues(dense(system));
-    for (const int tier : {2, 4}) {
-      const ConditionEstimate e = estimate(system, tier);
+    for (const Estimator estimator : {Estimator::spectra, Estimator::lanczos}) {
+      const ConditionEstimate e = estimate(system, estimator);
       const double at_small = least_residual(e.lambda_min, values),
                    at_large = least_residual(e.lambda_max, values);
       EXPECT_GE(e.residual * e.lambda_max * (1 + 1e-3), std::max(at_small, at_large))
-          << tier << crowded_below;
+          << to_string(estimator) << crowded_below;
       EXPECT_LE(e.residual, 1e-2);
       const double crowded = crowded_below ? at_small : at_large, alone = crowded_below ? at_large : at_small;
-      EXPECT_GT(crowded, 1e-7) << tier << " " << crowded_below;
-      EXPECT_GT(crowded, alone) << tier << " " << crowded_below;
+      EXPECT_GT(crowded, 1e-7) << to_string(estimator) << " " << crowded_below;
+      EXPECT_GT(crowded, alone) << to_string(estimator) << " " << crowded_below;
       ++judged;
     }
   }
   EXPECT_EQ(judged, 4);
 }
 
-/// Every pair that was asked counts, in any order and scaling, by |B v - lambda v| of the dense matrix.
+/// Every pair that was queried counts, in any order and scaling, by |B v - lambda v| of the dense matrix.
 TEST(ConditionDecisions, ResidualsAreRaisedAndNeverLowered) {
   const ReducedSystem system = grid_system(4, 0.3);
   const Eigen::MatrixXd a = dense(system);

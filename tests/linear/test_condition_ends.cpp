@@ -1,4 +1,4 @@
-// The ends of the spectrum that tiers 2 and 4 call ok: never a neighbour of the end, whatever the start vector.
+// The ends of the spectrum that spectra and lanczos call ok: never a neighbour of the end, whatever the start vector.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,20 +25,22 @@ ReducedSystem with_close_neighbours(int n, double gap) {
 TEST(ConditionEnds, ANeighbourIsNeverReportedAsOk) {
   for (const double gap : {1.2e-3, 2.5e-3, 4e-3}) {
     const ReducedSystem system = with_close_neighbours(90, gap);
-    ConditionEstimator estimator;
-    for (const int tier : {2, 4}) {
+    ConditionEstimator conditions;
+    for (const Estimator estimator : {Estimator::spectra, Estimator::lanczos}) {
       int n_ok = 0;
       for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-        const ConditionEstimate e = estimator.estimate(system, {.tier = tier, .seed = seed});
-        EXPECT_LE(e.solves, 25 + (tier == 2 ? default_max_solves : 0)) << seed;
-        EXPECT_LE(e.products, 40 + (tier == 2 ? default_max_products : 0)) << seed;
+        const ConditionEstimate e = conditions.estimate(system, {.estimator = estimator, .seed = seed});
+        EXPECT_LE(e.solves, 25 + (estimator == Estimator::spectra ? default_max_solves : 0)) << seed;
+        EXPECT_LE(e.products, 40 + (estimator == Estimator::spectra ? default_max_products : 0)) << seed;
         if (e.status != ConditionStatus::ok) continue;
         ++n_ok;
         EXPECT_EQ(e.proof, ProvenEnds::both) << e.method;
-        EXPECT_NEAR(e.lambda_max, 1, 1e-3) << "gap " << gap << " seed " << seed << " tier " << tier;
-        EXPECT_NEAR(e.lambda_min / 0.01, 1, 1e-3) << "gap " << gap << " seed " << seed << " tier " << tier;
+        EXPECT_NEAR(e.lambda_max, 1, 1e-3)
+            << "gap " << gap << " seed " << seed << " " << to_string(estimator);
+        EXPECT_NEAR(e.lambda_min / 0.01, 1, 1e-3)
+            << "gap " << gap << " seed " << seed << " " << to_string(estimator);
       }
-      EXPECT_GE(n_ok, 58) << gap << " tier " << tier;
+      EXPECT_GE(n_ok, 58) << gap << " " << to_string(estimator);
     }
   }
 }
@@ -46,13 +48,13 @@ TEST(ConditionEnds, ANeighbourIsNeverReportedAsOk) {
 /// One soft direction among equal ones: the Krylov space of any start has two dimensions. Spectra calls pairs of it converged
 /// whose vectors are none.
 TEST(ConditionEnds, AnExhaustedKrylovSpaceIsNoPair) {
-  ConditionEstimator estimator;
+  ConditionEstimator conditions;
   int judged = 0;
   for (const double soft : {1e-6, 1e-9, 1e-12, 1e-13}) {
     for (int n = 60; n < 150; n += 3) {
       Eigen::SparseMatrix<double> a(n, n);
       for (int i = 0; i < n; ++i) a.insert(i, i) = i == n / 3 ? soft : 1;
-      const ConditionEstimate e = estimator.estimate(from_sparse(a), {.tier = 2});
+      const ConditionEstimate e = conditions.estimate(from_sparse(a), {.estimator = Estimator::spectra});
       if (e.status != ConditionStatus::ok) continue;
       ++judged;
       EXPECT_NEAR(e.cond * soft, 1, 1e-3) << n << ' ' << soft << ' ' << e.method;

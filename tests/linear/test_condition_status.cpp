@@ -9,9 +9,10 @@
 namespace bb::condition_status_test {
 namespace {
 
-ConditionEstimate estimate(const ReducedSystem& system, int tier, Scaling scaling = Scaling::none) {
-  ConditionEstimator estimator;
-  return estimator.estimate(system, {tier, scaling, 1});
+ConditionEstimate estimate(const ReducedSystem& system, Estimator estimator,
+                           Scaling scaling = Scaling::none) {
+  ConditionEstimator conditions;
+  return conditions.estimate(system, {estimator, scaling, 1});
 }
 
 /// A path graph's Laplacian: integers, exactly singular.
@@ -24,10 +25,11 @@ ReducedSystem laplacian(int n) {
 TEST(ConditionStatus, SingularMatrixIsNamed) {
   VecXd s = spectrum("geometric", 120, 1e3);
   s.head(6).setZero();
-  for (const int tier : {1, 2, 3, 4}) {
+  for (const Estimator estimator :
+       {Estimator::inverse_power, Estimator::spectra, Estimator::dense, Estimator::lanczos}) {
     for (const ReducedSystem& system : {laplacian(40), from_dense(with_spectrum(s, 2))}) {
-      const ConditionEstimate e = estimate(system, tier);
-      EXPECT_EQ(e.status, ConditionStatus::singular) << "tier " << tier << " min " << e.lambda_min;
+      const ConditionEstimate e = estimate(system, estimator);
+      EXPECT_EQ(e.status, ConditionStatus::singular) << to_string(estimator) << " min " << e.lambda_min;
       EXPECT_TRUE(std::isnan(e.cond));
       EXPECT_LT(std::abs(e.lambda_min), 1e-14 * e.lambda_max);
       EXPECT_GT(e.lambda_max, 0.5);
@@ -39,14 +41,15 @@ TEST(ConditionStatus, IndefiniteMatrixIsNotPd) {
   for (const double negative : {-0.3, -1e-5, -1e-9, -1e-11}) {
     VecXd s = spectrum("geometric", 90, 1e3);
     s[0] = negative;
-    for (const int tier : {1, 2, 3, 4}) {
-      const ConditionEstimate e = estimate(from_dense(with_spectrum(s, 2)), tier);
-      EXPECT_EQ(e.status, ConditionStatus::not_pd) << "tier " << tier << " " << negative;
+    for (const Estimator estimator :
+         {Estimator::inverse_power, Estimator::spectra, Estimator::dense, Estimator::lanczos}) {
+      const ConditionEstimate e = estimate(from_dense(with_spectrum(s, 2)), estimator);
+      EXPECT_EQ(e.status, ConditionStatus::not_pd) << to_string(estimator) << " " << negative;
       EXPECT_TRUE(std::isnan(e.cond));
-      if (negative > -1e-8 || tier == 3) {
-        EXPECT_NEAR(e.lambda_min / negative, 1, 1e-3) << "tier " << tier;
+      if (negative > -1e-8 || estimator == Estimator::dense) {
+        EXPECT_NEAR(e.lambda_min / negative, 1, 1e-3) << to_string(estimator);
       }
-      if (negative > -1e-8 && tier != 3) {
+      if (negative > -1e-8 && estimator != Estimator::dense) {
         EXPECT_NE(e.method.find("sigma = -1e-8"), std::string::npos);
       }
     }
@@ -56,9 +59,10 @@ TEST(ConditionStatus, IndefiniteMatrixIsNotPd) {
 TEST(ConditionStatus, NegativeDiagonalIsNotPdInEveryScaling) {
   Eigen::MatrixXd a = Eigen::MatrixXd::Identity(9, 9);
   a(4, 4) = -1;
-  for (const int tier : {1, 2, 3, 4}) {
+  for (const Estimator estimator :
+       {Estimator::inverse_power, Estimator::spectra, Estimator::dense, Estimator::lanczos}) {
     for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
-      EXPECT_EQ(estimate(from_dense(a), tier, scaling).status, ConditionStatus::not_pd);
+      EXPECT_EQ(estimate(from_dense(a), estimator, scaling).status, ConditionStatus::not_pd);
     }
   }
 }
@@ -66,9 +70,10 @@ TEST(ConditionStatus, NegativeDiagonalIsNotPdInEveryScaling) {
 TEST(ConditionStatus, Above1e14IsALowerBound) {
   for (const int n : {30, 120}) {
     const ReducedSystem system = from_dense(with_spectrum(spectrum("geometric", n, 1e15), 2));
-    for (const int tier : {1, 2, 3, 4}) {
-      const ConditionEstimate e = estimate(system, tier);
-      EXPECT_EQ(e.status, ConditionStatus::lower_bound) << "tier " << tier << " min " << e.lambda_min;
+    for (const Estimator estimator :
+         {Estimator::inverse_power, Estimator::spectra, Estimator::dense, Estimator::lanczos}) {
+      const ConditionEstimate e = estimate(system, estimator);
+      EXPECT_EQ(e.status, ConditionStatus::lower_bound) << to_string(estimator) << " min " << e.lambda_min;
       EXPECT_EQ(e.cond, 1e14);
       EXPECT_LT(e.lambda_min, 1e-14);
     }
@@ -78,34 +83,36 @@ TEST(ConditionStatus, Above1e14IsALowerBound) {
 TEST(ConditionStatus, EmptyRowIsSingular) {
   Eigen::MatrixXd a = Eigen::MatrixXd::Identity(6, 6);
   a(2, 2) = 0;  // not even stored
-  for (const int tier : {1, 2, 3, 4}) {
-    EXPECT_EQ(estimate(from_dense(a), tier).status, ConditionStatus::singular) << tier;
+  for (const Estimator estimator :
+       {Estimator::inverse_power, Estimator::spectra, Estimator::dense, Estimator::lanczos}) {
+    EXPECT_EQ(estimate(from_dense(a), estimator).status, ConditionStatus::singular) << to_string(estimator);
   }
 }
 
 TEST(ConditionStatus, SmallSystemsAreExact) {
-  for (const int tier : {1, 2, 3, 4}) {
-    const ConditionEstimate one = estimate(from_dense(Eigen::MatrixXd::Constant(1, 1, 4.0)), tier);
-    EXPECT_EQ(one.cond, 1) << tier;
-    EXPECT_NEAR(one.lambda_min, 4, 1e-11) << tier;
-    const ConditionEstimate two = estimate(from_dense(Eigen::Vector2d(1, 100).asDiagonal()), tier);
-    EXPECT_NEAR(two.cond, 100, tier == 1 ? 1e-6 : 1e-10) << tier;
+  for (const Estimator estimator :
+       {Estimator::inverse_power, Estimator::spectra, Estimator::dense, Estimator::lanczos}) {
+    const ConditionEstimate one = estimate(from_dense(Eigen::MatrixXd::Constant(1, 1, 4.0)), estimator);
+    EXPECT_EQ(one.cond, 1) << to_string(estimator);
+    EXPECT_NEAR(one.lambda_min, 4, 1e-11) << to_string(estimator);
+    const ConditionEstimate two = estimate(from_dense(Eigen::Vector2d(1, 100).asDiagonal()), estimator);
+    EXPECT_NEAR(two.cond, 100, estimator == Estimator::inverse_power ? 1e-6 : 1e-10) << to_string(estimator);
   }
 }
 
 TEST(ConditionStatus, NonFiniteEmptyAndTooLargeAreNotConverged) {
   Eigen::MatrixXd a = Eigen::MatrixXd::Identity(6, 6);
   a(3, 3) = std::numeric_limits<double>::infinity();
-  for (const int tier : {1, 2, 3, 4}) {
-    EXPECT_EQ(estimate(from_dense(a), tier).status, ConditionStatus::not_converged);
-    EXPECT_EQ(estimate(from_dense(Eigen::MatrixXd(0, 0)), tier).status, ConditionStatus::not_converged);
+  for (const Estimator estimator :
+       {Estimator::inverse_power, Estimator::spectra, Estimator::dense, Estimator::lanczos}) {
+    EXPECT_EQ(estimate(from_dense(a), estimator).status, ConditionStatus::not_converged);
+    EXPECT_EQ(estimate(from_dense(Eigen::MatrixXd(0, 0)), estimator).status, ConditionStatus::not_converged);
   }
   Eigen::SparseMatrix<double> large(3001, 3001);
   large.setIdentity();
-  EXPECT_EQ(estimate(from_sparse(large), 3).status, ConditionStatus::not_converged);
-  EXPECT_EQ(estimate(from_sparse(large), 2).status, ConditionStatus::ok);
-  EXPECT_THROW(estimate(from_dense(a), 0), ConfigError);
-  EXPECT_THROW(estimate(from_dense(a), 5), ConfigError);
+  EXPECT_EQ(estimate(from_sparse(large), Estimator::dense).status, ConditionStatus::not_converged);
+  EXPECT_EQ(estimate(from_sparse(large), Estimator::spectra).status, ConditionStatus::ok);
+  EXPECT_THROW(estimate(from_dense(a), Estimator::ritz), ConfigError);
 }
 
 TEST(ConditionStatus, RitzValuesAreALowerBound) {
@@ -119,12 +126,12 @@ TEST(ConditionStatus, RitzValuesAreALowerBound) {
 }
 
 TEST(ConditionStatus, TheSameEstimatorServesChangingMatrices) {
-  ConditionEstimator estimator;
+  ConditionEstimator conditions;
   for (const double diagonal : {1.0, 1e-2, 1.0}) {
     for (const int m : {6, 9}) {
       const ReducedSystem system = grid_system(m, diagonal, static_cast<std::uint64_t>(m));
       const VecXd truth = test::eigenvalues(dense(system));
-      const ConditionEstimate e = estimator.estimate(system, {2, Scaling::none, 1});
+      const ConditionEstimate e = conditions.estimate(system, {Estimator::spectra, Scaling::none, 1});
       EXPECT_NEAR(e.cond / (truth[truth.size() - 1] / truth[0]), 1, 1e-3) << m << " " << diagonal;
     }
   }

@@ -25,14 +25,14 @@ struct ScriptedIteration {
   double escape_slope = 0, escape_curvature = -1, escape_bound = 1;
   std::function<Change(double)> escape_change = nullptr;  // empty: none is feasible
   bool at_target = true;
-  double curvature = -1;    // that the check of the end finds at a saddle, N/m
-  double detour_bound = 0;  // of the direction round curved gaps; 0: there is none
-  double t = 0;             // of the matrix that was solved, 0 exact to 1 clamped
-  bool lengthens = false;   // scaling the direction changes what bound and change are of
-  StepBound work = {};      // of every bound that is asked for
+  double curvature = -1;       // that the check of the end finds at a saddle, N/m
+  double corrected_bound = 0;  // of the direction round curved gaps; 0: there is none
+  double t = 0;                // of the matrix that was solved, 0 exact to 1 clamped
+  bool lengthens = false;      // scaling the direction changes what bound and change are of
+  StepBound work = {};         // of every bound that is requested
 };
 
-/// What the system says of itself in every iteration.
+/// What the system reports of itself in every iteration.
 struct ScriptedState {
   Precision precision = Precision::full;
   Positions x = one_point(0, 0, 1);
@@ -46,7 +46,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   explicit ScriptedSystem(std::vector<ScriptedIteration> script, ScriptedState state = {})
       : script_(std::move(script)), scene_(particle_over_plane(1, 1, 0.01)), state_(std::move(state)) {}
 
-  std::vector<double> tried;           // every alpha whose energy was asked for, in the order of trials
+  std::vector<double> tried;           // every alpha whose energy was requested, in the order of trials
   std::vector<double> feasible_asked;  // those of which feasibility alone was
   std::vector<double> aimed;           // lengths of escapes
   std::vector<double> scaled;          // factors on the direction
@@ -68,7 +68,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   void assemble() override {
     secants.push_back(secant_);
     if (place_ + 1 < static_cast<int>(script_.size())) ++place_;
-    escaping_ = detouring_ = false;
+    escaping_ = corrected_ = false;
     length_ = 1;
   }
   double add_tikhonov(double, double) override { return 0; }
@@ -99,11 +99,11 @@ class ScriptedSystem final : public StepSystem, public StepView {
   void prepare_motion(MotionEnd, bool) override {}
   double bound_motion(IterationReport& report) override {
     report.bound = now().work;
-    if (detouring_) return now().detour_bound;
+    if (corrected_) return now().corrected_bound;
     return report.alpha_ccd = escaping_ ? now().escape_bound : std::min(1.0, now().bound / length_);
   }
-  bool make_detour(double, SolveReport&) override { return detouring_ = now().detour_bound > 0; }
-  void restore_direction() override { escaping_ = detouring_ = false; }
+  bool correct_curvature(double, SolveReport&) override { return corrected_ = now().corrected_bound > 0; }
+  void restore_direction() override { escaping_ = corrected_ = false; }
   std::string describe_bound() const override { return "the script"; }
   bool try_feasible(double alpha) override {
     feasible_asked.push_back(alpha);
@@ -115,7 +115,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   }
   void accept() override {
     ++accepted;
-    escaping_ = detouring_ = false;
+    escaping_ = corrected_ = false;
   }
 
   const Scene& scene() const override { return scene_; }
@@ -151,7 +151,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
   Scene scene_;
   ScriptedState state_;
   int place_ = -1;
-  bool escaping_ = false, detouring_ = false;
+  bool escaping_ = false, corrected_ = false;
   double length_ = 1, secant_ = 0;
 };
 

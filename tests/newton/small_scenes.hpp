@@ -23,7 +23,7 @@ inline Method fixed_method(const std::string& shape, double kappa,
   policy.parameters["kappa_N_per_m"] = kappa;
   method.stiffness = make_policy(policy);
   method.limit = {require_shape(shape), Argument::gap};
-  method.limit_stiffness = fixed_limit(0);  // a limit bounds steps and has no force, unless a test says
+  method.limit_stiffness = fixed_limit(0);  // a limit bounds steps and has no force, unless a test reports
   method.integrator = make_integrator(integrator);
   method.step_solver.tol_velocity = 1e-6;
   return method;
@@ -60,7 +60,7 @@ inline SolveReport solve(NewtonSystem& system, const Positions& target, Position
   return report;
 }
 
-/// What the terms say of the iterate.
+/// What the terms report of the iterate.
 inline IterateNumbers reported(NewtonSystem& system) {
   IterateNumbers out;
   system.view().report(out);

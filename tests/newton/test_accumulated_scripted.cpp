@@ -96,7 +96,7 @@ TEST(AccumulatedScripted, InfeasibleStatesAreHalved) {
   ASSERT_GE(step.system.feasible_asked.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_DOUBLE_EQ(step.system.feasible_asked[i], std::ldexp(0.8, -static_cast<int>(i)) / extension);
-  EXPECT_TRUE(step.system.tried.empty());  // no energy is asked for
+  EXPECT_TRUE(step.system.tried.empty());  // no energy is requested
   EXPECT_STREQ(step.iterations[0].energy_change_J.status, no_energies_compared);
   EXPECT_DOUBLE_EQ(step.iterations[0].alpha, 0.2);
   EXPECT_EQ(step.iterations[0].line_search_trials, 3);

@@ -60,7 +60,7 @@ TEST_P(AttemptsOf, AddUpTheirWork) {
   EXPECT_EQ(report.analyses, int(refused.analyzed) + int(served.analyzed));
   EXPECT_EQ(report.factor_flop, refused.factor_flop + served.factor_flop);
   EXPECT_EQ(report.linear.residual_true,
-            served.residual_true);  // what is said of the direction is the last one's
+            served.residual_true);  // what is reported of the direction is the last one's
   if (std::string(GetParam()) == "pcg") {
     EXPECT_GT(refused.iterations, 0);
     EXPECT_GT(served.iterations, 0);
@@ -85,7 +85,7 @@ TEST(Attempts, AreInTheNumbersOfTheirIterationAndStep) {
    public:
     void on_iteration(const IterationReport& report) override {
       EXPECT_EQ(report.linear_iterations, report.solve.linear.iterations);
-      EXPECT_EQ(report.linear_solves, report.solve.attempts + report.solve.detours);
+      EXPECT_EQ(report.linear_solves, report.solve.attempts + report.solve.corrections);
       EXPECT_EQ(report.hessian_fallbacks, report.solve.attempts - 1);
       solves += report.linear_solves, iterations += report.linear_iterations;
       refused += report.hessian_fallbacks;

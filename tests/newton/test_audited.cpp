@@ -104,7 +104,7 @@ Course course(const Scene& scene, Method method, int nominal_steps, StepStatus a
 }
 
 /// Whether the surfaces have passed through each other in a straight motion or intersect at its end, as the
-/// audit says.
+/// audit reports.
 bool passes(const Scene& scene, const Positions& x0, const Positions& x1) {
   audit::AuditMesh mesh;
   audit::set_edges(scene.surface_triangles, scene.surface_edges, mesh);

@@ -1,4 +1,4 @@
-// Steps that crawl, since the raised matrix is stiffer than E, get longer: what is asked of that, with a number on either side.
+// Steps that crawl, since the regularised Hessian is stiffer than E, get longer: what is required of that, with a number on either side.
 #include <gtest/gtest.h>
 
 #include "tests/newton/scripted_system.hpp"

@@ -151,7 +151,7 @@ TEST(EndDecisions, InfeasibleTrialsAreHalvedAndBoundsAreKept) {
   EXPECT_TRUE(step.system.feasible_asked.empty());
 }
 
-/// A pin that moves does work: until it is where it has to be E may grow, and is not asked for.
+/// A pin that moves does work: until it is where it has to be E may grow, and no fall is required.
 TEST(EndDecisions, ShortOfAPoseFeasibilityAloneIsAsked) {
   ScriptedIteration one{.dx = 1, .bound = 0.5};
   one.at_target = false;

@@ -1,4 +1,4 @@
-// From a saddle a step goes on along negative curvature: what is asked of that, with a number on either side.
+// From a saddle a step goes on along negative curvature: what is required of that, with a number on either side.
 #include <gtest/gtest.h>
 
 #include "tests/newton/scripted_system.hpp"
@@ -141,7 +141,7 @@ TEST(EscapeDecisions, LeaveACuspWhateverTheCurvature) {
   auto level = saddle(0, at_one(-1e-18));
   level[0].end = EndProof::cusp;
   EXPECT_EQ(escaped(level), 0);
-  auto promised = saddle(0, at_one(-0.09), -1);  // a tenth of the slope of 1 is asked for
+  auto promised = saddle(0, at_one(-0.09), -1);  // a tenth of the slope of 1 is requested
   promised[0].end = EndProof::cusp;
   EXPECT_EQ(escaped(promised), 0);
 }

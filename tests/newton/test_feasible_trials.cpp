@@ -1,4 +1,4 @@
-// Trials that are judged by feasibility alone: no term's energy is evaluated there, and what is said of the state
+// Trials that are judged by feasibility alone: no term's energy is evaluated there, and what is reported of the state
 // afterwards is what it would be.
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace bb::feasible_trials_test {
 namespace {
 
-/// A term writes energies of trials where evaluate() asks it to, and nowhere else: what is not 0 there was asked for.
+/// A term writes energies of trials where evaluate() asks it to, and nowhere else: what is not 0 there was requested.
 class TrialEnergies final : public StepObserver {
  public:
   void on_matrix(StepSystem& system, int, int) override {

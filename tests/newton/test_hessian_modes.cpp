@@ -1,5 +1,5 @@
 // Every choice of Hessian on one step of a cloth that buckles: the same state, within the tolerance that the
-// step was asked for, by different ways.
+// step was requested, by different ways.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // Every linear solver on one step of a cloth that buckles: the same state, within the tolerance that the step
-// was asked for, and counts that say what was done.
+// was requested, and counts that say what was done.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -21,7 +21,7 @@ Method solved_by(const std::string& name, const std::string& preconditioner = ""
   return method;
 }
 
-/// What the solves of a step were asked for.
+/// What the solves of a step had to do.
 struct Tolerances final : StepObserver {
   void on_iteration(const IterationReport& report) override {
     of.push_back(report.solve.linear.tolerance);

@@ -207,7 +207,7 @@ TEST(NewtonSystem, without_the_limit_a_stage_has_only_elasticity_and_inertia) {
 
 /// A given plate that rises under a particle over its middle vertex, where six pairs have one closest feature. Newton's
 /// model is linear: (m/h^2 + 6 kappa b'') dz = 6 kappa |b'| - m g + 6 kappa b'' rise.
-TEST(NewtonSystem, the_motion_of_a_given_vertex_reaches_every_pair) {
+TEST(NewtonSystem, the_motion_of_a_prescribed_vertex_reaches_every_pair) {
   Scene scene;
   const auto [vertices, triangles] = test::grid(2, 2, 1.0);
   test::add_body(scene, "plate", vertices, triangles, d_hat, true);

@@ -56,7 +56,7 @@ TEST(Overload, a_row_carries_the_weight_of_all_its_vertices) {
   EXPECT_NEAR(measured, 3 * gravity / capacity, 1e-9 * measured);
 }
 
-/// Newton's model of the row is linear from d on: it asks for |b'(d)| + b''(d) times the closing of the gap.
+/// Newton's model of the row is linear from d on: it needs |b'(d)| + b''(d) times the closing of the gap.
 TEST(Overload, the_newton_model_asks_for_the_force_at_the_end_of_its_step) {
   const Scene scene = particle_over_a_plate();
   Positions dx = Positions::Zero(3, scene.n_vertices());

@@ -116,7 +116,7 @@ TEST(Projection, refuses_by_name_what_is_no_constraint) {
   }
 }
 
-/// Every entry says what its steps keep.
+/// Every entry states what its steps keep.
 TEST(StepSolvers, SayWhatTheyGuarantee) {
   for (const StepSolverEntry& entry : step_solvers()) EXPECT_FALSE(entry.guarantee.empty()) << entry.name;
 }

@@ -49,7 +49,7 @@ TEST(RateDecisions, OnlyAWholeDirectionOfNewtonIsComparedWithTheNext) {
   EXPECT_EQ(rate_after(halved(10)), "shortened_step");
   EXPECT_EQ(rate_after(saddle(1e-3 * tol)), "shortened_step");
   ScriptedIteration round{.dx = 10, .bound = 0.1};
-  round.detour_bound = 1;
+  round.corrected_bound = 1;
   EXPECT_EQ(rate_after(round), "shortened_step");  // another direction was taken, though the whole of it
   EXPECT_EQ(reported({{.dx = 10}})[0].contraction.status, std::string("first_iteration"));
 }
@@ -80,10 +80,10 @@ TEST(RateDecisions, RatesFromBeforeAnEscapeBoundNoLaterOnes) {
   EXPECT_DOUBLE_EQ(all[5].contraction.value, 0.1);  // above 0.2^2
 }
 
-TEST(RateDecisions, ADetourIsTakenWhereItGoesMoreThanTwiceAsFar) {
+TEST(RateDecisions, ACurvatureCorrectionIsTakenWhereItGoesMoreThanTwiceAsFar) {
   for (const double straight : {0.49, 0.51}) {
     ScriptedIteration held{.dx = 10, .bound = straight};
-    held.detour_bound = 1;
+    held.corrected_bound = 1;
     const ScriptedStep step({held}, SaddleRule::ignore, 0.1, 1);
     ASSERT_EQ(step.iterations.size(), 1U);
     const bool taken = straight < 0.5;
@@ -93,11 +93,11 @@ TEST(RateDecisions, ADetourIsTakenWhereItGoesMoreThanTwiceAsFar) {
   }
 }
 
-/// No detour is made in the last iteration of a step, and none while a vertex is short of its pose.
-TEST(RateDecisions, ADetourIsForDirectionsThatAreLongAndOnTheirPose) {
+/// No curvature correction is made in the last iteration of a step, and none while a vertex is short of its pose.
+TEST(RateDecisions, ACurvatureCorrectionIsForDirectionsThatAreLongAndOnTheirPose) {
   const auto detours = [](double dx, bool at_target) {
     ScriptedIteration held{.dx = dx, .bound = 0.1};
-    held.detour_bound = 1;
+    held.corrected_bound = 1;
     held.at_target = at_target;
     const ScriptedStep step({held}, SaddleRule::ignore, 0.1, 1);
     return step.iterations.at(0).detours;

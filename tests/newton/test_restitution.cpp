@@ -1,4 +1,4 @@
-// A particle that falls on a floor bounces with the share of its speed that was asked for.
+// A particle that falls on a floor bounces with the share of its speed that was requested.
 #include <gtest/gtest.h>
 
 #include "tests/newton/small_scenes.hpp"

@@ -1,5 +1,5 @@
 // A step that fails is tried again from its start with half the length: the attempt that fails leaves nothing behind,
-// the parts end on the grid of the run, and the report says what was done.
+// the parts end on the grid of the run, and the report has what was done.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// When the matrix has the secant of a term, and how much of it: what is asked of that, with a number on either side.
+// When the matrix has the secant of a term, and how much of it: what is required of that, with a number on either side.
 #include <gtest/gtest.h>
 
 #include "tests/newton/scripted_system.hpp"
@@ -120,7 +120,7 @@ struct Sliding {
 };
 
 /// Without inertia nothing but the secant holds a particle that slides: the matrix that is solved with it is positive definite,
-/// that of E is not, and E is what the end is asked of.
+/// that of E is not, and the end has to be one of E.
 TEST(SecantDecisions, TheProofOfTheEndIsOfTheExactMatrix) {
   for (const char* solver : {"cholmod", "pcg"}) {
     SCOPED_TRACE(solver);

@@ -1,4 +1,4 @@
-// What a report says of a step that was tried again: the work of all attempts, everything else of the last one, and how
+// What a report has of a step that was tried again: the work of all attempts, everything else of the last one, and how
 // much of the work was before it.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What a policy that adapts between steps is told: every pair with a row at two step ends in a row.
+// What a policy that adapts between steps is given: every pair with a row at two step ends in a row.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,7 +77,8 @@ TEST(StepEnd, lists_every_pair_with_both_gaps_and_its_own_stop_level) {
     const StiffnessPolicy::PairEnd& pair = run.heard[2][static_cast<std::size_t>(v)];
     EXPECT_EQ(pair.gap, run.simulation.history().x(2, v));
     EXPECT_EQ(pair.gap_before, before(2, v));
-    EXPECT_EQ(pair.park, run.method.contact_options.ccd_park * scene.d_hat[static_cast<std::size_t>(v)]);
+    EXPECT_EQ(pair.park,
+              run.method.contact_options.min_gap_fraction * scene.d_hat[static_cast<std::size_t>(v)]);
   }
 }
 
@@ -101,7 +102,7 @@ TEST(StepEnd, lists_nearly_parallel_edges) {
   EXPECT_EQ(heard[1][0].gap, gap());
   EXPECT_EQ(heard[1][0].gap_before, before);
   EXPECT_LT(gap(), before);
-  EXPECT_EQ(heard[1][0].park, method.contact_options.ccd_park * d_hat);
+  EXPECT_EQ(heard[1][0].park, method.contact_options.min_gap_fraction * d_hat);
 }
 
 TEST(StepEnd, leaves_a_pair_out_that_had_no_row_before) {

@@ -1,4 +1,4 @@
-// An iteration that asks for the bound of more than one motion says the work of all of them.
+// An iteration that requests the bound of more than one motion states the work of all of them.
 #include <gtest/gtest.h>
 
 #include "tests/newton/scripted_system.hpp"
@@ -11,9 +11,9 @@ using test::ScriptedIteration;
 using test::ScriptedStep;
 
 /// An iteration whose direction is bounded by 0.1, and a second one that ends the step.
-std::vector<ScriptedIteration> held(double detour_bound, bool serves = true) {
+std::vector<ScriptedIteration> held(double corrected_bound, bool serves = true) {
   ScriptedIteration first{.dx = 1, .slope = -1, .bound = 0.1};
-  first.detour_bound = detour_bound;
+  first.corrected_bound = corrected_bound;
   first.work.queries = 50, first.work.probes = 70, first.work.capped = 3, first.work.zero = 2;
   if (!serves)
     first.change = [](double alpha) -> Change { return EnergyChange{alpha > 0.2 ? 1 : -alpha, 1e-3}; };
@@ -31,7 +31,7 @@ void expect_work(const std::vector<ScriptedIteration>& script, int times, long l
   EXPECT_EQ(said.zero, 2 * times);
 }
 
-TEST(WorkOfBounds, IsThatOfOneMotionOfADetourAndOfTheWayBack) {
+TEST(WorkOfBounds, IsThatOfOneMotionOfACurvatureCorrectionAndOfTheWayBack) {
   expect_work(held(0), 1, 0);
   expect_work(held(1), 2, 1);
   expect_work(held(1, false), 3, 0);

@@ -1,4 +1,4 @@
-// Of the tests of the rooms with kernels as PTX: every launch runs on the host and as PTX, and both have to leave the same bits.
+// Of the tests of the modules with kernels as PTX: every launch runs on the host and as PTX, and both have to leave the same bits.
 #include "tests/executor/tested_executor.hpp"
 #include "tests/ptx/lockstep_executor.hpp"
 

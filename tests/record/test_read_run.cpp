@@ -23,7 +23,7 @@ std::optional<RunRecord> read(const Json& record) {
   return read_run(folder / "run.json");
 }
 
-/// What the reader says of it; empty when it reads it.
+/// What the reader reports of it; empty when it reads it.
 std::string refusal(const Json& record) {
   try {
     EXPECT_TRUE(read(record).has_value());

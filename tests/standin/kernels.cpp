@@ -126,7 +126,7 @@ cudaError_t __cudaPopCallConfiguration(dim3* grid, dim3* block, size_t* shared, 
   memcpy(stream, &pushed().stream, sizeof pushed().stream);
   return cudaSuccess;
 }
-// CUDA 12 launches by the stub, CUDA 13 by a handle that it asks for: here the stub itself.
+// CUDA 12 launches by the stub, CUDA 13 by a handle that it requests: here the stub itself.
 cudaError_t __cudaGetKernel(cudaKernel_t* kernel, const void* stub) {
   memcpy(kernel, &stub, sizeof stub);
   return cudaSuccess;

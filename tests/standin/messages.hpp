@@ -1,4 +1,4 @@
-// What an error says.
+// What an error reports.
 #pragma once
 
 #include <gtest/gtest.h>

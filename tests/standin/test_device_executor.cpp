@@ -112,7 +112,7 @@ TEST_F(OnDevice, KernelsOfManyRegistersRunInSmallBlocks) {
   EXPECT_EQ(standin::counts().blocks, 16u);
   EXPECT_EQ(block_sums(small_blocks, 3), block_sums(host, 3));
   EXPECT_EQ(standin::counts().threads,
-            256u);  // the threads of a block share memory: they are as many as the kernel says
+            256u);  // the threads of a block share memory: they are as many as the kernel reports
   standin::settings().registers = 0;
 }
 #endif

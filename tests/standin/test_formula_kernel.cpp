@@ -119,7 +119,7 @@ TEST_P(FormulaKernel, HasTheNumbersOfTheShapeInEveryRow) {
 }
 INSTANTIATE_TEST_SUITE_P(Arguments, FormulaKernel, testing::Values(Argument::gap, Argument::squared_gap));
 
-/// What the executor says of a launch with this code; empty where it throws nothing.
+/// What the executor reports of a launch with this code; empty where it throws nothing.
 std::string refusal(cuda::DeviceExecutor& device, const DeviceCode& code) {
   exec::KernelInfo info = exec::each_info<exec::EvaluateGivenShape>();
   info.code = &code;

@@ -1,4 +1,4 @@
-// The resident conjugate gradients through the compiled device executor: the bits of the host executor, graphs and all.
+// The conjugate gradients of the device backend through the compiled device executor: the bits of the host executor, graphs and all.
 #include <gtest/gtest.h>
 
 #include "core/exec/cuda/device_executor.hpp"

@@ -6,9 +6,9 @@
 namespace bb::test {
 
 /// Whether a trial of the iterate x is feasible.
-inline bool admits(Term& term, const PositionsView& x, const PositionsView& trial, PhaseClock& clock) {
+inline bool is_feasible(Term& term, const PositionsView& x, const PositionsView& trial, PhaseClock& clock) {
   term.look_at(x, trial, clock);
-  return term.admits(trial, clock);
+  return term.is_feasible(trial, clock);
 }
 
 inline double bound(Term& term, const Motion& motion, IterateNumbers& out, PhaseClock& clock) {

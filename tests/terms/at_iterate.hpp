@@ -42,7 +42,7 @@ struct AtIterate : TermsOf {
     const Positions dx = to - scene.x0;
     for (const auto& term : terms) {
       term->prepare({scene.x0, to, dx}, clock);
-      ASSERT_TRUE(admits(*term, x, to, clock)) << term->name();
+      ASSERT_TRUE(is_feasible(*term, x, to, clock)) << term->name();
       term->freeze(clock);
       term->evaluate(to);
     }

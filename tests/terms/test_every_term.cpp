@@ -50,7 +50,7 @@ TEST(EveryTerm, has_the_gradient_of_its_energy) {
       for (const int side : {0, 1}) {
         Positions to = at.x;
         to.data()[i] += side == 0 ? -h : h;
-        ASSERT_TRUE(test::admits(*term, at.x, to, at.clock));
+        ASSERT_TRUE(test::is_feasible(*term, at.x, to, at.clock));
         term->freeze(at.clock);
         term->evaluate(to);
         energy[side] = test::trial_energy(*term);
@@ -142,7 +142,7 @@ TEST(EveryTerm, has_the_same_energy_of_an_iterate_that_was_accepted_without) {
              &late = **(other.terms.begin() + static_cast<std::ptrdiff_t>(i));
     const double before = test::iterate_energy(late);
     late.prepare({other.scene.x0, to, Positions(to - other.scene.x0)}, other.clock);
-    ASSERT_TRUE(test::admits(late, other.x, to, other.clock)) << late.name();
+    ASSERT_TRUE(test::is_feasible(late, other.x, to, other.clock)) << late.name();
     late.freeze(other.clock);
     late.accept(other.clock);
     late.evaluate_iterate(to);
@@ -167,8 +167,9 @@ TEST(EveryTerm, allows_a_motion_up_to_its_bound_and_says_what_held_it) {
     if (alpha == 1) continue;
     ++bounded;
     EXPECT_FALSE(term->describe_bound().empty()) << term->name();
-    EXPECT_TRUE(test::admits(*term, at.x, Positions(at.x + 0.99 * alpha * dx), at.clock)) << term->name();
-    EXPECT_FALSE(test::admits(*term, at.x, Positions(at.x + dx), at.clock)) << term->name();
+    EXPECT_TRUE(test::is_feasible(*term, at.x, Positions(at.x + 0.99 * alpha * dx), at.clock))
+        << term->name();
+    EXPECT_FALSE(test::is_feasible(*term, at.x, Positions(at.x + dx), at.clock)) << term->name();
   }
   EXPECT_EQ(bounded, 2);  // contact and strain limit
 }

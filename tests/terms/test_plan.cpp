@@ -1,4 +1,4 @@
-// The plan says what a scene needs, and why the rest is skipped.
+// The plan states what a scene needs, and why the rest is skipped.
 #include <gtest/gtest.h>
 
 #include <set>

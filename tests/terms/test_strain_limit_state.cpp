@@ -59,7 +59,7 @@ struct Limited {
   }
   bool look_at(const Positions& trial) {
     state.look_at(trial.data(), trial_energy.data());
-    return state.admits();
+    return state.is_feasible();
   }
   IterateNumbers report() {
     IterateNumbers out;

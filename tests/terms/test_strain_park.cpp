@@ -86,7 +86,7 @@ TEST(StrainPark, IsLeftOfTheWidthByTheBound) {
       frame.x_n = frame.x_tilde = x0;
       frame.dt = 0.01;
       test::TermsOf of(scene, x0, frame, [&](TermOptions& options) {
-        options.contact_options.ccd_park = park;
+        options.contact_options.min_gap_fraction = park;
         options.solid_limit_stiffness = test::fixed_limit(30);
       });
       double alpha = 1;

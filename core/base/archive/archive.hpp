@@ -48,7 +48,7 @@ class Archive {
 
   /// Writes or reads the values one after the other: numbers, words of an enum, strings, [3 x n] positions,
   /// standard containers of such, and objects with a member keep(Archive&) or a function keep(Archive&, T&)
-  /// beside their class. Reading has to follow the order of writing. Errors: std::logic_error when it asks for
+  /// beside their class. Reading has to follow the order of writing. Errors: std::logic_error when it requests
   /// more than there is.
   template <class... T>
   void operator()(T&... values) {

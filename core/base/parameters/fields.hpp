@@ -50,7 +50,7 @@ class Fields {
   /// Adds a violation at /name.
   virtual void complain(const std::string& name, const std::string& found, const std::string& allowed) = 0;
   virtual bool wrong() const = 0;
-  /// Throws ConfigError when a field was wrong, missing or never asked for.
+  /// Throws ConfigError when a field was wrong, missing or never requested.
   virtual void finish() = 0;
 
   /// [3 x n] points, one a column.

@@ -25,7 +25,7 @@ std::string lock_holder(const std::filesystem::path& folder);
 /// Removes the lock that a process left when it was killed; that of a living one stays, and one that may not be removed.
 void remove_dead_lock(const std::filesystem::path& folder);
 
-/// Holds `folder` (made when missing) until destroyed, by flock on `bench.lock` in it; the file says which
+/// Holds `folder` (made when missing) until destroyed, by flock on `bench.lock` in it; the file states which
 /// process on which host, gets a new time of change every heartbeat_s seconds, and goes with the lock. A folder that was made
 /// and is still empty goes too. The system frees the lock of a process that was killed. Where flock does not reach the other
 /// machine, as on some network file systems, the lock of another host counts for dead_after_s seconds after its last sign of life.

@@ -47,11 +47,11 @@ struct AuditRecord {
   BB_FIELD(long long, corners_cut,
            "with a promise: primitives whose straight way over a step goes beyond a sphere or a cylinder, "
            "and stays out of half of its radius, summed over steps") = 0;
-  BB_FIELD(
-      std::string, obstacles_judge,
-      "surface: all of the surface; points: its vertices, since /contact/model is points; then "
-      "surface_gap_obstacles_m says how deep the surface between them is in an obstacle, and crossings and "
-      "violations among surfaces decide nothing") = "surface";
+  BB_FIELD(std::string, obstacles_judge,
+           "surface: all of the surface; points: its vertices, since /contact/model is points; then "
+           "surface_gap_obstacles_m reports how deep the surface between them is in an obstacle, and "
+           "crossings and "
+           "violations among surfaces decide nothing") = "surface";
   BB_FIELD(long long, scene_faults,
            "prescribed primitives that cross or cannot be certified; in no other count") = 0;
   BB_FIELD(int, first_bad_step, "-1: none", "-1") = -1;

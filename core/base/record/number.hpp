@@ -1,5 +1,5 @@
 // A measured number that can be absent: JSON has no NaN and no infinity, so a missing value carries the word
-// that says why, and the writer emits null plus "<name>_status".
+// that reports why, and the writer emits null plus "<name>_status".
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Which run a record is of: schema, hashes of what made it, what it is called and what was asked for.
+// Which run a record is of: schema, hashes of what made it, what it is called and what was requested.
 #pragma once
 
 #include <map>
@@ -61,8 +61,8 @@ struct Labels {
 };
 
 struct MethodRecord {
-  BB_RECORD(MethodRecord, "the published method that was asked for (configs/methods)");
-  BB_FIELD(std::string, name, "empty: none was asked for");
+  BB_RECORD(MethodRecord, "the published method that was requested (configs/methods)");
+  BB_FIELD(std::string, name, "empty: none was requested");
   BB_FIELD(std::string, source, "its publication");
   BB_FIELD(std::vector<std::string>, overridden,
            "pointers that the config sets otherwise than the method; with any of them the run is of no "
@@ -72,7 +72,7 @@ struct MethodRecord {
 };
 
 struct Passes {
-  BB_RECORD(Passes, "what was asked for");
+  BB_RECORD(Passes, "what was requested");
   BB_FIELD(bool, time, "a run of its own, timed") = false;
   BB_FIELD(bool, diagnose, "condition estimates and trace") = false;
   BB_FIELD(bool, audit, "exact checks of every state and motion") = false;

@@ -91,8 +91,8 @@ struct RunRecord {
   BB_FIELD(Ids, ids, "what made it, as hashes");
   BB_FIELD(Status, status, "how it ended");
   BB_FIELD(Labels, labels, "what tables group by");
-  BB_FIELD(MethodRecord, method, "the published method that was asked for");
-  BB_FIELD(Passes, passes, "what was asked for");
+  BB_FIELD(MethodRecord, method, "the published method that was requested");
+  BB_FIELD(Passes, passes, "what was requested");
   BB_FIELD(JsonText, config,
            "resolved, every default filled in, mesh files relative to the folder of this record: `bench run "
            "run.json` repeats the run");

@@ -103,7 +103,7 @@ BB_ONCE_A_TYPE Json schema_of(Json& defs, const FieldText& field) {
   }
 }
 
-/// What a record holds: `reasons` are the words beside a number that is null, empty for what is no number.
+/// What a record holds: `reasons` are the words beside a number that is null, empty for what is not a number field.
 struct Properties {
   Json all = Json::object(), required = Json::array();
   BB_ONCE_A_TYPE void add(const FieldText& field, Json schema, const char* reasons, bool optional) {

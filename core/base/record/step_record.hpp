@@ -24,7 +24,7 @@ struct StepRecord : WorkCounts {
       "attempts before this one, from the same start and as long, after which the straight motion of the "
       "step was not proven free of contact for pairs that collide as audited; from there on every motion "
       "was bounded") = 0;
-  BB_FIELD(long long, audited_queries, "those of ccd_queries that such proofs asked") = 0;
+  BB_FIELD(long long, audited_queries, "those of ccd_queries that such proofs made") = 0;
   BB_FIELD(StepStatus, status, "how it ended") = StepStatus::converged;
   BB_FIELD(std::string, detail,
            "what held it: the pin, the pair, the linear status; empty when it converged");

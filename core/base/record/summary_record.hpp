@@ -72,7 +72,7 @@ struct Summary : WorkCounts {
       int, redone_audited,
       "steps that were done again with every motion bounded, since they were not proven free of contact for "
       "pairs that collide as audited") = 0;
-  BB_FIELD(long long, audited_queries, "those of ccd_queries that such proofs asked") = 0;
+  BB_FIELD(long long, audited_queries, "those of ccd_queries that such proofs made") = 0;
   BB_FIELD(Number, dt_min_s, "shortest step");
   BB_FIELD(long long, newton_iterations, "over all steps") = 0;
   BB_FIELD(Stats, newton_per_step, "Newton iterations of a step");
@@ -109,10 +109,10 @@ struct Summary : WorkCounts {
   BB_FIELD(CondMap, cond,
            "stage/scaling -> condition numbers of clamped matrices, solved/stage/scaling of those that were "
            "solved where they differ");
-  BB_FIELD(
-      double, start_check_s,
-      "what looking for crossings at the start and along the given motions took, before the pilot and the "
-      "first step; in no phase") = 0;
+  BB_FIELD(double, start_check_s,
+           "what looking for crossings at the start and along the given motions took, before the calibration "
+           "run and the "
+           "first step; in no phase") = 0;
   BB_FIELD(Number, wall_s, "of the steps of the pass `time`", "not_requested build_not_valid");
   BB_FIELD(Number, solve_s, "sum of all phases but output", "not_requested build_not_valid");
   BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases", "not_requested build_not_valid");

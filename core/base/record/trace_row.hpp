@@ -82,9 +82,7 @@ struct ConditionSample {
            "factorised, where it is another") = MatrixForm::clamped;
   BB_FIELD(MatrixStage, stage, "the terms that the matrix holds") = MatrixStage::full;
   BB_FIELD(Scaling, scaling, "of the matrix, before the estimate") = Scaling::none;
-  BB_FIELD(int, tier,
-           "0 Ritz values, 1 inverse power and Lanczos, 2 Spectra round the factor, 3 dense, 4 our Lanczos "
-           "round the factor") = 2;
+  BB_FIELD(int, tier, "number of the estimator: 0 ritz, 1 inverse_power, 2 spectra, 3 dense, 4 lanczos") = 2;
   BB_FIELD(Number, lambda_min, "smallest eigenvalue", no_eigenvalue);
   BB_FIELD(Number, lambda_max, "largest eigenvalue", no_eigenvalue);
   BB_FIELD(Number, cond, "lambda_max / lambda_min, at most 1e14", no_eigenvalue);
@@ -95,14 +93,14 @@ struct ConditionSample {
            "did not converge in its budget; shifted to, round a factor of its own");
   BB_FIELD(
       ProvenEnds, proof,
-      "which eigenvalues a factor of the shifted matrix proves to be the last, to 8e-4 of them; not asked "
+      "which eigenvalues a factor of the shifted matrix proves to be the last, to 8e-4 of them; not computed "
       "where rounding would decide") = ProvenEnds::none;
   BB_FIELD(double, residual, "largest |A v - lambda v| / |A| of both pairs") = 0;
   BB_FIELD(int, solves, "triangular solves") = 0;
   BB_FIELD(int, products, "matrix products") = 0;
   BB_FIELD(int, factorizations, "beyond the first, which the scalings share") = 0;
   BB_FIELD(double, time_s, "what the estimate took") = 0;
-  BB_FIELD(std::vector<SpectrumEnd>, ends, "where both eigenvectors live; empty when not asked for");
+  BB_FIELD(std::vector<SpectrumEnd>, ends, "where both eigenvectors live; empty when not requested");
   BB_RECORD_END;
 };
 
@@ -140,7 +138,7 @@ struct WorkCounts {
   BB_FIELD(long long, ccd_capped, "pairs that reached the probe cap") = 0;
   BB_FIELD(long long, ccd_zero, "pairs that allowed no motion") = 0;
   BB_FIELD(long long, end_checks,
-           "states that were asked whether they are minima of E, factors at hand included") = 0;
+           "states that were tested for being minima of E, factors at hand included") = 0;
   BB_FIELD(long long, end_check_factorizations, "factorisations that only these checks needed") = 0;
   BB_FIELD(long long, end_check_iterations, "iterations of conjugate gradients of these checks") = 0;
   BB_FIELD(

@@ -87,7 +87,7 @@ class TraceWriter {
   void add(const TraceRow& row);
   /// Hands the lines of the step to the system. Errors: RecordError.
   void end_step();
-  /// What the record says of the trace: name, size and sha256 of what was added so far. Cost: that of 64 bytes.
+  /// What the record reports of the trace: name, size and sha256 of what was added so far. Cost: that of 64 bytes.
   Artifact artifact() const;
   /// The file is whole on the disk, under the name it has; nothing can be added after it. Errors: RecordError.
   void close();

@@ -61,7 +61,7 @@ struct BoundQuery {
   BB_HD double known() const { return total->time(); }
 };
 
-/// largest: the least complemented bits of |x[i]|; no numbers are above infinity.
+/// largest: the least complemented bits of |x[i]|; NaNs are above infinity.
 struct LargestCoordinate {
   static constexpr Index a_thread = 8;
   static constexpr Index a_block = a_thread * block_threads;

@@ -38,7 +38,7 @@ struct Askers {
   BB_HD Index size(int list) const { return begin[list + 1] - begin[list]; }
   BB_HD Index leaves() const { return begin[first_obstacle_list]; }
   BB_HD Index items() const { return begin[n_candidate_lists]; }
-  /// How many obstacles a primitive is asked about in this round.
+  /// How many obstacles a primitive is queried about in this round.
   BB_HD int obstacles_asked() const {
     const int left = n_obstacles - each * round;
     return left < 0 ? 0 : left < each ? left : each;

@@ -11,7 +11,7 @@
 
 namespace bb::exec {
 
-/// What kappa is made of, which says what columns a policy needs.
+/// What kappa is made of, which reports what columns a policy needs.
 enum class KappaColumns {
   uniform,    // one number for all rows: none
   kept,       // one number a row

@@ -15,7 +15,7 @@ namespace bb::exec {
 struct BoundBatches {
   Index chunk = 1 << 20;  // pairs that are screened at a time
   Index first_asked = 1 << 12,
-        most_asked = 1 << 18;  // pairs that are asked at a time, doubling from the first
+        most_asked = 1 << 18;  // pairs that are queried at a time, doubling from the first
 };
 
 /// Pairs are screened in chunks of their lists: axes and planes prove of most that they come later than the smallest
@@ -38,7 +38,7 @@ class ExecutorStepBound {
   /// The same in two calls: what is launched before the second one is read together.
   void look(const ExecutorCandidates& candidates, const PositionsView& x0, const PositionsView& x1);
   StepBound finish();
-  /// The same without lists, for when they would need too much memory: pairs are asked where the search of the trees
+  /// The same without lists, for when they would need too much memory: pairs are queried where the search of the trees
   /// finds them. source: of a count of the same motion.
   StepBound find_without_list(const CandidateSource& source, const PositionsView& x0,
                               const PositionsView& x1);

@@ -1,9 +1,9 @@
-// Every kernel of the room, for what instantiates them; their names are in kernels.inc.
+// Every kernel of the module, for what instantiates them; their names are in kernels.inc.
 #pragma once
 
 #include "core/contact/executor/bound_kernels.hpp"
 #include "core/contact/executor/candidate_kernels.hpp"
-#include "core/contact/executor/detour_kernels.hpp"
+#include "core/contact/executor/curvature_correction_kernels.hpp"
 #include "core/contact/executor/gather_kernels.hpp"
 #include "core/contact/executor/lagged_kernels.hpp"
 #include "core/contact/executor/row_kappa.hpp"

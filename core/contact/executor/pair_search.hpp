@@ -1,4 +1,4 @@
-// All candidate pairs of one primitive of a tree: the one place that says which pairs there are.
+// All candidate pairs of one primitive of a tree: the one place that reports which pairs there are.
 #pragma once
 
 #include "core/contact/executor/executor_pair.hpp"
@@ -81,7 +81,7 @@ BB_HD bool may_pair(const PairSearch& s, Index i, Index j) {
   }
 }
 
-/// Whether the rest rule says something of the pair, and it stays apart as far as that asks for it.
+/// Whether the rest rule states something of the pair, and it stays apart as far as that requests it.
 template <PairKind K>
 BB_HD bool apart_by_rest_rule(const PairSearch& s, Index i, Index j) {
   const PairVertices<K> pair = pair_vertices<K>(s.surface, i, j);

@@ -78,8 +78,8 @@ BB_HD inline bool find_row(const NarrowPhase& phase, const CandidateItem& item, 
 
 /// What is read of a search, once.
 struct RowNumbers {
-  std::uint32_t not_finite, unused;  // a number of x that is none
-  Key least_gap;                     // smallest_key(); what is no number counts for none; all ones before
+  std::uint32_t not_finite, unused;  // a coordinate that is NaN or infinite
+  Key least_gap;                     // smallest_key(); NaN gaps are not counted; all ones before
   Key slots, contributions;          // free points of rows, and pairs a <= b of them
 };
 

@@ -23,7 +23,7 @@ struct alignas(16) OfSiblings {
   BB_HD void set(int k, T value) { (k == 0 ? first : k == 1 ? second : k == 2 ? third : fourth) = value; }
 };
 
-/// Bit k where box k of the four overlaps [a_lo, a_hi] and bit 0 of one of the two tags is set. Clear where a number is none.
+/// Bit k where box k of the four overlaps [a_lo, a_hi] and bit 0 of one of the two tags is set. Clear where a coordinate is NaN.
 BB_HD inline unsigned overlapping(const OfSiblings<float> (&lo)[3], const OfSiblings<float> (&hi)[3],
                                   const OfSiblings<std::uint32_t>& tag, const float (&a_lo)[3],
                                   const float (&a_hi)[3], std::uint32_t a_tag) {

@@ -35,7 +35,7 @@ struct RowPoints {
   BB_HD void operator()(Index r, Compensated& sum) const { sum.add(rows.n_free(r)); }
 };
 
-/// What is said of the rows.
+/// What is reported of the rows.
 struct TotalsOfRows {
   using Sum = RowTotals;
   RowView rows;

@@ -8,7 +8,7 @@
 
 namespace bb::exec {
 
-/// Bits that compare as x does; no numbers are first and last.
+/// Bits that compare as x does; NaNs are first and last.
 BB_HD inline Key sortable_bits(double x) {
   const Key bits = ordered_bits(x), sign = Key{1} << 63;
   return (bits & sign) != 0 ? ~bits : bits | sign;
@@ -19,7 +19,7 @@ BB_HD inline double from_sortable_bits(Key bits) {
 }
 
 /// One block: the frame of sampled points at the start, and what is shared of the motion along every axis: the median of
-/// their displacements; nothing where one is no number. An axis is a thread of a warp of its own.
+/// their displacements; nothing where one is NaN. An axis is a thread of a warp of its own.
 struct FindFrame {
   static constexpr int width = most_sampled, warp = 32;
   static_assert(width == 128);
@@ -66,7 +66,7 @@ struct FindFrame {
     const Key* sorted;
     BB_HD double operator()(int i) const { return from_sortable_bits(sorted[i]); }
   };
-  /// What is no number, and what is not there, comes last.
+  /// A NaN, and what is not there, comes last.
   BB_HD Key sample(int list, int k, int n_all) const {
     if (k >= n_all) return ~Key{0};
     const Index at = 3 * static_cast<Index>(vertex[sampled(k, n)]) + list % 3;

@@ -39,7 +39,7 @@ struct TreeGroup {
     reach.set(k, node.reach);
     tag.set(k, node.tag);
   }
-  /// Bit k where sibling k may meet a box: one of the two is free, and they overlap. Clear where a number is none.
+  /// Bit k where sibling k may meet a box: one of the two is free, and they overlap. Clear where a coordinate is NaN.
   BB_HD unsigned meeting(const TreeNode& a) const { return overlapping(lo, hi, tag, a.lo, a.hi, a.tag); }
   /// Whether leaf k is proven farther from the leaf a than their reaches.
   BB_HD bool apart(const TreeNode& a, int k) const {

@@ -22,7 +22,7 @@ struct KappaSources {
   ElasticMatrix elastic;      // read where the policy needs it
 };
 
-/// What is said of a state: complements of keys (sum_kernels.hpp) of the largest singular value, of the largest force of
+/// What is reported of a state: complements of keys (sum_kernels.hpp) of the largest singular value, of the largest force of
 /// an active element over its rest area or volume, N/m or Pa, and of the smallest pseudo-gap in units of the width.
 struct LimitNumbers {
   exec::Key stretch, load, gap;

@@ -1,4 +1,4 @@
-// What a friction law says of a slide: a potential f0 of its length y, whose slope f1 = f0' is the part of mu times the load
+// What a friction law states of a slide: a potential f0 of its length y, whose slope f1 = f0' is the part of mu times the load
 // that pushes back, from 0 at rest to 1; mu is the static coefficient where there are two.
 #pragma once
 

@@ -20,7 +20,7 @@ const std::string local_memory = "local memory of kernels";
 KernelTable& kernel_table() {
   static KernelTable table = [] {
     KernelTable all;
-    add_kernels_of_rooms(all);
+    add_kernels_of_modules(all);
     return all;
   }();
   return table;
@@ -115,7 +115,7 @@ const DeviceKernel& DeviceExecutor::device_kernel(const exec::KernelInfo& kernel
   }
   const DeviceKernel* found = kernel_table().find(kernel.type);
   if (!found) {
-    throw ExecutionError(kernel.name() + ": no device version; is it in kernels.inc of its room?");
+    throw ExecutionError(kernel.name() + ": no device version; is it in kernels.inc of its module?");
   }
   if (found->bytes != kernel.bytes) {
     throw ExecutionError(kernel.name() + ": " + std::to_string(kernel.bytes) + " bytes on the host, " +

@@ -1,4 +1,4 @@
-// Which kernels have a device version: by the type of the functor, filled from the kernel lists of the rooms.
+// Which kernels have a device version: by the type of the functor, filled from the kernel lists of the modules.
 // No CUDA header, so that C++ files can read it.
 #pragma once
 
@@ -39,9 +39,9 @@ class KernelTable {
   std::unordered_map<std::type_index, DeviceKernel> kernels_;
 };
 
-/// The kernels that every DeviceExecutor of the process finds: those of the rooms from the start.
+/// The kernels that every DeviceExecutor of the process finds: those of the modules from the start.
 KernelTable& kernel_table();
-/// Adds the kernels of every room (generated).
-void add_kernels_of_rooms(KernelTable& table);
+/// Adds the kernels of every module (generated).
+void add_kernels_of_modules(KernelTable& table);
 
 }  // namespace bb::cuda

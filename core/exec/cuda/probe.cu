@@ -89,7 +89,7 @@ DeviceProbe probe_device() {
   probe.built = true;
   probe.why = why_not(probe);
   probe.usable = probe.why.empty();
-  cudaGetLastError();  // what failed here is told; it is not the error of a later launch
+  cudaGetLastError();  // what failed here is reported; it is not the error of a later launch
   return probe;
 }
 

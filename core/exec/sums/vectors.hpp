@@ -46,7 +46,7 @@ class VectorTools {
                          double epsilon);
   DirectionSizes direction_sizes() const;
   void look_at_largest(const Buffer<double>& column);
-  /// Largest |value| over free degrees of freedom; NaN where one is no number.
+  /// Largest |value| over free degrees of freedom; NaN where one is NaN.
   double free_largest() const { return largest_.largest(); }
 
   // --- at once

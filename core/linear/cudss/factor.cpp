@@ -65,7 +65,7 @@ void Factor::execute(cudssPhase_t phase, const char* what) {
   executor_->synchronize();
 }
 
-/// The values are there already: cuDSS is told where everything lies.
+/// The values are there already: cuDSS is reported where everything lies.
 void Factor::set_pattern(const ReducedSystem& system) {
   const auto& lower = system.lower;
   const auto n = static_cast<std::size_t>(lower.rows()), entries = static_cast<std::size_t>(lower.nonZeros());

@@ -26,7 +26,7 @@ class Factor {
   /// x = A^-1 b with the last factor, which must be ok. Errors: as factorize.
   void solve(const VecXd& b, VecXd& x);
 
-  /// Why the last factorize is matrix_indefinite. cuDSS says no row.
+  /// Why the last factorize is matrix_indefinite. cuDSS reports no row.
   std::string failure(const ReducedSystem& system) const;
   bool analyzed_last() const { return analyzed_last_; }
   double analyze_s() const { return analyze_s_; }  // of the last factorize, with the upload of the pattern

@@ -95,7 +95,7 @@ void ExecutorPcg::prepare_graph() {
   } catch (...) {
     try {
       executor_.end_capture();
-    } catch (const ExecutionError&) {  // the first error says more
+    } catch (const ExecutionError&) {  // the first error reports more
     }
     throw;
   }

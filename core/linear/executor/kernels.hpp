@@ -1,4 +1,4 @@
-// Every kernel of this room, for the lists of kernels.inc.
+// Every kernel of this module, for the lists of kernels.inc.
 #pragma once
 
 #include "core/linear/executor/block_jacobi_kernels.hpp"

@@ -5,7 +5,7 @@
 
 namespace bb::exec {
 
-/// Launches outside graphs of conjugate gradients and their preconditioners: of the kernels of this room.
+/// Launches outside graphs of conjugate gradients and their preconditioners: of the kernels of this module.
 inline Index solver_launches(const ExecutionCounts& counts) {
   Index out = -counts.replayed;  // by_kernel has those of graphs too
   for (const auto& [name, of] : counts.by_kernel) {

@@ -1,4 +1,4 @@
-// The linear solver pcg_resident: the solver of the resident pipeline on a matrix of the host, which goes up for every
+// The linear solver pcg_resident: the solver of the device backend on a matrix of the host, which goes up for every
 // solve. It is there to be compared with pcg.
 #include <cmath>
 

@@ -19,7 +19,7 @@ struct StrainLimitSpec {
   bool solids = false;
 };
 
-/// What a body says of all parts that it can be made of (core/model/scene/parts). Stiffness 0 switches elements off.
+/// What a body states of all parts that it can be made of (core/model/scene/parts). Stiffness 0 switches elements off.
 struct Material : parts::AllKeys {
   std::optional<StrainLimitSpec> limit;  // absent: no limit
 
@@ -75,7 +75,7 @@ struct StitchSpec {
   std::string weights = {};             // a group of a, factors on strength by a_vertices; empty: 1
 };
 
-/// What is asked of a pair: a CollisionKind, or the one that follows from whether the two surfaces close.
+/// What is required of a pair: a CollisionKind, or the one that follows from whether the two surfaces close.
 enum class CollisionChoice { automatic, ccd, audited, static_test, proximity, off };
 
 /// What contact does with two bodies, a body and an obstacle, or a body with itself.

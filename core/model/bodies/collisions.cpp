@@ -1,4 +1,4 @@
-// What contact does with pairs of bodies: what was asked for, and what `auto` makes of it (docs/theory/contact-models.md, Collision choice).
+// What contact does with pairs of bodies: what was requested, and what `auto` makes of it (docs/theory/contact-models.md, Collision choice).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ bool SceneBuilder::can_move(int owner) const {
 
 bool SceneBuilder::has_triangles(int owner) const {
   if (static_cast<std::size_t>(owner) >= scene_.bodies.size())
-    return true;  // an obstacle says by itself what is inside
+    return true;  // an obstacle states by itself what is inside
   return std::any_of(scene_.surface_triangles.begin(), scene_.surface_triangles.end(),
                      [&](const auto& t) { return scene_.body[static_cast<std::size_t>(t[0])] == owner; });
 }

@@ -1,4 +1,4 @@
-// Violations of what is said of one body, obstacle or scene, under the place that they share.
+// Violations of what is reported of one body, obstacle or scene, under the place that they share.
 #pragma once
 
 #include <cmath>

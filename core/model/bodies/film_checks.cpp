@@ -34,8 +34,7 @@ bool check_numbers(const Complaints& report, const std::string& what, const Film
   for (const double t : film.times()) {
     const Positions x = frame_at(film, t);
     if (!within_bounds(x)) {
-      report(what, fmt::format("a coordinate that is no number or too large at {:g} s", t),
-             allowed_coordinates());
+      report(what, fmt::format("a coordinate that is NaN or too large at {:g} s", t), allowed_coordinates());
       return false;
     }
     if (!planar || x.row(2).isZero(0)) continue;

@@ -44,7 +44,7 @@ class Part {
   Part& operator=(const Part&) = delete;
   virtual ~Part() = default;
 
-  // --- what a body says of it
+  // --- what a body states of it
   /// Its keys in `material`, each with unit, range, default and meaning.
   virtual void add_keys(Settings<Material>& out) const = 0;
   /// A sentence about its keys together; empty: nothing to say.
@@ -70,7 +70,7 @@ class Part {
 
   // --- its elements
   virtual std::size_t size(const Scene&) const = 0;
-  /// "springs": what size() counts. "no spring": what is said when there are none.
+  /// "springs": what size() counts. "no spring": what is reported when there are none.
   virtual std::string_view elements() const = 0;
   virtual std::string_view no_elements() const = 0;
   /// One family a term of E; none without elements. The scene outlives them.
@@ -79,7 +79,7 @@ class Part {
   virtual void add_frame_fields(const Scene&, const Positions& /*x*/, FrameFields&) const {}
 
   // --- a single element, as `eval` asks for it
-  /// Names that are asked for.
+  /// Names that are requested.
   virtual std::vector<std::string> element_names() const = 0;
   /// Reads every field, calls finish(), then computes. Errors: ConfigError of finish().
   virtual ElementAnswer element(const std::string& name, Fields& fields) const = 0;

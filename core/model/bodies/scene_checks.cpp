@@ -149,7 +149,7 @@ void check_motion(const Complaints& report, const std::string& what, const Presc
   });
 }
 
-/// Of what is where its motion says: it begins where it is.
+/// Of what is where its motion states: it begins where it is.
 void check_given_motion(const Complaints& report, const std::string& what, const PrescribedMotion& motion,
                         bool planar) {
   check_motion(report, what, motion, planar);

@@ -13,7 +13,7 @@ struct FrameField {
   std::string name;
   int components = 0;
   std::vector<double>
-      values;  // [components n_vertices], vertex after vertex; empty when it was not asked for
+      values;  // [components n_vertices], vertex after vertex; empty when it was not requested
 };
 
 struct FrameMesh {
@@ -23,7 +23,7 @@ struct FrameMesh {
   std::vector<std::array<int, 3>> triangles;  // the polygons, cut
   std::vector<std::array<int, 2>> segments;
   std::vector<std::array<int, 4>> tetrahedra;
-  std::vector<std::array<double, 2>> uvs;  // texture coordinates, where they were asked for
+  std::vector<std::array<double, 2>> uvs;  // texture coordinates, where they were requested
   std::vector<int> corner_uvs;             // of every corner, into uvs; -1: none
   std::vector<FrameField> fields;          // of the vertices, as VTK files have them
   std::vector<std::string>

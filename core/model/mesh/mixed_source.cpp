@@ -60,7 +60,7 @@ void MixedSource::require_left(long long n, std::size_t bytes_each) const {
   const std::size_t each = binary_ ? bytes_each : 1;
   if (n < 0 || static_cast<std::size_t>(n) > left() / each) {
     fail(fmt::format("{} things in the {} bytes that are left", n, left()),
-         "data as long as its header says");
+         "data as long as its header states");
   }
 }
 

@@ -42,7 +42,7 @@ class MixedSource {
   template <class T>
   T number(const NumberType& type) {
     if (!binary_) return written<T>();
-    if (left() < type.size) fail("the end of the file", "data as long as its header says");
+    if (left() < type.size) fail("the end of the file", "data as long as its header states");
     at_ += type.size;
     const char* at = bytes_.data() + at_ - type.size;
     if constexpr (std::is_integral_v<T>) {
@@ -53,7 +53,7 @@ class MixedSource {
     }
   }
 
-  /// The next n numbers. No memory is asked for that the file could not fill.
+  /// The next n numbers. No memory is requested that the file could not fill.
   template <class T>
   std::vector<T> numbers(long long n, const NumberType& type) {
     require_left(n, type.size);

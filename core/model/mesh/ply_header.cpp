@@ -147,7 +147,7 @@ void check_counts(const PlyHeader& header, const std::string& bytes, const std::
     if (left < 0) {
       throw ConfigError(
           name, fmt::format("the end of the file: {} bytes behind the header", bytes.size() - header.body),
-          fmt::format("{} {} elements of at least {} bytes each, as the header says", element.count,
+          fmt::format("{} {} elements of at least {} bytes each, as the header states", element.count,
                       element.name, each));
     }
   }

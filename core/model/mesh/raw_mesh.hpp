@@ -19,7 +19,7 @@ namespace bb {
 struct PointField {
   std::string name;
   int components = 0;
-  std::vector<double> values;  // empty when the field was not asked for
+  std::vector<double> values;  // empty when the field was not requested
 };
 
 /// What a file has and no mesh: how many, and where the first one is.
@@ -49,8 +49,8 @@ struct RawMesh {
       object_sets;  // names that polygons and segments have together, each set once
   std::vector<std::size_t> polygon_objects,
       segment_objects;                // the set of each; empty: no names in the format
-  std::vector<Vec2d> uvs;             // texture coordinates, where they were asked for
-  std::vector<long long> corner_uvs;  // of every corner, into uvs; -1: none, empty: not asked for
+  std::vector<Vec2d> uvs;             // texture coordinates, where they were requested
+  std::vector<long long> corner_uvs;  // of every corner, into uvs; -1: none, empty: not requested
   std::vector<PointField> fields;
   std::map<std::string, LeftOut>
       left_out;  // what is no surface, rod or solid: points, text, elements of other names

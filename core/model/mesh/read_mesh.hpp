@@ -37,7 +37,7 @@ struct MeshChoice {
   bool skin = false;  // triangles that are faces of one tetrahedron stay
   std::vector<std::string>
       objects;  // names of OBJ objects (o) and groups (g), with their vertices alone; none: the whole file
-  std::string where;  // where the list of objects were asked for, for messages; none: the file
+  std::string where;  // where the list of objects were requested, for messages; none: the file
 };
 
 struct MeshFile {
@@ -49,7 +49,7 @@ struct MeshFile {
 /// Errors: those of read_mesh; ConfigError for an object that the file has not.
 MeshFile parse_mesh_file(const std::string& bytes, const std::string& name, const MeshChoice& choice = {});
 
-/// The objects of a file alone; the rules of a body are not asked for. Errors: those of the format.
+/// The objects of a file alone; the rules of a body do not apply. Errors: those of the format.
 MeshObjects parse_mesh_objects(const std::string& bytes, const std::string& name);
 
 }  // namespace bb

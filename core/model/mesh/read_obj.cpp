@@ -1,6 +1,6 @@
 // Wavefront OBJ: v, f (v, v/vt, v//vn, v/vt/vn; negative indices count back from the vertices so far), l; a line that ends
 // with \ goes on in the next one. Objects (o) and groups (g) name the faces and lines that follow. An object ends the groups that
-// vertices, faces or lines came after; a g line that stands before it alone goes on. What draws is read past (vt unless it is asked for),
+// vertices, faces or lines came after; a g line that stands before it alone goes on. What draws is read past (vt unless it is requested),
 // lines of words that OBJ does not have are counted.
 #include <algorithm>
 #include <optional>

@@ -163,7 +163,7 @@ class LegacyVtk {
 
   void take_array() {
     do {
-      if (!in_.next_line()) in_.fail("the end of the file", "as many arrays as FIELD says");
+      if (!in_.next_line()) in_.fail("the end of the file", "as many arrays as FIELD states");
       if (keyword(in_) == "METADATA") in_.skip_block();
     } while (keyword(in_) == "METADATA");
     const std::string name(in_.word(0));

@@ -17,7 +17,7 @@ class VtkXml {
   /// Attribute `type` of <VTKFile>.
   std::string type() const { return root_.attribute("type").value(); }
 
-  /// The n numbers of a <DataArray>. Errors: ConfigError with its name: not as many, a word that is no number, data that
+  /// The n numbers of a <DataArray>. Errors: ConfigError with its name: not as many, a word that is not a number, data that
   /// ends before its length or is compressed wrongly.
   std::vector<double> reals(pugi::xml_node array, long long n) const;
   std::vector<long long> integers(pugi::xml_node array, long long n) const;

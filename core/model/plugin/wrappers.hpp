@@ -1,4 +1,4 @@
-// A plugin's policy and integrator behind the pipeline's interfaces. Internal to this room.
+// A plugin's policy and integrator behind the pipeline's interfaces. Internal to this module.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// The plain numbers of all parts together: what a material says, and what a scene has.
+// The plain numbers of all parts together: what a material states, and what a scene has.
 #pragma once
 
 #include <array>

@@ -12,7 +12,7 @@
 
 namespace bb {
 
-/// What is asked of a pair.
+/// What is required of a pair.
 enum class CollisionKind : std::uint8_t {
   ccd,      // rows, and no motion goes beyond a bound that is proven free of contact
   audited,  // rows, and the straight motion of a step is proven free of contact when it is over, or the step
@@ -35,7 +35,7 @@ class CollisionKinds {
   unsigned bits_ = 0;
 };
 
-/// A pair that the scene says something of.
+/// A pair that the scene states something of.
 struct CollisionPair {
   int first = 0, second = 0;  // owners, first <= second
   CollisionKind kind = CollisionKind::ccd;

@@ -1,4 +1,4 @@
-// Where a film comes from, as a config says it.
+// Where a film comes from, as a config states it.
 #pragma once
 
 #include <optional>

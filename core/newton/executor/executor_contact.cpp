@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/contact/executor/detour_kernels.hpp"
+#include "core/contact/executor/curvature_correction_kernels.hpp"
 
 namespace bb::exec {
 
@@ -16,7 +16,7 @@ ExecutorContact::ExecutorContact(const ExecutorInputs& inputs)
       candidates_(executor_),
       broad_phase_(executor_, executor_surface_, surface_, inputs.contacts),
       step_bound_(executor_, executor_surface_,
-                  {options_.contact_options.ccd_park, options_.contact_options.ccd_max_probes}),
+                  {options_.contact_options.min_gap_fraction, options_.contact_options.ccd_max_probes}),
       finder_(executor_, executor_surface_, inputs.contacts.mollifier.needed),
       stiffness_(executor_, *options_.stiffness),
       barrier_(options_.contact, options_.stiffness->has_potential(),
@@ -44,7 +44,7 @@ void ExecutorContact::begin_step(const StepColumns& step, PhaseClock&) {
   listed_ = false;
   find_rows(step.x_n);
   take_trial();
-  evaluated_ = true;  // as far as rows without kappa can be
+  evaluated_ = true;  // the barrier is evaluated; kappa is not set yet
 }
 
 void ExecutorContact::take_trial() {
@@ -213,12 +213,12 @@ StepBound ExecutorContact::find_bound(const Motion& motion) {
 }
 
 // The barrier of the rows is lost meanwhile.
-bool ExecutorContact::add_detour(const PositionsView& x, const PositionsView& dx, double bound,
-                                 PositionsSpan force) {
+bool ExecutorContact::add_curvature_correction(const PositionsView& x, const PositionsView& dx, double bound,
+                                               PositionsSpan force) {
   settle(x);
   curved_.clear(), straight_.clear();
-  executor_.each(rows_.size(), DetourRows{rows_.view(), executor_surface_.view(), x.data(), dx.data(),
-                                          curved_.data(), straight_.data()});
+  executor_.each(rows_.size(), CurvatureCorrectionRows{rows_.view(), executor_surface_.view(), x.data(),
+                                                       dx.data(), curved_.data(), straight_.data()});
   const bool held = HoldTimes{curved_.smallest(), straight_.smallest()}.by_curvature(bound);
   if (held) assembly_.add_gradient(rows_, x, force);
   barrier_.evaluate(executor_, rows_);
@@ -235,7 +235,7 @@ void ExecutorContact::look_at(const PositionsView& x, const PositionsView& trial
   look_for_rows(trial);
 }
 
-bool ExecutorContact::admits(const PositionsView&, PhaseClock& clock) {
+bool ExecutorContact::is_feasible(const PositionsView&, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
   finder_.finish(trial_);
   return trial_.feasible();

@@ -44,11 +44,11 @@ class ExecutorContact final : public ContactSteps<ExecutorTerm> {
   void prepare(const Motion& motion, PhaseClock& clock) override;
   void look_along(const Motion& motion, PhaseClock& clock) override;
   /// Where it is frugal the lists of the motion are gone after that.
-  bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
-                  PositionsSpan force) override;
+  bool add_curvature_correction(const PositionsView& x, const PositionsView& dx, double bound,
+                                PositionsSpan force) override;
   bool sees_non_finite() const override { return true; }
   void look_at(const PositionsView& x, const PositionsView& trial, PhaseClock& clock) override;
-  bool admits(const PositionsView&, PhaseClock& clock) override;
+  bool is_feasible(const PositionsView&, PhaseClock& clock) override;
   /// kappa of the trial.
   void freeze(PhaseClock&) override;
   /// Its barrier.
@@ -68,7 +68,7 @@ class ExecutorContact final : public ContactSteps<ExecutorTerm> {
   RowEnergy forces(const PositionsView& x) { return assembly_.row_energy(rows(x), x); }
   const ExecutorSurface& surface() const { return executor_surface_; }
 
-  // --- what is said of it
+  // --- what is reported of it
   void add_energy(const PositionsView& x, ExecutorEnergy&) override { look_at_rows(x); }
   Compensated row_energy() override { return totals_.get().energy; }
   void add_known(KnownStep& out) const override;

@@ -1,4 +1,4 @@
-// Set-up, the step and its motions, and what is said of a state. The matrix is in executor_matrix.cpp.
+// Set-up, the step and its motions, and what is reported of a state. The matrix is in executor_matrix.cpp.
 #include "core/newton/executor/executor_engine.hpp"
 
 #include <algorithm>

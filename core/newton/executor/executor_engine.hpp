@@ -36,13 +36,13 @@ class ExecutorEngine final : public IncrementalPotential {
   void synchronize_phases();
 
   bool pattern_changed() const override;
-  void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
+  void fill_matrix(const Column& x, const HessianRegularisation& level, const Column& force) override;
   void fill_exact(const Column& x, const Column& force) override;
   /// Errors: std::logic_error always: only article_literal asks, which runs on the host.
   double add_tikhonov(double relative, double absolute) override;
   void multiply(const Column& v, Column& out) override;
   void solve(const Column& b, RightSide of, Column& step, SolveReport& report) override;
-  Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
+  Definiteness examine(const Column& x, const HessianRegularisation& near, const Column& force, Column& b,
                        Column& step, Column& direction) override;
   std::size_t nnz() const override;
 
@@ -61,7 +61,7 @@ class ExecutorEngine final : public IncrementalPotential {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  /// How far a matrix is from the exact one: t and threshold of HessianLevel.
+  /// How far a matrix is from the exact one: t and threshold of HessianRegularisation.
   struct Filled {
     double t = 0, threshold = infinity;
     const double* force = nullptr;
@@ -90,7 +90,7 @@ class ExecutorEngine final : public IncrementalPotential {
   ElementMatrix elements_;  // of all terms with stencils that stay
   ExecutorTerms terms_;
   std::unique_ptr<ExecutorPcg> pcg_;
-  std::unique_ptr<CuspSearch> cusps_;  // made when it is asked for
+  std::unique_ptr<CuspSearch> cusps_;  // made when it is requested
   Forcing forcing_;
   int max_pcg_iterations_;
 

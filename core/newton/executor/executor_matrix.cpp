@@ -46,7 +46,7 @@ void ExecutorEngine::fill_elastic(const Column& x) {
   elements_.mirror();
 }
 
-void ExecutorEngine::fill_matrix(const Column& x, const HessianLevel& level, const Column& force) {
+void ExecutorEngine::fill_matrix(const Column& x, const HessianRegularisation& level, const Column& force) {
   level_ = {level.t(), level.threshold(), force.data()};
   fill(x, level_);
 }
@@ -90,7 +90,7 @@ std::size_t ExecutorEngine::nnz() const {
 }
 
 double ExecutorEngine::add_tikhonov(double, double) {
-  throw std::logic_error("the matrix on an executor has no Tikhonov term: only article_literal asks for one");
+  throw std::logic_error("the matrix on an executor has no Tikhonov term: only article_literal has one");
 }
 
 void ExecutorEngine::multiply(const Column& v, Column& out) {
@@ -119,8 +119,8 @@ void ExecutorEngine::solve(const Column& b, RightSide of, Column& step, SolveRep
 
 // Conjugate gradients on a seeded right-hand side (core/linear/definiteness.hpp), preconditioned by what served the
 // matrix that was solved.
-Definiteness ExecutorEngine::examine(const Column& x, const HessianLevel&, const Column& force, Column& b,
-                                     Column& step, Column& direction) {
+Definiteness ExecutorEngine::examine(const Column& x, const HessianRegularisation&, const Column& force,
+                                     Column& b, Column& step, Column& direction) {
   fill_exact(x, force);
   const VecXd seeded = definiteness_right_hand_side(b.size());
   b.upload({seeded.data(), static_cast<std::size_t>(seeded.size())});

@@ -1,4 +1,4 @@
-// All kernels of this room.
+// All kernels of this module.
 #pragma once
 
 #include "core/contact/executor/sum_kernels.hpp"

@@ -47,7 +47,7 @@ void LaggedTerm::add_given_motion(const PositionsView& x, const PositionsView& m
 }
 
 void LaggedTerm::add_known(KnownStep& out) const {
-  if (family_->loads_known()) out.lags.push_back(family_->known(name_));
+  if (family_->loads_known()) out.lagged.push_back(family_->known(name_));
 }
 
 namespace {

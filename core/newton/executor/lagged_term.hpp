@@ -24,7 +24,7 @@ class LaggedTerm final : public LaggedSteps<TermEnergies> {
   bool pattern_changed() const override { return pattern_changed_; }
   void add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) override;
 
-  // --- what is said of it
+  // --- what is reported of it
   void add_known(KnownStep& out) const override;
 
   // --- memory

@@ -10,7 +10,7 @@
 namespace bb::exec {
 namespace {
 
-/// One a line of registry.inc, in its order; null where the line says host_only.
+/// One a line of registry.inc, in its order; null where the line states host_only.
 #define BB_MAKE_kernels(name) &make_##name##_on_executor
 #define BB_MAKE_host_only(name) nullptr
 #define ENTRY(name, doc, convex, where) BB_MAKE_##where(name),

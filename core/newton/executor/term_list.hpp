@@ -6,7 +6,7 @@
 
 namespace bb::exec {
 
-/// The terms that the plan needs, in the order of registry.inc. Errors: ConfigError at /device for a term whose line says
+/// The terms that the plan needs, in the order of registry.inc. Errors: ConfigError at /device for a term whose line states
 /// host_only, and those of each term; OutOfMemory.
 ExecutorTerms make_terms_on_executor(const Plan& plan, const ExecutorInputs& inputs);
 

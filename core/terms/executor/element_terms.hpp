@@ -1,4 +1,4 @@
-// What makes the terms of this room on an executor, one function a line of core/terms/registry.inc. Called where the plan says that they are needed.
+// What makes the terms of this module on an executor, one function a line of core/terms/registry.inc. Called where the plan states that they are needed.
 #pragma once
 
 #include "core/terms/executor/term_inputs.hpp"

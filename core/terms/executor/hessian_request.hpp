@@ -1,4 +1,4 @@
-// Which Hessian a kernel is asked for at a level of the step.
+// Which Hessian a kernel computes at a blend factor of the step.
 #pragma once
 
 #include "core/energy/families/element_kernels.hpp"
@@ -6,7 +6,7 @@
 
 namespace bb::exec {
 
-/// What hessian_at (core/newton/hessian_level.hpp) gives. threshold: infinity where no vertex is asked. force: [n_vertices]
+/// What hessian_at (core/newton/hessian_regularisation.hpp) gives. threshold: infinity where no vertex is asked. force: [n_vertices]
 /// N, in the executor's memory.
 HessianRequest hessian_request(StepHessian choice, double t, double threshold, const double* force);
 

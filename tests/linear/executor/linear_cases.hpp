@@ -1,4 +1,4 @@
-// Systems of the tests of the resident linear solver in an executor's memory.
+// Systems of the tests of the linear solver of the device backend in an executor's memory.
 #pragma once
 
 #include <memory>

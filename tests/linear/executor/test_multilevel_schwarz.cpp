@@ -1,4 +1,4 @@
-// The resident Schwarz preconditioner: its matrix against a dense one, iterations beside those of the host's, faults.
+// The Schwarz preconditioner of the device backend: its matrix against a dense one, iterations beside those of the host's, faults.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -223,8 +223,8 @@ TEST(MultilevelSchwarz, NeedsFewerIterationsThanBlockJacobiHoweverStiffContactsA
       const Solved got = solve(system, no_fixed(m * m), Order::threads, false);
       ASSERT_EQ(got.report.status, LinearStatus::ok) << got.report.detail;
       std::cout << "grid " << m << ", stiffness " << stiffness << ": block_jacobi " << block_jacobi
-                << ", schwarz " << schwarz << ", resident " << got.report.iterations << " on " << got.n_levels
-                << " levels\n";
+                << ", schwarz " << schwarz << ", device backend " << got.report.iterations << " on "
+                << got.n_levels << " levels\n";
       EXPECT_GT(block_jacobi, 100);
       EXPECT_LT(3 * got.report.iterations, 2 * block_jacobi);
     }

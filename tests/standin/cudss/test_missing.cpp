@@ -1,4 +1,4 @@
-// What this build says of the linear solver cudss on this machine, with CUDA's own run time.
+// What this build reports of the linear solver cudss on this machine, with CUDA's own run time.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Springs of cloth as plain numbers: what a body says of the sides and diagonals of its faces, and the elements of a scene.
+// Springs of cloth as plain numbers: what a body states of the sides and diagonals of its faces, and the elements of a scene.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Bending hinges as plain numbers: what a body says of its interior edges, and the elements of a scene.
+// Bending hinges as plain numbers: what a body states of its interior edges, and the elements of a scene.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Membranes as plain numbers: what a body says of its triangles, and the elements of a scene.
+// Membranes as plain numbers: what a body states of its triangles, and the elements of a scene.
 #pragma once
 
 #include <array>

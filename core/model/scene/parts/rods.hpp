@@ -1,4 +1,4 @@
-// Rods that bend, as plain numbers: what a body says of its chains of lone edges, and the elements of a scene.
+// Rods that bend, as plain numbers: what a body states of its chains of lone edges, and the elements of a scene.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Springs as plain numbers: what a body says of its edges, and the elements of a scene.
+// Springs as plain numbers: what a body states of its edges, and the elements of a scene.
 #pragma once
 
 #include <array>

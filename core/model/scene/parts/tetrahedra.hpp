@@ -1,4 +1,4 @@
-// Solids as plain numbers: what a body says of its tetrahedra, and the elements of a scene.
+// Solids as plain numbers: what a body states of its tetrahedra, and the elements of a scene.
 #pragma once
 
 #include <array>

@@ -15,6 +15,7 @@ from barrierbench_analysis.tables.words import counted, listed
 from .gather import Entry, Folder
 from .tables import shown_path
 
+ESTIMATORS = ("ritz", "inverse_power", "spectra", "dense", "lanczos")  # by the number in records
 OWN_FRICTION = re.compile(r"/scene/(bodies|obstacles)/\d+/friction")
 
 
@@ -84,6 +85,12 @@ def _method(said: Said) -> list[str]:
     return text
 
 
+def _estimator(entry: Entry) -> str | None:
+    """Of condition numbers: records have its number."""
+    number = entry.settings.get("/diagnose/tier")
+    return None if number is None else ESTIMATORS[int(number)]
+
+
 def _duration_s(entry: Entry) -> float | None:
     """Simulated time that was asked for, in whichever form."""
     given = entry.settings.get("/time/duration_s")
@@ -137,8 +144,7 @@ def _solver(said: Said) -> list[str]:
         f"Passes: time {said.of('passes_time')}, diagnose {said.of('passes_diagnose')}, audit"
         f" {said.of('passes_audit')}. The passes diagnose and audit share a second run, whose times are not"
         f" reported. Condition numbers of every diagnosed iteration (one in {said.of('/diagnose/every')},"
-        f" tier"
-        f" {said.of('/diagnose/tier')}).",
+        f" estimator {said.of_each(_estimator)}).",
     ]
 
 

@@ -1,5 +1,5 @@
 """The formulations that the catalogue is run with. Fixed stiffnesses are matched to the loads that a scene
-names, so that no pilot runs; a policy that makes its own stiffness is as it is.
+names, so that no calibration run is needed; a policy that makes its own stiffness is as it is.
 """
 
 from __future__ import annotations

@@ -247,8 +247,8 @@ def _head(found: Map, sorted_out: Kept | None) -> list[str]:
     lines += [
         (
             f"{n['cells']} cells, {about['runs']} runs of {low} to {high} unknowns, {hours:.2g} h of one core"
-            f" in all, diagnosis and pilots included. {n['ok']} reached a gap; {n[CANNOT]} {CANNOT} (theta"
-            f" beyond the peak of the force), {n[NO_CONTACT]} {NO_CONTACT}, {n['failed']} failed,"
+            f" in all, diagnosis and calibration runs included. {n['ok']} reached a gap; {n[CANNOT]} {CANNOT}"
+            f" (theta beyond the peak of the force), {n[NO_CONTACT]} {NO_CONTACT}, {n['failed']} failed,"
             f" {n[NOT_RUN]} {NOT_RUN}. {sum(r[UNKNOWN] or 0 for r in found.rows)} estimates of condition"
             f" numbers in contact have no number and are in no percentile. {_of(found, 'date')};"
             f" {_of(found, 'machine')}; build {_of(found, 'build')}."
@@ -257,9 +257,9 @@ def _head(found: Map, sorted_out: Kept | None) -> list[str]:
         (
             f"Made by `{renewed(about['command'])}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the"
             " load-weighted median of d/d_hat at converged step ends; theta, the target, is where the"
-            " largest load of the pilot would rest. Raw and block Jacobi are 95th percentiles of cond over"
-            " iterations in contact. A number is a geometric mean over scenes, the resolutions of a scene"
-            " averaged first, with its 95% interval (Student's t over scenes)."
+            " largest load of the calibration run would rest. Raw and block Jacobi are 95th percentiles of"
+            " cond over iterations in contact. A number is a geometric mean over scenes, the resolutions of a"
+            " scene averaged first, with its 95% interval (Student's t over scenes)."
             f"{counted_once(about['scenes'])} A place is a scene at a resolution. Rows that stand together"
             " are of the same places: those in which every shape of them, and the log, got through; a shape"
             " that did so in half of its places or fewer is named and not compared."

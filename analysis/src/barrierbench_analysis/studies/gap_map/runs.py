@@ -22,7 +22,7 @@ def folder_of(runs: Path, place: Place, digests: dict[Place, str]) -> Path:
 
 def chunks(spec: Spec, wanted: list[Cell]) -> list[list[Cell]]:
     """Cells that one call of the program runs: those of one scene, resolution, limit and theta, which share
-    their pilot. The fewest unknowns come first.
+    their calibration run. The fewest unknowns come first.
     """
     size = {(s.label, r): n for s in spec.scenes for r, n in s.unknowns.items()}
     parts = [

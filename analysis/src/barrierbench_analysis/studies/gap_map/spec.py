@@ -217,7 +217,7 @@ COMMON = {
 
 
 def make_sweep(spec: Spec, wanted: list[Cell]) -> Sweep:
-    """The runs of some cells as one sweep file; those of one scene and resolution share their pilots."""
+    """The runs of some cells as one sweep file; those of a scene and resolution share calibration runs."""
     name = f"gap_map_{spec.name}"
     return sweep(
         name,

@@ -14,7 +14,7 @@ from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 
 PRESETS = ROOT / "configs" / "formulations"
-REFERENCE = "log"  # the pilot's formulation, whose run the others are compared with
+REFERENCE = "log"  # the formulation of the calibration run, whose run the others are compared with
 VARY = ("contact", "limit", "both")
 OF_LIMIT = (
     "mass_term",

@@ -1,9 +1,9 @@
 """Calibrates every formulation by one matching rule on one scene, runs each, and says whether their outcomes
 may be compared.
 
-The program does the mathematics: its pilot finds the loads, its matching rule turns them into stiffness, and
-it judges the outcomes when the runs are over (docs/theory/barriers.md and audit.md). Here they are
-asked for and shown; match.json beside the records keeps the answer.
+The program does the mathematics: its calibration run finds the loads, its matching rule turns them into
+stiffness, and it judges the outcomes when the runs are over (docs/theory/barriers.md and audit.md).
+Here they are requested and shown; match.json beside the records keeps the answer.
 
 Exit codes: 0 all are comparable, 1 some are not, 2 bad input, or nothing to compare.
 """

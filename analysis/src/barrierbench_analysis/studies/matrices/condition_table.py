@@ -1,9 +1,9 @@
 """Who finds the condition numbers, and at what price: the verb `bench study condition-table` writes
 results/CONDITION.md.
 
-Tier 2 (Spectra) and tier 4 (our Lanczos) estimate the same matrices: those of every diagnosed iteration of
-the demo's sweeps, run once with each tier, and those of results/matrices. A run goes through the same states
-whatever is estimated, so that its samples pair up one by one.
+The estimators spectra (2 in records) and lanczos (4) estimate the same matrices: those of every diagnosed
+iteration of the demo's sweeps, run once with each estimator, and those of results/matrices. A run goes
+through the same states whatever is estimated, so that its samples pair up one by one.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def samples(folder: Path) -> dict[tuple, dict]:
     for trace in below(folder, "trace.jsonl"):
         case = (
             trace.parent.name.rpartition("-")[0] or trace.parent.name
-        )  # LABEL-ID, and the id knows the tier
+        )  # LABEL-ID, and the id knows the estimator
         for line in input_file.read_text(trace).splitlines():
             row = json.loads(line)
             for one in row.get("cond", []):
@@ -63,7 +63,7 @@ def pair_up(name: str, by_tier: dict[int, dict[tuple, dict]]) -> list[Pair]:
     first, second = (by_tier[tier] for tier in TIERS)
     if first.keys() != second.keys() or not first:
         raise UserError(
-            f"{name}: {len(first)} estimates of tier 2, {len(second)} of tier 4, not of the same matrices"
+            f"{name}: {len(first)} estimates by spectra, {len(second)} by lanczos, not of the same matrices"
         )
     return [Pair(name, first[key], second[key]) for key in sorted(first, key=str)]
 
@@ -208,8 +208,8 @@ def page(groups: dict[str, list[Pair]], note: str) -> str:
         f"{datetime.date.today()}, {processor()}. Made by `./bench study condition-table`{note}.",
         "",
         (
-            "Every line compares tier 2 with tier 4 on the same matrices, in every scaling that their run"
-            " asks for. *By Spectra*: tier 2 had a factor to"
+            "Every line compares the estimators spectra and lanczos on the same matrices, in every scaling"
+            " that their run requests. *By Spectra*: spectra had a factor to"
         ),
         (
             "invert round, so that Spectra's solvers ran; without one the matrix is not positive definite."

@@ -165,7 +165,7 @@ def solver_name(solve: dict) -> str:
 def table(matrices: list[dict]) -> str:
     rows = []
     for one in matrices:
-        tier2 = {e["scaling"]: cond_text(e) for e in one["estimates"] if e["tier"] == 2}
+        by_spectra = {e["scaling"]: cond_text(e) for e in one["estimates"] if e["tier"] == 2}
         solves = {solver_name(s): solve_text(s) for s in one["solves"]}
         cause, _, why = one["cause"].partition(": ")
         rows.append(
@@ -174,7 +174,7 @@ def table(matrices: list[dict]) -> str:
                 f"**{cause}**: {why}",
                 f"{one['rows']}",
                 f"{one['entries']}",
-                *(tier2[s] for s in ("none", "jacobi", "block_jacobi")),
+                *(by_spectra[s] for s in ("none", "jacobi", "block_jacobi")),
                 *(solves[s] for s in SOLVERS),
             ]
         )
@@ -189,7 +189,7 @@ def write_readme(out: Path) -> None:
     if size > MOST_BYTES:
         raise UserError(f"{out}: {size} bytes; at most {MOST_BYTES} go into the repository")
     notes = (
-        f"\n{len(matrices)} systems, {size / 2**20:.1f} MiB. cond: tier 2, unscaled and scaled; `>` is a"
+        f"\n{len(matrices)} systems, {size / 2**20:.1f} MiB. cond: by spectra, unscaled and scaled; `>` is a"
         " lower bound. Solvers: PCG iterations to a residual of 1e-8, at most 10000, `ok` for none, or how"
         " the solve ended.\n"
     )

@@ -113,7 +113,8 @@ def _scene(scene: dict) -> list[str]:
             f"`{scene['base']}`, {scene['duration_s']:g} s and one step, anchor: dt {anchor['dt_s']:g} s,"
             f" d_hat {anchor['d_hat_m']:g} m, tolerance {anchor['tolerance']:g} of min(d_hat, fall of a"
             f" step)/dt. Error: `{scene['error']}`, {MEANING[scene['error']]}. {_runs(scene)},"
-            f" {about['seconds']:.0f} s in all (pilots and audit included), {about['unknowns']} unknowns,"
+            f" {about['seconds']:.0f} s in all (calibration runs and audit included), {about['unknowns']}"
+            f" unknowns,"
             f" {about['machine']}, {about['date']}, build {about['build'][:8]}."
         ),
         "",

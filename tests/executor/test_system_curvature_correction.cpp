@@ -1,10 +1,10 @@
-// Detours round curved gaps on an executor: those of the CPU path, whatever memory is given back meanwhile.
+// Curvature corrections on an executor: those of the CPU path, whatever memory is given back meanwhile.
 #include <gtest/gtest.h>
 
 #include "tests/executor/system_cases.hpp"
 #include "tests/newton/curved_gaps.hpp"
 
-namespace bb::system_detour_test {
+namespace bb::system_curvature_correction_test {
 namespace {
 
 struct End {
@@ -60,4 +60,4 @@ TEST(ExecutorSystem, GoesRoundCurvedGapsAsTheCpuPathDoes) {
 }
 
 }  // namespace
-}  // namespace bb::system_detour_test
+}  // namespace bb::system_curvature_correction_test

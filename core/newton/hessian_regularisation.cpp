@@ -1,4 +1,4 @@
-#include "core/newton/hessian_level.hpp"
+#include "core/newton/hessian_regularisation.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -31,45 +31,47 @@ void choose(const TermFamily& family, std::span<const double> force, double thre
 
 }  // namespace
 
-HessianLevel::HessianLevel(const std::vector<StepHessian>& choices) : choices_(choices) { reset(); }
+HessianRegularisation::HessianRegularisation(const std::vector<StepHessian>& choices) : choices_(choices) {
+  reset();
+}
 
-void HessianLevel::reset() {
+void HessianRegularisation::reset() {
   t_ = 0;
   threshold_ = infinity;
 }
 
-bool HessianLevel::has(StepHessian choice) const {
+bool HessianRegularisation::has(StepHessian choice) const {
   return std::find(choices_.begin(), choices_.end(), choice) != choices_.end();
 }
 
-void HessianLevel::raise(double residual) {
+void HessianRegularisation::raise(double residual) {
   // exact_or_clamped knows two levels only: where nothing blends, t goes all the way
   t_ = has(StepHessian::blend) ? std::min(1.0, t_ == 0 ? first_t : 2 * t_) : 1;
   threshold_ = threshold_ == infinity ? residual / 2 : threshold_ / 2;
   if (!(threshold_ >= smallest_threshold * residual)) threshold_ = 0;
 }
 
-void HessianLevel::lower(double residual) {
+void HessianRegularisation::lower(double residual) {
   t_ = has(StepHessian::blend) && t_ > first_t ? t_ / 2 : 0;
   threshold_ = 2 * std::max(threshold_, smallest_threshold * residual);
   if (threshold_ >= residual) threshold_ = infinity;
 }
 
-bool HessianLevel::exact() const { return t_ == 0 && threshold_ == infinity; }
+bool HessianRegularisation::exact() const { return t_ == 0 && threshold_ == infinity; }
 
-bool HessianLevel::last() const {
+bool HessianRegularisation::last() const {
   const bool to_blend = has(StepHessian::blend) || has(StepHessian::exact_or_clamped);
   return (!to_blend || t_ == 1) && (!has(StepHessian::progressive) || threshold_ == 0);
 }
 
-bool HessianLevel::all_clamped() const { return !has(StepHessian::absolute) && last(); }
+bool HessianRegularisation::all_clamped() const { return !has(StepHessian::absolute) && last(); }
 
-bool needs_clamped(StepHessian choice, const HessianLevel& level) {
+bool needs_clamped(StepHessian choice, const HessianRegularisation& level) {
   if (choice == StepHessian::progressive) return level.threshold() < infinity;
   return (choice == StepHessian::blend || choice == StepHessian::exact_or_clamped) && level.t() > 0;
 }
 
-LocalHessians hessian_at(const TermFamily& family, StepHessian choice, const HessianLevel& level,
+LocalHessians hessian_at(const TermFamily& family, StepHessian choice, const HessianRegularisation& level,
                          std::span<const double> force, std::vector<double>& buffer) {
   if (!needs_clamped(choice, level)) return family.local.hess;
   if (choice == StepHessian::progressive) {

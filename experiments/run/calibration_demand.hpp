@@ -1,11 +1,11 @@
-// What the contacts and limited elements of a pilot ask of a stiffness: the largest demand over all of them,
+// What the contacts and limited elements of a calibration run ask of a stiffness: the largest demand over all of them,
 // at all converged step ends (docs/theory/barriers.md, Matching).
 #pragma once
 
 #include <functional>
 #include <string>
 
-#include "experiments/run/pilot.hpp"
+#include "experiments/run/calibration_run.hpp"
 
 namespace bb {
 
@@ -18,10 +18,10 @@ struct Demand {
   double load = 0;           // N of a pair, or N/m
   double width = 0;          // its d_hat (m), or the width of its limit (1)
   double answer = 0;         // d log force/d log stiffness (stiffness_answer.hpp)
-  int step = -1;             // of the pilot, at whose end it carried the load
+  int step = -1;             // of the calibration run, at whose end it carried the load
   std::string where;         // names it
   long long considered = 0;  // loads that were compared, over all steps; 0: all of the above is void
-  // forces that follow their stiffness, as between given bodies at a fixed distance, are no loads
+  // forces that follow their stiffness, as between prescribed bodies at a fixed distance, are no loads
   long long left_out = 0;    // over all steps; 0: the rest is void
   double left_out_load = 0;  // the largest of them, N of a pair, or N/m
   int left_out_step = -1;
@@ -34,12 +34,14 @@ struct Demand {
 /// mollifier are left out: their load is e(x) times that of a row.
 /// Errors: ConfigError when `own` gives a contact that carried a load no stiffness; Interrupted and TimeOver of the limits.
 /// Cost: finding the rows of each step, and with `own` one assembly a step.
-Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                      const StiffnessPolicy* own, double u, const RunLimits& limits = {});
+Demand contact_demand(const CalibrationRun& calibration_run, const Scene& scene,
+                      const MatchedStiffness& matched, const StiffnessPolicy* own, double u,
+                      const RunLimits& limits = {});
 
 /// The same over the limited elements. `own` is asked at the width of the limit; where kappa_e is frozen for a
 /// step as a number, at the gap of the step's start if that is wider. Requires a scene with limited elements.
-Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                    const StiffnessPolicy* own, const RunLimits& limits = {});
+Demand limit_demand(const CalibrationRun& calibration_run, const Scene& scene,
+                    const MatchedStiffness& matched, const StiffnessPolicy* own,
+                    const RunLimits& limits = {});
 
 }  // namespace bb

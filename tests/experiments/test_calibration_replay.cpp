@@ -1,11 +1,11 @@
-// A replay of a pilot finds the rest shapes that creep as they were in each step.
-#include "experiments/run/pilot_replay.hpp"
+// A replay of a calibration run finds the rest shapes that creep as they were in each step.
+#include "experiments/run/calibration_replay.hpp"
 
 #include "core/newton/energy_sum.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb::pilot_replay_test {
+namespace bb::calibration_replay_test {
 namespace {
 
 using namespace test;
@@ -29,19 +29,19 @@ class Watch final : public StepObserver {
   std::vector<double> elastic;
 };
 
-TEST(PilotReplay, HasTheRestShapesOfEveryStep) {
+TEST(CalibrationReplay, HasTheRestShapesOfEveryStep) {
   const RunConfig config = parsed(creeping, {});
   const Scene scene = build_scene(config);
-  const std::shared_ptr<const Pilot> pilot = run_pilot(config, scene, {});
-  ASSERT_EQ(pilot->steps(), 8) << pilot->stopped;
+  const std::shared_ptr<const CalibrationRun> calibration_run = run_calibration(config, scene, {});
+  ASSERT_EQ(calibration_run->steps(), 8) << calibration_run->stopped;
 
-  Method method = make_method(pilot->config, pilot->stiffness);
-  Method never_stepped = make_method(pilot->config, pilot->stiffness);
+  Method method = make_method(calibration_run->config, calibration_run->stiffness);
+  Method never_stepped = make_method(calibration_run->config, calibration_run->stiffness);
   Simulation simulation(scene, method, config.time.dt, 8);
   Watch watch;
   for (int step = 0; step < 8; ++step) simulation.step(watch);
 
-  PilotReplay replay(*pilot, scene);
+  CalibrationReplay replay(*calibration_run, scene);
   NewtonSystem fresh(scene, never_stepped);
   for (const int step : {7, 2, 5}) {
     const double expected = watch.elastic[static_cast<std::size_t>(step)];
@@ -56,4 +56,4 @@ TEST(PilotReplay, HasTheRestShapesOfEveryStep) {
 }
 
 }  // namespace
-}  // namespace bb::pilot_replay_test
+}  // namespace bb::calibration_replay_test

@@ -1,4 +1,4 @@
-#include "experiments/run/pilot.hpp"
+#include "experiments/run/calibration_run.hpp"
 
 #include <fmt/format.h>
 
@@ -14,13 +14,13 @@
 #include "core/model/mesh/topology.hpp"
 #include "core/step_solvers/simulation.hpp"
 #include "experiments/config/parse.hpp"
-#include "experiments/run/pilot_replay.hpp"
+#include "experiments/run/calibration_replay.hpp"
 #include "experiments/run/plan.hpp"
 
 namespace bb {
 namespace {
 
-constexpr const char* this_part = "pilot";
+constexpr const char* this_part = "calibration run";
 
 StaticLoads static_loads(const RunConfig& config, const Scene& scene) {
   double mass = 0;
@@ -32,7 +32,7 @@ StaticLoads static_loads(const RunConfig& config, const Scene& scene) {
   const double weight = mass * largest_gravity(scene.gravity, scene.gravity_keys);
   if (weight == 0) {
     throw ConfigError(config.source + "#/matching/load_N", "nothing",
-                      "a load in N: the scene has no weight from which a pilot could start");
+                      "a load in N: the scene has no weight from which a calibration run could start");
   }
   StaticLoads out;
   out.contact = weight / n_free;
@@ -50,38 +50,39 @@ StaticLoads static_loads(const RunConfig& config, const Scene& scene) {
   return out;
 }
 
-// The pilot: log on the gap for contact and limit, kappa putting the static weight per contact at d_hat/2
+// The calibration run: log on the gap for contact and limit, kappa putting the static weight per contact at d_hat/2
 // (the limit: the weight per width at width/2). Everything else is the config's own.
-RunConfig pilot_config(const RunConfig& config) {
-  RunConfig pilot = config;
-  pilot.formulation.name = "log";
-  pilot.formulation.shape = "log";
-  pilot.formulation.argument = Argument::gap;
-  pilot.formulation.stiffness_policy = {};
-  pilot.strain_limit.shape = "log";
-  pilot.strain_limit.argument = Argument::gap;
-  pilot.strain_limit.stiffness_policy = {};
-  pilot.matching = {};
-  pilot.strain_limit.solid_k_s.reset();  // that of its own log
-  pilot.step_solver.name = "line_search";
-  pilot.step_solver.saddle = SaddleRule::escape;  // loads are those of minima
-  pilot.step_solver.retries = 0;                  // its steps are all as long as those that read its loads
-  pilot.time.step_size.reset(), pilot.time.step_iterations.reset();
-  pilot.time.step_halvings.reset(), pilot.time.step_error.reset();
-  pilot.output.checkpoint_every = 0;  // it has no folder
-  pilot.passes = {};
-  pilot.precision = Precision::full;  // what is compared between precisions has one stiffness
-  if (pilot.device != Device::cpu) {  // and between devices
-    pilot.device = Device::cpu;
-    pilot.linear_solver = {};
+RunConfig calibration_run_config(const RunConfig& config) {
+  RunConfig calibration_run = config;
+  calibration_run.formulation.name = "log";
+  calibration_run.formulation.shape = "log";
+  calibration_run.formulation.argument = Argument::gap;
+  calibration_run.formulation.stiffness_policy = {};
+  calibration_run.strain_limit.shape = "log";
+  calibration_run.strain_limit.argument = Argument::gap;
+  calibration_run.strain_limit.stiffness_policy = {};
+  calibration_run.matching = {};
+  calibration_run.strain_limit.solid_k_s.reset();  // that of its own log
+  calibration_run.step_solver.name = "line_search";
+  calibration_run.step_solver.saddle = SaddleRule::escape;  // loads are those of minima
+  calibration_run.step_solver.retries = 0;  // its steps are all as long as those that read its loads
+  calibration_run.time.step_size.reset(), calibration_run.time.step_iterations.reset();
+  calibration_run.time.step_halvings.reset(), calibration_run.time.step_error.reset();
+  calibration_run.output.checkpoint_every = 0;  // it has no folder
+  calibration_run.passes = {};
+  calibration_run.precision = Precision::full;  // what is compared between precisions has one stiffness
+  if (calibration_run.device != Device::cpu) {  // and between devices
+    calibration_run.device = Device::cpu;
+    calibration_run.linear_solver = {};
   }
-  return pilot;
+  return calibration_run;
 }
 
-Calibration pilot_stiffness(const RunConfig& pilot, const Scene& scene, const StaticLoads& loads) {
+Calibration calibration_run_stiffness(const RunConfig& calibration_run, const Scene& scene,
+                                      const StaticLoads& loads) {
   Calibration out;
   out.limited = !scene.limit.triangles.empty();
-  out.kappa = match_equal_force(log_barrier(), pilot.formulation.d_hat, loads.contact, 0.5);
+  out.kappa = match_equal_force(log_barrier(), calibration_run.formulation.d_hat, loads.contact, 0.5);
   if (!scene.solid_limit.tetrahedra.empty()) {
     out.solid_k_s = match_equal_force(log_barrier(), scene.solid_limit.width.front(), loads.solid_limit, 0.5);
   }
@@ -96,7 +97,7 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
   if (!options.progress) return;
   Progress progress;
   progress.label = options.note;
-  progress.pass = "pilot";
+  progress.pass = "calibration";
   progress.step = step.step + 1;
   progress.steps = config.time.steps;
   progress.newton = step.newton_iterations;
@@ -112,39 +113,41 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
 }
 
 // The answers of one step's end, each with its force.
-void add_answers(const Pilot& pilot, const StiffnessAnswers& answers, const ContactTable& rows,
-                 LimitFamily* limit, const Scene& scene, const Positions& x, AnswerSums& out) {
+void add_answers(const CalibrationRun& calibration_run, const StiffnessAnswers& answers,
+                 const ContactTable& rows, LimitFamily* limit, const Scene& scene, const Positions& x,
+                 AnswerSums& out) {
   for (std::size_t r = 0; r < rows.size(); ++r) out.add_contact(rows, r, -rows.force(r), answers.contact[r]);
   if (!limit) return;
   limit->measure(x.data());
   for (std::size_t e = 0; e < scene.limit.width.size(); ++e) {
     const double y = limit->smallest_gap(e), width = scene.limit.width[e];
     if (y < width)
-      out.add_limit(e, -*pilot.stiffness.k_s * log_barrier().eval(y, width).db, answers.limit[e]);
+      out.add_limit(e, -*calibration_run.stiffness.k_s * log_barrier().eval(y, width).db, answers.limit[e]);
   }
 }
 
 // How the forces at the ends of all steps answer to stiffness.
-void answer(Pilot& pilot, const Scene& scene, const RunOptions& options) {
+void answer(CalibrationRun& calibration_run, const Scene& scene, const RunOptions& options) {
   const StrainLimitPart& part = scene.limit;
   exec::HostExecutor executor;
   std::unique_ptr<LimitFamily> limit;
   if (!part.triangles.empty()) limit = limited_triangles({executor}, part, scene.rest, scene.planar);
-  PilotReplay replay(pilot, scene);
-  pilot.answers = AnswerSums(scene.n_vertices(), part.triangles.size());
-  for (int step = 0; step < pilot.steps(); ++step) {
-    options.limits().look_up(
-        this_part, fmt::format("while the forces of its step {} of {} were read", step, pilot.steps()));
-    const StiffnessAnswers answers =
-        answers_to_stiffness(replay.assembled(step), limit.get(), log_barrier(), pilot.config.time.dt);
-    pilot.unanswered += answers.known ? 0 : 1;
-    add_answers(pilot, answers, replay.rows(), limit.get(), scene, replay.end(step), pilot.answers);
+  CalibrationReplay replay(calibration_run, scene);
+  calibration_run.answers = AnswerSums(scene.n_vertices(), part.triangles.size());
+  for (int step = 0; step < calibration_run.steps(); ++step) {
+    options.limits().look_up(this_part, fmt::format("while the forces of its step {} of {} were read", step,
+                                                    calibration_run.steps()));
+    const StiffnessAnswers answers = answers_to_stiffness(replay.assembled(step), limit.get(), log_barrier(),
+                                                          calibration_run.config.time.dt);
+    calibration_run.unanswered += answers.known ? 0 : 1;
+    add_answers(calibration_run, answers, replay.rows(), limit.get(), scene, replay.end(step),
+                calibration_run.answers);
   }
 }
 
 }  // namespace
 
-std::size_t Pilot::bytes() const {
+std::size_t CalibrationRun::bytes() const {
   const std::size_t states = x.empty() ? 0 : x.size() * static_cast<std::size_t>(x[0].size());
   std::size_t remembered = 0;
   for (const std::string& archive : memory) remembered += archive.size();
@@ -153,16 +156,17 @@ std::size_t Pilot::bytes() const {
 
 BarrierFunction log_barrier() { return {require_shape("log"), Argument::gap}; }
 
-std::shared_ptr<const Pilot> PilotCache::find(const std::string& config_id) {
-  const auto found = std::find_if(known_.begin(), known_.end(),
-                                  [&](const auto& pilot) { return pilot->config_id == config_id; });
+std::shared_ptr<const CalibrationRun> CalibrationRunCache::find(const std::string& config_id) {
+  const auto found = std::find_if(known_.begin(), known_.end(), [&](const auto& calibration_run) {
+    return calibration_run->config_id == config_id;
+  });
   if (found == known_.end()) return nullptr;
   std::rotate(found, std::next(found), known_.end());
   return known_.back();
 }
 
-std::shared_ptr<const Pilot> PilotCache::keep(Pilot pilot) {
-  known_.push_back(std::make_shared<const Pilot>(std::move(pilot)));
+std::shared_ptr<const CalibrationRun> CalibrationRunCache::keep(CalibrationRun calibration_run) {
+  known_.push_back(std::make_shared<const CalibrationRun>(std::move(calibration_run)));
   std::size_t total = 0, first = known_.size();
   while (first > 0 && (first == known_.size() || total + known_[first - 1]->bytes() <= bytes_)) {
     total += known_[--first]->bytes();
@@ -171,28 +175,28 @@ std::shared_ptr<const Pilot> PilotCache::keep(Pilot pilot) {
   return known_.back();
 }
 
-std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& given,
-                                       const RunOptions& options) {
-  static PilotCache cache(std::size_t{256} << 20);
-  Pilot pilot;
-  pilot.config = pilot_config(config);
-  pilot.config_id = config_id(pilot.config);
-  if (auto known = cache.find(pilot.config_id)) return known;
+std::shared_ptr<const CalibrationRun> run_calibration(const RunConfig& config, const Scene& given,
+                                                      const RunOptions& options) {
+  static CalibrationRunCache cache(std::size_t{256} << 20);
+  CalibrationRun calibration_run;
+  calibration_run.config = calibration_run_config(config);
+  calibration_run.config_id = config_id(calibration_run.config);
+  if (auto known = cache.find(calibration_run.config_id)) return known;
 
   // a scene whose start was rounded to float would leave other loads, in whatever run of a sweep came first
-  const Scene unrounded = values_in_float(config.precision) ? build_scene(pilot.config) : Scene();
+  const Scene unrounded = values_in_float(config.precision) ? build_scene(calibration_run.config) : Scene();
   const Scene& scene = values_in_float(config.precision) ? unrounded : given;
-  const double dt = pilot.config.time.dt;
-  pilot.rest = static_loads(config, scene);
-  pilot.stiffness = pilot_stiffness(pilot.config, scene, pilot.rest);
-  Method method = make_method(pilot.config, pilot.stiffness);
-  Simulation simulation(scene, method, dt, pilot.config.time.steps);
-  pilot.x.push_back(scene.x0);
+  const double dt = calibration_run.config.time.dt;
+  calibration_run.rest = static_loads(config, scene);
+  calibration_run.stiffness = calibration_run_stiffness(calibration_run.config, scene, calibration_run.rest);
+  Method method = make_method(calibration_run.config, calibration_run.stiffness);
+  Simulation simulation(scene, method, dt, calibration_run.config.time.steps);
+  calibration_run.x.push_back(scene.x0);
   StepObserver nobody;
   const double start_s = now_s();
-  for (int step = 0; step < pilot.config.time.steps; ++step) {
-    options.limits().look_up(this_part,
-                             fmt::format("before its step {} of {}", step, pilot.config.time.steps));
+  for (int step = 0; step < calibration_run.config.time.steps; ++step) {
+    options.limits().look_up(
+        this_part, fmt::format("before its step {} of {}", step, calibration_run.config.time.steps));
     Prediction prediction;
     method.integrator->predict(simulation.history(), dt, prediction);
     Archive memory;
@@ -200,16 +204,17 @@ std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& giv
     const StepReport report = simulation.step(nobody);
     show(config, options, report, start_s);
     if (report.status != StepStatus::converged) {  // its state is in no balance: no load can be read from it
-      pilot.stopped = fmt::format("the pilot stopped at step {} with {}", step, to_string(report.status));
-      if (!report.detail.empty()) pilot.stopped += ": " + report.detail;
+      calibration_run.stopped =
+          fmt::format("the calibration run stopped at step {} with {}", step, to_string(report.status));
+      if (!report.detail.empty()) calibration_run.stopped += ": " + report.detail;
       break;
     }
-    pilot.x.push_back(simulation.history().x);
-    pilot.c.push_back(prediction.c);
-    pilot.memory.push_back(memory.bytes());
+    calibration_run.x.push_back(simulation.history().x);
+    calibration_run.c.push_back(prediction.c);
+    calibration_run.memory.push_back(memory.bytes());
   }
-  answer(pilot, scene, options);
-  return cache.keep(std::move(pilot));
+  answer(calibration_run, scene, options);
+  return cache.keep(std::move(calibration_run));
 }
 
 std::optional<double> policy_start(const RunConfig& config, const Scene& scene,

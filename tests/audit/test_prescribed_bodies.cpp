@@ -1,4 +1,4 @@
-// What moves past given bodies that are spared a comparison with themselves: particles, rods and triangles, alone and where
+// What moves past prescribed bodies that are spared a comparison with themselves: particles, rods and triangles, alone and where
 // nothing else is near, in space and in the plane. What is found is what is found when no body is known to be rigid.
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/audit/audit.hpp"
 
-namespace bb::audit::given_bodies_test {
+namespace bb::audit::prescribed_bodies_test {
 namespace {
 
 constexpr double tolerance = 1e-9;
@@ -69,7 +69,7 @@ Vec3d random_point(std::mt19937& random, double size, bool planar) {
 }
 
 /// Given triangles far apart, which stand or move, each met by at most one mover; `through`: most of those pass it.
-Crossing past_given_bodies(Mover mover, bool planar, bool through, unsigned seed) {
+Crossing past_prescribed_bodies(Mover mover, bool planar, bool through, unsigned seed) {
   std::mt19937 random(seed);
   Builder scene(planar);
   for (int b = 0; b < 6; ++b) {
@@ -90,12 +90,12 @@ Crossing past_given_bodies(Mover mover, bool planar, bool through, unsigned seed
   return scene.finish();
 }
 
-TEST(GivenBodies, WhatPassesThemIsFoundWhateverElseIsNear) {
+TEST(PrescribedBodies, WhatPassesThemIsFoundWhateverElseIsNear) {
   for (const bool planar : {false, true}) {
     for (const Mover mover : {Mover::particle, Mover::rod, Mover::triangle}) {
       long violations = 0, free = 0;
       for (unsigned seed = 1; seed <= 24; ++seed) {
-        const Crossing s = past_given_bodies(mover, planar, seed % 4 != 0, seed);
+        const Crossing s = past_prescribed_bodies(mover, planar, seed % 4 != 0, seed);
         AuditMesh unknown = s.mesh;
         unknown.motion.assign(unknown.motion.size(), -1);
         const MotionAudit found = audit_motion(s.mesh, s.x0, s.x1, tolerance);
@@ -117,8 +117,8 @@ TEST(GivenBodies, WhatPassesThemIsFoundWhateverElseIsNear) {
   }
 }
 
-/// Given bodies that meet each other are the scene's fault, one against itself is not asked after the first state.
-TEST(GivenBodies, ThatMeetEachOtherAreAFaultAndOneAloneIsNot) {
+/// Prescribed bodies that meet each other are the scene's fault, one against itself is not asked after the first state.
+TEST(PrescribedBodies, ThatMeetEachOtherAreAFaultAndOneAloneIsNot) {
   int faults = 0;
   for (const bool planar : {false, true}) {
     for (const int other : {0, 1, -1}) {  // the same body, another one, a free one
@@ -140,7 +140,7 @@ TEST(GivenBodies, ThatMeetEachOtherAreAFaultAndOneAloneIsNot) {
 }
 
 /// A free vertex makes what it belongs to the solver's, whoever else is given.
-TEST(GivenBodies, OneFreeVertexOfAPairMakesItTheSolvers) {
+TEST(PrescribedBodies, OneFreeVertexOfAPairMakesItTheSolvers) {
   int judged = 0;
   for (int free = -1; free < 4; ++free) {
     Builder scene(false);
@@ -162,4 +162,4 @@ TEST(GivenBodies, OneFreeVertexOfAPairMakesItTheSolvers) {
 }
 
 }  // namespace
-}  // namespace bb::audit::given_bodies_test
+}  // namespace bb::audit::prescribed_bodies_test

@@ -3,7 +3,7 @@
 
 #include "tests/newton/curved_gaps.hpp"
 
-namespace bb::detour_test {
+namespace bb::curvature_correction_test {
 namespace {
 
 struct Log final : StepObserver {
@@ -34,7 +34,7 @@ Steps take_steps(double load, int n_steps = 4) {
 
 // The strip presses with some tenths of N. Without the correction a load of 1e-3 N takes 123 iterations, and with one of
 // 1e-6 N three of the four steps do not end: gaps are pressed to 1e-14 m.
-TEST(Detour, a_soft_barrier_costs_few_iterations_more_than_a_stiff_one) {
+TEST(CurvatureCorrection, a_soft_barrier_costs_few_iterations_more_than_a_stiff_one) {
   const Steps stiff = take_steps(0.1);
   EXPECT_LT(stiff.iterations, 40);
   double gap = stiff.gap;
@@ -55,14 +55,14 @@ TEST(Detour, a_soft_barrier_costs_few_iterations_more_than_a_stiff_one) {
   }
 }
 
-TEST(Detour, counts_its_solve_and_its_queries_and_is_no_whole_direction) {
+TEST(CurvatureCorrection, counts_its_solve_and_its_queries_and_is_no_whole_direction) {
   int seen = 0, whole = 0;
   for (const double load : {1e-2, 1e-3, 1e-5}) {
     const std::vector<IterationReport> all = take_steps(load).log.iterations;
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
       const IterationReport &now = all[i], &after = all[i + 1];
-      EXPECT_EQ(now.linear_solves, 1 + now.hessian_fallbacks + now.solve.detours);
-      EXPECT_GE(now.solve.detours, now.detours);
+      EXPECT_EQ(now.linear_solves, 1 + now.hessian_fallbacks + now.solve.corrections);
+      EXPECT_GE(now.solve.corrections, now.detours);
       if (now.detours == 0) continue;
       ++seen;
       whole += now.alpha == 1 && after.iteration > 0;
@@ -76,7 +76,7 @@ TEST(Detour, counts_its_solve_and_its_queries_and_is_no_whole_direction) {
 }
 
 // Where no gap is curved along the direction nothing is solved twice: a point over a plane, from above and from below.
-TEST(Detour, is_not_made_where_gaps_are_straight) {
+TEST(CurvatureCorrection, is_not_made_where_gaps_are_straight) {
   Scene scene = test::particle_over_plane(0.1, 0.05, 0.01);
   scene.v0.col(0) = Vec3d(0, 0, -20);
   Method method = test::fixed_method("log", 1e-3);
@@ -86,10 +86,10 @@ TEST(Detour, is_not_made_where_gaps_are_straight) {
   int held = 0;
   for (const IterationReport& i : log.iterations) {
     held += i.alpha_ccd < 1;
-    EXPECT_EQ(i.solve.detours, 0);
+    EXPECT_EQ(i.solve.corrections, 0);
   }
   EXPECT_GT(held, 3);
 }
 
 }  // namespace
-}  // namespace bb::detour_test
+}  // namespace bb::curvature_correction_test

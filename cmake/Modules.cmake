@@ -1,6 +1,6 @@
-# A room is one folder of the tree: one static library with explicit sources, or headers only.
+# A module is one folder of the tree: one static library with explicit sources, or headers only.
 
-# Three precompiled headers: standard library and Eigen, which most rooms reuse; the same with what rooms that read and write include
+# Three precompiled headers: standard library and Eigen, which most modules reuse; the same with what modules that read and write include
 # beside; and with what tests do.
 file(WRITE "${PROJECT_BINARY_DIR}/pch/empty.cpp.in" "namespace bb {}\n")
 configure_file("${PROJECT_BINARY_DIR}/pch/empty.cpp.in" "${PROJECT_BINARY_DIR}/pch/empty.cpp" COPYONLY)
@@ -14,7 +14,7 @@ function(bb_precompile name)
 endfunction()
 bb_precompile(bb_pch)
 
-# COLD rooms: text in, text out, once a run, a third of the program's code. Release compiles them for size, which takes g++ two thirds of
+# COLD modules: text in, text out, once a run, a third of the program's code. Release compiles them for size, which takes g++ two thirds of
 # the time and gives the same bits (core/base/record/CMakeLists.txt names it among the flags).
 bb_precompile(bb_cold_pch <fmt/format.h> <fmt/ranges.h> <nlohmann/json.hpp> <filesystem> <fstream> <limits> <map> <numeric> <set>
   <sstream> <variant>)
@@ -35,8 +35,8 @@ if(BB_TESTS)
   target_compile_options(bb_test_pch PUBLIC $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
 endif()
 
-# bb_declare_room(NAME FOLDER [DEPS ...]): the files below FOLDER include no room but those that DEPS names as bb_<room>.
-function(bb_declare_room name folder)
+# bb_declare_module(NAME FOLDER [DEPS ...]): the files below FOLDER include no module but those that DEPS names as bb_<module>.
+function(bb_declare_module name folder)
   cmake_parse_arguments(ARG "" "" "DEPS" ${ARGN})
   set(needs "")
   foreach(dep IN LISTS ARG_DEPS)
@@ -48,11 +48,11 @@ function(bb_declare_room name folder)
     set(needs "-")
   endif()
   list(JOIN needs "," needs)
-  set_property(GLOBAL APPEND PROPERTY BB_ROOMS "${name}|${folder}|${needs}")
+  set_property(GLOBAL APPEND PROPERTY BB_MODULES "${name}|${folder}|${needs}")
 endfunction()
 
-# bb_linked_rooms(NAME OUT): the rooms whose libraries that of room NAME is linked with, DEPS or not, separated by commas; "-" for none.
-function(bb_linked_rooms name out)
+# bb_linked_modules(NAME OUT): the modules whose libraries that of module NAME is linked with, DEPS or not, separated by commas; "-" for none.
+function(bb_linked_modules name out)
   set(linked "")
   if(TARGET bb_${name})
     foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES)
@@ -70,14 +70,14 @@ function(bb_linked_rooms name out)
   set(${out} "${linked}" PARENT_SCOPE)
 endfunction()
 
-# bb_check_rooms(): a build refuses an #include of a room that is not named (RoomCheck.cmake). Called last.
-function(bb_check_rooms)
-  get_property(rooms GLOBAL PROPERTY BB_ROOMS)
+# bb_check_modules(): a build refuses an #include of a module that is not named (RoomCheck.cmake). Called last.
+function(bb_check_modules)
+  get_property(modules GLOBAL PROPERTY BB_MODULES)
   set(text "")
-  foreach(room IN LISTS rooms)
-    string(REGEX REPLACE "[|].*" "" name "${room}")
-    bb_linked_rooms("${name}" linked)
-    string(APPEND text "${room}|${linked}\n")
+  foreach(module IN LISTS modules)
+    string(REGEX REPLACE "[|].*" "" name "${module}")
+    bb_linked_modules("${name}" linked)
+    string(APPEND text "${module}|${linked}\n")
   endforeach()
   file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/rooms.txt" CONTENT "${text}" @ONLY)
   set(files "")
@@ -87,27 +87,27 @@ function(bb_check_rooms)
       "${PROJECT_SOURCE_DIR}/${top}/*.inc")
     list(APPEND files ${found})
   endforeach()
-  set(stamp "${PROJECT_BINARY_DIR}/rooms.stamp")
+  set(stamp "${PROJECT_BINARY_DIR}/modules.stamp")
   add_custom_command(OUTPUT "${stamp}"
     COMMAND "${CMAKE_COMMAND}" "-DROOMS=${PROJECT_BINARY_DIR}/rooms.txt" "-DSOURCE_DIR=${PROJECT_SOURCE_DIR}"
       "-DSTAMP=${stamp}" -P "${PROJECT_SOURCE_DIR}/cmake/RoomCheck.cmake"
     DEPENDS ${files} "${PROJECT_BINARY_DIR}/rooms.txt" "${PROJECT_SOURCE_DIR}/cmake/RoomCheck.cmake"
-    COMMENT "Checking that rooms include only rooms that they name" VERBATIM)
-  add_custom_target(bb_rooms ALL DEPENDS "${stamp}")
-  get_property(targets GLOBAL PROPERTY BB_ROOM_TARGETS)
+    COMMENT "Checking that modules include only modules that they name" VERBATIM)
+  add_custom_target(bb_modules ALL DEPENDS "${stamp}")
+  get_property(targets GLOBAL PROPERTY BB_MODULE_TARGETS)
   foreach(target IN LISTS targets)
-    add_dependencies(${target} bb_rooms)
+    add_dependencies(${target} bb_modules)
   endforeach()
 endfunction()
 
-# bb_room(NAME [COLD] [FOLDER path] [SOURCES ...] [DEPS ...]): library bb_NAME of the files in FOLDER (this one by default);
-# without sources an interface library. DEPS names every room that these files include.
-function(bb_room name)
+# bb_module(NAME [COLD] [FOLDER path] [SOURCES ...] [DEPS ...]): library bb_NAME of the files in FOLDER (this one by default);
+# without sources an interface library. DEPS names every module that these files include.
+function(bb_module name)
   cmake_parse_arguments(ARG "COLD" "FOLDER" "SOURCES;DEPS" ${ARGN})
   if(NOT ARG_FOLDER)
     file(RELATIVE_PATH ARG_FOLDER "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
   endif()
-  bb_declare_room(${name} "${ARG_FOLDER}" DEPS ${ARG_DEPS})
+  bb_declare_module(${name} "${ARG_FOLDER}" DEPS ${ARG_DEPS})
   if(ARG_SOURCES)
     add_library(bb_${name} STATIC ${ARG_SOURCES})
     target_link_libraries(bb_${name} PUBLIC bb_pch ${ARG_DEPS})
@@ -116,14 +116,14 @@ function(bb_room name)
     else()
       target_precompile_headers(bb_${name} REUSE_FROM bb_pch)
     endif()
-    set_property(GLOBAL APPEND PROPERTY BB_ROOM_TARGETS bb_${name})
+    set_property(GLOBAL APPEND PROPERTY BB_MODULE_TARGETS bb_${name})
   else()
     add_library(bb_${name} INTERFACE)
     target_link_libraries(bb_${name} INTERFACE bb_settings Eigen3::Eigen ${ARG_DEPS})
   endif()
 endfunction()
 
-# Where CMAKE_UNITY_BUILD is on, the tests of a room are compiled many files at once: each has a namespace of its own. That a local of
+# Where CMAKE_UNITY_BUILD is on, the tests of a module are compiled many files at once: each has a namespace of its own. That a local of
 # one file hides a helper of another says nothing; where files are read one by one (preset dev) it is judged. So are array bounds: joined,
 # g++ 12 takes the padding of Eigen's three integers for foreign memory.
 add_library(bb_joined INTERFACE)

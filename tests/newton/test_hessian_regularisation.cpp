@@ -1,12 +1,12 @@
 // How far from the exact Hessian an attempt is, and what it makes of the elements of a family.
-#include "core/newton/hessian_level.hpp"
+#include "core/newton/hessian_regularisation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-namespace bb::hessian_level_test {
+namespace bb::hessian_regularisation_test {
 namespace {
 
 constexpr double residual = 8;  // N
@@ -23,24 +23,24 @@ struct Springs {
     std::fill(family.local.hess.begin() + 27, family.local.hess.end(), 2);
     family.clamped.hess.assign(54, 10);
   }
-  double entry(StepHessian choice, const HessianLevel& level, std::size_t element) {
+  double entry(StepHessian choice, const HessianRegularisation& level, std::size_t element) {
     const LocalHessians hess = hessian_at(family, choice, level, force, buffer);
     const std::size_t i = 27 * element + 5;
     return hess.to.empty() ? hess.from[i] : std::lerp(hess.from[i], hess.to[i], hess.t);
   }
 };
 
-TEST(HessianLevel, of_clamped_and_absolute_terms_never_changes) {
+TEST(HessianRegularisation, of_clamped_and_absolute_terms_never_changes) {
   for (const StepHessian choice : {StepHessian::clamped, StepHessian::absolute}) {
-    const HessianLevel level({choice, choice});
+    const HessianRegularisation level({choice, choice});
     EXPECT_TRUE(level.exact() && level.last());
     EXPECT_EQ(level.all_clamped(), choice == StepHessian::clamped);
     EXPECT_EQ(Springs().entry(choice, level, 1), 2);
   }
 }
 
-TEST(HessianLevel, blend_goes_to_the_clamped_matrix_in_four_attempts_and_back_in_as_many) {
-  HessianLevel level({StepHessian::clamped, StepHessian::blend});
+TEST(HessianRegularisation, blend_goes_to_the_clamped_matrix_in_four_attempts_and_back_in_as_many) {
+  HessianRegularisation level({StepHessian::clamped, StepHessian::blend});
   Springs springs;
   EXPECT_EQ(springs.entry(StepHessian::blend, level, 0), 1);
   for (const double t : {0.125, 0.25, 0.5, 1.0}) {
@@ -58,8 +58,8 @@ TEST(HessianLevel, blend_goes_to_the_clamped_matrix_in_four_attempts_and_back_in
   EXPECT_TRUE(level.exact());
 }
 
-TEST(HessianLevel, exact_or_clamped_has_two_levels) {
-  HessianLevel level({StepHessian::exact_or_clamped});
+TEST(HessianRegularisation, exact_or_clamped_has_two_levels) {
+  HessianRegularisation level({StepHessian::exact_or_clamped});
   Springs springs;
   EXPECT_EQ(springs.entry(StepHessian::exact_or_clamped, level, 0), 1);
   level.raise(residual);
@@ -69,8 +69,8 @@ TEST(HessianLevel, exact_or_clamped_has_two_levels) {
   EXPECT_TRUE(level.exact());
 }
 
-TEST(HessianLevel, progressive_clamps_where_the_force_is_large_first) {
-  HessianLevel level({StepHessian::progressive});
+TEST(HessianRegularisation, progressive_clamps_where_the_force_is_large_first) {
+  HessianRegularisation level({StepHessian::progressive});
   Springs springs;
   EXPECT_EQ(springs.entry(StepHessian::progressive, level, 1), 2);
   level.raise(residual);
@@ -86,8 +86,8 @@ TEST(HessianLevel, progressive_clamps_where_the_force_is_large_first) {
   EXPECT_TRUE(level.exact());
 }
 
-TEST(HessianLevel, a_mixture_ends_when_all_are_clamped_and_begins_anew_with_a_step) {
-  HessianLevel level({StepHessian::progressive, StepHessian::blend});
+TEST(HessianRegularisation, a_mixture_ends_when_all_are_clamped_and_begins_anew_with_a_step) {
+  HessianRegularisation level({StepHessian::progressive, StepHessian::blend});
   for (int i = 0; i < 4; ++i) level.raise(residual);
   EXPECT_EQ(level.t(), 1);
   EXPECT_FALSE(level.last());  // some elements of progressive are exact
@@ -98,4 +98,4 @@ TEST(HessianLevel, a_mixture_ends_when_all_are_clamped_and_begins_anew_with_a_st
 }
 
 }  // namespace
-}  // namespace bb::hessian_level_test
+}  // namespace bb::hessian_regularisation_test

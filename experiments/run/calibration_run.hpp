@@ -1,5 +1,5 @@
-// The pilot of matching: the scene once with the log barrier. Its states say which contacts and limited
-// elements carry loads (pilot_demand.hpp), from which a matching rule makes stiffness (calibration.hpp).
+// The calibration run of matching: the scene once with the log barrier. Its states report which contacts and limited
+// elements carry loads (calibration_demand.hpp), from which a matching rule makes stiffness (calibration.hpp).
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace bb {
 
-/// Loads of the weight alone: the pilot starts from them, and they are used where the pilot found nothing.
+/// Loads of the weight alone: the calibration run starts from them, and they are used where the calibration run found nothing.
 struct StaticLoads {
   double contact = 0;  // N per free vertex
   double limit = 0;    // N/m, weight over the side of a square of the limited area; 0 without a limit
@@ -21,9 +21,9 @@ struct StaticLoads {
       0;  // Pa, weight over the side of a cube of the limited volume; 0 without a limit of solids
 };
 
-/// What the pilot leaves. Memory: 24 bytes a vertex and step, what terms remember a step (rest shapes that creep), 16 a
+/// What the calibration run leaves. Memory: 24 bytes a vertex and step, what terms remember a step (rest shapes that creep), 16 a
 /// vertex and a limited element.
-struct Pilot {
+struct CalibrationRun {
   RunConfig config;       // its own
   Calibration stiffness;  // kappa and k_s of its log barriers
   StaticLoads rest;
@@ -39,30 +39,30 @@ struct Pilot {
   std::size_t bytes() const;
 };
 
-/// The barrier of the pilot, to which the rules compare others.
+/// The barrier of the calibration run, to which the rules compare others.
 BarrierFunction log_barrier();
 
-/// Pilots by config id, so that the formulations of a sweep share one. Not thread-safe.
-class PilotCache {
+/// Calibration runs by config id, so that the formulations of a sweep share one. Not thread-safe.
+class CalibrationRunCache {
  public:
-  /// The states of all pilots that are kept take at most so many bytes; the last one is kept
+  /// The states of all calibration runs that are kept take at most so many bytes; the last one is kept
   /// whatever it takes.
-  explicit PilotCache(std::size_t bytes) : bytes_(bytes) {}
+  explicit CalibrationRunCache(std::size_t bytes) : bytes_(bytes) {}
   /// Null when it is not known, or not any more.
-  std::shared_ptr<const Pilot> find(const std::string& config_id);
+  std::shared_ptr<const CalibrationRun> find(const std::string& config_id);
   /// Keeps it and drops those that were not asked for longest.
-  std::shared_ptr<const Pilot> keep(Pilot pilot);
+  std::shared_ptr<const CalibrationRun> keep(CalibrationRun calibration_run);
 
  private:
   std::size_t bytes_;
-  std::vector<std::shared_ptr<const Pilot>> known_;  // asked for last: at the end
+  std::vector<std::shared_ptr<const CalibrationRun>> known_;  // asked for last: at the end
 };
 
-/// Runs the pilot of this config, or returns the one that is known: 256 MiB of them are kept.
-/// The limits are looked at between two of its steps; a pilot that they end is not kept.
+/// Runs the calibration run of this config, or returns the one that is known: 256 MiB of them are kept.
+/// The limits are looked at between two of its steps; a calibration run that they end is not kept.
 /// Errors: ConfigError when the scene has no weight to start from; Interrupted; TimeOver.
-std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& scene,
-                                       const RunOptions& options);
+std::shared_ptr<const CalibrationRun> run_calibration(const RunConfig& config, const Scene& scene,
+                                                      const RunOptions& options);
 
 /// kappa (N/m) from which a policy with one global kappa starts in the run of this very config, unscaled:
 /// the run is followed to its first contact, up to which the scale cannot change it. Nothing when it meets

@@ -1,4 +1,4 @@
-// What makes room for gaps that are curved along a motion: add_detour() of core/contact/contact_terms.hpp row by row.
+// The curvature correction for gaps that are curved along a motion: add_curvature_correction() of core/contact/contact_terms.hpp row by row.
 #pragma once
 
 #include "core/contact/executor/term_kernels.hpp"
@@ -9,7 +9,7 @@ namespace bb::exec {
 
 /// Puts stiffness times what the gap of the row misses in the place of force, and 0 in those of energy and stiffness; all three
 /// are 0 in mollified rows. So gathering them is the force. Keys: smallest_key() of HoldTimes.
-struct DetourRows {
+struct CurvatureCorrectionRows {
   RowView rows;
   SurfaceView surface;
   const double *x, *dx;  // [3 n_vertices]

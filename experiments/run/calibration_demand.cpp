@@ -1,4 +1,4 @@
-#include "experiments/run/pilot_demand.hpp"
+#include "experiments/run/calibration_demand.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
 #include "core/terms/strain_limit.hpp"
-#include "experiments/run/pilot_replay.hpp"
+#include "experiments/run/calibration_replay.hpp"
 
 namespace bb {
 namespace {
@@ -46,14 +46,15 @@ bool compare(double matched, double own, double load, double width, double answe
 }
 
 [[noreturn]] void refuse(double own, const char* what, int step, const std::string& where) {
-  throw ConfigError(
-      "matching",
-      fmt::format("{} = {} at {}, which carries a load in step {} of the pilot", what, own, where, step),
-      "a stiffness > 0 there, or matching rule as_given");
+  throw ConfigError("matching",
+                    fmt::format("{} = {} at {}, which carries a load in step {} of the calibration run", what,
+                                own, where, step),
+                    "a stiffness > 0 there, or matching rule as_given");
 }
 
 /// kappa of this row by the policy, the smaller of its values at d_hat and at u d_hat.
-double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, double c, PilotReplay& replay) {
+double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, double c,
+                 CalibrationReplay& replay) {
   static const BlockSystem::Values no_hessian;
   const bool with_hessian = policy.needs_hessian();
   PolicyColumns columns = replay.contact().stiffness().columns(replay.rows(), row, replay.blocks(),
@@ -66,9 +67,9 @@ double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, do
   return std::min(kappa[0], kappa[1]);
 }
 
-void look_up(const RunLimits& limits, const Pilot& pilot, int step) {
-  limits.look_up("pilot",
-                 fmt::format("while the loads of its step {} of {} were compared", step, pilot.steps()));
+void look_up(const RunLimits& limits, const CalibrationRun& calibration_run, int step) {
+  limits.look_up("calibration run", fmt::format("while the loads of its step {} of {} were compared", step,
+                                                calibration_run.steps()));
 }
 
 std::string name_element(const Scene& scene, std::size_t e) {
@@ -85,7 +86,7 @@ std::string name_element(const Scene& scene, std::size_t e) {
 /// kappa_e (J) of all elements by the policy of the limit, with w from the start of the step, at these pseudo-gaps.
 std::vector<double> own_limit_kappa(const StiffnessPolicy& policy, const Scene& scene, LimitFamily& limit,
                                     std::span<const double> gaps, int step, double dt,
-                                    const PilotReplay& replay) {
+                                    const CalibrationReplay& replay) {
   ElasticMatrix elastic;
   std::vector<double> gathered;
   if (policy.needs_hessian()) elastic = gather_elastic(limit, replay.blocks(), replay.elastic(), gathered);
@@ -104,14 +105,15 @@ std::vector<double> softest_gaps(const StiffnessPolicy& policy, const StrainLimi
 
 }  // namespace
 
-Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                      const StiffnessPolicy* own, double u, const RunLimits& limits) {
+Demand contact_demand(const CalibrationRun& calibration_run, const Scene& scene,
+                      const MatchedStiffness& matched, const StiffnessPolicy* own, double u,
+                      const RunLimits& limits) {
   const BarrierFunction log = log_barrier();
-  const double dt = pilot.config.time.dt;
-  PilotReplay replay(pilot, scene);
+  const double dt = calibration_run.config.time.dt;
+  CalibrationReplay replay(calibration_run, scene);
   Demand out;
-  for (int step = 0; step < pilot.steps(); ++step) {
-    look_up(limits, pilot, step);
+  for (int step = 0; step < calibration_run.steps(); ++step) {
+    look_up(limits, calibration_run, step);
     if (own) {
       replay.find_rows(step, own->refresh());
     } else {
@@ -119,10 +121,10 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
     }
     const ContactTable& rows = replay.rows();
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const double load = -*pilot.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
+      const double load = -*calibration_run.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
       if (!(load > 0)) continue;
       const auto where = [&] { return pair_name(scene, rows.key(r), rows.kind[r]); };
-      const double answer = pilot.answers.of_contact(rows, r);
+      const double answer = calibration_run.answers.of_contact(rows, r);
       if (!is_load(answer, load, step, where, out)) continue;
       const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, dt, replay.c(step), replay) : 1;
       const double wanted = matched(load, rows.d_hat[r]);
@@ -133,17 +135,17 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
   return out;
 }
 
-Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                    const StiffnessPolicy* own, const RunLimits& limits) {
+Demand limit_demand(const CalibrationRun& calibration_run, const Scene& scene,
+                    const MatchedStiffness& matched, const StiffnessPolicy* own, const RunLimits& limits) {
   const BarrierFunction log = log_barrier();
   const StrainLimitPart& part = scene.limit;
   exec::HostExecutor executor;
   const auto limit = limited_triangles({executor}, part, scene.rest, scene.planar);
-  const double dt = pilot.config.time.dt;
-  PilotReplay replay(pilot, scene);
+  const double dt = calibration_run.config.time.dt;
+  CalibrationReplay replay(calibration_run, scene);
   Demand out;
-  for (int step = 0; step < pilot.steps(); ++step) {
-    look_up(limits, pilot, step);
+  for (int step = 0; step < calibration_run.steps(); ++step) {
+    look_up(limits, calibration_run, step);
     std::vector<double> kappa;
     if (own) {
       replay.find_rows(step, own->refresh());
@@ -155,10 +157,10 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
       const double y = at_end[e], width = part.width[e];
       if (!(y < width)) continue;
       const double area = limit->measure_of(e);
-      const double load = -(*pilot.stiffness.k_s * area) * log.eval(y, width).db / area;
+      const double load = -(*calibration_run.stiffness.k_s * area) * log.eval(y, width).db / area;
       if (!(load > 0)) continue;
       const auto where = [&] { return name_element(scene, e); };
-      const double answer = pilot.answers.of_limit(e);
+      const double answer = calibration_run.answers.of_limit(e);
       if (!is_load(answer, load, step, where, out)) continue;
       double k_s = 1;
       if (own) {

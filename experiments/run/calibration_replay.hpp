@@ -1,4 +1,4 @@
-// The states of a pilot once more, in a system that is never stepped: rows, elastic matrix and Hessians at the ends of
+// The states of a calibration run once more, in a system that is never stepped: rows, elastic matrix and Hessians at the ends of
 // its steps.
 #pragma once
 
@@ -8,18 +8,18 @@
 #include "core/model/scene/held_scene.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/terms/contact.hpp"
-#include "experiments/run/pilot.hpp"
+#include "experiments/run/calibration_run.hpp"
 
 namespace bb {
 
-class PilotReplay {
+class CalibrationReplay {
  public:
   /// Both must outlive it.
-  PilotReplay(const Pilot& pilot, const Scene& scene)
-      : pilot_(pilot),
-        method_(make_method(pilot.config, pilot.stiffness)),
+  CalibrationReplay(const CalibrationRun& calibration_run, const Scene& scene)
+      : calibration_run_(calibration_run),
+        method_(make_method(calibration_run.config, calibration_run.stiffness)),
         scene_(scene),
-        held_(scene, pilot.config.time.dt / 2),
+        held_(scene, calibration_run.config.time.dt / 2),
         system_(std::make_unique<NewtonSystem>(held_.now(), method_)) {}
 
   /// The rows of the end of this step.
@@ -29,9 +29,9 @@ class PilotReplay {
   /// All terms at the end of this step. Cost: an assembly.
   Diagnosis& assembled(int step);
 
-  const Positions& start(int step) const { return pilot_.x[static_cast<std::size_t>(step)]; }
-  const Positions& end(int step) const { return pilot_.x[static_cast<std::size_t>(step) + 1]; }
-  double c(int step) const { return pilot_.c[static_cast<std::size_t>(step)]; }
+  const Positions& start(int step) const { return calibration_run_.x[static_cast<std::size_t>(step)]; }
+  const Positions& end(int step) const { return calibration_run_.x[static_cast<std::size_t>(step) + 1]; }
+  double c(int step) const { return calibration_run_.c[static_cast<std::size_t>(step)]; }
   const ContactTable& rows() const { return contact_state(diagnosis().terms()).rows; }
   /// Requires rows.
   ContactTerm& contact() const { return *diagnosis().terms().find<ContactTerm>(); }
@@ -44,7 +44,7 @@ class PilotReplay {
   void hold_pins(int step);
   Diagnosis& diagnosis() const { return system_->diagnosis(); }
 
-  const Pilot& pilot_;
+  const CalibrationRun& calibration_run_;
   Method method_;
   const Scene& scene_;
   HeldScene held_;  // of it, with the pins of the step

@@ -1,6 +1,6 @@
-// What is asked of a pilot's contacts, on pilots that are written down: ties, sides of every threshold, first and last
+// What is required of a calibration run's contacts, on calibration runs that are written down: ties, sides of every threshold, first and last
 // steps.
-#include "experiments/run/pilot_demand.hpp"
+#include "experiments/run/calibration_demand.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 #include "core/math/error.hpp"
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb::pilot_demand_test {
+namespace bb::calibration_demand_test {
 namespace {
 
 using namespace test;
@@ -27,19 +27,19 @@ using Heights = std::vector<double>;  // of the vertices, in units of d_hat; 9 n
 struct Written {
   RunConfig config = parsed(config_text.c_str(), {});
   Scene scene = build_scene(config);
-  Pilot pilot;
+  CalibrationRun calibration_run;
 
   explicit Written(const std::vector<Heights>& steps) {
-    pilot.config = config;
-    pilot.stiffness.kappa = 2;
-    pilot.x.push_back(scene.x0);
+    calibration_run.config = config;
+    calibration_run.stiffness.kappa = 2;
+    calibration_run.x.push_back(scene.x0);
     for (const Heights& heights : steps) {
       Positions x = scene.x0;
       for (int v = 0; v < 9; ++v) x(2, v) = heights.at(static_cast<std::size_t>(v)) * d_hat;
-      pilot.x.push_back(x);
-      pilot.c.push_back(1);
+      calibration_run.x.push_back(x);
+      calibration_run.c.push_back(1);
     }
-    pilot.answers = AnswerSums(9, 0);
+    calibration_run.answers = AnswerSums(9, 0);
   }
   /// A force of the vertex that answers so.
   void answer(int vertex, double value, double force = 1) {
@@ -47,10 +47,10 @@ struct Written {
     row.resize(1);
     row.vertex = {vertex, -1, -1, -1};
     row.weight = {1, 0, 0, 0};
-    pilot.answers.add_contact(row, 0, force, value);
+    calibration_run.answers.add_contact(row, 0, force, value);
   }
   Demand ask(const MatchedStiffness& matched, const StiffnessPolicy* own = nullptr) const {
-    return contact_demand(pilot, scene, matched, own, 0.1);
+    return contact_demand(calibration_run, scene, matched, own, 0.1);
   }
 };
 
@@ -66,22 +66,23 @@ Heights only(std::initializer_list<std::pair<int, double>> set) {
   return out;
 }
 
-TEST(PilotDemand, IsNotAskedAnyMoreWhenTimeIsOver) {
+TEST(CalibrationDemand, IsNotAskedAnyMoreWhenTimeIsOver) {
   const Written written({only({{2, 0.6}}), only({{1, 0.3}})});
   const RunLimits over{nullptr, now_s(), 3}, in_time{nullptr, now_s() + 1000, 1000};
-  EXPECT_EQ(contact_demand(written.pilot, written.scene, of_load, nullptr, 0.1, in_time).considered, 2);
+  EXPECT_EQ(contact_demand(written.calibration_run, written.scene, of_load, nullptr, 0.1, in_time).considered,
+            2);
   try {
-    contact_demand(written.pilot, written.scene, of_load, nullptr, 0.1, over);
+    contact_demand(written.calibration_run, written.scene, of_load, nullptr, 0.1, over);
     ADD_FAILURE() << "the loads are compared to the end";
   } catch (const TimeOver& time) {
-    EXPECT_EQ(
-        time.detail,
-        "pilot: the time limit of 3 s was reached while the loads of its step 0 of 2 were compared; there "
-        "was no first step");
+    EXPECT_EQ(time.detail,
+              "calibration run: the time limit of 3 s was reached while the loads of its step 0 of 2 were "
+              "compared; there "
+              "was no first step");
   }
 }
 
-TEST(PilotDemand, AmongEqualDemandsTheLargerLoadIsNamedAndOfEqualLoadsTheFirst) {
+TEST(CalibrationDemand, AmongEqualDemandsTheLargerLoadIsNamedAndOfEqualLoadsTheFirst) {
   const Written written({only({{2, 0.6}, {4, 0.6}}), only({{1, 0.3}, {3, 0.7}}), only({{0, 0.3}, {5, 0.3}})});
   for (const MatchedStiffness& matched : {constant, of_load}) {
     const Demand demand = written.ask(matched);
@@ -94,7 +95,7 @@ TEST(PilotDemand, AmongEqualDemandsTheLargerLoadIsNamedAndOfEqualLoadsTheFirst) 
   }
 }
 
-TEST(PilotDemand, TheLargestDemandIsFoundInTheFirstAndInTheLastStep) {
+TEST(CalibrationDemand, TheLargestDemandIsFoundInTheFirstAndInTheLastStep) {
   for (const int step : {0, 1, 2}) {
     std::vector<Heights> steps(3, only({{4, 0.8}}));
     steps.at(static_cast<std::size_t>(step)) = only({{8, 0.2}});
@@ -104,14 +105,14 @@ TEST(PilotDemand, TheLargestDemandIsFoundInTheFirstAndInTheLastStep) {
   }
 }
 
-TEST(PilotDemand, AContactAtDHatHasNoLoadAndOneJustBelowItHas) {
+TEST(CalibrationDemand, AContactAtDHatHasNoLoadAndOneJustBelowItHas) {
   EXPECT_EQ(Written({only({})}).ask(of_load).considered, 0);
   EXPECT_EQ(Written({only({{3, 0.999}})}).ask(of_load).considered, 1);
   EXPECT_EQ(Written(std::vector<Heights>()).ask(of_load).considered, 0);
 }
 
 /// The force of vertex 1 is the largest, that of 2 the next.
-TEST(PilotDemand, AForceIsALoadUpToAnAnswerOfOneHalf) {
+TEST(CalibrationDemand, AForceIsALoadUpToAnAnswerOfOneHalf) {
   for (const double answer : {0.5, 0.501}) {
     Written written({only({{1, 0.2}, {2, 0.3}, {3, 0.9}}), only({{7, 0.25}, {3, 0.9}})});
     written.answer(1, answer);
@@ -132,7 +133,7 @@ TEST(PilotDemand, AForceIsALoadUpToAnAnswerOfOneHalf) {
 }
 
 /// The answers of a vertex count with its forces: many small ones that swing do not hide a large one, nor make one.
-TEST(PilotDemand, TheAnswerOfAVertexIsThatOfTheSumOfItsForces) {
+TEST(CalibrationDemand, TheAnswerOfAVertexIsThatOfTheSumOfItsForces) {
   for (const double force : {0.5, 1.01}) {
     Written written({only({{1, 0.2}})});
     written.answer(1, 1, force);
@@ -164,14 +165,14 @@ class Soft final : public StiffnessPolicy {
   double at_d_hat_, below_;
 };
 
-TEST(PilotDemand, APolicyIsAskedAtDHatAndBelowAndTheSofterCounts) {
+TEST(CalibrationDemand, APolicyIsAskedAtDHatAndBelowAndTheSofterCounts) {
   const Written written({only({{1, 0.5}})});
   const Soft falling_off(4, 2), growing(2, 4);
   EXPECT_DOUBLE_EQ(written.ask(constant, &falling_off).largest, 0.5);
   EXPECT_DOUBLE_EQ(written.ask(constant, &growing).largest, 0.5);
 }
 
-TEST(PilotDemand, APolicyThatIsSofterThanABillionthGivesNoStiffness) {
+TEST(CalibrationDemand, APolicyThatIsSofterThanABillionthGivesNoStiffness) {
   const Written written({only({{1, 0.5}})});
   const Soft enough(1.001e-9, 1), none(0.999e-9, 1), zero(0, 0);
   EXPECT_NEAR(written.ask(constant, &enough).largest, 1e9 / 1.001, 1);
@@ -186,7 +187,7 @@ TEST(PilotDemand, APolicyThatIsSofterThanABillionthGivesNoStiffness) {
 }
 
 /// A contact that is left out is not asked for a stiffness of its own either.
-TEST(PilotDemand, APolicyIsNotAskedForAForceThatIsNoLoad) {
+TEST(CalibrationDemand, APolicyIsNotAskedForAForceThatIsNoLoad) {
   Written written({only({{1, 0.5}})});
   written.answer(1, 0.9);
   const Soft none(0, 0);
@@ -194,8 +195,8 @@ TEST(PilotDemand, APolicyIsNotAskedForAForceThatIsNoLoad) {
   EXPECT_EQ(written.ask(constant, &none).left_out, 1);
 }
 
-/// A config with retries is matched by the pilot without: it ends where a step fails.
-TEST(Pilot, DoesNotRetryAStepThatFails) {
+/// A config with retries is matched by the calibration run without: it ends where a step fails.
+TEST(CalibrationRun, DoesNotRetryAStepThatFails) {
   const std::string cubic = R"(/formulation={"name": "cubic", "d_hat_m": 0.01})";
   const std::string later = "/scene/bodies/1/transform/translate_m=[3, 0, 0.08]",
                     capped = "/step_solver/max_iterations=4";
@@ -208,11 +209,11 @@ TEST(Pilot, DoesNotRetryAStepThatFails) {
   EXPECT_EQ(*retried.calibration.kappa, *once.calibration.kappa);
 }
 
-TEST(Pilot, WhoseFirstStepFailsLeavesTheStaticWeight) {
+TEST(CalibrationRun, WhoseFirstStepFailsLeavesTheStaticWeight) {
   const Calibrated c = calibrated(
       two_masses, {R"(/formulation={"name": "cubic", "d_hat_m": 0.01})",
                    "/scene/bodies/0/transform/translate_m=[0, 0, 0.009]", "/step_solver/max_iterations=1"});
-  EXPECT_NE(c.record.pilot_note.find("the pilot stopped at step 0"), std::string::npos)
+  EXPECT_NE(c.record.pilot_note.find("the calibration run stopped at step 0"), std::string::npos)
       << c.record.pilot_note;
   EXPECT_EQ(c.record.contacts_considered, 0);
   EXPECT_EQ(c.record.load_source, "static_weight");
@@ -220,4 +221,4 @@ TEST(Pilot, WhoseFirstStepFailsLeavesTheStaticWeight) {
 }
 
 }  // namespace
-}  // namespace bb::pilot_demand_test
+}  // namespace bb::calibration_demand_test

@@ -1,5 +1,5 @@
-// How far the Newton matrix of an iterate is from the exact Hessian: raised while the matrix is not positive
-// definite, lowered again by the iterations that follow.
+// The regularised Hessian of an iterate: how far it is from the exact one. The regularisation grows while the matrix is not positive
+// definite and shrinks again in the iterations that follow.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@
 
 namespace bb {
 
-class HessianLevel {
+class HessianRegularisation {
  public:
   /// Of the terms with a choice.
-  explicit HessianLevel(const std::vector<StepHessian>& choices);
+  explicit HessianRegularisation(const std::vector<StepHessian>& choices);
 
   /// A step begins: exact.
   void reset();
@@ -24,12 +24,12 @@ class HessianLevel {
   void lower(double residual);
   /// No choice leads to another matrix than that of the last attempt: everything is clamped.
   bool last() const;
-  /// Nothing was raised.
+  /// The Hessian is the exact one.
   bool exact() const;
   /// Every term is clamped at this level, whatever its choice begins with.
   bool all_clamped() const;
 
-  /// blend: part of the way from the exact matrix to the clamped one, 0 to 1.
+  /// The blend factor t: part of the way from the exact matrix to the clamped one, 0 to 1.
   double t() const { return t_; }
   /// progressive: elements are clamped at vertices whose force is at least that, N; infinity: none.
   double threshold() const { return threshold_; }
@@ -43,9 +43,9 @@ class HessianLevel {
 
 /// The local Hessians of a family at a level; `buffer` is used where no stored column serves.
 /// force: [n_vertices] N, read by progressive. Requires family.clamped wherever the level is above exact.
-LocalHessians hessian_at(const TermFamily& family, StepHessian choice, const HessianLevel& level,
+LocalHessians hessian_at(const TermFamily& family, StepHessian choice, const HessianRegularisation& level,
                          std::span<const double> force, std::vector<double>& buffer);
 /// Whether hessian_at needs family.clamped.
-bool needs_clamped(StepHessian choice, const HessianLevel& level);
+bool needs_clamped(StepHessian choice, const HessianRegularisation& level);
 
 }  // namespace bb
