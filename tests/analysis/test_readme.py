@@ -318,6 +318,14 @@ def test_the_readme_fits_on_a_few_screens():
     assert all(f"(docs/guides/{path.name})" in "\n".join(lines) for path in (ROOT / "docs/guides").glob("*.md"))
 
 
+def test_the_answer_of_the_readme_is_a_table_a_figure_and_at_most_120_words():
+    _, _, rest = (ROOT / "README.md").read_text().partition("## The answer\n")
+    lines = rest.partition("\n## ")[0].splitlines()
+    assert sum(line.startswith("| ") for line in lines) == 1 + 4 and any(line.startswith("![") for line in lines)
+    words = " ".join(line for line in lines if not line.startswith(("|", "![", "<!--"))).split()
+    assert 60 < len(words) <= 120
+
+
 @pytest.fixture(scope="module")
 def kept_numbers() -> dict:
     """Of the repository: gathering its gap map takes most of the time of this file."""

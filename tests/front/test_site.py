@@ -60,7 +60,7 @@ def test_no_page_of_ours_loses_a_link():
 
 def test_the_site_is_built_without_a_warning():
     if not (site.ENVIRONMENT / "recipe").is_file():
-        pytest.skip("the packages of the site are not installed: ./bench site")
+        pytest.skip("the packages of the site are not installed: ./bench dev site")
     assert site.main([]) == 0 and (site.SITE / "docs/guides/index.html").is_file()
     text = (site.SITE / "docs/guides/index.html").read_text()
     assert re.findall(r'src="([^"]+)"', text) and [of for of in re.findall(r'(?:src|href)="(https?://[^"]+)"', text) if "squidfunk" not in of] == []

@@ -90,9 +90,9 @@ def prepare() -> int:
     return sum(name.endswith(".md") for name in names)
 
 
-@tells("site")
+@tells("dev site")
 def main(argv: list[str]) -> int:
-    parser = parser_of("site", __doc__, "./bench site")
+    parser = parser_of("dev site", __doc__)
     parser.parse_args(argv)
     python = environment()
     pages = prepare()

@@ -40,8 +40,8 @@ WHEN = {  # name -> one sentence: when it is the one to use
     ),
     PUBLISHED: "Use it when nobody can calibrate a stiffness and steps of 1 ms need not converge.",
     POTENTIAL: (
-        "Use it when nobody can calibrate a stiffness and every step has to converge: its matrices are the"
-        " worse conditioned ones."
+        "Use it when nobody can calibrate a stiffness and every step has to converge. It is a variant of this"
+        " project, and its raw matrices are worse conditioned."
     ),
     "fixed quadratic": "Use it like the cubic when contacts may rest farther apart.",
     "dynamic once a step": "Use it when nobody can calibrate a stiffness and loads change little in a step.",
