@@ -10,7 +10,7 @@ from barrierbench_analysis.tables import statistics
 
 SOURCE = Path(__file__).resolve().parents[2] / "analysis" / "src" / "barrierbench_analysis"
 # The module itself, and modules whose code is registered or belongs to the page of a folder of records.
-OWN = {"tables/statistics.py", "studies/kit/metrics.py", "pages/report/comparison.py", "pages/report/diff.py", "pages/stated/sources.py"}
+OWN = {"tables/statistics.py", "studies/kit/metrics.py", "pages/stated/sources.py"}
 
 
 def test_a_mean_of_two_scenes_has_the_interval_of_students_t_and_one_scene_has_none():

@@ -95,8 +95,11 @@ def test_rows_that_are_added_change_no_other_row(tmp_path):
 
 def test_a_kept_row_is_not_written_over(tmp_path):
     cell = written(tmp_path).cells[0]
-    with pytest.raises(ValueError, match="a row with this key is kept"):
-        store.added({cell.key: row(cell)}, [row(cell, newton=4.0)])
+    kept = {cell.key: row(cell)}
+    assert store.added(kept, [row(cell)]) == kept
+    with pytest.raises(UserError, match="found a row with another values than the kept one"):
+        store.added(kept, [row(cell, newton=4.0)])
+    assert store.added(kept, [row(cell, newton=4.0)], replace=True)[cell.key].values["newton"] == 4.0
 
 
 @pytest.mark.parametrize("bad", ["{", '{"key": "a"}', "[]"])

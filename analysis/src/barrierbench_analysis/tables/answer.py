@@ -5,13 +5,13 @@ runs. The one place of these names, sentences and numbers, for terminal, pages a
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from .series import is_published
+from .statistics import geometric
 from .words import listed, number
 
 LOG, CUBIC = "fixed log", "fixed cubic"
@@ -194,7 +194,7 @@ def _shown(values: tuple[float, ...], is_reference: bool) -> str:
 
 
 def _mean(factors: list[float]) -> tuple[float, ...]:
-    return (math.exp(sum(map(math.log, factors)) / len(factors)),) if factors else ()
+    return (geometric(factors),) if factors else ()
 
 
 def _line(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .estimate import student
+from .estimate import Cells, of_scenes, student
 from .numbers import interval
 
 
@@ -50,6 +50,14 @@ def ratio_over(logs: Sequence[float]) -> Ratio:
     mean = mean_over(logs)
     ends = (None if end is None else _exp(end) for end in (mean.lower, mean.upper))
     return Ratio(math.exp(mean.value), *ends, mean.scenes)
+
+
+def ratio_of_scenes(cells: Cells) -> Ratio | None:
+    """cells: logarithms of a ratio by scene, level and start; a scene is the mean over its levels of the mean
+    over starts. None without a scene.
+    """
+    scenes = of_scenes({name: levels for name, levels in cells.items() if levels})
+    return ratio_over([scene.value for scene in scenes]) if scenes else None
 
 
 def geometric(values: Iterable[float]) -> float:

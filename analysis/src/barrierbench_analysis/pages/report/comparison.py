@@ -5,9 +5,10 @@ have a factor.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
+
+from barrierbench_analysis.tables.statistics import geometric
 
 from .gather import Entry, Folder
 
@@ -113,7 +114,7 @@ def contenders(entries: list[Entry]) -> dict[tuple, str]:
 def _factor(quotients: list[float]) -> Factor | None:
     if not quotients:
         return None
-    mean = math.exp(sum(map(math.log, quotients)) / len(quotients))
+    mean = geometric(quotients)
     return Factor(len(quotients), mean, min(quotients), max(quotients))
 
 

@@ -15,6 +15,7 @@ from barrierbench_analysis.studies.gate.finding import RED, Finding, moved
 from barrierbench_analysis.studies.gate.measure import measure
 from barrierbench_analysis.studies.gate.metrics import TWO_SIDED, Metric
 from barrierbench_analysis.studies.gate.records import read_run
+from barrierbench_analysis.tables.statistics import geometric
 
 from .gather import Entry, Folder
 
@@ -139,7 +140,7 @@ def _change(name: str, having: list[Pair]) -> Change:
     metric = having[0].metrics[name]
     words = [moved(pair.values[name][1], pair.values[name][0], metric.unit).split(",")[0] for pair in having]
     factors = [(f, pair) for pair in having if (f := _factor(metric, *pair.values[name])) is not None]
-    mean = math.exp(sum(math.log(f) for f, _ in factors) / len(factors)) if factors else None
+    mean = geometric(f for f, _ in factors) if factors else None
     far = max(factors, key=lambda item: abs(math.log(item[0])), default=(None, None))
     red = sum(f.metric == name for pair in having for f in pair.red)
     kind = PHYSICS if metric.direction == TWO_SIDED and metric.gate_class == "III" else COST

@@ -15,11 +15,12 @@ from collections import defaultdict
 from dataclasses import dataclass
 
 from barrierbench_analysis.io.text_table import markdown
-from barrierbench_analysis.studies.kit.study.over_scenes import Number, over_scenes
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.answer import WHEN
 from barrierbench_analysis.tables.estimate import Cells, wilson
+from barrierbench_analysis.tables.outcomes import OK
+from barrierbench_analysis.tables.statistics import Ratio, ratio_of_scenes
 
 RATIOS = ("newton", "products", "seconds")
 HEAD = (
@@ -55,29 +56,29 @@ class Ends:
 def _ends(rows: list[Row]) -> Ends:
     ok: dict[str, list[bool]] = defaultdict(list)
     for row in rows:
-        ok[row.place["scene"]].append(row.outcome == "ok")
+        ok[row.place["scene"]].append(row.outcome == OK)
     whole = sum(map(all, ok.values()))
     return Ends(sum(map(sum, ok.values())), len(rows), whole, len(ok))
 
 
-def _gaps(rows: list[Row]) -> Number:
+def _gaps(rows: list[Row]) -> Ratio | None:
     least: dict[str, float] = {}
     for row in rows:
-        if row.outcome == "ok" and (gap := row.values["gap_min"]) is not None:
+        if row.outcome == OK and (gap := row.values["gap_min"]) is not None:
             least[row.place["scene"]] = min(gap, least.get(row.place["scene"], math.inf))
-    return over_scenes({scene: {"least": [math.log(gap)]} for scene, gap in least.items()})
+    return ratio_of_scenes({scene: {"least": [math.log(gap)]} for scene, gap in least.items()})
 
 
-def _ratio(rows: list[Row], reference: dict[tuple, Row], metric: str) -> Number:
+def _ratio(rows: list[Row], reference: dict[tuple, Row], metric: str) -> Ratio | None:
     cells: Cells = defaultdict(lambda: defaultdict(list))
     for row in rows:
         other = reference.get(_run(row))
-        if other is None or row.outcome != "ok" or other.outcome != "ok":
+        if other is None or row.outcome != OK or other.outcome != OK:
             continue
         over, under = row.values[metric], other.values[metric]
         if over and under:
             cells[row.place["scene"]][row.place["level"]].append(math.log(over / under))
-    return over_scenes(cells)
+    return ratio_of_scenes(cells)
 
 
 def compared(rows: list[Row], study: Study) -> dict[str, dict]:
@@ -92,14 +93,18 @@ def compared(rows: list[Row], study: Study) -> dict[str, dict]:
     }
 
 
+def _text(number: Ratio | None) -> str:
+    return "-" if number is None else str(number)
+
+
 def table(found: dict[str, dict], study: Study) -> list[str]:
     """Markdown: one row a formulation. Ratios of the reference are 1 by definition."""
     words, reference = study.data["about"]["names"], study.data["about"]["reference"]
 
     def cells(name: str) -> list[str]:
         numbers = found[name]
-        ratios = ["1" if name == reference else numbers[metric].text(".3g") for metric in RATIOS]
-        return [words[name], *numbers["ends"].cells, numbers["gap"].text(".2g"), *ratios]
+        ratios = ["1" if name == reference else _text(numbers[metric]) for metric in RATIOS]
+        return [words[name], *numbers["ends"].cells, _text(numbers["gap"]), *ratios]
 
     return markdown([*HEAD, "when to use"], [[*cells(name), WHEN[words[name]]] for name in found])
 

@@ -13,9 +13,10 @@ import math
 from collections import defaultdict
 
 from barrierbench_analysis.io.text_table import markdown
-from barrierbench_analysis.studies.kit.study.over_scenes import over_scenes
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.tables.outcomes import OK
+from barrierbench_analysis.tables.statistics import ratio_of_scenes
 
 FLOOR = 1e-12  # shares below it are rounding
 
@@ -25,7 +26,7 @@ def _share(row: Row) -> float | None:
     the end.
     """
     settled, end = row.values["settled_J"], row.values["end_J"]
-    return None if row.outcome != "ok" or not settled or end is None else max(abs(1 - end / settled), FLOOR)
+    return None if row.outcome != OK or not settled or end is None else max(abs(1 - end / settled), FLOOR)
 
 
 def rule(study: Study, rows: list[Row]) -> dict:
@@ -37,10 +38,11 @@ def rule(study: Study, rows: list[Row]) -> dict:
         of_scene: dict[str, list[float]] = defaultdict(list)
         for row in ended:
             of_scene[row.place["scene"]].append(_share(row))
-        found = over_scenes({scene: {"largest": [math.log(max(v))]} for scene, v in of_scene.items()})
+        found = ratio_of_scenes({scene: {"largest": [math.log(max(v))]} for scene, v in of_scene.items()})
         gaps = [row.values["gap_min"] for row in ended if row.values["gap_min"] is not None]
-        newton = sum(row.values["newton"] for row in ended) / len(ended) if ended else math.nan
-        least = f"{min(gaps):.2g}" if gaps else "-"
-        body.append([name, f"{len(ended)} of {len(mine)}", found.text(".2g"), least, f"{newton:.0f}"])
+        newton = [row.values["newton"] for row in ended]
+        numbers = ["-" if found is None else str(found), f"{min(gaps):.2g}" if gaps else "-"]
+        mean = f"{sum(newton) / len(newton):.0f}" if newton else "-"
+        body.append([name, f"{len(ended)} of {len(mine)}", *numbers, mean])
     head = ["formulation", "ends ok", "largest share of kinetic energy", "least gap / d_hat", "Newton (mean)"]
     return {"table": "\n".join(markdown(head, body)), "scenes": len({row.place["scene"] for row in rows})}

@@ -9,6 +9,8 @@ from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.studies.kit import runs
 from barrierbench_analysis.studies.kit.metrics import METRICS
+from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.tables.outcomes import outcome_of
 
 from . import store
 from .spec import Cell, Study
@@ -43,12 +45,11 @@ def row_of(study: Study, cell: Cell, record: dict, folder: Path) -> store.Row:
         name: _at(record, source) if source.startswith("/") else METRICS[source][3](record)
         for name, source in study.data["metrics"].items()
     }
-    status = record["status"]
     return store.Row(
         key=cell.key,
         place=cell.place,
-        outcome="not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"],
-        values={k: None if v is None else float(f"{v:.{DIGITS}g}") for k, v in values.items()},
+        outcome=outcome_of(record),
+        values=rounded(values, DIGITS),
         unknowns=record["scene"]["free_dofs"],
         seconds=round(seconds_of_run(record), 3),
         run=record["ids"]["run_id"][:ID_DIGITS],

@@ -12,6 +12,7 @@ from pathlib import Path
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.store import merged
 from barrierbench_analysis.io.whole_file import write_whole
 
 FOLDER = ROOT / "results" / "studies"
@@ -59,11 +60,13 @@ def read_rows(path: Path) -> dict[str, Row]:
     return found
 
 
-def added(kept: dict[str, Row], new: list[Row]) -> dict[str, Row]:
-    """The kept rows as they are, and behind them the new ones. Errors: ValueError for a key that is kept."""
-    if there := [row.key for row in new if row.key in kept]:
-        raise ValueError(f"{there[0]}: a row with this key is kept; no run of it was asked for")
-    return {**kept, **{row.key: row for row in new}}
+def added(kept: dict[str, Row], new: list[Row], replace: bool = False) -> dict[str, Row]:
+    """The kept rows as they are and in their places, and behind them the new ones. replace: a new row takes
+    the place of the kept one with its key. Errors: UserError for a key that is kept with other numbers,
+    without `replace`.
+    """
+    rows = merged([asdict(row) for row in kept.values()], [asdict(row) for row in new], ("key",), replace)
+    return {row["key"]: Row(**row) for row in rows}
 
 
 def write_rows(path: Path, rows: dict[str, Row]) -> None:

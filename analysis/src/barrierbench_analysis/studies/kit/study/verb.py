@@ -69,8 +69,7 @@ def make_rows(study: Study) -> int:
     lacking = missing(study, rows)
     for start in range(0, len(lacking), AT_ONCE):
         new = run_cells(study, lacking[start : start + AT_ONCE])
-        of_now = {row.key for row in new}
-        rows = store.added({key: row for key, row in rows.items() if key not in of_now}, new)
+        rows = store.added(rows, new, replace=True)  # of rows that lack a metric of today
         store.write_rows(file, rows)
         print(f"{study.name}: {len(lacking) - len(missing(study, rows))} of {len(lacking)} runs")
     return len(lacking)
