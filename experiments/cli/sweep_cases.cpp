@@ -15,6 +15,7 @@
 #include "experiments/cli/sweep_axes.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/config/document.hpp"
+#include "experiments/config/renamed_settings.hpp"
 
 namespace bb {
 namespace {
@@ -114,7 +115,8 @@ Axes checked_axes(json spec, const std::string& path) {
     const std::string where = fmt::format("{}#/axes/{}", path, i);
     axes.add(expand_axis(where, spec["axes"][i], violations));
     for (const std::string& pointer : pointers_of(axes.list.back())) {
-      if (const auto [earlier, is_new] = axis_of.emplace(pointer, i); !is_new) {
+      json value;  // of no matter: an earlier name and the present one are one setting
+      if (const auto [earlier, is_new] = axis_of.emplace(present_pointer(pointer, value), i); !is_new) {
         violations.push_back(
             {where, fmt::format("\"{}\", which axis {} sets too", shortened(pointer), earlier->second),
              "pointers that no other axis sets: the later one would undo the earlier one"});

@@ -11,6 +11,7 @@
 #include "core/base/parameters/registry.hpp"
 #include "experiments/config/complain.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/config/renamed_settings.hpp"
 #include "experiments/config/sections.hpp"
 
 namespace bb {
@@ -94,6 +95,23 @@ void check_settings(const PublishedMethod& method, const Sections& allowed, cons
 std::string folder() { return configs_folder() + "/methods"; }
 std::string friction_file(const std::string& method) { return folder() + "/friction/" + method + ".json"; }
 
+/// Settings that the file has under an earlier name, under the present one: the files of registered runs stay as they are.
+void use_present_pointers(PublishedMethod& method) {
+  json set = json::object();
+  Texts because;
+  for (const auto& [pointer, value] : method.set.items()) {
+    json now = value;
+    const std::string present = present_pointer(pointer, now);
+    set[present] = std::move(now);
+  }
+  for (const auto& [pointer, fact] : method.because) {
+    json none;
+    because[present_pointer(pointer, none)] = fact;
+  }
+  method.set = std::move(set);
+  method.because = std::move(because);
+}
+
 /// A file of the form of a method whose settings lie below `allowed`.
 PublishedMethod read_method(const std::string& path, const std::string& name, const Sections& allowed) {
   const std::string where = path + "#";
@@ -110,6 +128,7 @@ PublishedMethod read_method(const std::string& path, const std::string& name, co
     violations.push_back({where + "/name", file["name"].dump(), '"' + name + "\", as its file"});
   out.because = texts_of(file["because"], where + "/because", violations);
   out.differs = texts_of(file["differs"], where + "/differs", violations);
+  use_present_pointers(out);
   check_settings(out, allowed, where, violations);
   if (!violations.empty()) throw ConfigError(std::move(violations));
   return out;

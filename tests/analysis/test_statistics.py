@@ -43,6 +43,11 @@ def test_the_slope_of_a_line(points, expected):
     assert statistics.slope(points) == expected
 
 
+def test_an_interval_that_is_infinite_can_be_turned():
+    wide = statistics.ratio_over([0.0, 700.0])
+    assert (wide.lower, wide.upper) == (0, float("inf")) and (wide.turned().lower, wide.turned().upper) == (0, float("inf"))
+
+
 def means_of_logarithms(text: str) -> list[int]:
     """Lines where exp has a mean, a sum or fsum in its argument."""
     def name(call: ast.Call) -> str:

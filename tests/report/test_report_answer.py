@@ -82,7 +82,7 @@ def test_other_time_steps_and_other_references_are_said(known):
     reference = json.loads((known / "more/quadratic/run.json").read_text())["ids"]["run_id"]
     changed(known / "more/cubic", comparability={"reference_run": "quadratic", "reference_run_id": reference})
     found = answer.of(gathered(known))
-    assert found.left_out == 1 and found.notes()[-1] == "1 comparable run has another reference and is in no factor."
+    assert found.left_out == 1 and found.notes()[-1] == "1 comparable run has another reference, or one of the same formulation, and is in no factor."
 
 
 def test_products_are_of_the_solver_where_every_run_iterates(known):
@@ -180,6 +180,8 @@ def test_a_run_that_ends_ok_and_is_not_valid_can_be_expected_too(runs, monkeypat
     assert verdict.crossings(gathered(runs))[0].tone == verdict.BAD
     changed(runs / "cubic", audit={"crossings": 0})
     changed(runs / "quadratic", audit={"crossings": 2})
+    assert verdict.crossings(gathered(runs))[0].tone == verdict.BAD  # a stall was expected, no crossing
+    expecting(monkeypatch, log=expected.End(("not_valid",), "past its limit"), quadratic=expected.End(("newton_stall", "penetration"), "it lets surfaces through"))
     assert verdict.crossings(gathered(runs))[0].tone == verdict.EXPECTED
 
 

@@ -5,6 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from barrierbench_analysis.studies.kit.study import page
+from barrierbench_analysis.studies.kit.study.spec import read_study
 from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.studies.rules import answer, drift
 
@@ -12,9 +14,9 @@ NAMES = {"fixed_log": "fixed log", "fixed_cubic": "fixed cubic"}
 STUDY = SimpleNamespace(data={"about": {"reference": "fixed_log", "large": ["n4"], "names": NAMES}})
 
 
-def row(scene, level, formulation, outcome="ok", **values):
+def row(scene, level, formulation, outcome="ok", build="b", **values):
     place = {"scene": scene, "level": level, "formulation": formulation, "seed": "1"}
-    return Row(f"{place}", place, outcome, values, 12, 1.0, "r", {})
+    return Row(f"{place}", place, outcome, values, {}, 12, 1.0, "r", {"build": build, "machine": "m"})
 
 
 def answered(**cubic):
@@ -47,6 +49,12 @@ def test_a_run_that_failed_enters_the_share_and_no_ratio():
     assert nothing["newton"] is None and nothing["gap"] is None
 
 
+def test_seconds_of_two_builds_are_not_compared():
+    rows = [row(s, "nominal", f, build=f, gap_min=0.1, newton=10, products=1, seconds=1) for s in "ab" for f in NAMES]
+    found = answer.compared(rows, STUDY)["fixed_cubic"]
+    assert found["seconds"] is None and found["newton"].value == 1
+
+
 def test_the_table_has_the_reference_as_one_and_says_when_to_use_each():
     lines = answer.table(answered(), STUDY)
     assert lines[2].startswith("| fixed log | 4 of 4 | 2 of 2 [0.34, 1.00] | 0.1 [0.1, 0.1] | 1 | 1 | 1 | Use it")
@@ -58,6 +66,19 @@ def test_levels_of_another_size_are_a_table_of_their_own():
     made = answer.rule(STUDY, rows)
     assert made["runs_each"] == 2 and made["levels"] == "nominal" and made["scenes"] == 2
     assert "| fixed cubic | ok | 4 | nominal: 2, n4: 2 |" in made["ended"]
+
+
+def test_the_advice_of_the_kept_answer_is_what_its_rows_say():
+    """tables/answer.py: the log never fails and comes closest, the cubic fails alone by its capacity, the dynamic ones never."""
+    study = read_study("answer")
+    rows = [r for r in page.rows_of(study) if r.place["level"] not in study.data["about"]["large"]]
+    found = answer.compared(rows, study)
+    assert all(found[name]["ends"].ok == found[name]["ends"].runs > 0 for name in ("fixed_log", "published", "potential"))
+    assert found["fixed_log"]["gap"].upper < min(found[name]["gap"].lower for name in found if name != "fixed_log")
+    failed = {r.outcome for r in rows if r.place["formulation"] == "fixed_cubic"} - {"ok"}
+    assert failed == {"stall_overload"}
+    nominal = [r.outcome for r in rows if (r.place["formulation"], r.place["level"]) == ("fixed_cubic", "nominal")]
+    assert nominal and set(nominal) == {"ok"}
 
 
 def test_drift_is_the_largest_share_of_a_scene_whatever_its_sign():

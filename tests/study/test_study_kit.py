@@ -1,7 +1,9 @@
 """The study kit: cells of a spec, rows that are kept, the page of a rule."""
 
+import importlib
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -35,7 +37,7 @@ def written(folder, **changes) -> Study:
 
 def row(cell, outcome="ok", **values) -> store.Row:
     origin = {"date": "2026-01-01", "machine": "m", "commit": "c", "build": "b"}
-    return store.Row(cell.key, cell.place, outcome, {"newton": 3.0, "steps": 2.0, **values}, 12, 0.5, "r", origin)
+    return store.Row(cell.key, cell.place, outcome, {"newton": 3.0, "steps": 2.0, **values}, SPEC["metrics"], 12, 0.5, "r", origin)
 
 
 # --- cells
@@ -66,6 +68,7 @@ def test_the_key_of_a_cell_is_of_all_that_its_run_is_made_of(tmp_path):
         ({"axes": [{"names": ["a"], "cases": [{"label": k, "set": {}} for k in "ab"]}]}, "axes: found 'b 1'|axes: found 'a 1'"),
         ({"metrics": {"x": "newtons"}}, "metrics/x: found 'newtons'; a pointer, or one of"),
         ({"base": "none.json"}, "base: found 'none.json'"),
+        ({"name": "other"}, "name: found 'other'; 'small', as its file is called"),
         ({"page": "docs/x.md"}, "page: found 'docs/x.md'; results/NAME.md"),
         ({"seeds": [1, 1]}, "seeds: found"),
     ],
@@ -129,8 +132,22 @@ def test_a_row_without_a_metric_of_today_is_missing(tmp_path):
     rows = {cell.key: row(cell) for cell in study.cells}
     assert collect.missing(study, rows) == []
     first = study.cells[0].key
-    rows[first] = replace(rows[first], values={"newton": 3.0})
+    rows[first] = replace(rows[first], sources={"newton": "newton"})
     assert [cell.key for cell in collect.missing(study, rows)] == [first]
+
+
+def test_a_row_whose_metric_is_read_elsewhere_today_is_missing(tmp_path):
+    study = written(tmp_path)
+    rows = {cell.key: row(cell) for cell in study.cells}
+    now = written(tmp_path, metrics={"newton": "/summary/newton_iterations", "steps": "/summary/steps"})
+    assert collect.missing(study, rows) == [] and len(collect.missing(now, rows)) == len(study.cells)
+
+
+def test_a_row_has_the_labels_of_today(tmp_path):
+    study = written(tmp_path)
+    store.write_rows(store.file_of(study), {cell.key: row(cell) for cell in study.cells})
+    axes = json.loads(json.dumps(SPEC["axes"]).replace("strip b", "strip large"))
+    assert {r.place["level"] for r in page.rows_of(written(tmp_path, axes=axes))} == {"a", "large"}
 
 
 # --- pages
@@ -138,12 +155,14 @@ def test_a_row_without_a_metric_of_today_is_missing(tmp_path):
 
 def test_a_page_of_a_part_of_the_cells_is_refused(tmp_path, monkeypatch):
     study = written(tmp_path)
-    monkeypatch.setattr(store, "FOLDER", tmp_path)
-    store.write_rows(tmp_path / "small.jsonl", {cell.key: row(cell) for cell in study.cells[1:]})
+    store.write_rows(store.file_of(study), {cell.key: row(cell) for cell in study.cells[1:]})
     with pytest.raises(UserError, match="1 cell of 8 without a row, the first 'strip a one 1'"):
         page.rows_of(study)
     with pytest.raises(UserError, match="a study whose rule is .*/rules/small.py"):
-        page.rule_of(study)
+        page.module_of(study)
+    monkeypatch.setattr(importlib, "import_module", lambda _: SimpleNamespace(ABOUT={"names": dict}))
+    with pytest.raises(UserError, match="small.json#/about/names: found None; an object of the rule is needed"):
+        page.module_of(study)
 
 
 def test_a_template_that_asks_for_more_is_refused(tmp_path):
@@ -160,7 +179,7 @@ def test_the_page_of_a_study_is_that_of_its_kept_rows(name):
     study = read_study(name)
     rows = page.rows_of(study)
     assert len(rows) == len(study.cells) > 0
-    assert study.page.read_text() == page.text_of(study, rows, page.rule_of(study)(study, rows))
+    assert study.page.read_text() == page.text_of(study, rows, page.module_of(study).rule(study, rows))
 
 
 # --- the whole of it
@@ -168,16 +187,17 @@ def test_the_page_of_a_study_is_that_of_its_kept_rows(name):
 
 def test_a_study_runs_what_is_missing_and_nothing_twice(tmp_path, monkeypatch, program, capsys):
     study = written(tmp_path, seeds=[1], axes=[SPEC["axes"][0], {**SPEC["axes"][1]}])
-    monkeypatch.setattr(store, "FOLDER", tmp_path / "rows")
     monkeypatch.setattr(collect, "RUNS", tmp_path / "runs")
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
-    assert verb.planned(study) == ["small: 4 cells, 0 with a row in small.jsonl, 4 to run"]
+    assert verb.planned(study) == ["small: 4 cells, 0 with a row in small.rows.jsonl, 4 to run", "4 runs without a kept row whose labels are alike: not estimated"]
     assert verb.make_rows(study) == 4 and verb.make_rows(study) == 0
     rows = page.rows_of(study)
     assert {r.outcome for r in rows} == {"ok"} and all(r.values["steps"] == 2 and r.values["newton"] > 0 for r in rows)
-    assert verb.planned(study) == ["small: 4 cells, 4 with a row in small.jsonl, 0 to run"]
+    assert verb.planned(study) == ["small: 4 cells, 4 with a row in small.rows.jsonl, 0 to run"]
     more = written(tmp_path, axes=[SPEC["axes"][0], SPEC["axes"][1]])
     before = {r.key: r for r in rows}
-    assert verb.planned(more)[0] == "small: 8 cells, 4 with a row in small.jsonl, 4 to run" and len(verb.planned(more)) == 2
+    assert verb.planned(more)[0] == "small: 8 cells, 4 with a row in small.rows.jsonl, 4 to run" and len(verb.planned(more)) == 2
     assert verb.make_rows(more) == 4
     assert {r.key: r for r in page.rows_of(more) if r.key in before} == before
+    longer = written(tmp_path, seeds=[1], set={"/threads": 1, "/time/steps": 3})  # the same labels, other runs
+    assert verb.make_rows(longer) == 4 and {r.values["steps"] for r in page.rows_of(longer)} == {3}

@@ -33,15 +33,15 @@ METHODS = {"ando2024": PUBLISHED, "ipc2020": "IPC as published"}  # of configs/m
 COMMON_SOLVER = "line_search"  # of all runs that are not named apart
 
 WHEN = {  # name -> one sentence: when it is the one to use
-    LOG: "Use it when the largest load is not known: its force has no upper bound.",
+    LOG: "Use it when the largest load is not known: its force has no bound, its gaps may get small.",
     CUBIC: (
-        "Use it when the largest load is known: its matrices stay better conditioned at small gaps, and a"
-        " load above its capacity ends the run."
+        "Use it when the largest load is known: a load above its capacity ends the run, below it gaps stay"
+        " large."
     ),
     PUBLISHED: "Use it when nobody can calibrate a stiffness and steps of 1 ms need not converge.",
     POTENTIAL: (
-        "Use it when nobody can calibrate a stiffness and every step has to converge. It is a variant of this"
-        " project, and its raw matrices are worse conditioned."
+        "Use it when nobody can calibrate a stiffness and every step has to converge; it is a variant of this"
+        " project."
     ),
     "fixed quadratic": "Use it like the cubic when contacts may rest farther apart.",
     "dynamic once a step": "Use it when nobody can calibrate a stiffness and loads change little in a step.",
@@ -173,14 +173,17 @@ class Answer:
             f" times the {self.reference}'s number, geometric mean over the compared runs, which are those"
             " that their records call comparable with it.",
             "ended ok: and every check of validity passed. gap/d_hat: the smallest gap of the compared runs"
-            f" at a converged step end. products: {products}. seconds: of the pass time, one repetition.",
+            f" at a converged step end. products: {products}. seconds: of the pass time, one"
+            " repetition, beside what else the machine did.",
         ]
         if self.other_steps:
             found.append(f"Other time steps than the reference: {listed(self.other_steps)}.")
         if self.left_out:
-            one = self.left_out == 1
-            has, are = ("run has", "is") if one else ("runs have", "are")
-            found.append(f"{self.left_out} comparable {has} another reference and {are} in no factor.")
+            has, are = ("run has", "is") if self.left_out == 1 else ("runs have", "are")
+            found.append(
+                f"{self.left_out} comparable {has} another reference, or one of the same formulation, and"
+                f" {are} in no factor."
+            )
         return found
 
 
@@ -232,7 +235,7 @@ def answer(rows: Iterable[Mapping]) -> Answer:
     every = compared(rows)
     counts = Counter(name_of(other) for _, other in every)
     reference = next(iter(sorted(counts, key=lambda name: -counts[name])), "")
-    pairs = [pair for pair in every if name_of(pair[1]) == reference]
+    pairs = [pair for pair in every if name_of(pair[1]) == reference != name_of(pair[0])]
     both = [row for pair in pairs for row in pair]
     is_probed = not (both and all(map(_by_solver, both)))
     measures = {

@@ -33,8 +33,13 @@ class Ratio(Mean):
 
     def turned(self) -> Ratio:
         """The same the other way round: what stands below goes above."""
-        ends = (None, None) if self.lower is None else (1 / self.upper, 1 / self.lower)
-        return Ratio(1 / self.value, *ends, self.scenes)
+        ends = (None, None) if self.lower is None else (_inverse(self.upper), _inverse(self.lower))
+        return Ratio(_inverse(self.value), *ends, self.scenes)
+
+
+def _inverse(x: float) -> float:
+    """Of a number that a double holds as 0 the inverse is infinite."""
+    return 1 / x if x else math.inf
 
 
 def mean_over(values: Sequence[float]) -> Mean:

@@ -94,7 +94,8 @@ def _helped(row: verbs.Verb) -> subprocess.CompletedProcess:
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
         try:
             module = importlib.import_module(f"barrierbench_analysis.{row.module}")
-            code = module.main(["--help"]) if row.own_help else 0
+            subject = [row.subject] if row.subject else []
+            code = module.main([*subject, "--help"]) if row.own_help else 0
         except SystemExit as ended:  # of argparse
             code = ended.code
     if said.getvalue() or told.getvalue():

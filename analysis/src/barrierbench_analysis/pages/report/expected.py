@@ -11,10 +11,10 @@ from functools import cache
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import read_spec
+from barrierbench_analysis.tables.outcomes import counted_as
 
 FILE = ROOT / "configs/report/expected.json"
 STRESS = "stress "  # the names of the sweeps of a stress test begin with it (studies/stress/run.py)
-NOT_VALID = "not_valid"  # ended ok, and a check of its validity failed
 
 
 @dataclass(frozen=True)
@@ -64,5 +64,5 @@ def end_of(row: Mapping) -> End | None:
 
 
 def word_of(row: Mapping) -> str:
-    """The outcome of a row of `runs`, or NOT_VALID where that is ok and a check of its validity failed."""
-    return NOT_VALID if row["outcome"] == "ok" and not row["valid"] else row["outcome"]
+    """What a row of `runs` is counted as."""
+    return counted_as(row["outcome"], row["valid"])

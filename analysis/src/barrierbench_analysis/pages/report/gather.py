@@ -62,8 +62,11 @@ class Entry:
 
     @property
     def failed_as_expected(self) -> bool:
+        """A surface that passed through another is never expected but where `penetration` is."""
         end = self.expected
-        return not self.good and end is not None and expected.word_of(self.row) in end.outcomes
+        if self.good or end is None or (self.faults and "penetration" not in end.outcomes):
+            return False
+        return expected.word_of(self.row) in end.outcomes
 
     @property
     def reserved(self) -> list[str]:

@@ -17,11 +17,13 @@ from dataclasses import dataclass
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
-from barrierbench_analysis.tables.answer import WHEN
+from barrierbench_analysis.tables.answer import when_to_use
 from barrierbench_analysis.tables.estimate import Cells, wilson
 from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import Ratio, ratio_of_scenes
 
+# What the spec says in `about`: the label of the reference, the levels of another size, label -> name.
+ABOUT = {"reference": str, "large": list, "names": dict}
 RATIOS = ("newton", "products", "seconds")
 HEAD = (
     "formulation",
@@ -75,6 +77,11 @@ def _ratio(rows: list[Row], reference: dict[tuple, Row], metric: str) -> Ratio |
         other = reference.get(_run(row))
         if other is None or row.outcome != OK or other.outcome != OK:
             continue
+        if metric == "seconds" and (row.origin["build"], row.origin["machine"]) != (
+            other.origin["build"],
+            other.origin["machine"],
+        ):
+            continue
         over, under = row.values[metric], other.values[metric]
         if over and under:
             cells[row.place["scene"]][row.place["level"]].append(math.log(over / under))
@@ -106,7 +113,19 @@ def table(found: dict[str, dict], study: Study) -> list[str]:
         ratios = ["1" if name == reference else _text(numbers[metric]) for metric in RATIOS]
         return [words[name], *numbers["ends"].cells, _text(numbers["gap"]), *ratios]
 
-    return markdown([*HEAD, "when to use"], [[*cells(name), WHEN[words[name]]] for name in found])
+    return markdown([*HEAD, "when to use"], [[*cells(name), when_to_use(words[name])] for name in found])
+
+
+def _pairs(rows: list[Row], study: Study) -> str:
+    """In how many runs of how many scenes both the reference and each other formulation end ok."""
+    words, reference = study.data["about"]["names"], study.data["about"]["reference"]
+    good = {(row.place["formulation"], _run(row)) for row in rows if row.outcome == OK}
+    found = []
+    for name, word in words.items():
+        both = [run for of, run in good if of == name and (reference, run) in good]
+        if name != reference:
+            found.append(f"{word} {len(both)} runs of {len({scene for scene, *_ in both})} scenes")
+    return ", ".join(found)
 
 
 def _ended(rows: list[Row], study: Study) -> list[str]:
@@ -123,9 +142,7 @@ def _ended(rows: list[Row], study: Study) -> list[str]:
 
 
 def rule(study: Study, rows: list[Row]) -> dict:
-    """The numbers of the page and of README. Errors: KeyError for a spec without the levels and names that
-    it speaks of.
-    """
+    """The numbers of the page and of README."""
     large = set(study.data["about"]["large"])
     small_rows = [row for row in rows if row.place["level"] not in large]
     large_rows = [row for row in rows if row.place["level"] in large]
@@ -137,6 +154,8 @@ def rule(study: Study, rows: list[Row]) -> dict:
     return {
         "table": "\n".join(table(small, study)),
         "table_large": "\n".join(table(finer, study)),
+        "pairs": _pairs(small_rows, study),
+        "pairs_large": _pairs(large_rows, study),
         "ended": "\n".join(_ended(rows, study)),
         "scenes": len({row.place["scene"] for row in rows}),
         "levels": ", ".join(dict.fromkeys(row.place["level"] for row in small_rows)),

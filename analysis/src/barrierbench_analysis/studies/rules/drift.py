@@ -18,6 +18,7 @@ from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import ratio_of_scenes
 
+ABOUT = {"names": dict}  # what the spec says in `about`: label -> name of a formulation
 FLOOR = 1e-12  # shares below it are rounding
 
 

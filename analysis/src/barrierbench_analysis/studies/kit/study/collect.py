@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.studies.kit import runs
@@ -17,12 +18,13 @@ from .spec import Cell, Study
 
 RUNS = ROOT / "results" / "runs" / "studies"
 DIGITS = 12  # of a kept number
+FOLDER_DIGITS = 12  # of the name of a folder of runs
 
 
 def missing(study: Study, rows: dict[str, store.Row]) -> list[Cell]:
-    """Cells without a row, or whose row lacks a metric that the spec has now."""
-    metrics = study.data["metrics"].keys()
-    return [c for c in study.cells if c.key not in rows or not metrics <= rows[c.key].values.keys()]
+    """Cells without a row, or whose row lacks a metric of today from where the spec takes it now."""
+    now = study.data["metrics"].items()
+    return [cell for cell in study.cells if cell.key not in rows or not now <= rows[cell.key].sources.items()]
 
 
 def _at(record: dict, pointer: str) -> float | None:
@@ -50,6 +52,7 @@ def row_of(study: Study, cell: Cell, record: dict, folder: Path) -> store.Row:
         place=cell.place,
         outcome=outcome_of(record),
         values=rounded(values, DIGITS),
+        sources=study.data["metrics"],
         unknowns=record["scene"]["free_dofs"],
         seconds=round(seconds_of_run(record), 3),
         run=record["ids"]["run_id"][:ID_DIGITS],
@@ -57,11 +60,11 @@ def row_of(study: Study, cell: Cell, record: dict, folder: Path) -> store.Row:
     )
 
 
-def run_cells(study: Study, cells: list[Cell], out: Path | None = None) -> list[store.Row]:
-    """Runs these cells as one sweep and reads their records. Runs that are there already are not repeated.
-    Errors: UserError. Cost: the runs.
+def run_cells(study: Study, cells: list[Cell], folder: Path | None = None) -> list[store.Row]:
+    """Runs these cells as one sweep, in a folder of their own, and reads their records. Runs that are there
+    already are not repeated. Errors: UserError. Cost: the runs.
     """
-    out = out or RUNS / study.name
+    out = (folder or RUNS) / study.name / of_text(" ".join(cell.key for cell in cells))[:FOLDER_DIGITS]
     cases = [{"label": cell.label, "set": cell.settings} for cell in cells]
     made = runs.sweep(study.name, study.base, study.data.get("set", {}), cases)
     runs.run(made, out)

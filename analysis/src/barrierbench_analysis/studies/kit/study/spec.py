@@ -50,8 +50,13 @@ class Study:
         return self.file.parent / self.data["base"]
 
     @property
+    def is_ours(self) -> bool:
+        """Whether the spec is one of this tree, whose rows and page are kept with its results."""
+        return self.file.parent.resolve() == FOLDER
+
+    @property
     def page(self) -> Path:
-        return ROOT / self.data["page"]
+        return ROOT / self.data["page"] if self.is_ours else self.file.with_suffix(".page.md")
 
     @property
     def template(self) -> Path:
@@ -104,6 +109,8 @@ def read_study(name: str) -> Study:
     for metric, source in data["metrics"].items():
         if not source.startswith("/") and source not in METRICS:
             raise refused(file, f"metrics/{metric}", source, f"a pointer, or one of {', '.join(METRICS)},")
+    if data["name"] != file.stem:
+        raise refused(file, "name", data["name"], f"{file.stem!r}, as its file is called,")
     study = Study(file, data)
     if len(set(study.names)) < len(study.names):
         raise refused(file, "axes", study.names, "another name for each axis, none of them 'seed',")

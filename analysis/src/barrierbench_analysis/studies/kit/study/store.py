@@ -15,7 +15,10 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.store import merged
 from barrierbench_analysis.io.whole_file import write_whole
 
+from .spec import Study
+
 FOLDER = ROOT / "results" / "studies"
+BESIDE = ".rows.jsonl"  # behind the name of a spec that is none of this tree: its rows lie beside it
 SCHEMA = "barrierbench.study_rows/1"
 
 
@@ -27,14 +30,16 @@ class Row:
     place: dict[str, str]
     outcome: str
     values: dict[str, float | None]
+    sources: dict[str, str]  # metric -> where its number is in a record, as the spec had it
     unknowns: int
     seconds: float  # of the whole run, from start to end
     run: str  # the first digits of run_id
     origin: dict[str, str]  # date, machine, commit, build
 
 
-def file_of(study: str) -> Path:
-    return FOLDER / f"{study}.jsonl"
+def file_of(study: Study) -> Path:
+    """Rows of a spec of this tree are kept with its results; those of another one lie beside it."""
+    return FOLDER / f"{study.name}.jsonl" if study.is_ours else study.file.with_suffix(BESIDE)
 
 
 def read_rows(path: Path) -> dict[str, Row]:

@@ -9,6 +9,7 @@ Exit codes: 0 done, 2 a spec that cannot be read, or a page whose cells are not 
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import tells
@@ -19,7 +20,7 @@ from barrierbench_analysis.tables.words import counted
 
 from . import page, store
 from .collect import missing, run_cells
-from .spec import Cell, Study, read_study
+from .spec import SEED, Cell, Study, read_study
 
 AT_ONCE = 60  # runs whose rows are kept together: what an interrupt loses at most is their reading
 
@@ -34,37 +35,35 @@ def arguments(argv: list[str]) -> argparse.Namespace:
 
 
 def planned(study: Study) -> list[str]:
-    """Lines: cells, those with a row, and the seconds that the rest takes where runs of the same last axis
-    have been made.
-    """
-    rows = store.read_rows(store.file_of(study.name))
+    """Lines: cells, those with a row, and what the rest takes as far as kept rows tell."""
+    rows = store.read_rows(store.file_of(study))
     lacking = missing(study, rows)
     lines = [
         f"{study.name}: {counted(len(study.cells), 'cell')}, {len(study.cells) - len(lacking)} with a row in"
-        f" {store.file_of(study.name).name}, {len(lacking)} to run"
+        f" {store.file_of(study).name}, {len(lacking)} to run"
     ]
-    if lacking and rows:
-        lines.append(f"about {_expected(lacking, list(rows.values())):.0f} s of one core for these")
+    kept = [replace(rows[cell.key], place=cell.place) for cell in study.cells if cell.key in rows]
+    known = [seconds for cell in lacking if (seconds := _expected(cell, kept)) is not None]
+    if known:
+        lines.append(f"about {sum(known):.0f} s of one core for {counted(len(known), 'run')} of these")
+    if unknown := len(lacking) - len(known):
+        lines.append(f"{counted(unknown, 'run')} without a kept row whose labels are alike: not estimated")
     return lines
 
 
-def _expected(cells: list[Cell], rows: list[store.Row]) -> float:
-    """Seconds: of each cell the mean of the rows that share most of its place."""
-
-    def alike(cell: Cell, row: store.Row) -> int:
-        return sum(row.place.get(name) == word for name, word in cell.place.items())
-
-    total = 0.0
-    for cell in cells:
-        best = max(alike(cell, row) for row in rows)
-        mine = [row.seconds for row in rows if alike(cell, row) == best]
-        total += sum(mine) / len(mine)
-    return total
+def _expected(cell: Cell, rows: list[store.Row]) -> float | None:
+    """Seconds: mean of the rows that differ in at most one label, where each label of the cell stands in some
+    row; None without any.
+    """
+    if any(all(row.place[name] != word for row in rows) for name, word in cell.place.items() if name != SEED):
+        return None
+    near = [row.seconds for row in rows if sum(row.place[n] != word for n, word in cell.place.items()) <= 1]
+    return sum(near) / len(near) if near else None
 
 
 def make_rows(study: Study) -> int:
     """Runs what is missing and keeps it, a part at a time. Returns how many runs were made."""
-    file = store.file_of(study.name)
+    file = store.file_of(study)
     rows = store.read_rows(file)
     lacking = missing(study, rows)
     for start in range(0, len(lacking), AT_ONCE):
@@ -75,17 +74,22 @@ def make_rows(study: Study) -> int:
     return len(lacking)
 
 
-@tells("study")
 def main(argv: list[str]) -> int:
+    """argv: the spec, and the options."""
+    return tells(of_spec(Path(argv[0])).name)(_main)(argv)
+
+
+def _main(argv: list[str]) -> int:
     args = arguments(argv)
     study = read_study(argv[0])
+    page.module_of(study)
     if args.plan:
         print("\n".join(planned(study)))
         return 0
     if not args.no_run:
         built_program()
         made = make_rows(study)
-        print(f"{study.name}: {counted(made, 'new row')} in {store.file_of(study.name).name}")
+        print(f"{study.name}: {counted(made, 'new row')} in {store.file_of(study).name}")
     for path in page.write_page(study):
         print(path)
     return 0
