@@ -29,6 +29,7 @@ ASSIGNED = case("a", **{"/time/steps=3": 1})
     ([STEPS], {"set": {"/time/dt_s=1": 3}}, ["#/set", "/time/dt_s=1"]),
     ([{"cases": [ASSIGNED]}], {}, ["#/axes/0/cases/0/set", "/time/steps=3"]),
     ([STEPS, {"pointer": "/time/steps", "values": [3]}], {}, ["#/axes/1", "axis 0 sets too"]),
+    ([{"pointer": "/contact/ccd_park", "values": [1e-5]}, {"pointer": "/contact/min_gap_fraction", "values": [1e-5]}], {}, ["#/axes/1", "axis 0 sets too"]),  # the earlier name and the present one
     ([STEPS, {"cases": [case("a", **{"/time/steps": 3})]}], {}, ["#/axes/1", "/time/steps"]),
     ([{"cases": [case("a", **{"/time/steps": 1}), case("a", **{"/time/steps": 2})]}], {}, ["#/axes/0/cases/1/label", "\"a\" again"]),
     ([{"pointer": "/time/steps", "values": [1, 2, 1]}], {}, ["#/axes/0/values/2", "steps=1"]),

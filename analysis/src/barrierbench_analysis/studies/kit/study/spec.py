@@ -22,7 +22,8 @@ SEED, SEED_POINTER = "seed", "/seeds/main"
 @dataclass(frozen=True)
 class Cell:
     """One run that a study asks for. place: the label of every axis. key: hash of all that the run is made
-    of but the program, the content of files included; two cells with one key are one run.
+    of but the program, the content of files included, of a film that of its first frame; two cells with one
+    key are one run.
     """
 
     place: dict[str, str]
