@@ -227,7 +227,7 @@ TEST(ExecutorMemory, ThatIsMissingIsNamed) {
     FAIL();
   } catch (const exec::OutOfMemory& error) {
     const std::string text = error.what();
-    for (const char* part : {"no memory for ", "asked for", "97.66 KiB"}) {
+    for (const char* part : {"no memory for ", "requested", "97.66 KiB"}) {
       EXPECT_NE(text.find(part), std::string::npos) << text;
     }
   }
