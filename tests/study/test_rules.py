@@ -37,12 +37,12 @@ def test_ratios_are_geometric_means_over_scenes_with_an_interval():
     assert found["newton"].upper == pytest.approx(4 * math.exp(12.706 * math.log(2)), rel=1e-3)
     assert found["newton"].lower * found["newton"].upper == pytest.approx(16)
     assert found["products"].value == pytest.approx(0.5) and found["seconds"].value == pytest.approx(3)
-    assert found["gap"].value == pytest.approx(0.4) and found["ends"].cells == ["4 of 4", "2 of 2 [0.34, 1.00]"]
+    assert found["gap"].value == pytest.approx(0.4) and found["ends"].cells == ["4 of 4", "2 of 2 (0.34 to 1.00)"]
 
 
 def test_a_run_that_failed_enters_the_share_and_no_ratio():
     found = answered(b_nominal="stall_overload", b_hard="stall_overload")["fixed_cubic"]
-    assert found["ends"].cells == ["2 of 4", "1 of 2 [0.09, 0.91]"]
+    assert found["ends"].cells == ["2 of 4", "1 of 2 (0.09 to 0.91)"]
     assert (found["newton"].value, found["newton"].scenes, found["newton"].lower) == (pytest.approx(2), 1, None)
     assert found["gap"].value == pytest.approx(0.2)
     nothing = answered(**{f"{s}_{k}": "nan" for s in "ab" for k in ("nominal", "hard")})["fixed_cubic"]
@@ -57,7 +57,7 @@ def test_seconds_of_two_builds_are_not_compared():
 
 def test_the_table_has_the_reference_as_one_and_says_when_to_use_each():
     lines = answer.table(answered(), STUDY)
-    assert lines[2].startswith("| fixed log | 4 of 4 | 2 of 2 [0.34, 1.00] | 0.1 [0.1, 0.1] | 1 | 1 | 1 | Use it")
+    assert lines[2].startswith("| fixed log | 4 of 4 | 2 of 2 (0.34 to 1.00) | 0.1 [0.1, 0.1] | 1 | 1 | 1 | Use it")
     assert "| 4 [" in lines[3] and "largest load is known" in lines[3] and len(lines) == 4
 
 

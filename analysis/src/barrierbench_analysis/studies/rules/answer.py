@@ -28,7 +28,7 @@ RATIOS = ("newton", "products", "seconds")
 HEAD = (
     "formulation",
     "runs that end ok",
-    "scenes in which all do",
+    "scenes in which all do (95%)",
     "smallest gap / d_hat",
     "Newton",
     "matrix products",
@@ -52,7 +52,7 @@ class Ends:
     @property
     def cells(self) -> list[str]:
         low, high = wilson(self.whole, self.scenes)
-        return [f"{self.ok} of {self.runs}", f"{self.whole} of {self.scenes} [{low:.2f}, {high:.2f}]"]
+        return [f"{self.ok} of {self.runs}", f"{self.whole} of {self.scenes} ({low:.2f} to {high:.2f})"]
 
 
 def _ends(rows: list[Row]) -> Ends:
