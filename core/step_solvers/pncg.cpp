@@ -169,10 +169,8 @@ StepSolverEntry step_solver_pncg() {
   entry.guarantee =
       "with pncg_bound accd no surface passes through another and no strain reaches its limit, in the motion "
       "of any iteration; with half_d_hat, as published, none: what is nearer than d_hat may pass through "
-      "each "
-      "other within an iteration, and only the audit reports it; how far the end of a step is from the "
-      "solution "
-      "is not computed, a step that reaches max_iterations ends the run";
+      "each other within an iteration, and only the audit reports it; how far the end of a step is from the "
+      "solution is not computed, a step that reaches max_iterations ends the run";
   entry.parameters = {
       {"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"},
       {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,

@@ -177,21 +177,18 @@ void settle_matching(const json& object, const Reader& reader, bool literal, Run
     }
   }
   if (out.rule != MatchingRule::as_given) {
-    if (!solid_given && !out.solid_limit_load) {
+    if (!solid_given && !out.solid_limit_load)
       reader.missing("/matching/solid_limit_load_Pa",
                      "a load > 0 (Pa) of the strain limit of solids, which no calibration run measures, or "
                      "/strain_limit/solid_k_s_Pa");
-    }
     return;
   }
-  if (!solid_given) {
+  if (!solid_given)
     reader.missing("/strain_limit/solid_k_s_Pa",
                    "a number > 0 (Pa), or matching rule equal_force and solid_limit_load_Pa");
-  }
-  if (!contact_given) {
+  if (!contact_given)
     reader.missing("/formulation/stiffness_policy/kappa_N_per_m",
                    "a number > 0 (N/m), or matching rule equal_force");
-  }
   if (!limit_given) {
     reader.missing("/strain_limit/stiffness_policy/k_s_N_per_m",
                    "a number > 0 (N/m), or matching rule equal_force");

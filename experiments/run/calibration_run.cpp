@@ -178,25 +178,24 @@ std::shared_ptr<const CalibrationRun> CalibrationRunCache::keep(CalibrationRun c
 std::shared_ptr<const CalibrationRun> run_calibration(const RunConfig& config, const Scene& given,
                                                       const RunOptions& options) {
   static CalibrationRunCache cache(std::size_t{256} << 20);
-  CalibrationRun calibration_run;
-  calibration_run.config = calibration_run_config(config);
-  calibration_run.config_id = config_id(calibration_run.config);
-  if (auto known = cache.find(calibration_run.config_id)) return known;
+  CalibrationRun run;
+  run.config = calibration_run_config(config);
+  run.config_id = config_id(run.config);
+  if (auto known = cache.find(run.config_id)) return known;
 
   // a scene whose start was rounded to float would leave other loads, in whatever run of a sweep came first
-  const Scene unrounded = values_in_float(config.precision) ? build_scene(calibration_run.config) : Scene();
+  const Scene unrounded = values_in_float(config.precision) ? build_scene(run.config) : Scene();
   const Scene& scene = values_in_float(config.precision) ? unrounded : given;
-  const double dt = calibration_run.config.time.dt;
-  calibration_run.rest = static_loads(config, scene);
-  calibration_run.stiffness = calibration_run_stiffness(calibration_run.config, scene, calibration_run.rest);
-  Method method = make_method(calibration_run.config, calibration_run.stiffness);
-  Simulation simulation(scene, method, dt, calibration_run.config.time.steps);
-  calibration_run.x.push_back(scene.x0);
+  const double dt = run.config.time.dt;
+  run.rest = static_loads(config, scene);
+  run.stiffness = calibration_run_stiffness(run.config, scene, run.rest);
+  Method method = make_method(run.config, run.stiffness);
+  Simulation simulation(scene, method, dt, run.config.time.steps);
+  run.x.push_back(scene.x0);
   StepObserver nobody;
   const double start_s = now_s();
-  for (int step = 0; step < calibration_run.config.time.steps; ++step) {
-    options.limits().look_up(
-        this_part, fmt::format("before its step {} of {}", step, calibration_run.config.time.steps));
+  for (int step = 0; step < run.config.time.steps; ++step) {
+    options.limits().look_up(this_part, fmt::format("before its step {} of {}", step, run.config.time.steps));
     Prediction prediction;
     method.integrator->predict(simulation.history(), dt, prediction);
     Archive memory;
@@ -204,17 +203,17 @@ std::shared_ptr<const CalibrationRun> run_calibration(const RunConfig& config, c
     const StepReport report = simulation.step(nobody);
     show(config, options, report, start_s);
     if (report.status != StepStatus::converged) {  // its state is in no balance: no load can be read from it
-      calibration_run.stopped =
+      run.stopped =
           fmt::format("the calibration run stopped at step {} with {}", step, to_string(report.status));
-      if (!report.detail.empty()) calibration_run.stopped += ": " + report.detail;
+      if (!report.detail.empty()) run.stopped += ": " + report.detail;
       break;
     }
-    calibration_run.x.push_back(simulation.history().x);
-    calibration_run.c.push_back(prediction.c);
-    calibration_run.memory.push_back(memory.bytes());
+    run.x.push_back(simulation.history().x);
+    run.c.push_back(prediction.c);
+    run.memory.push_back(memory.bytes());
   }
-  answer(calibration_run, scene, options);
-  return cache.keep(std::move(calibration_run));
+  answer(run, scene, options);
+  return cache.keep(std::move(run));
 }
 
 std::optional<double> policy_start(const RunConfig& config, const Scene& scene,

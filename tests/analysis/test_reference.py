@@ -68,9 +68,12 @@ def pages(name: str) -> str:
     return "".join(page for path, page in make.kept(ROOT).items() if path.startswith(f"{make.FOLDER}/{name}"))
 
 
+EARLIER = re.compile("The earlier name of ")  # a setting that pages name as it is called now
+
+
 def keys(node: dict) -> set[str]:
     """Names of all properties of a JSON Schema."""
-    found = set(node.get("properties", {}))
+    found = {name for name, one in node.get("properties", {}).items() if not EARLIER.match(one.get("description", "") if isinstance(one, dict) else "")}
     below = [*node.get("properties", {}).values(), *node.get("oneOf", []), *node.get("anyOf", []), *([node["items"]] if "items" in node else [])]
     return found.union(*(keys(one) for one in below if isinstance(one, dict)))
 

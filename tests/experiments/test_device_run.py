@@ -44,7 +44,7 @@ def test_a_kernel_that_fails_leaves_a_record_and_goes_on_from_the_last_step(prog
 def test_memory_that_runs_out_is_named_with_numbers(program, tmp_path):
     done = run(program, tmp_path, BARRIERBENCH_DEVICE_MEMORY="60000")
     assert done.returncode == 75, done.stderr
-    for part in ("no memory for ", "asked for", "58.59 KiB"):
+    for part in ("no memory for ", "requested", "58.59 KiB"):
         assert part in done.stderr
     assert record_of(tmp_path / "out")["status"]["outcome"] == "oom"
 

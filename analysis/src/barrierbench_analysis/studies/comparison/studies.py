@@ -102,7 +102,7 @@ def of_file(file: Path, runs: Path, may_run: bool, jobs: int):
     spec, is_default = study.read(file), file == study.default.resolve()
     folder = ROOT / "results" if is_default else runs / f"{study.verb}-{file.stem}"
     kept = folder / study.kept
-    again = f"; this makes them: ./bench {study.verb} {file}" + (
+    again = f"; this makes them: ./bench study {study.verb} {file}" + (
         "" if is_default else f" {'--out' if study.verb == 'work-precision' else '--results'} {folder}"
     )
     try:
