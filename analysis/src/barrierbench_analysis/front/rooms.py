@@ -1,4 +1,4 @@
-"""The verb rooms: the graph of the rooms as CMake knows it, checked against the #include lines."""
+"""The verb dev modules: the graph of the modules as CMake knows it, checked against the #include lines."""
 
 from __future__ import annotations
 

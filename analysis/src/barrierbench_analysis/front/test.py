@@ -1,4 +1,4 @@
-"""The verb test: setup, build, format, rooms, C++ tests, Python tests, gate. A later part never hides an
+"""The verb test: setup, build, format, modules, C++ tests, Python tests, gate. A later part never hides an
 earlier failure, and the summary names every skip.
 """
 
@@ -165,7 +165,7 @@ def main(argv: list[str]) -> int:
         build(preset, *python_module.MODULE)
     summary.lines.append(f"built    {preset} ({time.monotonic() - start:.0f} s)")
     summary.step("clang-format", lambda: formatting.clang_format("--dry-run", "--Werror"))
-    summary.step("rooms", lambda: rooms.main([]))
+    summary.step("modules", lambda: rooms.main([]))
     summary.step(f"C++ tests ({preset})", lambda: cpp_tests(preset, arguments, summary))
     if arguments:
         summary.lines.append("not run  Python tests (ctest arguments were given)")

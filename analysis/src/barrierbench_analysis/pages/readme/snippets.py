@@ -121,12 +121,12 @@ def _tested_rooms() -> set[str]:
 
 
 def _test_fault(rest: list[str]) -> str:
-    """Of `./bench test ...`: a room is named by -L, and there."""
+    """Of `./bench test ...`: a module is named by -L, and there."""
     if "-R" in rest:
-        return "-R takes names of test cases, which change; -L takes a room"
+        return "-R takes names of test cases, which change; -L takes a module"
     rooms = [rest[k + 1] for k, word in enumerate(rest[:-1]) if word == "-L"]
     unknown = [room for room in rooms if room not in _tested_rooms()]
-    return f"no tests of a room {unknown[0]}" if unknown else ""
+    return f"no tests of a module {unknown[0]}" if unknown else ""
 
 
 def _command_fault(words: list[str]) -> str:
