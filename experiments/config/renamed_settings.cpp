@@ -38,7 +38,7 @@ json to_present(const RenamedSetting& one, json value) {
   return one.words[value.get<std::size_t>()];
 }
 
-json to_earlier(const RenamedSetting& one, json value) {
+json to_earlier(const RenamedSetting& one, const json& value) {
   const auto word = std::find(one.words.begin(), one.words.end(), value);
   return word == one.words.end() ? value : json(word - one.words.begin());
 }
