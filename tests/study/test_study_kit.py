@@ -186,7 +186,7 @@ def test_the_page_of_a_study_is_that_of_its_kept_rows(name):
 
 
 def test_a_study_runs_what_is_missing_and_nothing_twice(tmp_path, monkeypatch, program, capsys):
-    study = written(tmp_path, seeds=[1], axes=[SPEC["axes"][0], {**SPEC["axes"][1]}])
+    study = written(tmp_path, seeds=[1])
     monkeypatch.setattr(collect, "RUNS", tmp_path / "runs")
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
     assert verb.planned(study) == ["small: 4 cells, 0 with a row in small.rows.jsonl, 4 to run", "4 runs without a kept row whose labels are alike: not estimated"]
@@ -199,5 +199,7 @@ def test_a_study_runs_what_is_missing_and_nothing_twice(tmp_path, monkeypatch, p
     assert verb.planned(more)[0] == "small: 8 cells, 4 with a row in small.rows.jsonl, 4 to run" and len(verb.planned(more)) == 2
     assert verb.make_rows(more) == 4
     assert {r.key: r for r in page.rows_of(more) if r.key in before} == before
+    traced = written(tmp_path, seeds=[1], metrics={**SPEC["metrics"], "bound": "bound_share"})  # a metric of the trace
+    assert verb.make_rows(traced) == 4 and all(r.values["bound"] is not None for r in page.rows_of(traced))
     longer = written(tmp_path, seeds=[1], set={"/threads": 1, "/time/steps": 3})  # the same labels, other runs
     assert verb.make_rows(longer) == 4 and {r.values["steps"] for r in page.rows_of(longer)} == {3}

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from .outcomes import OK, counted_as
 from .series import is_published
 from .statistics import geometric
 from .words import listed, number
@@ -84,7 +85,7 @@ def cond_of(row: Mapping, matrix: str, statistic: str = "median") -> float | Non
 
 def is_good(row: Mapping) -> bool:
     """Whether the run ended ok and every check of its validity passed."""
-    return row["outcome"] == "ok" and bool(row["valid"])
+    return counted_as(row["outcome"], bool(row["valid"])) == OK
 
 
 def reference_of(row: Mapping, by_run: Mapping[str, Mapping]) -> Mapping | None:

@@ -46,8 +46,7 @@ def diagnosed(folder: Path) -> tuple[dict, list[dict]]:
     if not rows:
         raise UserError(
             f"{folder / 'trace.jsonl'}: not there; allowed: a run with the pass diagnose, e.g. ./bench study"
-            f" causes"
-            " CONFIG.json"
+            " causes CONFIG.json"
         )
     return record, [row for row in rows if row["cond"]]
 

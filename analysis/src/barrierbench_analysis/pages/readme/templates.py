@@ -186,9 +186,9 @@ def _step_ends(numbers: dict, sphere: str) -> str:
 def drape_sentences(numbers: dict) -> list[str]:
     """What the figure of the longer drape shows."""
     text = (
-        "Seen there, on that slice (a load matched at 0.1 d_hat, a strain limit, condition numbers of one"
-        f" iteration in {numbers['about']['long']['every']}, layers that still move at the end): of the time"
-        " steps that end in contact, the log's last condition number is smaller by more than 1%"
+        "Seen there, under these conditions (a load matched at 0.1 d_hat, a strain limit, condition numbers"
+        f" of one iteration in {numbers['about']['long']['every']}, layers that still move at the end): of"
+        " the time steps that end in contact, the log's last condition number is smaller by more than 1%"
         f" {' and '.join(_step_ends(numbers, sphere) for sphere in ('formula', 'mesh'))}. Single iterations"
         f" reach further (result 2)."
     )

@@ -254,8 +254,7 @@ def _committed(claim: Claim, table: Table, entry: dict, root: Path) -> State:
                 if started
                 else (
                     f"the records of {name} keep no time of their start: ./bench study claims {claim.id}"
-                    f" collects"
-                    " them again"
+                    " collects them again"
                 )
             )
             return State(UNVERIFIED, f"{place}: {why}")

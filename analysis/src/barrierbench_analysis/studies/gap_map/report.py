@@ -212,8 +212,7 @@ def _not_run(found: Map, n: dict, refused: bool) -> list[str]:
         (
             f"**{n[NOT_RUN]} of {n['cells']} cells are not run yet**"
             f"{'.' if refused else ': `./bench study gap-map` goes on.'} By scene, runs that are there of"
-            f" those"
-            f" that can be: {extent(found.rows)}. Every number below is of the runs that are there."
+            f" those that can be: {extent(found.rows)}. Every number below is of the runs that are there."
         ),
         "",
     ]
@@ -229,8 +228,7 @@ def _refused(refused: Kept | None) -> list[str]:
             f"**A call that collects runs {counts}**: it refuses {refused.why}. It does not write over them"
             " unless it is told so (`--drop`); with `--results DIR` it makes a map of its own. The numbers of"
             " this page are of the programs that are named below; `./bench study gap-map --no-run` writes it"
-            " anew"
-            " from what is kept, where no record of a run of the map is there."
+            " anew from what is kept, where no record of a run of the map is there."
         ),
         "",
     ]

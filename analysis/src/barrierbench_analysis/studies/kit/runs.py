@@ -18,7 +18,7 @@ from barrierbench_analysis.studies.gate.configs import differences
 
 from . import formulations
 from .formulations import known
-from .metrics import METRICS
+from .metrics import FOLDER, METRICS
 
 # What formulations may differ in; everything else of two configs has to be equal.
 OF_A_FORMULATION = (
@@ -152,13 +152,15 @@ def records_in(folders: Iterable[Path], notes: Iterable[str] = ()) -> dict[str, 
 
 
 def collect(made: Sweep, out: Path) -> dict[str, dict]:
-    """note -> record, of every case of the sweep. Errors: UserError when one is missing or there twice."""
+    """note -> record, of every case of the sweep, with its folder for metrics of the trace. Errors: UserError
+    when one is missing or there twice.
+    """
     found = records_in([out], made.notes)
     if missing := [note for note in made.notes if note not in found]:
         raise UserError(
             f"{out}: {len(missing)} of {len(made.notes)} records are missing, the first {missing[0]!r}"
         )
-    return {note: record for note, (record, _) in found.items()}
+    return {note: {**record, FOLDER: str(folder)} for note, (record, folder) in found.items()}
 
 
 def check_equal(records: dict[str, dict]) -> None:

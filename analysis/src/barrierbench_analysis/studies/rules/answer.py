@@ -89,7 +89,7 @@ def _ratio(rows: list[Row], reference: dict[tuple, Row], metric: str) -> Ratio |
 
 
 def compared(rows: list[Row], study: Study) -> dict[str, dict]:
-    """formulation -> its numbers, the reference first. rows: of the levels that are compared."""
+    """formulation -> its numbers, in the order of the rows, which are of the levels that are compared."""
     names = list(dict.fromkeys(row.place["formulation"] for row in rows))
     of = {name: [row for row in rows if row.place["formulation"] == name] for name in names}
     reference = {_run(row): row for row in of[study.data["about"]["reference"]]}

@@ -9,7 +9,6 @@ from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.studies.kit import runs
-from barrierbench_analysis.studies.kit.metrics import METRICS
 from barrierbench_analysis.tables.numbers import rounded
 from barrierbench_analysis.tables.outcomes import outcome_of
 
@@ -38,13 +37,10 @@ def _at(record: dict, pointer: str) -> float | None:
     return found if isinstance(found, (int, float)) and not isinstance(found, bool) else None
 
 
-def row_of(study: Study, cell: Cell, record: dict, folder: Path) -> store.Row:
-    """The row of one record of `folder`."""
-    from barrierbench_analysis.studies.kit.metrics import FOLDER
-
-    record[FOLDER] = str(folder)
+def row_of(study: Study, cell: Cell, record: dict) -> store.Row:
+    """The row of one record, as runs.collect has it."""
     values = {
-        name: _at(record, source) if source.startswith("/") else METRICS[source][3](record)
+        name: _at(record, source) if source.startswith("/") else runs.metric(record, source)
         for name, source in study.data["metrics"].items()
     }
     return store.Row(
@@ -69,4 +65,4 @@ def run_cells(study: Study, cells: list[Cell], folder: Path | None = None) -> li
     made = runs.sweep(study.name, study.base, study.data.get("set", {}), cases)
     runs.run(made, out)
     records = runs.collect(made, out)
-    return [row_of(study, cell, records[note], out) for cell, note in zip(cells, made.notes, strict=True)]
+    return [row_of(study, cell, records[note]) for cell, note in zip(cells, made.notes, strict=True)]

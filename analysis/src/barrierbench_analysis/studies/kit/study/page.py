@@ -88,9 +88,9 @@ def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
         raise UserError(f"{study.template}: {fault}; allowed: {', '.join(sorted(about | numbers))}") from None
 
 
-def write_page(study: Study) -> list[Path]:
-    """The page of the study from its kept rows. Errors: UserError."""
+def write_page(study: Study) -> Path:
+    """Writes the page of the study from its kept rows. Errors: UserError."""
     rows = rows_of(study)
     numbers = module_of(study).rule(study, rows)
     write_whole(study.page, text_of(study, rows, numbers))
-    return [study.page]
+    return study.page

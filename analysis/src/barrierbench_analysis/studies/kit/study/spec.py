@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -78,8 +79,8 @@ class Study:
         ]
         axes.append([({SEED: str(seed)}, {SEED_POINTER: seed}) for seed in self.data["seeds"]])
         found = [self._cell(chosen) for chosen in itertools.product(*axes)]
-        keys = [cell.key for cell in found]
-        if twice := next((cell for cell in found if keys.count(cell.key) > 1), None):
+        counts = Counter(cell.key for cell in found)
+        if twice := next((cell for cell in found if counts[cell.key] > 1), None):
             raise refused(self.file, "axes", twice.label, "another run for each combination of cases")
         return found
 

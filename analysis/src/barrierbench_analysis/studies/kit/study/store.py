@@ -1,6 +1,6 @@
 """The rows of a study, one JSON object a line: results/studies/NAME.jsonl. A row belongs to the key of its
-cell and is never changed by another one: rows are added at the end, and a row that is there stays as it
-is.
+cell and is never changed by another one. Rows are added at the end; a row is made again alone where the spec
+takes a metric from elsewhere than it did.
 """
 
 from __future__ import annotations

@@ -90,6 +90,5 @@ def _main(argv: list[str]) -> int:
         built_program()
         made = make_rows(study)
         print(f"{study.name}: {counted(made, 'new row')} in {store.file_of(study).name}")
-    for path in page.write_page(study):
-        print(path)
+    print(page.write_page(study))
     return 0
