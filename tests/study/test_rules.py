@@ -11,7 +11,7 @@ from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.studies.rules import answer, drift
 
 NAMES = {"fixed_log": "fixed log", "fixed_cubic": "fixed cubic"}
-STUDY = SimpleNamespace(data={"about": {"reference": "fixed_log", "large": ["n4"], "names": NAMES}})
+STUDY = SimpleNamespace(about={"reference": "fixed_log", "large": ["n4"], "names": NAMES})
 
 
 def row(scene, level, formulation, outcome="ok", build="b", **values):
@@ -82,7 +82,7 @@ def test_the_advice_of_the_kept_answer_is_what_its_rows_say():
 
 
 def test_drift_is_the_largest_share_of_a_scene_whatever_its_sign():
-    study = SimpleNamespace(data={"about": {"names": {"fixed_log": "fixed log"}}})
+    study = SimpleNamespace(about={"names": {"fixed_log": "fixed log"}})
     rows = [row("a", f"n{k}", "fixed_log", settled_J=2.0, end_J=end, newton=10.0, gap_min=0.5) for k, end in enumerate((1.98, 2.08, 2.0))]
     rows += [row("b", "n0", "fixed_log", settled_J=1.0, end_J=0.99, newton=30.0, gap_min=0.3)]
     rows += [row("b", "n1", "fixed_log", "newton_stall", settled_J=1.0, end_J=0.1, newton=30.0, gap_min=0.3)]

@@ -9,8 +9,8 @@ import pytest
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.studies.kit.study import collect, page, store, verb
-from barrierbench_analysis.studies.kit.study.spec import Study, known, read_study
+from barrierbench_analysis.studies.kit.study import collect, cost, page, store, verb
+from barrierbench_analysis.studies.kit.study.spec import Case, Study, known, read_study
 
 BASE = json.loads((ROOT / "configs/scenes/drape2d.json").read_text())
 SPEC = {
@@ -20,13 +20,33 @@ SPEC = {
     "base": "base.json",
     "set": {"/threads": 1, "/time/steps": 2},
     "axes": [
-        {"names": ["scene", "level"], "cases": [{"label": "strip a", "set": {}}, {"label": "strip b", "set": {"/time/dt_s": 0.005}}]},
-        {"names": ["formulation"], "cases": [{"label": "one", "set": {"/formulation": "log"}}, {"label": "two", "set": {"/formulation": "cubic"}}]},
+        {
+            "names": ["scene", "level"],
+            "cases": [{"label": "strip a", "set": {}}, {"label": "strip b", "set": {"/time/dt_s": 0.005}}],
+        },
+        {
+            "names": ["formulation"],
+            "cases": [
+                {"label": "one", "set": {"/formulation": "log"}},
+                {"label": "two", "set": {"/formulation": "cubic"}},
+            ],
+        },
     ],
     "seeds": [1, 2],
     "metrics": {"newton": "newton", "steps": "/summary/steps"},
     "page": "results/SMALL.md",
 }
+
+
+RULE = SimpleNamespace(rule=lambda study, rows: {"number": len(rows)})
+
+
+@pytest.fixture(autouse=True)
+def rule_of_small(monkeypatch):
+    """The rule of the studies here, which need no file in studies/rules; tests give it more functions."""
+    real, rule = importlib.import_module, SimpleNamespace(**vars(RULE))
+    monkeypatch.setattr(importlib, "import_module", lambda name: rule if name.endswith("rules.small") else real(name))
+    return rule
 
 
 def written(folder, **changes) -> Study:
@@ -37,7 +57,9 @@ def written(folder, **changes) -> Study:
 
 def row(cell, outcome="ok", **values) -> store.Row:
     origin = {"date": "2026-01-01", "machine": "m", "commit": "c", "build": "b"}
-    return store.Row(cell.key, cell.place, outcome, {"newton": 3.0, "steps": 2.0, **values}, SPEC["metrics"], 12, 0.5, "r", origin)
+    return store.Row(
+        cell.key, cell.place, outcome, {"newton": 3.0, "steps": 2.0, **values}, SPEC["metrics"], 12, 0.5, "r", origin
+    )
 
 
 # --- cells
@@ -62,10 +84,16 @@ def test_the_key_of_a_cell_is_of_all_that_its_run_is_made_of(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"axes": [{"names": ["scene"], "cases": SPEC["axes"][0]["cases"]}]}, "axes/0/cases/label: found 'strip a'; a word for each of scene"),
+        (
+            {"axes": [{"names": ["scene"], "cases": SPEC["axes"][0]["cases"]}]},
+            "axes/0/cases/label: found 'strip a'; a word for each of scene",
+        ),
         ({"axes": [{"names": ["scene"], "cases": []}]}, "axes/0/cases: found"),
         ({"axes": [SPEC["axes"][1], SPEC["axes"][1]]}, "axes: found .*; another name for each axis"),
-        ({"axes": [{"names": ["a"], "cases": [{"label": k, "set": {}} for k in "ab"]}]}, "axes: found 'b 1'|axes: found 'a 1'"),
+        (
+            {"axes": [{"names": ["a"], "cases": [{"label": k, "set": {}} for k in "ab"]}]},
+            "axes: found 'b 1'|axes: found 'a 1'",
+        ),
         ({"metrics": {"x": "newtons"}}, "metrics/x: found 'newtons'; a pointer, or one of"),
         ({"base": "none.json"}, "base: found 'none.json'"),
         ({"name": "other"}, "name: found 'other'; 'small', as its file is called"),
@@ -105,7 +133,7 @@ def test_a_kept_row_is_not_written_over(tmp_path):
     assert store.added(kept, [row(cell, newton=4.0)], replace=True)[cell.key].values["newton"] == 4.0
 
 
-@pytest.mark.parametrize("bad", ["{", '{"key": "a"}', "[]"])
+@pytest.mark.parametrize("bad", ["{", '{"key": "a"}', "[]", '["k", "ok"]'])
 def test_a_line_that_is_no_row_is_named(tmp_path, bad):
     file = tmp_path / "small.jsonl"
     store.write_rows(file, {})
@@ -117,8 +145,8 @@ def test_a_line_that_is_no_row_is_named(tmp_path, bad):
 def test_a_key_that_is_there_twice_is_refused(tmp_path):
     file, cell = tmp_path / "small.jsonl", written(tmp_path).cells[0]
     store.write_rows(file, {cell.key: row(cell)})
-    file.write_text(file.read_text() + file.read_text().splitlines()[1] + "\n")
-    with pytest.raises(UserError, match="line 3: the key .* is there twice"):
+    file.write_text(file.read_text() + file.read_text().splitlines()[2] + "\n")
+    with pytest.raises(UserError, match="line 4: the key .* is there twice"):
         store.read_rows(file)
 
 
@@ -158,17 +186,127 @@ def test_a_page_of_a_part_of_the_cells_is_refused(tmp_path, monkeypatch):
     store.write_rows(store.file_of(study), {cell.key: row(cell) for cell in study.cells[1:]})
     with pytest.raises(UserError, match="1 cell of 8 without a row, the first 'strip a one 1'"):
         page.rows_of(study)
-    with pytest.raises(UserError, match="a study whose rule is .*/rules/small.py"):
-        page.module_of(study)
-    monkeypatch.setattr(importlib, "import_module", lambda _: SimpleNamespace(ABOUT={"names": dict}))
-    with pytest.raises(UserError, match="small.json#/about/names: found None; an object of the rule is needed"):
-        page.module_of(study)
+
+
+def test_a_page_of_a_rule_that_says_what_is_not_run_has_the_rows_there_are(tmp_path, rule_of_small):
+    study = written(tmp_path)
+    store.write_rows(store.file_of(study), {cell.key: row(cell) for cell in study.cells[1:]})
+    rule_of_small.PARTIAL = True
+    assert len(page.rows_of(study)) == 7
+    store.write_rows(store.file_of(study), {})
+    with pytest.raises(UserError, match="small.rows.jsonl: found no row"):
+        page.write_page(study)
+
+
+def test_a_rule_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(UserError, match="rule: found 'none'; allowed: a study whose rule is .*/rules/none.py"):
+        written(tmp_path, rule="none")
+
+
+def test_what_the_rule_does_not_read_is_refused(tmp_path):
+    with pytest.raises(UserError, match="small.json#/about: found .*; nothing, since the rule 'small' reads none"):
+        written(tmp_path, about={"names": {}})
+    with pytest.raises(UserError, match="small.json#/about/names: is missing"):
+        written(tmp_path, rule="drift", about={})
+    with pytest.raises(UserError, match=r"small.json#/about/names: found \[\]; {label: name} of the formulations"):
+        written(tmp_path, rule="drift", about={"names": []})
+
+
+def test_a_spec_without_axes_needs_a_rule_that_makes_cells(tmp_path, rule_of_small):
+    without = {key: value for key, value in SPEC.items() if key not in ("axes", "seeds")}
+    (tmp_path / "base.json").write_text(json.dumps(BASE))
+    (tmp_path / "small.json").write_text(json.dumps(without))
+    with pytest.raises(UserError, match="axes: found None; axes and seeds, since the rule makes no cells"):
+        read_study(str(tmp_path / "small.json"))
+    rule_of_small.cells = lambda study: [Case({"dt": f"{dt:g}"}, {"/time/dt_s": dt}, unknowns=9) for dt in (0.01, 0.02)]
+    cells = read_study(str(tmp_path / "small.json")).cells
+    assert [(cell.label, cell.base, cell.unknowns) for cell in cells] == [
+        (dt, tmp_path / "base.json", 9) for dt in ("0.01", "0.02")
+    ]
+
+
+def test_values_that_the_rule_measures_are_missing_once_they_are_measured_otherwise(tmp_path, rule_of_small):
+    study = written(tmp_path)
+    rule_of_small.MEASURED = {"error": "distance to the closed form"}
+    rule_of_small.measure = lambda study, cell, record: {"error": 0.5}
+    record = {
+        "labels": {},
+        "summary": {"newton_iterations": 3, "steps": 2},
+        "scene": {"free_dofs": 12},
+        "ids": {"run_id": "r" * 40, "build_id": "b" * 40},
+        "status": {
+            "outcome": "ok",
+            "valid": True,
+            "started_utc": "2026-01-01T00:00:00Z",
+            "ended_utc": "2026-01-01T00:00:01Z",
+        },
+        "machine": {"cpu_model": "m", "cores": 2},
+        "provenance": {},
+    }
+    made = collect.row_of(study, study.cells[0], record)
+    assert made.values == {"newton": 3, "steps": 2, "error": 0.5}
+    rows = {cell.key: replace(made, key=cell.key) for cell in study.cells}
+    assert collect.missing(study, rows) == []
+    rule_of_small.MEASURED = {"error": "distance to a refined run"}
+    assert len(collect.missing(study, rows)) == len(study.cells)
+
+
+def test_cells_that_others_decide_are_not_run(tmp_path, rule_of_small):
+    study = written(tmp_path)
+    rule_of_small.decided = lambda study, rows: {study.cells[1].key} if study.cells[0].key in rows else set()
+    assert len(collect.missing(study, {})) == 8
+    rows = {study.cells[0].key: row(study.cells[0])}
+    assert study.cells[1] not in collect.missing(study, rows) and len(collect.missing(study, rows)) == 6
+    assert cost.plan(study, rows, study.cells)[:2] == [
+        "small: 8 cells, 1 with a row in small.rows.jsonl, 6 to run",
+        "1 more cell needs no run, since others decide the outcome",
+    ]
+
+
+# --- what a call may run, and what it is expected to take
+
+
+def test_a_call_runs_the_cells_of_its_labels_alone(tmp_path):
+    study = written(tmp_path, parts={"quick": {"level": ["a"], "formulation": ["one"]}})
+    assert [cell.label for cell in verb.chosen(study, ["level=a", "seed=1"], None)] == [
+        "strip a one 1",
+        "strip a two 1",
+    ]
+    assert [cell.label for cell in verb.chosen(study, [], "quick")] == ["strip a one 1", "strip a one 2"]
+    assert verb.chosen(study, [], None) == study.cells
+
+
+@pytest.mark.parametrize(
+    ("only", "part", "words"),
+    [
+        (["levels=a"], None, "--only levels: found 'levels'; allowed: scene, level, formulation, seed"),
+        (["level=c"], None, "--only level: found 'c'; allowed: a, b"),
+        (["level"], None, "--only: found 'level'; allowed: AXIS=LABEL"),
+        ([], "slow", "--part: found 'slow'; allowed: quick"),
+    ],
+)
+def test_a_part_that_no_cell_has_is_refused(tmp_path, only, part, words):
+    study = written(tmp_path, parts={"quick": {"level": ["a"]}})
+    with pytest.raises(UserError, match=words):
+        verb.chosen(study, only, part)
+
+
+def test_seconds_are_expected_from_the_nearest_rows(tmp_path):
+    study = written(tmp_path)
+    kept = [replace(row(cell), seconds=1.0 + k) for k, cell in enumerate(study.cells[:4])]  # of level a
+    assert cost.expected(study.cells[0], kept, 2.0) == 1.0
+    assert cost.expected(study.cells[4], kept, 2.0) is None  # level b stands in no row
+    sized = replace(study.cells[4], unknowns=24)
+    assert cost.expected(sized, kept, 2.0) == 4 * 1.0  # twice the unknowns of the row with one other label
+    assert cost.growth(kept) == cost.GROWTH
+    far = [replace(one, unknowns=n, seconds=0.01 * n**2.5) for one, n in zip(kept, (10, 20, 40, 80))]
+    assert cost.growth(far) == pytest.approx(2.5)
 
 
 def test_a_template_that_asks_for_more_is_refused(tmp_path):
     study = written(tmp_path)
     rows = [row(cell) for cell in study.cells]
-    study.template.write_text("{{ question }} {{ number }}")
+    study.file.with_suffix(".md").write_text("{{ question }} {{ number }}")
     assert page.text_of(study, rows, {"number": 4}) == "Does it work? 4"
     with pytest.raises(UserError, match="small.md: 'number' is undefined; allowed: .*question"):
         page.text_of(study, rows, {})
@@ -179,7 +317,7 @@ def test_the_page_of_a_study_is_that_of_its_kept_rows(name):
     study = read_study(name)
     rows = page.rows_of(study)
     assert len(rows) == len(study.cells) > 0
-    assert study.page.read_text() == page.text_of(study, rows, page.module_of(study).rule(study, rows))
+    assert study.page.read_text() == page.text_of(study, rows, study.module.rule(study, rows))
 
 
 # --- the whole of it
@@ -189,14 +327,23 @@ def test_a_study_runs_what_is_missing_and_nothing_twice(tmp_path, monkeypatch, p
     study = written(tmp_path, seeds=[1])
     monkeypatch.setattr(collect, "RUNS", tmp_path / "runs")
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
-    assert verb.planned(study) == ["small: 4 cells, 0 with a row in small.rows.jsonl, 4 to run", "4 runs without a kept row whose labels are alike: not estimated"]
+    assert cost.plan(study, store.read_rows(store.file_of(study)), study.cells) == [
+        "small: 4 cells, 0 with a row in small.rows.jsonl, 4 to run",
+        "4 runs without a kept row whose labels are alike: not estimated",
+    ]
     assert verb.make_rows(study) == 4 and verb.make_rows(study) == 0
     rows = page.rows_of(study)
     assert {r.outcome for r in rows} == {"ok"} and all(r.values["steps"] == 2 and r.values["newton"] > 0 for r in rows)
-    assert verb.planned(study) == ["small: 4 cells, 4 with a row in small.rows.jsonl, 0 to run"]
+    assert cost.plan(study, store.read_rows(store.file_of(study)), study.cells) == [
+        "small: 4 cells, 4 with a row in small.rows.jsonl, 0 to run"
+    ]
     more = written(tmp_path, axes=[SPEC["axes"][0], SPEC["axes"][1]])
     before = {r.key: r for r in rows}
-    assert verb.planned(more)[0] == "small: 8 cells, 4 with a row in small.rows.jsonl, 4 to run" and len(verb.planned(more)) == 2
+    assert (
+        cost.plan(more, store.read_rows(store.file_of(more)), more.cells)[0]
+        == "small: 8 cells, 4 with a row in small.rows.jsonl, 4 to run"
+        and len(cost.plan(more, store.read_rows(store.file_of(more)), more.cells)) == 2
+    )
     assert verb.make_rows(more) == 4
     assert {r.key: r for r in page.rows_of(more) if r.key in before} == before
     traced = written(tmp_path, seeds=[1], metrics={**SPEC["metrics"], "bound": "bound_share"})  # a metric of the trace

@@ -53,9 +53,9 @@ def _words(error: ValidationError) -> str:
     return f"{error.validator} {error.validator_value}"
 
 
-def _fault(error: ValidationError) -> str:
+def _fault(error: ValidationError, above: str) -> str:
     """Place, what was found there and what is allowed."""
-    place = "/".join(map(str, error.absolute_path))
+    place = "/".join([above, *map(str, error.absolute_path)] if above else map(str, error.absolute_path))
     below = f"{place}/" if place else ""
     if error.validator == "required":
         missing = next(key for key in error.validator_value if key not in error.instance)
@@ -75,10 +75,10 @@ def read_spec(path: Path, kind: str) -> dict:
     return checked(read_object(path), path, kind)
 
 
-def checked(data: dict, path: Path, kind: str) -> dict:
-    """What was read of a file that is no JSON; otherwise as read_spec."""
+def checked(data: dict, path: Path, kind: str, above: str = "") -> dict:
+    """What was read of a file that is no JSON, or stands at the key `above` of one; otherwise as read_spec."""
     if errors := sorted(_validator(kind).iter_errors(data), key=_order):
-        raise UserError(f"{path}#/{_fault(errors[0])}")
+        raise UserError(f"{path}#/{_fault(errors[0], above)}")
     return data
 
 

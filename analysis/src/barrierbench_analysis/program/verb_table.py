@@ -15,6 +15,10 @@ RUN, PLAN, PAGE, TABLE_PAGE = ("run", ""), ("plan", "--plan"), ("page", "--no-ru
 RENAMED = {
     "neutral": "export-scene"
 }  # old word of the program -> its name; else the word itself is the old name
+# Studies with a spec in configs/studies that were verbs of their own before.
+STUDIES_BEFORE = frozenset(
+    {"ablation", "catalogue", "gap-map", "pareto", "robust", "stress", "work-precision"}
+)
 
 
 class Heading(NamedTuple):

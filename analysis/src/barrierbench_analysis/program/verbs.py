@@ -23,6 +23,7 @@ from .verb_table import (
     PROGRAM,
     RENAMED,
     RUN,
+    STUDIES_BEFORE,
     TABLE,
     WITHOUT,
     Heading,
@@ -74,14 +75,24 @@ def of_program(file: Path = PROGRAM_VERBS) -> tuple[Verb, ...]:
 def of_spec(file: Path) -> Verb:
     """The study of a spec: no line of the table is needed. A spec that cannot be read says so when it
     runs."""
-    command = f"./bench study {file.stem if file.parent == SPECS else file} run"
+    word = file.stem.replace("_", "-")
+    command = f"./bench study {word if file.parent == SPECS else file} run"
     try:
         text = str(read_object(file).get("question", file))
     except UserError:
         text = str(file)
-    name, modes = f"study {file.stem}", (RUN, PLAN, PAGE)
     return Verb(
-        name, "study", PROGRAM, KIT, "", text, command, modes=modes, without=("--plan",), subject=str(file)
+        f"study {word}",
+        "study",
+        PROGRAM,
+        KIT,
+        "",
+        text,
+        command,
+        was=word if word in STUDIES_BEFORE and file.parent == SPECS else "",
+        modes=(RUN, PLAN, PAGE),
+        without=("--plan",),
+        subject=str(file),
     )
 
 

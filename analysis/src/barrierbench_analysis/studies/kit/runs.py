@@ -117,14 +117,21 @@ def inputs_sha256(made: Sweep, overrides: list[str] | None = None, plugins: list
     return found.hexdigest()
 
 
-def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: list[str] | None = None) -> None:
-    """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: UserError
-    with the first line of what the program said; input that it refuses leaves nothing.
+def run(
+    made: Sweep,
+    out: Path,
+    overrides: list[str] | None = None,
+    plugins: list[str] | None = None,
+    jobs: int = 1,
+) -> None:
+    """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file, so many runs at a
+    time. Errors: UserError with the first line of what the program said; input that it refuses leaves
+    nothing.
     """
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / f"{made.name}.json"
         file.write_text(made.text)
-        words = ["--progress", "none"]
+        words = ["--progress", "none", "--jobs", str(jobs)]
         for override in overrides or []:
             words += ["--set", override]
         done = run_sweep(file, out, *words, plugins=plugins or [])

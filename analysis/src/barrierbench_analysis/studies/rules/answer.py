@@ -22,8 +22,6 @@ from barrierbench_analysis.tables.estimate import Cells, wilson
 from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import Ratio, ratio_of_scenes
 
-# What the spec says in `about`: the label of the reference, the levels of another size, label -> name.
-ABOUT = {"reference": str, "large": list, "names": dict}
 RATIOS = ("newton", "products", "seconds")
 HEAD = (
     "formulation",
@@ -92,7 +90,7 @@ def compared(rows: list[Row], study: Study) -> dict[str, dict]:
     """formulation -> its numbers, in the order of the rows, which are of the levels that are compared."""
     names = list(dict.fromkeys(row.place["formulation"] for row in rows))
     of = {name: [row for row in rows if row.place["formulation"] == name] for name in names}
-    reference = {_run(row): row for row in of[study.data["about"]["reference"]]}
+    reference = {_run(row): row for row in of[study.about["reference"]]}
     return {
         name: {"ends": _ends(mine), "gap": _gaps(mine)}
         | {metric: _ratio(mine, reference, metric) for metric in RATIOS}
@@ -106,7 +104,7 @@ def _text(number: Ratio | None) -> str:
 
 def table(found: dict[str, dict], study: Study) -> list[str]:
     """Markdown: one row a formulation. Ratios of the reference are 1 by definition."""
-    words, reference = study.data["about"]["names"], study.data["about"]["reference"]
+    words, reference = study.about["names"], study.about["reference"]
 
     def cells(name: str) -> list[str]:
         numbers = found[name]
@@ -118,7 +116,7 @@ def table(found: dict[str, dict], study: Study) -> list[str]:
 
 def _pairs(rows: list[Row], study: Study) -> str:
     """In how many runs of how many scenes both the reference and each other formulation end ok."""
-    words, reference = study.data["about"]["names"], study.data["about"]["reference"]
+    words, reference = study.about["names"], study.about["reference"]
     good = {(row.place["formulation"], _run(row)) for row in rows if row.outcome == OK}
     found = []
     for name, word in words.items():
@@ -130,7 +128,7 @@ def _pairs(rows: list[Row], study: Study) -> str:
 
 def _ended(rows: list[Row], study: Study) -> list[str]:
     """Markdown: which outcomes the runs of each formulation have."""
-    words = study.data["about"]["names"]
+    words = study.about["names"]
     counts: dict[tuple[str, str], dict[str, int]] = defaultdict(lambda: defaultdict(int))
     for row in rows:
         counts[words[row.place["formulation"]], row.outcome][row.place["level"]] += 1
@@ -143,7 +141,7 @@ def _ended(rows: list[Row], study: Study) -> list[str]:
 
 def rule(study: Study, rows: list[Row]) -> dict:
     """The numbers of the page and of README."""
-    large = set(study.data["about"]["large"])
+    large = set(study.about["large"])
     small_rows = [row for row in rows if row.place["level"] not in large]
     large_rows = [row for row in rows if row.place["level"] in large]
     small, finer = compared(small_rows, study), compared(large_rows, study)

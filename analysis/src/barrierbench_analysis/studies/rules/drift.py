@@ -18,7 +18,6 @@ from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import ratio_of_scenes
 
-ABOUT = {"names": dict}  # what the spec says in `about`: label -> name of a formulation
 FLOOR = 1e-12  # shares below it are rounding
 
 
@@ -33,7 +32,7 @@ def _share(row: Row) -> float | None:
 def rule(study: Study, rows: list[Row]) -> dict:
     """The table of the page."""
     body = []
-    for label, name in study.data["about"]["names"].items():
+    for label, name in study.about["names"].items():
         mine = [row for row in rows if row.place["formulation"] == label]
         ended = [row for row in mine if _share(row) is not None]
         of_scene: dict[str, list[float]] = defaultdict(list)

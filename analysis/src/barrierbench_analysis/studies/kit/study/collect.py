@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
 
-from barrierbench_analysis.io.digests import of_text
-from barrierbench_analysis.io.origin import ID_DIGITS, origin, seconds_of_run
+from barrierbench_analysis.io.origin import origin, run_of, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.studies.kit import runs
 from barrierbench_analysis.tables.numbers import rounded
@@ -17,13 +18,26 @@ from .spec import Cell, Study
 
 RUNS = ROOT / "results" / "runs" / "studies"
 DIGITS = 12  # of a kept number
-FOLDER_DIGITS = 12  # of the name of a folder of runs
+KEY_DIGITS = 10  # in the label of a run, so that runs of other settings may lie beside it
+AT_ONCE = 60  # runs of one sweep, whose rows are kept together
+
+
+def sources_of(study: Study) -> dict[str, str]:
+    """Value of a row -> where it comes from: metrics of the spec, and what the rule measures itself
+    (MEASURED: name -> what it is, whose change makes rows anew)."""
+    return {**study.data["metrics"], **getattr(study.module, "MEASURED", {})}
 
 
 def missing(study: Study, rows: dict[str, store.Row]) -> list[Cell]:
-    """Cells without a row, or whose row lacks a metric of today from where the spec takes it now."""
-    now = study.data["metrics"].items()
-    return [cell for cell in study.cells if cell.key not in rows or not now <= rows[cell.key].sources.items()]
+    """Cells without a row, or whose row lacks a value of today from where it is taken now; without those that
+    need no run, since others decide them (function `decided` of the rule: rows -> keys)."""
+    now = sources_of(study).items()
+    decided = getattr(study.module, "decided", lambda *_: set())(study, rows)
+    return [
+        cell
+        for cell in study.cells
+        if cell.key not in decided and (cell.key not in rows or not now <= rows[cell.key].sources.items())
+    ]
 
 
 def _at(record: dict, pointer: str) -> float | None:
@@ -38,31 +52,42 @@ def _at(record: dict, pointer: str) -> float | None:
 
 
 def row_of(study: Study, cell: Cell, record: dict) -> store.Row:
-    """The row of one record, as runs.collect has it."""
+    """The row of one record, as runs.collect has it. The function `measure` of a rule (study, cell, record)
+    gives the values that MEASURED names."""
     values = {
         name: _at(record, source) if source.startswith("/") else runs.metric(record, source)
         for name, source in study.data["metrics"].items()
     }
+    if hasattr(study.module, "measure"):
+        values |= study.module.measure(study, cell, record)
+    sources = sources_of(study)
     return store.Row(
         key=cell.key,
         place=cell.place,
         outcome=outcome_of(record),
-        values=rounded(values, DIGITS),
-        sources=study.data["metrics"],
+        values={name: rounded(values[name], DIGITS) for name in sources},
+        sources=sources,
         unknowns=record["scene"]["free_dofs"],
         seconds=round(seconds_of_run(record), 3),
-        run=record["ids"]["run_id"][:ID_DIGITS],
+        run=run_of(record),
         origin=origin([record]),
     )
 
 
-def run_cells(study: Study, cells: list[Cell], folder: Path | None = None) -> list[store.Row]:
-    """Runs these cells as one sweep, in a folder of their own, and reads their records. Runs that are there
-    already are not repeated. Errors: UserError. Cost: the runs.
+def parts(cells: list[Cell]) -> Iterator[list[Cell]]:
+    """Cells of one base in their order, at most AT_ONCE of them: what one sweep runs."""
+    for _, of_base in groupby(cells, key=lambda cell: cell.base):
+        mine = list(of_base)
+        yield from (mine[at : at + AT_ONCE] for at in range(0, len(mine), AT_ONCE))
+
+
+def run_cells(study: Study, cells: list[Cell], jobs: int = 1, folder: Path | None = None) -> list[store.Row]:
+    """Runs these cells of one base as one sweep, so many at a time. Runs whose records are there already are
+    not repeated. Errors: UserError. Cost: the runs.
     """
-    out = (folder or RUNS) / study.name / of_text(" ".join(cell.key for cell in cells))[:FOLDER_DIGITS]
-    cases = [{"label": cell.label, "set": cell.settings} for cell in cells]
-    made = runs.sweep(study.name, study.base, study.data.get("set", {}), cases)
-    runs.run(made, out)
+    out = (folder or RUNS) / study.name
+    cases = [{"label": f"{cell.label} {cell.key[:KEY_DIGITS]}", "set": cell.settings} for cell in cells]
+    made = runs.sweep(study.name, cells[0].base, study.data.get("set", {}), cases)
+    runs.run(made, out, jobs=jobs)
     records = runs.collect(made, out)
     return [row_of(study, cell, records[note]) for cell, note in zip(cells, made.notes, strict=True)]

@@ -1,18 +1,17 @@
-"""The page of a study: its template, filled with what its rule makes of the rows."""
+"""The page of a study and its figures: its template, filled with what its rule makes of the rows."""
 
 from __future__ import annotations
 
-import importlib
+import tempfile
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 
 from jinja2 import Environment, StrictUndefined
 from jinja2.exceptions import TemplateError
 
+from barrierbench_analysis.figures.figure_files import copy_to_page
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.spec_file import refused
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.tables.words import counted
 
@@ -20,45 +19,30 @@ from . import store
 from .collect import missing
 from .spec import Study
 
-RULES = "barrierbench_analysis.studies.rules"
-WORDS = {str: "a text", dict: "an object", list: "a list"}
-
-
-def module_of(study: Study) -> ModuleType:
-    """studies/rules/NAME.py. Errors: UserError where there is none, or where the spec lacks a key of `about`
-    that the rule reads (its ABOUT)."""
-    try:
-        found = importlib.import_module(f"{RULES}.{study.name}")
-    except ModuleNotFoundError as fault:
-        if fault.name != f"{RULES}.{study.name}":
-            raise
-        raise UserError(
-            f"{study.file}#/name: found {study.name!r}; allowed: a study whose rule is"
-            f" analysis/src/barrierbench_analysis/studies/rules/{study.name}.py"
-        ) from None
-    about = study.data.get("about", {})
-    for key, kind in found.ABOUT.items():
-        if not isinstance(about.get(key), kind):
-            raise refused(study.file, f"about/{key}", about.get(key), f"{WORDS[kind]} of the rule")
-    return found
-
 
 def rows_of(study: Study) -> list[store.Row]:
     """The kept rows of the cells that the spec asks for today, in its order. Errors: UserError where one is
-    missing, so that no number is of a part of the cells.
+    missing, so that no number is of a part of the cells; a rule whose page says what was not run (PARTIAL)
+    is given what there is.
     """
     rows = store.read_rows(store.file_of(study))
-    if lacking := missing(study, rows):
+    lacking = missing(study, rows)
+    if lacking and not getattr(study.module, "PARTIAL", False):
         raise UserError(
             f"{store.file_of(study)}: {counted(len(lacking), 'cell')} of {len(study.cells)} without a"
-            f" row, the first {lacking[0].label!r}; ./bench study {study.name} run makes them"
+            f" row, the first {lacking[0].label!r}; {study.command} run makes them"
         )
-    return [replace(rows[cell.key], place=cell.place) for cell in study.cells]  # labels of today
+    without = {cell.key for cell in lacking}
+    return [
+        replace(rows[cell.key], place=cell.place)  # labels of today
+        for cell in study.cells
+        if cell.key in rows and cell.key not in without
+    ]
 
 
 def numbers_of(study: Study) -> dict:
     """What the rule makes of the kept rows. Errors: UserError."""
-    return module_of(study).rule(study, rows_of(study))
+    return study.module.rule(study, rows_of(study))
 
 
 def made_of(rows: list[store.Row]) -> str:
@@ -79,7 +63,7 @@ def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
         "name": study.name,
         "question": study.data["question"],
         "made": made_of(rows),
-        "command": f"./bench study {study.name if study.is_ours else study.file} run",
+        "command": f"{study.command} run",
         "spec": study.file.name,
     }
     try:
@@ -89,8 +73,17 @@ def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
 
 
 def write_page(study: Study) -> Path:
-    """Writes the page of the study from its kept rows. Errors: UserError."""
+    """Writes the page of the study from its kept rows, and the figures that its rule draws (function `draw`:
+    study, rows, numbers, folder -> files). Errors: UserError.
+    """
     rows = rows_of(study)
-    numbers = module_of(study).rule(study, rows)
+    if not rows:
+        raise UserError(
+            f"{store.file_of(study)}: found no row; allowed: some; {study.command} run makes them"
+        )
+    numbers = study.module.rule(study, rows)
     write_whole(study.page, text_of(study, rows, numbers))
+    if hasattr(study.module, "draw"):
+        with tempfile.TemporaryDirectory() as scratch:
+            copy_to_page(study.module.draw(study, rows, numbers, Path(scratch)), study.figures)
     return study.page

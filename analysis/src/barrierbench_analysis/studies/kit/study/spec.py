@@ -2,34 +2,53 @@
 
 from __future__ import annotations
 
+import importlib
 import itertools
 import json
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import ModuleType
 
 from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.io.spec_file import read_spec, refused, require_base
+from barrierbench_analysis.io.spec_file import checked, read_spec, refused, require_base
 from barrierbench_analysis.studies.kit import runs
 from barrierbench_analysis.studies.kit.metrics import METRICS
 
 FOLDER = ROOT / "configs" / "studies"
+ABOUT = ROOT / "configs" / "schema" / "about"  # RULE.schema.json: what the key `about` of its specs holds
+RULES = "barrierbench_analysis.studies.rules"
 SEED, SEED_POINTER = "seed", "/seeds/main"
+KEY_DIGITS = 24
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run that the rule of a study asks for, in place of a combination of axes. place: the label of every
+    axis. base: another config than that of the spec. unknowns: where the rule knows them before the run.
+    """
+
+    place: dict[str, str]
+    settings: dict
+    base: Path | None = None
+    unknowns: int | None = None
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One run that a study asks for. place: the label of every axis. key: hash of all that the run is made
-    of but the program, the content of files included, of a film that of its first frame; two cells with one
-    key are one run.
+    """One run that a study asks for. key: hash of all that the run is made of but the program, the content
+    of files included, of a film that of its first frame; two cells with one key are one run.
     """
 
     place: dict[str, str]
     settings: dict
     key: str
+    base: Path
+    unknowns: int | None = None
 
     @property
     def label(self) -> str:
@@ -48,6 +67,10 @@ class Study:
         return self.data["name"]
 
     @property
+    def about(self) -> dict:
+        return self.data.get("about", {})
+
+    @property
     def base(self) -> Path:
         return self.file.parent / self.data["base"]
 
@@ -62,36 +85,84 @@ class Study:
 
     @property
     def template(self) -> Path:
-        return self.file.with_suffix(".md")
+        """That of the rule, which a spec of one's own may have beside it."""
+        own = self.file.with_suffix(".md")
+        return own if self.is_ours or own.is_file() else FOLDER / f"{self.rule}.md"
 
     @property
-    def names(self) -> list[str]:
-        return [name for axis in self.data["axes"] for name in axis["names"]] + [SEED]
+    def figures(self) -> Path:
+        """The folder of the pictures that the page shows."""
+        return ROOT / "docs" if self.is_ours else self.file.parent
+
+    @property
+    def command(self) -> str:
+        return f"./bench study {self.name.replace('_', '-') if self.is_ours else self.file}"
+
+    @property
+    def rule(self) -> str:
+        return self.data.get("rule", self.name)
+
+    @cached_property
+    def module(self) -> ModuleType:
+        """The rule: studies/rules/RULE. Errors: UserError where there is none, or where `about` is not what
+        it reads (its schema)."""
+        try:
+            found = importlib.import_module(f"{RULES}.{self.rule}")
+        except ModuleNotFoundError as fault:
+            if fault.name != f"{RULES}.{self.rule}":
+                raise
+            raise UserError(
+                f"{self.file}#/rule: found {self.rule!r}; allowed: a study whose rule is"
+                f" analysis/src/barrierbench_analysis/studies/rules/{self.rule}.py"
+            ) from None
+        if (ABOUT / f"{self.rule}.schema.json").is_file():
+            checked(self.about, self.file, f"about/{self.rule}", "about")
+        elif self.about:
+            raise refused(
+                self.file, "about", self.about, f"nothing, since the rule {self.rule!r} reads none,"
+            )
+        return found
 
     @cached_property
     def cells(self) -> list[Cell]:
-        """The product of all axes and seeds, the last axis fastest. Errors: UserError for a label with
-        another number of words than its axis has names, or two cells that are one run.
+        """What the rule asks for (its function `cells`), or the product of all axes and seeds, the last axis
+        fastest. Errors: UserError for two cells that are one run, and what the rule refuses.
         """
-        axes = [
-            [(_place(self.file, k, axis["names"], case["label"]), case["set"]) for case in axis["cases"]]
-            for k, axis in enumerate(self.data["axes"])
-        ]
-        axes.append([({SEED: str(seed)}, {SEED_POINTER: seed}) for seed in self.data["seeds"]])
-        found = [self._cell(chosen) for chosen in itertools.product(*axes)]
+        asked = getattr(self.module, "cells", product)(self)
+        found = [self._cell(case) for case in asked]
         counts = Counter(cell.key for cell in found)
         if twice := next((cell for cell in found if counts[cell.key] > 1), None):
             raise refused(self.file, "axes", twice.label, "another run for each combination of cases")
         return found
 
-    def _cell(self, chosen: tuple[tuple[dict, dict], ...]) -> Cell:
+    @cached_property
+    def names(self) -> list[str]:
+        """Of the axes."""
+        return list(self.cells[0].place) if self.cells else []
+
+    def _cell(self, case: Case) -> Cell:
+        base, common = case.base or self.base, self.data.get("set", {})
+        made = runs.sweep(self.name, base, common, [{"label": "cell", "set": case.settings}])
+        content = {"set": common, "cell": case.settings, "files": runs.inputs_sha256(made)}
+        key = of_text(json.dumps(content, sort_keys=True))[:KEY_DIGITS]
+        return Cell(case.place, case.settings, key, base, case.unknowns)
+
+
+def product(study: Study) -> Iterable[Case]:
+    """The combinations of the cases of all axes and of the seeds, the last axis fastest. Errors: UserError
+    for a label with another number of words than its axis has names, or an axis that is there twice.
+    """
+    axes = [
+        [(_place(study.file, k, axis["names"], case["label"]), case["set"]) for case in axis["cases"]]
+        for k, axis in enumerate(study.data["axes"])
+    ]
+    axes.append([({SEED: str(seed)}, {SEED_POINTER: seed}) for seed in study.data["seeds"]])
+    names = [name for axis in study.data["axes"] for name in axis["names"]] + [SEED]
+    if len(set(names)) < len(names):
+        raise refused(study.file, "axes", names, "another name for each axis, none of them 'seed',")
+    for chosen in itertools.product(*axes):
         place = {name: word for labels, _ in chosen for name, word in labels.items()}
-        settings = {pointer: value for _, of in chosen for pointer, value in of.items()}
-        made = runs.sweep(
-            self.name, self.base, self.data.get("set", {}), [{"label": "cell", "set": settings}]
-        )
-        content = {"set": self.data.get("set", {}), "cell": settings, "files": runs.inputs_sha256(made)}
-        return Cell(place, settings, of_text(json.dumps(content, sort_keys=True))[:24])
+        yield Case(place, {pointer: value for _, of in chosen for pointer, value in of.items()})
 
 
 def _place(file: Path, number: int, names: list[str], label: str) -> dict[str, str]:
@@ -114,8 +185,8 @@ def read_study(name: str) -> Study:
     if data["name"] != file.stem:
         raise refused(file, "name", data["name"], f"{file.stem!r}, as its file is called,")
     study = Study(file, data)
-    if len(set(study.names)) < len(study.names):
-        raise refused(file, "axes", study.names, "another name for each axis, none of them 'seed',")
+    if not hasattr(study.module, "cells") and not {"axes", "seeds"} <= data.keys():
+        raise refused(file, "axes", data.get("axes"), "axes and seeds, since the rule makes no cells,")
     return study
 
 

@@ -1,6 +1,9 @@
-"""The rows of a study, one JSON object a line: results/studies/NAME.jsonl. A row belongs to the key of its
-cell and is never changed by another one. Rows are added at the end; a row is made again alone where the spec
-takes a metric from elsewhere than it did.
+"""The rows of a study, results/studies/NAME.jsonl. A row belongs to the key of its cell and is never changed
+by another one. Rows are added at the end; a row is made again alone where the spec takes a metric from
+elsewhere than it did.
+
+One JSON value a line: an object says what the rows below it share (names of the axes, where each value comes
+from, and what made them), an array is a row.
 """
 
 from __future__ import annotations
@@ -19,27 +22,43 @@ from .spec import Study
 
 FOLDER = ROOT / "results" / "studies"
 BESIDE = ".rows.jsonl"  # behind the name of a spec that is none of this tree: its rows lie beside it
-SCHEMA = "barrierbench.study_rows/1"
+SCHEMA = "barrierbench.study_rows/2"
+FIRST = json.dumps({"schema": SCHEMA})
+OF_ROW = ("key", "outcome", "unknowns", "seconds", "run")  # before the words of the place and the values
 
 
 @dataclass(frozen=True)
 class Row:
-    """What a study keeps of a run. values: metric -> number; None where the record has none."""
+    """What a study keeps of a run. values: metric -> number, text or list; None where the record has none."""
 
     key: str
     place: dict[str, str]
     outcome: str
-    values: dict[str, float | None]
-    sources: dict[str, str]  # metric -> where its number is in a record, as the spec had it
+    values: dict
+    sources: dict[str, str]  # metric -> where its number is from, as the spec or the rule had it
     unknowns: int
     seconds: float  # of the whole run, from start to end
     run: str  # the first digits of run_id
     origin: dict[str, str]  # date, machine, commit, build
 
+    @property
+    def shared(self) -> dict:
+        return {"axes": list(self.place), "sources": self.sources, "origin": self.origin}
+
 
 def file_of(study: Study) -> Path:
     """Rows of a spec of this tree are kept with its results; those of another one lie beside it."""
     return FOLDER / f"{study.name}.jsonl" if study.is_ours else study.file.with_suffix(BESIDE)
+
+
+def _row(line: list, shared: dict) -> Row:
+    """Errors: ValueError for another number of entries."""
+    names = [*OF_ROW, *shared["axes"], *shared["sources"]]
+    found = dict(zip(names, line, strict=True))
+    place = {name: found[name] for name in shared["axes"]}
+    values = dict(zip(shared["sources"], line[len(names) - len(shared["sources"]) :], strict=True))
+    of_row = dict(zip(OF_ROW, line))
+    return Row(place=place, values=values, sources=shared["sources"], origin=shared["origin"], **of_row)
 
 
 def read_rows(path: Path) -> dict[str, Row]:
@@ -49,13 +68,18 @@ def read_rows(path: Path) -> dict[str, Row]:
     if not path.is_file():
         return {}
     first, *lines = input_file.read_text(path).splitlines() or [""]
-    if first != json.dumps({"schema": SCHEMA}):
-        raise UserError(f"{path}: line 1: found {first[:60]!r}; allowed: {json.dumps({'schema': SCHEMA})}")
+    if first != FIRST:
+        raise UserError(f"{path}: line 1: found {first[:60]!r}; allowed: {FIRST}")
     found: dict[str, Row] = {}
+    shared: dict = {}
     for number, line in enumerate(lines, 2):
         try:
-            row = Row(**json.loads(line))
-        except (ValueError, TypeError) as fault:
+            data = json.loads(line)
+            if isinstance(data, dict):
+                shared = {name: data[name] for name in ("axes", "sources", "origin")}
+                continue
+            row = _row(data, shared)
+        except (ValueError, TypeError, KeyError) as fault:
             raise UserError(f"{path}: line {number}: {fault}; allowed: a row of ./bench study") from None
         if row.key in found:
             raise UserError(
@@ -75,7 +99,14 @@ def added(kept: dict[str, Row], new: list[Row], replace: bool = False) -> dict[s
 
 
 def write_rows(path: Path, rows: dict[str, Row]) -> None:
-    """Errors: UserError where the disk is full, and then the file is as it was."""
-    lines = [json.dumps({"schema": SCHEMA})]
-    lines += [json.dumps(asdict(row), sort_keys=True, allow_nan=False) for row in rows.values()]
+    """Errors: UserError where the disk is full, and then the file is as it was; ValueError for a number that
+    is not finite.
+    """
+    lines, shared = [FIRST], None
+    for row in rows.values():
+        if row.shared != shared:
+            shared = row.shared
+            lines.append(json.dumps(shared))
+        line = [*(getattr(row, name) for name in OF_ROW), *row.place.values(), *row.values.values()]
+        lines.append(json.dumps(line, separators=(",", ":"), allow_nan=False))
     write_whole(path, "\n".join(lines) + "\n")

@@ -1,7 +1,8 @@
 """./bench study NAME run | plan | page, of every spec in configs/studies.
 
-run: makes the runs that have no row, keeps their rows, writes the page. plan: counts the cells, those that
-have a row, and what the rest is expected to take. page: writes the page from the kept rows.
+run: makes the runs that have no row, keeps their rows, writes the page and its figures; stop it and call it
+again, and it goes on. plan: counts the cells, those that have a row, and what the rest is expected to take.
+page: writes the page from the kept rows.
 
 Exit codes: 0 done, 2 a spec that cannot be read, or a page whose cells are not all there.
 """
@@ -9,20 +10,19 @@ Exit codes: 0 done, 2 a spec that cannot be read, or a page whose cells are not 
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
+import sys
+import time
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import tells
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.program.arguments import finite_number, parser_of
 from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.program.verbs import of_spec
 from barrierbench_analysis.tables.words import counted
 
-from . import page, store
-from .collect import missing, run_cells
-from .spec import SEED, Cell, Study, read_study
-
-AT_ONCE = 60  # runs whose rows are kept together: what an interrupt loses at most is their reading
+from . import cost, page, store
+from .collect import missing, parts, run_cells
+from .spec import Cell, Study, read_study
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
@@ -31,47 +31,87 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(row.name, __doc__, row=row)
     parser.add_argument("--plan", action="store_true", help="counts cells and expected seconds; runs nothing")
     parser.add_argument("--no-run", action="store_true", help="writes the page from the kept rows")
-    return parser.parse_args(argv[1:])
+    parser.add_argument(
+        "--only",
+        action="append",
+        default=[],
+        metavar="AXIS=LABEL[,LABEL]",
+        help="runs the cells with one of these labels on the axis alone; several times: on all of them",
+    )
+    parser.add_argument(
+        "--part", metavar="NAME", help="runs no more than the part of the spec with this name (key `parts`)"
+    )
+    parser.add_argument(
+        "--minutes", type=finite_number, metavar="M", help="begins no further sweep after so many minutes"
+    )
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs at a time (default 1)")
+    args = parser.parse_args(argv[1:])
+    if args.jobs < 1:
+        raise UserError(f"--jobs: found {args.jobs}; allowed: a number from 1 on")
+    if args.minutes is not None and not args.minutes > 0:
+        raise UserError(f"--minutes: found {args.minutes}; allowed: a number above 0")
+    return args
 
 
-def planned(study: Study) -> list[str]:
-    """Lines: cells, those with a row, and what the rest takes as far as kept rows tell."""
-    rows = store.read_rows(store.file_of(study))
-    lacking = missing(study, rows)
-    lines = [
-        f"{study.name}: {counted(len(study.cells), 'cell')}, {len(study.cells) - len(lacking)} with a row in"
-        f" {store.file_of(study).name}, {len(lacking)} to run"
-    ]
-    kept = [replace(rows[cell.key], place=cell.place) for cell in study.cells if cell.key in rows]
-    known = [seconds for cell in lacking if (seconds := _expected(cell, kept)) is not None]
-    if known:
-        lines.append(f"about {sum(known):.0f} s of one core for {counted(len(known), 'run')} of these")
-    if unknown := len(lacking) - len(known):
-        lines.append(f"{counted(unknown, 'run')} without a kept row whose labels are alike: not estimated")
-    return lines
+def _asked(texts: list[str]) -> dict[str, list[str]]:
+    """--only as axis -> labels. Errors: UserError for another form."""
+    found: dict[str, list[str]] = {}
+    for text in texts:
+        axis, equals, labels = text.partition("=")
+        if not axis or not equals or not labels:
+            raise UserError(f"--only: found {text!r}; allowed: AXIS=LABEL, several labels with commas")
+        found[axis] = labels.split(",")
+    return found
 
 
-def _expected(cell: Cell, rows: list[store.Row]) -> float | None:
-    """Seconds: mean of the rows that differ in at most one label, where each label of the cell stands in some
-    row; None without any.
+def chosen(study: Study, only: list[str], part: str | None) -> list[Cell]:
+    """The cells that a call may run. Errors: UserError for an axis or a label that no cell has, or a part
+    that the spec does not name.
     """
-    if any(all(row.place[name] != word for row in rows) for name, word in cell.place.items() if name != SEED):
-        return None
-    near = [row.seconds for row in rows if sum(row.place[n] != word for n, word in cell.place.items()) <= 1]
-    return sum(near) / len(near) if near else None
+    wanted = [(f"--only {axis}", axis, labels) for axis, labels in _asked(only).items()]
+    if part is not None:
+        known = study.data.get("parts", {})
+        if part not in known:
+            raise UserError(
+                f"--part: found {part!r}; allowed: {', '.join(known) or 'none, by ' + str(study.file)}"
+            )
+        wanted += [
+            (f"{study.file}#/parts/{part}/{axis}", axis, labels) for axis, labels in known[part].items()
+        ]
+    cells = study.cells
+    for place, axis, labels in wanted:
+        if axis not in study.names:
+            raise UserError(f"{place}: found {axis!r}; allowed: {', '.join(study.names)}")
+        there = list(dict.fromkeys(cell.place[axis] for cell in study.cells))
+        if unknown := next((label for label in labels if label not in there), None):
+            raise UserError(f"{place}: found {unknown!r}; allowed: {', '.join(there)}")
+        cells = [cell for cell in cells if cell.place[axis] in labels]
+    return cells
 
 
-def make_rows(study: Study) -> int:
-    """Runs what is missing and keeps it, a part at a time. Returns how many runs were made."""
-    file = store.file_of(study)
+def make_rows(
+    study: Study, cells: list[Cell] | None = None, jobs: int = 1, minutes: float | None = None
+) -> int:
+    """Runs what is missing of the cells, all without any, and keeps it, a sweep at a time. Returns how many
+    runs were made.
+    """
+    file, begun, made = store.file_of(study), time.monotonic(), 0
     rows = store.read_rows(file)
-    lacking = missing(study, rows)
-    for start in range(0, len(lacking), AT_ONCE):
-        new = run_cells(study, lacking[start : start + AT_ONCE])
-        rows = store.added(rows, new, replace=True)  # of rows that lack a metric of today
+    keys = {cell.key for cell in (study.cells if cells is None else cells)}
+    lacking = [cell for cell in missing(study, rows) if cell.key in keys]
+    for part in parts(lacking):
+        if minutes is not None and time.monotonic() - begun > 60 * minutes:
+            break
+        left = {cell.key for cell in missing(study, rows)}  # fewer, where new rows decide others
+        if not (asked := [cell for cell in part if cell.key in left]):
+            continue
+        rows = store.added(
+            rows, run_cells(study, asked, jobs), replace=True
+        )  # of rows without a value of today
         store.write_rows(file, rows)
-        print(f"{study.name}: {len(lacking) - len(missing(study, rows))} of {len(lacking)} runs")
-    return len(lacking)
+        made += len(asked)
+        print(f"{study.name}: {made} of {len(lacking)} runs", file=sys.stderr)
+    return made
 
 
 def main(argv: list[str]) -> int:
@@ -82,13 +122,13 @@ def main(argv: list[str]) -> int:
 def _main(argv: list[str]) -> int:
     args = arguments(argv)
     study = read_study(argv[0])
-    page.module_of(study)
+    cells = chosen(study, args.only, args.part)
     if args.plan:
-        print("\n".join(planned(study)))
+        print("\n".join(cost.plan(study, store.read_rows(store.file_of(study)), cells)))
         return 0
     if not args.no_run:
         built_program()
-        made = make_rows(study)
+        made = make_rows(study, cells, args.jobs, args.minutes)
         print(f"{study.name}: {counted(made, 'new row')} in {store.file_of(study).name}")
     print(page.write_page(study))
     return 0
