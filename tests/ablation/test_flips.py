@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from barrierbench_analysis.studies.ablation.flips import EXACT, sign_flip
+from barrierbench_analysis.studies.rules.ablation.flips import EXACT, sign_flip
 
 
 def by_hand(values) -> float:

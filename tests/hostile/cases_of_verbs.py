@@ -27,7 +27,7 @@ def named(verb: str, kind: str, content: Content, words: tuple, says: str, name:
 
 READERS = {  # a verb whose file is x: its words
     "gate compare": ("x", "x"), "gate run": ("--record", "x", "--baseline", "x"), "gate accept": ("--record", "x", "--baseline", "b.json", "--reason", "r"), "draw figure": ("x",),
-    "study match": ("x",), "study gap-map": ("x",), "study work-precision": ("x",), "study ablation": ("x",),
+    "study match": ("x",), "study gap-map": ("x",), "study work-precision": ("x",),
 }
 SPECIAL = {"fifo": fifo, "zero": link_to("/dev/zero")}
 HUGE_MATRIX = "%%MatrixMarket matrix coordinate real symmetric\n2000000000 2000000000 1\n1 1 1\n"

@@ -21,8 +21,6 @@ from barrierbench_analysis.pages.stated.check import faults as disagreements
 from barrierbench_analysis.pages.stated.cost import gather as gather_cost
 from barrierbench_analysis.program.arguments import parser_of
 from barrierbench_analysis.program.start import built_program
-from barrierbench_analysis.studies.ablation import table as ablation_table
-from barrierbench_analysis.studies.ablation.factors import read_factorial
 from barrierbench_analysis.studies.claims import table as claims_table
 from barrierbench_analysis.studies.gap_map import table as map_table
 from barrierbench_analysis.studies.kit.study import page as study_page
@@ -37,7 +35,6 @@ from .snippets import faults
 from .templates import PARTS, filled, lacking
 
 PAGES = tuple(PARTS)
-ABLATION = ROOT / "configs" / "ablation" / "default.json"
 # Pages whose snippets are checked and which have no generated numbers.
 MORE = ("CONTRIBUTING.md", "docs/**/*.md", "examples/cluster/README.md")
 
@@ -51,7 +48,7 @@ def kept() -> dict:
         "answer": study_page.numbers_of(read_study("answer"))["table"],
         "slices": gather_slices(claims, found),
         "gap_map": gather_map(),
-        "several": several.gather(claims, found, read_factorial(ABLATION), ablation_table.read()),
+        "several": several.gather(claims, found, read_study("ablation")),
     }
     return read() | studies | {"cost": gather_cost()}
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.studies.kit.study.store import read_rows
 
 RESULTS = ROOT / "results"
 CORES = (4, 64)  # of a laptop and of a node
@@ -49,6 +50,11 @@ def _counted(seconds: list[float]) -> tuple[int, float]:
     return len(seconds), sum(seconds)
 
 
+def _of_rows(file: Path) -> tuple[int, float]:
+    """Of a study of the kit."""
+    return _counted([row.seconds for row in read_rows(file).values()])
+
+
 STUDIES = {
     "claims": ("claims.json", "./bench study claims", _claims),
     "gap map": ("gap_map.json", "./bench study gap-map", lambda d: _counted(_column(d, "seconds"))),
@@ -60,7 +66,7 @@ STUDIES = {
     "work-precision": ("work_precision.json", "./bench study work-precision", _work_precision),
     "catalogue": ("catalogue.json", "./bench study catalogue", _catalogue),
     "stress suite": ("stress.json", "./bench study stress", _stress),
-    "ablation": ("ablation.json", "./bench study ablation", lambda d: _counted(_column(d, "core_s"))),
+    "ablation": ("studies/ablation.jsonl", "./bench study ablation", None),
 }
 
 
@@ -74,7 +80,7 @@ def gather(folder: Path = RESULTS) -> list[dict]:
 def _studies(folder: Path) -> Iterator[dict]:
     for study, (name, command, read) in STUDIES.items():
         if (folder / name).is_file():
-            runs, core_s = read(read_object(folder / name))
+            runs, core_s = read(read_object(folder / name)) if read else _of_rows(folder / name)
             yield {"study": study, "command": command, "runs": runs, "core_s": core_s}
 
 

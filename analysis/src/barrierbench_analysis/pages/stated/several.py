@@ -9,12 +9,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from barrierbench_analysis.io.text_table import markdown
-from barrierbench_analysis.studies.ablation import table as ablation_table
-from barrierbench_analysis.studies.ablation.factors import Factorial
 from barrierbench_analysis.studies.claims.table import Table
 from barrierbench_analysis.studies.gap_map.compare import METRICS
 from barrierbench_analysis.studies.gap_map.spec import REFERENCE
 from barrierbench_analysis.studies.gap_map.table import Map
+from barrierbench_analysis.studies.kit.study.spec import Study
 
 from .number import OFF, OWN, SAME, Number
 from .sources import of_ablation, of_claims, of_map
@@ -24,10 +23,10 @@ OF_MAP = {"off": (0.1, 0.01, 0.001), "on": (0.1, 0.01, 0.001), "contact": (0.1,)
 HEADS = {"cond_p95": "cond, raw", "bj_p95": "cond, block Jacobi", "pcg": "PCG", "newton": "Newton"}
 
 
-def gather(table: Table, found: Map, factorial: Factorial, ablation: ablation_table.Table) -> list[Number]:
+def gather(table: Table, found: Map, ablation: Study) -> list[Number]:
     """Of every shape that two studies or more set beside the log; claims first, then gap map and ablation."""
     claims = [n for n in of_claims(table) if n.case == REFERENCE]
-    effects = of_ablation(factorial, ablation)
+    effects = of_ablation(ablation)
     elsewhere = {n.over for n in (*claims, *effects)}
     of = [
         number

@@ -6,9 +6,6 @@ import math
 import re
 from collections.abc import Iterator
 
-from barrierbench_analysis.studies.ablation import table as ablation_table
-from barrierbench_analysis.studies.ablation.effects import main_effects
-from barrierbench_analysis.studies.ablation.factors import Factorial
 from barrierbench_analysis.studies.claims import registry
 from barrierbench_analysis.studies.claims.entry import Claim, ids, read_claim
 from barrierbench_analysis.studies.claims.judge import judge_part, missing
@@ -18,6 +15,10 @@ from barrierbench_analysis.studies.claims.verdict import Judged
 from barrierbench_analysis.studies.gap_map.compare import METRICS, at_theta
 from barrierbench_analysis.studies.gap_map.spec import REFERENCE
 from barrierbench_analysis.studies.gap_map.table import Map
+from barrierbench_analysis.studies.kit.study import page
+from barrierbench_analysis.studies.kit.study.spec import Study
+from barrierbench_analysis.studies.rules.ablation.effects import main_effects
+from barrierbench_analysis.studies.rules.ablation.factors import read_factorial
 
 from .number import ALIKE, OFF, OWN, SAME, Number
 
@@ -131,11 +132,12 @@ def of_map(found: Map, shape: str, limit: str, theta: float) -> list[Number]:
     return numbers
 
 
-def of_ablation(factorial: Factorial, table: ablation_table.Table) -> list[Number]:
+def of_ablation(study: Study) -> list[Number]:
     """Main effects of the shapes, turned."""
-    numbers = []
+    factorial, rows, numbers = read_factorial(study), page.rows_of(study), []
+    sizes = [row.unknowns for row in rows]
     for metric, name in OF_ABLATION.items():
-        for effect in main_effects(factorial, table, metric):
+        for effect in main_effects(factorial, rows, metric):
             factor, level = effect.term.parts[0]
             labels = factorial.factors[factor].labels
             if labels[0] == REFERENCE and effect.low is not None:
@@ -150,7 +152,7 @@ def of_ablation(factorial: Factorial, table: ablation_table.Table) -> list[Numbe
                         "ablation",
                         False,
                         len(effect.scenes),
-                        (45, 165),
+                        (min(sizes), max(sizes)),
                         mean,
                         low,
                         high,

@@ -16,10 +16,10 @@ from itertools import combinations
 
 import numpy as np
 
-from .factors import Factorial
+from .factors import Combination, Factorial
 
 Part = tuple[int, int]  # factor, level
-Contexts = dict[Part, set[tuple[int, ...]]]
+Contexts = dict[Part, set[Combination]]
 MOST_LEFT_OUT = 2  # levels at a time
 
 
@@ -32,25 +32,25 @@ def contexts(factorial: Factorial) -> Contexts:
     return found
 
 
-def is_bound(allowed: Contexts, part: tuple[int, int]) -> bool:
+def is_bound(allowed: Contexts, part: Part) -> bool:
     return allowed[part] != allowed[part[0], 0]
 
 
 def left_out(factorial: Factorial, factor: int, bound: bool) -> Iterator[tuple[Part, ...]]:
-    """What the direct effect of a level of a factor is asked without: nothing where exclusions bind it, each
-    level of another factor that is not its first, and each two of them."""
+    """What is left out of the direct effect of a level of a factor, in turn: nothing where exclusions bind
+    it, each level of another factor that is not its first, and each two of them."""
     others = [(f, k) for f, n in enumerate(factorial.sizes) for k in range(1, n) if f != factor]
     for n in range(0 if bound else 1, MOST_LEFT_OUT + 1):
         yield from combinations(others, n)
 
 
-def told_by(
+def compared(
     allowed: Contexts,
     part: Part,
-    levels: list[tuple[int, ...]],
+    levels: list[Combination],
     y: list[float],
     others: dict[Part, float] | None,
-) -> list[tuple[tuple[int, ...], float | None]]:
+) -> list[tuple[Combination, float | None]]:
     """Of the runs of one scene those that both a level of a factor and the first one may have: levels, and
     the value less the effects of all other factors, None where one of these is not known. others: (factor,
     level) -> fitted effect; None: nothing is taken off.
@@ -65,14 +65,14 @@ def told_by(
 
 
 def direct(
-    part: Part, told: list[tuple[tuple[int, ...], float | None]], out: tuple[Part, ...] = ()
+    part: Part, runs: list[tuple[Combination, float | None]], out: tuple[Part, ...] = ()
 ) -> float | None:
-    """Mean of the level less mean of the first one, of what is told by runs that have no level of `out`. None
-    where either has no run, or an effect that is needed has no value.
+    """Mean of the level less mean of the first one, of these runs (`compared`) without those that have a
+    level of `out`. None where either has no run, or an effect that is needed has no value.
     """
     f, level = part
     arms: dict[int, list[float]] = {0: [], level: []}
-    for one, value in told:
+    for one, value in runs:
         if not any(one[g] == k for g, k in out):
             if value is None:
                 return None

@@ -12,11 +12,9 @@ from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.io.whole_file import write_figure, write_whole
 
-from .construction import by_construction
-from .effects import LEAST_SCENES, SHARES, Study
+from .effects import SHARES, Effects
 from .factors import Factorial
-from .report import SLICE, name_of
-from .table import Table
+from .report import by_construction, name_of
 
 TITLES = {
     "ok": "share ok and valid",
@@ -26,15 +24,15 @@ TITLES = {
 }
 DECIDED, MADE, OPEN = "#0072B2", "#111111", "#999999"
 CAPTION = (
-    "Ablation, {runs} runs in {scenes} scenes {slice}. Left four panels: effect of each level against the"
+    "Ablation, {runs} runs in {scenes} scenes {where}. Left four panels: effect of each level against the"
     " first of its factor, mean and 95% interval over scenes; filled and blue: decided (sign-flip test over"
     " scenes, p < 0.05 after Holm, and in agreement without any one or two levels of other factors); filled"
     " and black: by construction; hollow: not decided, or taken back. Right: largest mean of an"
     " interaction of two levels of each pair of factors on Newton iterations, as a factor up or down, of"
-    " those that at least {least} scenes tell; a dot where one is decided; white where none is told."
-    "{untold}\n"
+    " those that at least {least_scenes} scenes have; a dot where one is decided; white where they have none."
+    "{left_out_panel}\n"
 )
-UNTOLD = " Here so many scenes tell no interaction on Newton iterations, so the right panel is left out."
+LEFT_OUT = " Here so many scenes have no interaction on Newton iterations, so the right panel is left out."
 
 
 def _both_ways(limits, least: float) -> tuple[float, float]:
@@ -43,8 +41,8 @@ def _both_ways(limits, least: float) -> tuple[float, float]:
     return -far, far
 
 
-def _panel(axis, factorial: Factorial, study: Study, metric: str) -> None:
-    for k, effect in enumerate(study.main[metric]):
+def _panel(axis, factorial: Factorial, effects: Effects, metric: str) -> None:
+    for k, effect in enumerate(effects.main[metric]):
         if effect.mean is None:
             continue
         value = (lambda v: v) if metric in SHARES else math.exp
@@ -67,13 +65,13 @@ def _panel(axis, factorial: Factorial, study: Study, metric: str) -> None:
         axis.xaxis.set_minor_locator(NullLocator())
         axis.axvline(1, color="black", linewidth=0.5)
     axis.set_title(TITLES[metric])
-    axis.set_ylim(len(study.main[metric]) - 0.5, -0.5)
+    axis.set_ylim(len(effects.main[metric]) - 0.5, -0.5)
 
 
-def _matrix(axis, factorial: Factorial, study: Study) -> None:
+def _matrix(axis, factorial: Factorial, effects: Effects) -> None:
     n = len(factorial.factors)
     size, decided = np.full((n, n), np.nan), np.zeros((n, n), bool)
-    for effect in study.pairs["newton"]:
+    for effect in effects.pairs["newton"]:
         (a, _), (b, _) = effect.term.parts
         if effect.p is not None:
             size[b, a] = np.fmax(size[b, a], abs(effect.mean))
@@ -90,24 +88,23 @@ def _matrix(axis, factorial: Factorial, study: Study) -> None:
     plt.colorbar(image, ax=axis, shrink=0.7, label="factor")
 
 
-def draw(factorial: Factorial, table: Table, study: Study, path: Path) -> None:
-    """The PNG, and its caption beside it."""
-    told = any(effect.p is not None for effect in study.pairs["newton"])
-    widths = [1] * len(TITLES) + [1.5] * told
+def draw(factorial: Factorial, numbers: dict, path: Path) -> list[Path]:
+    """The PNG, and its caption beside it. numbers: of the rule."""
+    effects: Effects = numbers["effects"]
+    tested = any(effect.p is not None for effect in effects.pairs["newton"])
+    widths = [1] * len(TITLES) + [1.5] * tested
     size, grid = (0.33 * style.WIDE_IN * sum(widths), 4.2), {"width_ratios": widths}
     fig, axes = plt.subplots(1, len(widths), figsize=size, gridspec_kw=grid, layout="constrained")
     for axis, metric in zip(axes, TITLES):
-        _panel(axis, factorial, study, metric)
-    labels = [name_of(factorial, effect.term) for effect in study.main["ok"]]
+        _panel(axis, factorial, effects, metric)
+    labels = [name_of(factorial, effect.term) for effect in effects.main["ok"]]
     axes[0].set_yticks(range(len(labels)), labels)
     for axis in axes[1 : len(TITLES)]:
         axis.set_yticks(range(len(labels)), [""] * len(labels))
-    if told:
-        _matrix(axes[-1], factorial, study)
+    if tested:
+        _matrix(axes[-1], factorial, effects)
     write_figure(fig, path, metadata={"Software": None})
     plt.close(fig)
-    scenes = len({row["scene"] for row in table.rows})
-    text = CAPTION.format(
-        runs=len(table.rows), scenes=scenes, slice=SLICE, least=LEAST_SCENES, untold="" if told else UNTOLD
-    )
-    write_whole(path.with_suffix(".txt"), text)
+    caption = path.with_suffix(".txt")
+    write_whole(caption, CAPTION.format(**numbers, left_out_panel="" if tested else LEFT_OUT))
+    return [path, caption]

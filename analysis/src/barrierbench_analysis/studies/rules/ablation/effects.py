@@ -1,29 +1,31 @@
 """Main effects and interactions of the factors, with the scenes as samples (docs/results/method/ablation.md).
 
 In a scene, numbers are fitted by least squares with one column a level that is not the first of its factor;
-an interaction adds the products of the columns of two factors. What the runs of a scene do not tell apart
+an interaction adds the products of the columns of two factors. What the runs of a scene cannot distinguish
 has no value there: its column is no combination of rows.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
+from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.estimate import sign_test
+from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import mean_over
 
-from .bound import Contexts, Part, contexts, direct, is_bound, left_out, told_by
-from .factors import Factorial
+from .bound import Contexts, Part, compared, contexts, direct, is_bound, left_out
+from .factors import Combination, Factorial
 from .flips import sign_flip
-from .table import METRICS, Table, got_through, levels_of
 
 LEAST_SCENES = 10  # with fewer no effect out of 19 can be decided: 19 * 2^(1 - 9) = 0.074
 LEAST_FREEDOM = 10  # of the residual of a scene: with few its value hangs on one or two runs
 LEVEL = 0.05
-SHARES = {"ok": got_through, "common": lambda row: not row["failed"]}
+METRICS = ("newton", "bj_p95", "pcg", "gap")  # of runs that ended ok and valid
+SHARES = {"ok": lambda row: row.outcome == OK, "common": lambda row: not row.values["failed"]}
 TESTED = 1e-8  # of a column: how much of it the rows may leave undetermined
 NOTHING = 1e-9  # an effect below is the rounding of a fit, and no sign of anything
 
@@ -81,12 +83,12 @@ class Effect:
         return sign_test(*self.signs)
 
 
-@dataclass
-class Study:
+@dataclass(frozen=True)
+class Effects:
     """main and pairs: metric -> effects, in the order of the factors."""
 
-    main: dict[str, list[Effect]] = field(default_factory=dict)
-    pairs: dict[str, list[Effect]] = field(default_factory=dict)
+    main: dict[str, list[Effect]]
+    pairs: dict[str, list[Effect]]
 
 
 def main_terms(factorial: Factorial) -> list[Term]:
@@ -98,16 +100,22 @@ def pair_terms(factorial: Factorial, a: int, b: int) -> list[Term]:
     return [Term(((a, i), (b, j))) for i in range(1, sizes[a]) for j in range(1, sizes[b])]
 
 
-def values_of(table: Table, scene: str, metric: str) -> list[tuple[dict, float]]:
-    """Rows that have the number: its logarithm; of a share 0 or 1, of every run."""
-    rows = [row for row in table.rows if row["scene"] == scene]
+def values_of(
+    factorial: Factorial, rows: list[Row], scene: str, metric: str
+) -> tuple[list[Combination], list[float]]:
+    """Levels and value of the runs of a scene that have the number: its logarithm; of a share 0 or 1, of
+    every run."""
+    mine = [row for row in rows if row.place["scene"] == scene]
     if metric in SHARES:
-        return [(row, float(SHARES[metric](row))) for row in rows]
-    return [(row, float(np.log(row[metric]))) for row in rows if got_through(row) and row[metric]]
+        values = [float(SHARES[metric](row)) for row in mine]
+    else:
+        mine = [row for row in mine if row.outcome == OK and row.values[metric]]
+        values = [float(np.log(row.values[metric])) for row in mine]
+    return list(map(factorial.levels_of, mine)), values
 
 
 def fitted(
-    levels: list[tuple[int, ...]],
+    levels: list[Combination],
     y: list[float],
     terms: list[Term],
     wanted: list[Term],
@@ -152,53 +160,50 @@ def with_holm(effects: list[Effect]) -> list[Effect]:
     return [replace(effect, holm=holm.get(effect.term)) for effect in effects]
 
 
-def _of(factorial: Factorial, table: Table, metric: str, wanted: list[Term]) -> list[Effect]:
-    mains = main_terms(factorial)
-    terms = mains + [term for term in wanted if term not in mains]
+def _of(factorial: Factorial, rows: list[Row], metric: str, wanted: list[Term]) -> list[Effect]:
+    terms = list(dict.fromkeys([*main_terms(factorial), *wanted]))
     found: dict[Term, dict[str, float]] = {term: {} for term in wanted}
     for scene in factorial.scenes.labels:
-        pairs = values_of(table, scene, metric)
-        levels = [levels_of(factorial, row) for row, _ in pairs]
-        for term, value in fitted(levels, [y for _, y in pairs], terms, wanted).items():
+        for term, value in fitted(*values_of(factorial, rows, scene, metric), terms, wanted).items():
             found[term][scene] = value
     return [over_scenes(metric, term, scenes) for term, scenes in found.items()]
 
 
-def _beside(factorial: Factorial, table: Table, allowed: Contexts, effect: Effect) -> Effect:
-    """With the first direct effect that does not agree. Without some levels fewer scenes tell it: fewer than
-    LEAST_SCENES say nothing, but where nothing is left out, and exclusions bind the level, they do not agree.
+def _beside(factorial: Factorial, rows: list[Row], allowed: Contexts, effect: Effect) -> Effect:
+    """With the first direct effect that does not agree. Without some levels fewer scenes have it: fewer than
+    LEAST_SCENES decide nothing, but where nothing is left out, and exclusions bind the level, they do not
+    agree.
     """
     part, mains = effect.term.parts[0], main_terms(factorial)
     scenes = {}
     for scene in effect.scenes:
-        pairs = values_of(table, scene, effect.metric)
-        levels, y = [levels_of(factorial, row) for row, _ in pairs], [value for _, value in pairs]
+        levels, y = values_of(factorial, rows, scene, effect.metric)
         others = {term.parts[0]: value for term, value in fitted(levels, y, mains, mains).items()}
-        scenes[scene] = told_by(allowed, part, levels, y, None if effect.metric in SHARES else others)
+        scenes[scene] = compared(allowed, part, levels, y, None if effect.metric in SHARES else others)
     for out in left_out(factorial, part[0], is_bound(allowed, part)):
         found = {scene: direct(part, of, out) for scene, of in scenes.items()}
-        told = {scene: value for scene, value in found.items() if value is not None}
-        one = over_scenes(effect.metric, effect.term, told)
+        known = {scene: value for scene, value in found.items() if value is not None}
+        one = over_scenes(effect.metric, effect.term, known)
         if not effect.same(one) and (one.p is not None or not out):
             return replace(effect, direct=one, without=out)
     return effect
 
 
-def main_effects(factorial: Factorial, table: Table, metric: str) -> list[Effect]:
+def main_effects(factorial: Factorial, rows: list[Row], metric: str) -> list[Effect]:
     """In the order of the factors; of those that pass the test, what takes them back beside them."""
-    mains, allowed = with_holm(_of(factorial, table, metric, main_terms(factorial))), contexts(factorial)
-    return [_beside(factorial, table, allowed, effect) if effect.passes else effect for effect in mains]
+    mains, allowed = with_holm(_of(factorial, rows, metric, main_terms(factorial))), contexts(factorial)
+    return [_beside(factorial, rows, allowed, effect) if effect.passes else effect for effect in mains]
 
 
-def study(factorial: Factorial, table: Table) -> Study:
-    """Every number's main effects, and its interactions pair of factors by pair."""
-    out = Study()
-    for metric in (*METRICS, *SHARES):
-        out.main[metric] = main_effects(factorial, table, metric)
-        pairs = [
-            effect
-            for a, b in combinations(range(len(factorial.factors)), 2)
-            for effect in _of(factorial, table, metric, pair_terms(factorial, a, b))
-        ]
-        out.pairs[metric] = with_holm(pairs)
-    return out
+def _pairs(factorial: Factorial, rows: list[Row], metric: str) -> list[Effect]:
+    """Interactions, fitted for one pair of factors at a time."""
+    pairs = combinations(range(len(factorial.factors)), 2)
+    return with_holm([e for a, b in pairs for e in _of(factorial, rows, metric, pair_terms(factorial, a, b))])
+
+
+def effects_of(factorial: Factorial, rows: list[Row]) -> Effects:
+    numbers = (*METRICS, *SHARES)
+    return Effects(
+        {metric: main_effects(factorial, rows, metric) for metric in numbers},
+        {metric: _pairs(factorial, rows, metric) for metric in numbers},
+    )

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from pathlib import Path
 
-from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_of_schema
-from barrierbench_analysis.io.spec_file import read_spec
+from barrierbench_analysis.io.spec_file import refused
+from barrierbench_analysis.studies.kit.study.spec import Study
+from barrierbench_analysis.studies.kit.study.store import Row
 
 Combination = tuple[int, ...]  # one level a factor, without the scene
 
@@ -30,21 +30,15 @@ class Factor:
 
 @dataclass(frozen=True)
 class Factorial:
-    """A spec with its sweep. scenes is the first axis, factors are the others, in the order of the file."""
+    """A sweep, and what the spec of the study says of it. scenes is the first axis, factors are the others,
+    in the order of the file.
+    """
 
-    path: Path
-    spec: dict
-    sweep_path: Path
+    path: Path  # of the spec
+    about: dict
     sweep: dict
     scenes: Factor
     factors: tuple[Factor, ...]
-
-    @property
-    def digest(self) -> str:
-        """Of both files."""
-        return hashlib.sha256(
-            input_file.read_bytes(self.path) + input_file.read_bytes(self.sweep_path)
-        ).hexdigest()
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -52,6 +46,9 @@ class Factorial:
 
     def labels_of(self, one: Combination) -> list[str]:
         return [factor.labels[level] for factor, level in zip(self.factors, one, strict=True)]
+
+    def levels_of(self, row: Row) -> Combination:
+        return tuple(factor.labels.index(row.place[factor.name]) for factor in self.factors)
 
     @cached_property
     def allowed(self) -> tuple[Combination, ...]:
@@ -62,7 +59,7 @@ class Factorial:
 
     def settings_of(self, scene: str, one: Combination) -> dict:
         """Pointers that a combination sets in a scene, later axes over earlier ones."""
-        out = dict(self.scenes.levels[scene])
+        out = self.sweep["set"] | self.scenes.levels[scene]
         for factor, label in zip(self.factors, self.labels_of(one), strict=True):
             out |= factor.levels[label]
         return out
@@ -70,29 +67,32 @@ class Factorial:
 
 def _axis(path: Path, k: int, name: str, axis: dict) -> Factor:
     if "cases" not in axis:
-        raise UserError(f"{path}#/axes/{k}: found {', '.join(axis)}; an axis of cases is needed")
+        raise UserError(f"{path}#/axes/{k}: found {', '.join(axis)}; allowed: an axis of cases")
     return Factor(name, {case["label"]: case["set"] for case in axis["cases"]})
 
 
-def read_factorial(path: Path) -> Factorial:
-    """Errors: UserError with file and place: another schema, an axis without cases, counts that do not agree,
-    exclusions by pointers, a label in two axes.
+def read_factorial(study: Study) -> Factorial:
+    """Errors: UserError with file and place: another schema or base, an axis without cases, counts that do
+    not agree, exclusions by pointers, a label in two axes.
     """
-    spec = read_spec(path, "ablation")
-    file = (path.parent / spec["sweep"]).resolve()
+    about, path = study.about, study.file
+    file = (path.parent / about["sweep"]).resolve()
     sweep = read_of_schema(file, "barrierbench.sweep/1")
-    names, excluded = spec["factors"], sweep.get("exclude", [])
+    if (file.parent / sweep["base"]).resolve() != study.base.resolve():
+        raise refused(path, "base", study.data["base"], f"the base of {file}, {sweep['base']},")
+    names, excluded = about["factors"], sweep.get("exclude", [])
     if len(names) != len(sweep["axes"]):
-        raise UserError(f"{path}#/factors: {len(names)} names for {len(sweep['axes'])} axes of {file}")
-    if len(spec["excluded"]) != len(excluded):
+        raise UserError(f"{path}#/about/factors: {len(names)} names for {len(sweep['axes'])} axes of {file}")
+    if len(about["excluded"]) != len(excluded):
         raise UserError(
-            f"{path}#/excluded: {len(spec['excluded'])} reasons for {len(excluded)} exclusions of {file}"
+            f"{path}#/about/excluded: {len(about['excluded'])} reasons for {len(excluded)} exclusions of"
+            f" {file}"
         )
     for k, entry in enumerate(excluded):
         if set(entry) != {"labels"}:
-            raise UserError(f"{file}#/exclude/{k}: found {', '.join(entry)}; labels alone are read here")
+            raise UserError(f"{file}#/exclude/{k}: found {', '.join(entry)}; allowed: labels alone")
     axes = [_axis(file, k, name, axis) for k, (name, axis) in enumerate(zip(names, sweep["axes"]))]
     labels = [label for axis in axes for label in axis.levels]
     if twice := next((label for label in labels if labels.count(label) > 1), None):
-        raise UserError(f"{file}: label {twice!r} in two places; each once is needed")
-    return Factorial(path, spec, file, sweep, axes[0], tuple(axes[1:]))
+        raise UserError(f"{file}: label {twice!r} in two places; allowed: each label once")
+    return Factorial(path, about, sweep, axes[0], tuple(axes[1:]))

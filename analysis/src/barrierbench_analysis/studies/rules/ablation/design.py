@@ -61,12 +61,12 @@ class _Counts:
 
 def drawn(factorial: Factorial, scene: str) -> list[Combination]:
     """The combinations of a scene, sorted, each once. Errors: UserError where there are too few."""
-    candidates, n = factorial.allowed, factorial.spec["combinations"]
+    candidates, n = factorial.allowed, factorial.about["combinations"]
     if n > len(candidates):
         raise UserError(
-            f"{factorial.path}#/combinations: found {n}; at most {len(candidates)}, which are allowed"
+            f"{factorial.path}#/about/combinations: found {n}; allowed: at most {len(candidates)}"
         )
-    draw = random.Random(f"{factorial.spec['seed']} {scene}")
+    draw = random.Random(f"{factorial.about['seed']} {scene}")
     rows = range(len(candidates))
     chosen = draw.sample(rows, n)
     counts, inside = _Counts(factorial.sizes, candidates), set(chosen)
