@@ -209,7 +209,7 @@ def test_the_page_says_what_is_decided_and_what_is_not(small):
     first, second = (next(line for line in found.splitlines() if line.startswith(f"{k}. ")) for k in (1, 2))
     assert first.startswith("1. Newton iterations of a run: 1 of 7 main effects are decided: `y` 3 [") and "Not decided: `b`, `c`, `float`" in first
     assert second.count("decided: `") == 1 and "0 of 7" in second and f"\n{len(report.WORDS) + 1}. Interactions: of " in found
-    assert "- c with y: it means nothing.\n" in found and "![main effects and interactions](small.png)" in found
+    assert "- c with y: it means nothing.\n" in found and "![main effects and interactions](./small.png)" in found
 
 
 def test_the_page_says_what_was_not_tested_and_not_run(small):

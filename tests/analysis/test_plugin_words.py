@@ -9,7 +9,8 @@ import pytest
 
 from barrierbench_analysis.tables import causes
 from barrierbench_analysis.pages.claims import verb as claims
-from barrierbench_analysis.studies.matching import match, pareto
+from barrierbench_analysis.studies.kit.study import verb as study
+from barrierbench_analysis.studies.matching import match
 
 ROOT = Path(__file__).resolve().parents[2]
 STAND_IN = """#!{python}
@@ -40,7 +41,7 @@ def asked(tmp_path, monkeypatch):
     return call
 
 
-VERBS = {"match": (match.main, "sweep", [CONFIG, "--out", "out"]), "pareto": (pareto.main, "sweep", ["--runs", "runs", "--results", "out"]),
+VERBS = {"match": (match.main, "sweep", [CONFIG, "--out", "out"]), "study": (study.main, "sweep", [ROOT / "configs/pareto/quick.json", "--out", "out"]),
          "claims of records": (claims.main, "sweep", ["K3", "--runs", "runs"]), "claims of functions": (claims.main, "eval", ["H8", "--runs", "runs"]),
          "causes": (causes.main, "run", [CONFIG, "--out", "out"])}
 

@@ -11,7 +11,7 @@ from barrierbench_analysis.studies.matrices.matrix_corpus import read_corpus
 from barrierbench_analysis.io.spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMITTED = {"pareto": "configs/pareto/*.json", "gap_map": "configs/gap_map/*.json", "gates": "configs/gates/*.json",
+COMMITTED = {"gap_map": "configs/gap_map/*.json", "gates": "configs/gates/*.json",
              "work_precision": "configs/work_precision/*.json", "matrix_corpus": "configs/matrices/*.json", "stress": "configs/stress/[SM][0-9][0-9].json", "claim": "claims/*.json", "catalogue": "configs/catalogue/*.json", "figure": "configs/figures/*.json", "step_corpus": "configs/steps/corpus.json", "expected_ends": "configs/report/expected.json"}
 
 
@@ -57,6 +57,6 @@ def test_a_bad_corpus(tmp_path, edit, said):
 
 
 def test_an_integer_is_written_as_one(tmp_path):
-    file = edited(tmp_path, "configs/pareto/default.json", lambda d: d.update(starts=2.0))
-    with pytest.raises(UserError, match="#/starts: found 2.0; a whole number from 1 to 100 is needed"):
-        read_spec(file, "pareto")
+    file = edited(tmp_path, "configs/studies/pareto.json", lambda d: d.update(seeds=[2.0]))
+    with pytest.raises(UserError, match="#/seeds/0: found 2.0; a whole number from 0 is needed"):
+        read_spec(file, "study")

@@ -3,17 +3,14 @@ fronts, on their page and figure, in claims at equal gap and in the gap map. All
 """
 
 import pytest
+from made_runs import METRICS, page_of, row, runs_of
 
 from barrierbench_analysis.studies.gap_map import compare as gap_map
-from barrierbench_analysis.studies.matching import pareto
-from barrierbench_analysis.studies.matching.fronts import Runs, at_gap, failures, over_shared, range_of, unreached
-from barrierbench_analysis.studies.matching.pareto_figure import _means, failure_sentence
-from barrierbench_analysis.studies.matching.pareto_report import markdown
+from barrierbench_analysis.studies.rules.pareto.figure import _means, failure_sentence
+from barrierbench_analysis.studies.rules.pareto.fronts import Runs, at_gap, failures, over_shared, range_of, unreached
 
 SCALES = (0.01, 0.1, 1.0, 10.0, 100.0)
 HOLES = SCALES[1:-1]
-ABOUT = {"command": "./bench study pareto", "decades": 4.0, "rule": "equal_force, theta 0.1", "starts": 2, "gap": "smallest", "doc": "made up", "vary": "both", "unknowns": "3 to 9",
-         "seconds": 2.0, "date": "2024-01-31", "machine": "a cpu", "build": "0123456789", "gaps": [0.1, 0.2], "spec_sha256": "s"}  # fmt: skip
 
 
 def gap_of(scale: float) -> float:
@@ -26,12 +23,11 @@ def runs(failed: float, outcome: str = "newton_stall", seeds=(1, 2), gap: bool =
     for name, factor in (("log", 2.0), ("cubic", 6.0)):
         for scale in SCALES:
             for seed in seeds:
-                row = {"scene": "a", "formulation": name, "scale": scale, "seed": seed, "outcome": "ok", "gap": gap_of(scale), "run": f"{name}{scale}{seed}"}
-                row |= {m: factor / gap_of(scale) for m in pareto.METRICS}
+                values = {"gap": gap_of(scale), **dict.fromkeys(METRICS, factor / gap_of(scale))}
                 if name == "cubic" and scale == failed:
-                    row |= {"outcome": outcome, "gap": 0.9 * gap_of(scale) if gap else None} | {m: 1e-3 for m in pareto.METRICS}
-                rows.append(row)
-    return Runs(ABOUT, rows)
+                    values = {"outcome": outcome, "gap": 0.9 * gap_of(scale) if gap else None, **dict.fromkeys(METRICS, 1e-3)}
+                rows.append(row("a", name, scale, seed, **values))
+    return runs_of(rows)
 
 
 @pytest.mark.parametrize("hole", HOLES)
@@ -66,17 +62,15 @@ def test_ranges_end_at_the_hole():
     beside = runs(0.1)  # its neighbour 0.01 has no other one: it is no part of a path
     assert range_of(beside, "a", "cubic") == (pytest.approx(gap_of(1.0)), pytest.approx(gap_of(100.0)))
     assert range_of(beside, "a", "log") == (pytest.approx(gap_of(0.01)), pytest.approx(gap_of(100.0)))
-    alone = Runs(ABOUT, [row for row in runs(1.0).rows if row["formulation"] == "cubic"])
+    alone = runs_of([row for row in runs(1.0).rows if row.place["formulation"] == "cubic"])
     free = unreached(alone, "a")
     assert [(pytest.approx(a), pytest.approx(b)) for a, b in free] == [
         (0, gap_of(0.01)), (gap_of(0.1), gap_of(10.0)), (gap_of(100.0), 1.0)]  # fmt: skip
 
 
 def test_one_start_that_failed_leaves_the_others():
-    made = runs(1.0)
-    for row in made.rows:
-        if row["seed"] == 2 and row["outcome"] != "ok":
-            row |= {"outcome": "ok", "gap": gap_of(1.0)} | {m: 6 / gap_of(1.0) for m in pareto.METRICS}
+    values = {"gap": gap_of(1.0), **dict.fromkeys(METRICS, 6 / gap_of(1.0))}
+    made = runs_of([row("a", "cubic", 1.0, 2, **values) if r.place["seed"] == "2" and r.outcome != "ok" else r for r in runs(1.0).rows])
     value, ratio = at_gap(made, "a", "cubic", "newton", gap_of(2.0))
     assert value.value == pytest.approx(6 / gap_of(2.0)) and ratio.value == pytest.approx(3) and (value.n, value.of) == (1, 2)
 
@@ -84,12 +78,12 @@ def test_one_start_that_failed_leaves_the_others():
 @pytest.mark.parametrize("hole", HOLES)
 def test_the_figure_and_the_page_show_the_hole(hole):
     made = runs(hole)
-    found = _means(made.of("a", "cubic"), "newton")
+    found = _means(made, made.of("a", "cubic"), "newton")
     assert [scale for scale, point in found.items() if point is None] == [hole]
     for scale, point in found.items():
         assert point is None or point == (pytest.approx(gap_of(scale)), pytest.approx(6 / gap_of(scale)))
     assert f"cubic at x{hole:g}" in failure_sentence(made, "a", ("log", "cubic"))
-    assert f"x{hole:g}: 2 newton_stall" in markdown(made)
+    assert f"x{hole:g}: 2 newton_stall" in page_of(made, (0.1, 0.2))
 
 
 def test_the_gap_map_has_it_too():

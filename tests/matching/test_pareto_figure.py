@@ -4,25 +4,24 @@ import math
 
 import matplotlib.pyplot as plt
 import pandas as pd
-import pytest
+from made_runs import METRICS, row, runs_of
 
 from barrierbench_analysis.figures import style
-from barrierbench_analysis.studies.matching import pareto_figure
-from barrierbench_analysis.studies.matching.fronts import METRICS, Runs
+from barrierbench_analysis.studies.rules.pareto import figure as pareto_figure
+from barrierbench_analysis.studies.rules.pareto.fronts import Runs
 
 SCALES = (0.01, 0.1, 1.0, 10.0, 100.0)
 NAMES = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent", "two_stage")
 
 
-def row(formulation: str, scale: float, seed: int, **edit) -> dict:
+def values(scale: float) -> dict:
     metrics = {name: 5.0 * (k + 1) + scale ** (0.1 * (k + 1)) for k, name in enumerate(METRICS)}
-    metrics |= {"cond_no_contact_p95": 2 * metrics["cond_p95"], "cond_no_contact_no_limit_p95": 296.0}
-    return {"scene": "block", "formulation": formulation, "scale": scale, "seed": seed, "outcome": "ok", "run": "", "gap": 0.1 * (3 + math.log10(scale)) / 2, **metrics} | edit
+    return metrics | {"cond_no_contact_p95": 2 * metrics["cond_p95"], "cond_no_contact_no_limit_p95": 296.0, "gap": 0.1 * (3 + math.log10(scale)) / 2}
 
 
 def made(names=("log", "cubic"), failed=lambda name, scale, seed: name == "cubic" and (scale == 0.01 or (scale, seed) == (0.1, 2))) -> Runs:
-    rows = [row(n, scale, seed, **({"outcome": "penetration", "gap": None} if failed(n, scale, seed) else {})) for n in names for scale in SCALES for seed in (1, 2)]
-    return Runs({"decades": 4.0, "starts": 2, "gap": "smallest"}, rows)
+    return runs_of([row("block", n, scale, seed, **values(scale) | ({"outcome": "penetration", "gap": None} if failed(n, scale, seed) else {}))
+                    for n in names for scale in SCALES for seed in (1, 2)])
 
 
 def drawn(runs: Runs, tmp_path, monkeypatch) -> dict:
@@ -38,7 +37,7 @@ def said(tmp_path, name="p") -> str:
 
 def test_a_failed_run_is_nowhere_on_the_axes(tmp_path, monkeypatch):
     figure = drawn(made(), tmp_path, monkeypatch)["p"]
-    gaps = {r["gap"] for r in made().rows if r["gap"]}
+    gaps = {r.values["gap"] for r in made().rows if r.values["gap"]}
     for axis in figure.axes:
         x = {v for line in axis.lines for v in line.get_xdata() if v == v}
         assert x and all(min(abs(v / g - 1) for g in gaps) < 1e-9 for v in x), "an abscissa that no run has"
@@ -67,8 +66,3 @@ def test_a_sixth_formulation_stands_in_a_supplement(tmp_path, monkeypatch):
     shown = {name: [text.get_text() for text in figure.legends[0].get_texts()] for name, figure in figures.items()}
     assert shown == {"p": [n for n in NAMES if n != "two_stage"], "p_more": ["log", "two_stage"]}
     assert "have no gap: cubic at" in said(tmp_path) and "cubic" not in said(tmp_path, "p_more")
-
-
-def test_a_scene_without_any_gap_has_no_figure(tmp_path):
-    with pytest.raises(ValueError, match="block: no run reached a gap"):
-        pareto_figure.draw(made(failed=lambda *_: True), "block", tmp_path / "p")

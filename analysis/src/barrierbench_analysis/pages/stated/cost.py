@@ -58,11 +58,7 @@ def _of_rows(file: Path) -> tuple[int, float]:
 STUDIES = {
     "claims": ("claims.json", "./bench study claims", _claims),
     "gap map": ("gap_map.json", "./bench study gap-map", lambda d: _counted(_column(d, "seconds"))),
-    "Pareto fronts": (
-        "pareto.json",
-        "./bench study pareto",
-        lambda d: (len(d["rows"]), d["about"]["seconds"]),
-    ),
+    "Pareto fronts": ("studies/pareto.jsonl", "./bench study pareto", None),
     "work-precision": ("work_precision.json", "./bench study work-precision", _work_precision),
     "catalogue": ("catalogue.json", "./bench study catalogue", _catalogue),
     "stress suite": ("stress.json", "./bench study stress", _stress),

@@ -1,5 +1,5 @@
-"""Studies with a verb of their own (./bench study pareto, gap-map, work-precision) as subjects of figures:
-their kept numbers, which are made where that is allowed, and their figures in one column width.
+"""Studies as subjects of figures: their kept numbers, which are made where that is allowed, and their figures
+in one column width.
 """
 
 from __future__ import annotations
@@ -21,14 +21,15 @@ from barrierbench_analysis.studies.gap_map import size_figure
 from barrierbench_analysis.studies.gap_map.judge import counts
 from barrierbench_analysis.studies.gap_map.size import drawn_sizes
 from barrierbench_analysis.studies.gap_map.spec import read_spec as read_gap_map
-from barrierbench_analysis.studies.kit.runs import inputs_sha256
-from barrierbench_analysis.studies.matching import pareto, pareto_figure
-from barrierbench_analysis.studies.matching.spec import make_sweep
-from barrierbench_analysis.studies.matching.spec import read_spec as read_pareto
+from barrierbench_analysis.studies.kit.study import page
+from barrierbench_analysis.studies.kit.study.spec import read_study
+from barrierbench_analysis.studies.kit.study.verb import make_rows
+from barrierbench_analysis.studies.rules.pareto import figure as pareto_figure
 from barrierbench_analysis.studies.work_precision import figure as work_figure
 from barrierbench_analysis.studies.work_precision import verb as work_precision
 from barrierbench_analysis.studies.work_precision.spec import read_spec as read_work
 from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.tables.outcomes import OK
 
 
 @dataclass(frozen=True)
@@ -43,15 +44,6 @@ class Study:
     read: Callable
     table: Callable
     make: Callable
-
-
-def _pareto_table(spec, kept: Path):
-    return pareto.read_for(kept, spec, inputs_sha256(make_sweep(spec)))
-
-
-def _pareto_make(spec, kept: Path, _: int) -> None:
-    runs = pareto.make(spec, f"./bench study pareto {spec.path}", kept.parent / "records", True, [])
-    write_whole(kept, pareto.to_json(runs))
 
 
 def _gap_make(spec, kept: Path, jobs: int) -> None:
@@ -69,9 +61,6 @@ def _work_make(spec, kept: Path, _: int) -> None:
 
 
 STUDIES = {
-    "barrierbench.pareto/1": Study(
-        "pareto", "pareto.json", pareto.DEFAULT, read_pareto, _pareto_table, _pareto_make
-    ),
     "barrierbench.gap_map/1": Study(
         "gap-map",
         "gap_map.json",
@@ -91,13 +80,32 @@ STUDIES = {
 }
 
 
+KIT = "barrierbench.study/1"  # specs of the study kit
+
+
+def _of_kit(file: Path, runs: Path, may_run: bool, jobs: int) -> dict:
+    """The numbers that the rule makes of the kept rows, as of_file has tables."""
+    study = read_study(str(file))
+    if not study.is_ours:
+        study = read_study(str(file), runs / f"{study.rule}-{file.stem}")
+    try:
+        return page.numbers_of(study)
+    except UserError as error:
+        if not may_run or study.is_ours:
+            raise UserError(f"{error}" + (f" with --out {study.out}" if study.out else "")) from None
+    make_rows(study, jobs=jobs)
+    return page.numbers_of(study)
+
+
 def of_file(file: Path, runs: Path, may_run: bool, jobs: int):
     """The table of a study from its kept numbers: of the default spec those in results/, of another those
     below `runs`, made where they are missing and may be. Errors: UserError with the command.
     """
     named = read_object(file).get("schema")
+    if named == KIT:
+        return _of_kit(file, runs, may_run, jobs)
     if named not in STUDIES:
-        raise UserError(f"{file}#/schema: found {named!r}; one of {', '.join(STUDIES)} is needed")
+        raise UserError(f"{file}#/schema: found {named!r}; one of {', '.join((KIT, *STUDIES))} is needed")
     study = STUDIES[named]
     spec, is_default = study.read(file), file == study.default.resolve()
     folder = ROOT / "results" if is_default else runs / f"{study.verb}-{file.stem}"
@@ -117,24 +125,19 @@ def of_file(file: Path, runs: Path, may_run: bool, jobs: int):
     return study.table(spec, kept)
 
 
-def pareto_fronts(runs, drawing: Drawing) -> list[Path]:
-    paths = []
+def pareto_fronts(numbers: dict, drawing: Drawing) -> list[Path]:
+    paths, runs = [], numbers["runs"]
     for scene in runs.scenes:
-        rows = [row for row in runs.rows if row["scene"] == scene]
-        try:
-            stem = drawing.stem.with_name(f"{drawing.stem.name}_{scene}")
-            drawn = pareto_figure.draw(runs, scene, stem, drawing.width_in)
-        except ValueError as error:
-            raise drawing.nothing(str(error)) from None
+        rows = [row for row in runs.rows if row.place["scene"] == scene]
+        stem = drawing.stem.with_name(f"{drawing.stem.name}_{scene}")
         facts = Facts(
-            f"{len(rows)} runs, of which {sum(row['outcome'] != 'ok' for row in rows)} failed;"
-            f" {runs.about['starts']} starts",
+            f"{len(rows)} runs, of which {sum(row.outcome != OK for row in rows)} failed;"
+            f" {numbers['starts']} starts",
             "geometric mean over starts",
             "none; compare along a vertical line",
-            f"scene {scene}, {runs.about['unknowns']} unknowns, {runs.about['rule']},"
-            f" vary {runs.about['vary']}",
+            f"scene {scene}, {numbers['unknowns']} unknowns, {numbers['matching']}, vary {numbers['vary']}",
         )
-        paths += drawing.state(drawn, facts)
+        paths += drawing.state(pareto_figure.draw(runs, scene, stem, drawing.width_in), facts)
     return paths
 
 

@@ -36,16 +36,10 @@ from barrierbench_analysis.tables.numbers import significant
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 RULES = ("equal_force", "equal_curvature")
 SCHEMA = "barrierbench.match/1"
-COLUMNS = (
-    "formulation",
-    "contact",
-    "load (N)",
-    "limit",
-    "smallest gap",
-    "farthest from log",
-    "outcome",
-    "verdict",
-)
+COLUMNS = "formulation,contact,load (N),limit,smallest gap,farthest from log,outcome,verdict".split(",")
+KEPT = """rule theta load_source load_N contact contact_step contact_answer contacts_left_out left_out_contact
+left_out_N kappa_N_per_m scale capacity_N limit_load_source limit_load_N_per_m limit_stiffness_N_per_m
+limit_scale pilot_note""".split()  # of the section `matching` of a record
 
 
 def make_sweep(config: Path, formulations: list[str], rule: str, theta: float, vary: str) -> Sweep:
@@ -72,33 +66,13 @@ def make_sweep(config: Path, formulations: list[str], rule: str, theta: float, v
 def _row(name: str, record: dict) -> dict:
     """What match.json says of a formulation; numbers as the record has them."""
     matching, judged = record["matching"], record["comparability"]
-    keep = (
-        "rule",
-        "theta",
-        "load_source",
-        "load_N",
-        "contact",
-        "contact_step",
-        "contact_answer",
-        "contacts_left_out",
-        "left_out_contact",
-        "left_out_N",
-        "kappa_N_per_m",
-        "scale",
-        "capacity_N",
-        "limit_load_source",
-        "limit_load_N_per_m",
-        "limit_stiffness_N_per_m",
-        "limit_scale",
-        "pilot_note",
-    )
     comparable, why = judged["verdict"] == "comparable", judged["reason"]
     if not record["audit"]["enabled"] or record["audit"]["judged"] == 0:
         comparable, why = False, "the audit judged nothing, so that a crossing would not be seen"
     return {
         "formulation": name,
         "run_id": record["ids"]["run_id"],
-        "matching": {key: matching.get(key) for key in keep},
+        "matching": {key: matching.get(key) for key in KEPT},
         "gap_min_rel": judged.get("gap_rel"),
         "gap_ratio": judged.get("ratio"),
         **{key: judged.get(key) for key in ("pair", "pair_quantile", "pair_ratio")},
@@ -150,59 +124,33 @@ def _farthest(row: dict) -> str:
 
 def text(answer: dict) -> str:
     """The table, and a line for each that is not comparable."""
-    lines = []
-    pilot = answer["formulations"][0]["matching"]
+    matched = answer["formulations"][0]["matching"]  # of the log
     head = (
         f"{answer['rule']}, theta {answer['theta']:g}; scene {answer['scene']}; load of"
-        f" {pilot['load_source']}"
+        f" {matched['load_source']}"
     )
-    head += f": {pilot['contact']} at the end of step {pilot['contact_step']:g}" if pilot["contact"] else ""
+    if matched["contact"]:
+        head += f": {matched['contact']} at the end of step {matched['contact_step']:g}"
+    if matched["pilot_note"]:
+        head += f" ({matched['pilot_note']})"
+    lines, reasons = [], []
     for row in answer["formulations"]:
         m = row["matching"]
+        limit = _stiffness(m["limit_stiffness_N_per_m"], m["limit_scale"])
         lines.append(
             (
                 row["formulation"],
                 _stiffness(m["kappa_N_per_m"], m["scale"]),
                 significant(m["load_N"], 4),
-                (
-                    _stiffness(m["limit_stiffness_N_per_m"], m["limit_scale"])
-                    if m["limit_load_N_per_m"] is not None
-                    else "-"
-                ),
+                limit if m["limit_load_N_per_m"] is not None else "-",
                 significant(row["gap_min_rel"], 4, unit=" d_hat"),
                 _farthest(row),
                 row["outcome"],
                 row["verdict"],
             )
         )
-    shown = [head + (f" ({pilot['pilot_note']})" if pilot["pilot_note"] else "")]
-    shown += aligned(COLUMNS, lines)
-    shown += [
-        f"{row['formulation']}: {row['why']}"
-        for row in answer["formulations"]
-        if row["verdict"] != "comparable"
-    ]
-    return "\n".join(shown)
-
-
-def rule_arguments(parser: argparse.ArgumentParser) -> None:
-    """How a formulation gets its stiffness, and what takes the formulation."""
-    parser.add_argument(
-        "--rule", choices=RULES, default="equal_force", help="matching rule (default: %(default)s)"
-    )
-    parser.add_argument(
-        "--theta",
-        type=finite_number,
-        default=0.1,
-        metavar="T",
-        help="gap/d_hat at which forces are equal, in (0, 1) (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--vary",
-        choices=VARY,
-        default="both",
-        help="what takes the formulation; the other keeps the log (default: %(default)s)",
-    )
+        reasons += [f"{row['formulation']}: {row['why']}"] if row["verdict"] != "comparable" else []
+    return "\n".join([head, *aligned(COLUMNS, lines), *reasons])
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
@@ -227,7 +175,22 @@ def arguments(argv: list[str]) -> argparse.Namespace:
             " NAME.json, of a shape of a plugin, say (default: %(default)s); log always runs"
         ),
     )
-    rule_arguments(parser)
+    parser.add_argument(
+        "--rule", choices=RULES, default="equal_force", help="matching rule (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--theta",
+        type=finite_number,
+        default=0.1,
+        metavar="T",
+        help="gap/d_hat at which forces are equal, in (0, 1) (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--vary",
+        choices=VARY,
+        default="both",
+        help="what takes the formulation; the other keeps the log (default: %(default)s)",
+    )
     set_argument(parser, "override in every run")
     parser.add_argument(
         "--out",

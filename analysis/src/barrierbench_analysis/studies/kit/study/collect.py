@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from itertools import groupby
-from pathlib import Path
 
 from barrierbench_analysis.io.origin import origin, run_of, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
@@ -81,13 +80,13 @@ def parts(cells: list[Cell]) -> Iterator[list[Cell]]:
         yield from (mine[at : at + AT_ONCE] for at in range(0, len(mine), AT_ONCE))
 
 
-def run_cells(study: Study, cells: list[Cell], jobs: int = 1, folder: Path | None = None) -> list[store.Row]:
+def run_cells(study: Study, cells: list[Cell], jobs: int = 1) -> list[store.Row]:
     """Runs these cells of one base as one sweep, so many at a time. Runs whose records are there already are
     not repeated. Errors: UserError. Cost: the runs.
     """
-    out = (folder or RUNS) / study.name
+    out = study.out / "runs" if study.out else RUNS / study.name
     cases = [{"label": f"{cell.label} {cell.key[:KEY_DIGITS]}", "set": cell.settings} for cell in cells]
     made = runs.sweep(study.name, cells[0].base, study.data.get("set", {}), cases)
-    runs.run(made, out, jobs=jobs)
+    runs.run(made, out, plugins=[*study.plugins], jobs=jobs)
     records = runs.collect(made, out)
     return [row_of(study, cell, records[note]) for cell, note in zip(cells, made.notes, strict=True)]

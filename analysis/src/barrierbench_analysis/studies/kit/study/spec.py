@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from types import ModuleType
 
-from barrierbench_analysis.io.digests import of_text
+from barrierbench_analysis.io.digests import of_file, of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import checked, read_spec, refused, require_base
@@ -57,10 +57,14 @@ class Cell:
 
 @dataclass(frozen=True)
 class Study:
-    """A spec that has been read. Places are names of axes, and `seed`."""
+    """A spec that has been read. Places are names of axes, and `seed`. out: the folder of its runs, rows,
+    page and figures where a call names one. plugins: shared libraries that every run loads.
+    """
 
     file: Path
     data: dict
+    out: Path | None = None
+    plugins: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -76,12 +80,16 @@ class Study:
 
     @property
     def is_ours(self) -> bool:
-        """Whether the spec is one of this tree, whose rows and page are kept with its results."""
-        return self.file.parent.resolve() == FOLDER
+        """Whether rows and page are kept with the results of this tree."""
+        return self.out is None and self.file.parent.resolve() == FOLDER
+
+    def beside(self, suffix: str) -> Path:
+        """A file of a study whose results are not kept in this tree: in `out`, or beside its spec."""
+        return (self.out or self.file.parent) / f"{self.file.stem}{suffix}"
 
     @property
     def page(self) -> Path:
-        return ROOT / self.data["page"] if self.is_ours else self.file.with_suffix(".page.md")
+        return ROOT / self.data["page"] if self.is_ours else self.beside(".page.md")
 
     @property
     def template(self) -> Path:
@@ -92,11 +100,12 @@ class Study:
     @property
     def figures(self) -> Path:
         """The folder of the pictures that the page shows."""
-        return ROOT / "docs" if self.is_ours else self.file.parent
+        return ROOT / "docs" if self.is_ours else self.out or self.file.parent
 
     @property
     def command(self) -> str:
-        return f"./bench study {self.name.replace('_', '-') if self.is_ours else self.file}"
+        is_named = self.file.parent.resolve() == FOLDER
+        return f"./bench study {self.name.replace('_', '-') if is_named else self.file}"
 
     @property
     def rule(self) -> str:
@@ -144,6 +153,8 @@ class Study:
         base, common = case.base or self.base, self.data.get("set", {})
         made = runs.sweep(self.name, base, common, [{"label": "cell", "set": case.settings}])
         content = {"set": common, "cell": case.settings, "files": runs.inputs_sha256(made)}
+        if self.plugins:  # the program refuses one that is missing
+            content["plugins"] = [of_file(Path(p)) if Path(p).is_file() else "" for p in self.plugins]
         key = of_text(json.dumps(content, sort_keys=True))[:KEY_DIGITS]
         return Cell(case.place, case.settings, key, base, case.unknowns)
 
@@ -172,7 +183,7 @@ def _place(file: Path, number: int, names: list[str], label: str) -> dict[str, s
     return dict(zip(names, words))
 
 
-def read_study(name: str) -> Study:
+def read_study(name: str, out: Path | None = None, plugins: Iterable[str] = ()) -> Study:
     """The study of a name, or of the path of a spec. Errors: UserError, with the names of what there is."""
     file = Path(name) if name.endswith(".json") else FOLDER / f"{name}.json"
     if not file.is_file():
@@ -184,7 +195,7 @@ def read_study(name: str) -> Study:
             raise refused(file, f"metrics/{metric}", source, f"a pointer, or one of {', '.join(METRICS)},")
     if data["name"] != file.stem:
         raise refused(file, "name", data["name"], f"{file.stem!r}, as its file is called,")
-    study = Study(file, data)
+    study = Study(file, data, out, tuple(plugins))
     if not hasattr(study.module, "cells") and not {"axes", "seeds"} <= data.keys():
         raise refused(file, "axes", data.get("axes"), "axes and seeds, since the rule makes no cells,")
     return study

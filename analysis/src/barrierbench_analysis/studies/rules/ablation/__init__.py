@@ -70,7 +70,6 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "where": WHERE,
         "level": f"{LEVEL:g}",
         "least_scenes": LEAST_SCENES,
-        "picture": f"{'../docs/' if study.is_ours else ''}{study.name}.png",
         "effects": effects,
     }
     return counts | _design(factorial, rows) | texts(factorial, rows, effects)

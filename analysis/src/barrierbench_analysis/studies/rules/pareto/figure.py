@@ -10,10 +10,11 @@ import numpy as np
 import pandas as pd
 
 from barrierbench_analysis.figures import panels, style
+from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables import series
 from barrierbench_analysis.tables.statistics import geometric
 
-from .fronts import Runs
+from .fronts import Runs, failures
 
 PANELS = {
     "cond_p95": "cond, raw",
@@ -36,19 +37,15 @@ SHOWN = (
 FAILED = "Not drawn, since runs that failed or were never in contact at a step end have no gap: {runs}."
 
 
-def _is_good(row: dict) -> bool:
-    return row["outcome"] == "ok" and bool(row["gap"])
-
-
-def _means(rows: list[dict], name: str) -> dict[float, tuple[float, float] | None]:
+def _means(runs: Runs, rows: list[Row], name: str) -> dict[float, tuple[float, float] | None]:
     """Scale -> (gap, value), the scales growing; None where a start failed, which breaks the line."""
     found = {}
-    for scale in sorted({row["scale"] for row in rows}):
-        of_scale = [row for row in rows if row["scale"] == scale]
-        good = [row for row in of_scale if _is_good(row) and row[name]]
+    for scale in runs.scales:
+        of_scale = [row for row in rows if runs.scale(row) == scale]
+        good = [row for row in of_scale if runs.gap(row) and runs.value(row, name)]
         found[scale] = (
-            (geometric(r["gap"] for r in good), geometric(r[name] for r in good))
-            if len(good) == len(of_scale)
+            (geometric(map(runs.gap, good)), geometric(runs.value(row, name) for row in good))
+            if good and len(good) == len(of_scale)
             else None
         )
     return found
@@ -63,26 +60,25 @@ def _path(axis, found: dict[float, tuple[float, float] | None], **how) -> None:
     )
 
 
-def failures(runs: Runs, scene: str, formulation: str) -> dict[float, int]:
-    """Scale -> how many of its starts have no gap, where some have none."""
-    bad = [row["scale"] for row in runs.of(scene, formulation) if not _is_good(row)]
-    return {scale: bad.count(scale) for scale in sorted(set(bad))}
-
-
 def failure_sentence(runs: Runs, scene: str, formulations: tuple[str, ...]) -> str:
     """Which runs of the scene are not drawn; empty where all are."""
-    starts = len(runs.seeds())
+    starts = len(runs.seeds)
     of_each = {name: failures(runs, scene, name) for name in formulations}
 
     def word(scale: float, n: int) -> str:
         return f"x{scale:g}" if n == starts else f"x{scale:g} ({n} of {starts} starts)"
 
     words = [
-        f"{name} at {', '.join(word(scale, n) for scale, n in found.items())}"
+        f"{name} at {', '.join(word(scale, ends.total()) for scale, ends in found.items())}"
         for name, found in of_each.items()
         if found
     ]
     return FAILED.format(runs="; ".join(words)) if words else ""
+
+
+def _panels(runs: Runs) -> dict[str, str]:
+    """Metric -> title, of those that the study has."""
+    return {name: title for name, title in PANELS.items() if name in (*runs.metrics, "scale")}
 
 
 def _numbers(runs: Runs, scene: str) -> pd.DataFrame:
@@ -90,10 +86,10 @@ def _numbers(runs: Runs, scene: str) -> pd.DataFrame:
     how many.
     """
     rows = []
-    for name in PANELS:
+    for name in _panels(runs):
         for formulation in runs.formulations:
             bad = failures(runs, scene, formulation)
-            for scale, point in _means(runs.of(scene, formulation), name).items():
+            for scale, point in _means(runs, runs.of(scene, formulation), name).items():
                 rows.append(
                     {
                         "scene": scene,
@@ -102,7 +98,7 @@ def _numbers(runs: Runs, scene: str) -> pd.DataFrame:
                         "scale": scale,
                         "gap": point and point[0],
                         "value": point and point[1],
-                        "failed": bad.get(scale, 0),
+                        "failed": bad[scale].total() if scale in bad else 0,
                     }
                 )
     return pd.DataFrame(rows)
@@ -111,22 +107,11 @@ def _numbers(runs: Runs, scene: str) -> pd.DataFrame:
 def _draw_panel(axis, runs: Runs, scene: str, name: str, formulations: tuple[str, ...]) -> None:
     for formulation in formulations:
         rows, look = runs.of(scene, formulation), style.look(formulation)
-        for seed in runs.seeds():
-            _path(
-                axis,
-                _means([r for r in rows if r["seed"] == seed], name),
-                color=look.color,
-                linewidth=0.5,
-                alpha=0.35,
-            )
-        _path(
-            axis,
-            _means(rows, name),
-            color=look.color,
-            linestyle=look.dash,
-            marker=look.marker,
-            label=formulation,
-        )
+        for seed in runs.seeds:
+            of_start = _means(runs, [row for row in rows if row.place["seed"] == str(seed)], name)
+            _path(axis, of_start, color=look.color, linewidth=0.5, alpha=0.35)
+        how = {"linestyle": look.dash, "marker": look.marker, "label": formulation}
+        _path(axis, _means(runs, rows, name), color=look.color, **how)
     axis.set(xscale="log", yscale="log")
     axis.set_title(PANELS[name], fontsize=7)
     style.keep_span(axis)
@@ -134,10 +119,8 @@ def _draw_panel(axis, runs: Runs, scene: str, name: str, formulations: tuple[str
 
 def draw(runs: Runs, scene: str, stem: Path, width_in: float = PAGE_IN) -> list[Path]:
     """stem.png and its company, and stem_more with the formulations that it has no room for. width_in: of the
-    figure. Errors: ValueError when no run of the scene reached a gap.
+    figure. The scene has a run that reached a gap.
     """
-    if not any(_is_good(row) for row in runs.rows if row["scene"] == scene):
-        raise ValueError(f"{scene}: no run reached a gap: there is nothing to draw")
     numbers, paths = _numbers(runs, scene), []
     for part in series.parts(runs.formulations, series.ranked(runs.formulations), stem.name):
         mine = numbers[numbers["formulation"].isin(part.names)]
@@ -145,21 +128,21 @@ def draw(runs: Runs, scene: str, stem: Path, width_in: float = PAGE_IN) -> list[
         kept, left_out = panels.choose(
             [
                 panels.Panel(title, drawn.loc[drawn["metric"] == name, "value"])
-                for name, title in PANELS.items()
+                for name, title in _panels(runs).items()
             ]
         )
         fig, axes = panels.grid(len(kept), width_in, 2.2)
-        for axis, name in zip(axes, [name for name, title in PANELS.items() if title in kept]):
+        for axis, name in zip(axes, [name for name, title in _panels(runs).items() if title in kept]):
             _draw_panel(axis, runs, scene, name, part.names)
-            axis.set_xlabel(rf"{runs.about['gap']} gap / $\hat d$")
+            axis.set_xlabel(rf"{runs.gap_words} gap / $\hat d$")
         style.letter_panels(axes)
         style.legend_below(fig, axes[0])
         fig.suptitle(scene, fontsize=8)
         shown = SHOWN.format(
             scene=scene,
-            gap=runs.about["gap"],
-            decades=runs.about["decades"],
-            starts=runs.about["starts"],
+            gap=runs.gap_words,
+            decades=runs.decades,
+            starts=len(runs.seeds),
             failed=failure_sentence(runs, scene, part.names),
         )
         paths += style.save(
