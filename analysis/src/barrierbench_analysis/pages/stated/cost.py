@@ -8,6 +8,7 @@ from pathlib import Path
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.studies.kit.study.store import Row, read_rows
 
 RESULTS = ROOT / "results"
 CORES = (4, 64)  # of a laptop and of a node
@@ -35,14 +36,14 @@ def _claims(data: dict) -> tuple[int, float]:
     return sum(len(one["rows"]) for one in sweeps), sum(one["about"]["seconds"] for one in sweeps)
 
 
-def _work_precision(data: dict) -> tuple[int, float]:
-    abouts = [one["about"] for one in _listed(data["scenes"])]
-    return sum(about["runs"] for about in abouts), sum(about["seconds"] for about in abouts)
-
-
 def _catalogue(data: dict) -> tuple[int, float]:
     seconds = [row["seconds"] for scene in data["scenes"].values() for row in scene["rows"]]
     return len(seconds), sum(seconds)
+
+
+def _of_rows(rows: dict[str, Row]) -> tuple[int, float]:
+    """Of a study of the kit."""
+    return _counted([row.seconds for row in rows.values() if row.seconds is not None])
 
 
 def _counted(seconds: list[float]) -> tuple[int, float]:
@@ -57,7 +58,7 @@ STUDIES = {
         "./bench study pareto",
         lambda d: (len(d["rows"]), d["about"]["seconds"]),
     ),
-    "work-precision": ("work_precision.json", "./bench study work-precision", _work_precision),
+    "work-precision": ("studies/work_precision.jsonl", "./bench study work-precision", _of_rows),
     "catalogue": ("catalogue.json", "./bench study catalogue", _catalogue),
     "stress suite": ("stress.json", "./bench study stress", _stress),
     "ablation": ("ablation.json", "./bench study ablation", lambda d: _counted(_column(d, "core_s"))),
@@ -74,7 +75,8 @@ def gather(folder: Path = RESULTS) -> list[dict]:
 def _studies(folder: Path) -> Iterator[dict]:
     for study, (name, command, read) in STUDIES.items():
         if (folder / name).is_file():
-            runs, core_s = read(read_object(folder / name))
+            read_file = read_rows if name.endswith(".jsonl") else read_object
+            runs, core_s = read(read_file(folder / name))
             yield {"study": study, "command": command, "runs": runs, "core_s": core_s}
 
 

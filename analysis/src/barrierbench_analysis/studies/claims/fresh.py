@@ -20,13 +20,14 @@ from .merged import merged, put
 
 # Where rules and thresholds were tuned, or could have been.
 TUNING = (
-    "claims/sweeps",
-    "configs/sweeps",
-    "configs/pareto",
-    "configs/work_precision",
-    "configs/gates",
-    "configs/stress",
-    "configs/gap_map",
+    "claims/sweeps/*.json",
+    "configs/sweeps/*.json",
+    "configs/pareto/*.json",
+    "configs/work_precision/*.json",
+    "configs/studies/work_precision.json",
+    "configs/gates/*.json",
+    "configs/stress/*.json",
+    "configs/gap_map/*.json",
 )
 # Of a generated mesh `level`, `n` and all that begins with n_ is its resolution, and a finer mesh is no other
 # scene; these numbers are its shape.
@@ -153,7 +154,7 @@ def scenes_of_sweep(sweep: Sweep) -> frozenset[str]:
 def used(root: Path = ROOT) -> dict[str, str]:
     """identity -> a file of runs that has the scene."""
     found: dict[str, str] = {}
-    for path in (path for folder in TUNING for path in sorted((root / folder).glob("*.json"))):
+    for path in (path for place in TUNING for path in sorted(root.glob(place))):
         found = dict.fromkeys(identities(path), str(path.relative_to(root))) | found
     return found
 

@@ -1,5 +1,5 @@
-"""Studies with a verb of their own (./bench study pareto, gap-map, work-precision) as subjects of figures:
-their kept numbers, which are made where that is allowed, and their figures in one column width.
+"""Studies as subjects of figures: their kept numbers, which are made where that is allowed, and their figures
+in one column width.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from barrierbench_analysis.studies.gap_map.judge import counts
 from barrierbench_analysis.studies.gap_map.size import drawn_sizes
 from barrierbench_analysis.studies.gap_map.spec import read_spec as read_gap_map
 from barrierbench_analysis.studies.kit.runs import inputs_sha256
+from barrierbench_analysis.studies.kit.study import page
+from barrierbench_analysis.studies.kit.study.spec import read_study
+from barrierbench_analysis.studies.kit.study.verb import make_rows
 from barrierbench_analysis.studies.matching import pareto, pareto_figure
 from barrierbench_analysis.studies.matching.spec import make_sweep
 from barrierbench_analysis.studies.matching.spec import read_spec as read_pareto
-from barrierbench_analysis.studies.work_precision import figure as work_figure
-from barrierbench_analysis.studies.work_precision import verb as work_precision
-from barrierbench_analysis.studies.work_precision.spec import read_spec as read_work
-from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.studies.rules.work_precision import figure as work_figure
 
 
 @dataclass(frozen=True)
@@ -59,15 +59,6 @@ def _gap_make(spec, kept: Path, jobs: int) -> None:
     gap_map.make_map(gap_map.arguments(words), spec, kept)
 
 
-def _work_read(spec, kept: Path) -> dict:
-    return work_precision.read_for(kept, spec)
-
-
-def _work_make(spec, kept: Path, _: int) -> None:
-    made = work_precision.made(spec, kept.parent / "records")
-    write_whole(kept, work_precision.table_text(rounded(made)))
-
-
 STUDIES = {
     "barrierbench.pareto/1": Study(
         "pareto", "pareto.json", pareto.DEFAULT, read_pareto, _pareto_table, _pareto_make
@@ -80,15 +71,24 @@ STUDIES = {
         lambda spec, kept: gap_kept.read_for(kept, spec),
         _gap_make,
     ),
-    "barrierbench.work_precision/1": Study(
-        "work-precision",
-        "work_precision.json",
-        work_precision.DEFAULT,
-        read_work,
-        _work_read,
-        _work_make,
-    ),
 }
+
+
+KIT = "barrierbench.study/1"  # specs of the study kit
+
+
+def _of_kit(file: Path, runs: Path, may_run: bool, jobs: int) -> dict:
+    """The numbers that the rule makes of the kept rows, as of_file has tables."""
+    study = read_study(str(file))
+    if not study.is_ours:
+        study = read_study(str(file), runs / f"{study.rule}-{file.stem}")
+    try:
+        return page.numbers_of(study)
+    except UserError as error:
+        if not may_run or study.is_ours:
+            raise UserError(f"{error}" + (f" with --out {study.out}" if study.out else "")) from None
+    make_rows(study, jobs=jobs)
+    return page.numbers_of(study)
 
 
 def of_file(file: Path, runs: Path, may_run: bool, jobs: int):
@@ -96,14 +96,16 @@ def of_file(file: Path, runs: Path, may_run: bool, jobs: int):
     below `runs`, made where they are missing and may be. Errors: UserError with the command.
     """
     named = read_object(file).get("schema")
+    if named == KIT:
+        return _of_kit(file, runs, may_run, jobs)
     if named not in STUDIES:
-        raise UserError(f"{file}#/schema: found {named!r}; one of {', '.join(STUDIES)} is needed")
+        raise UserError(f"{file}#/schema: found {named!r}; one of {', '.join((KIT, *STUDIES))} is needed")
     study = STUDIES[named]
     spec, is_default = study.read(file), file == study.default.resolve()
     folder = ROOT / "results" if is_default else runs / f"{study.verb}-{file.stem}"
     kept = folder / study.kept
     again = f"; this makes them: ./bench study {study.verb} {file}" + (
-        "" if is_default else f" {'--out' if study.verb == 'work-precision' else '--results'} {folder}"
+        "" if is_default else f" --results {folder}"
     )
     try:
         if kept.is_file():
@@ -160,8 +162,8 @@ def gap_sizes(found, drawing: Drawing) -> list[Path]:
     return size_figure.draw(found, drawing.stem, drawing.width_in, drawing.title)
 
 
-def work_precisions(table: dict, drawing: Drawing) -> list[Path]:
-    scenes = table["scenes"]
+def work_precisions(numbers: dict, drawing: Drawing) -> list[Path]:
+    scenes = numbers["scenes"]
     ranks, paths = work_figure.by_rank(scenes), []
     for scene in scenes:
         rows = scene["rows"]

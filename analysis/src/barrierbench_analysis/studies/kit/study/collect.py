@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator
-from itertools import groupby
-from pathlib import Path
 
 from barrierbench_analysis.io.origin import origin, run_of, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
@@ -51,15 +50,15 @@ def _at(record: dict, pointer: str) -> float | None:
     return found if isinstance(found, (int, float)) and not isinstance(found, bool) else None
 
 
-def row_of(study: Study, cell: Cell, record: dict) -> store.Row:
-    """The row of one record, as runs.collect has it. The function `measure` of a rule (study, cell, record)
-    gives the values that MEASURED names."""
+def row_of(study: Study, cell: Cell, record: dict, *others: dict) -> store.Row:
+    """The row of one record, as runs.collect has it. The function `measure` of a rule (study, cell, record,
+    and the records of the cells that it needs) gives the values that MEASURED names."""
     values = {
         name: _at(record, source) if source.startswith("/") else runs.metric(record, source)
         for name, source in study.data["metrics"].items()
     }
     if hasattr(study.module, "measure"):
-        values |= study.module.measure(study, cell, record)
+        values |= study.module.measure(study, cell, record, *others)
     sources = sources_of(study)
     return store.Row(
         key=cell.key,
@@ -76,18 +75,28 @@ def row_of(study: Study, cell: Cell, record: dict) -> store.Row:
 
 def parts(cells: list[Cell]) -> Iterator[list[Cell]]:
     """Cells of one base in their order, at most AT_ONCE of them: what one sweep runs."""
-    for _, of_base in groupby(cells, key=lambda cell: cell.base):
+    for _, of_base in itertools.groupby(cells, key=lambda cell: cell.base):
         mine = list(of_base)
         yield from (mine[at : at + AT_ONCE] for at in range(0, len(mine), AT_ONCE))
 
 
-def run_cells(study: Study, cells: list[Cell], jobs: int = 1, folder: Path | None = None) -> list[store.Row]:
-    """Runs these cells of one base as one sweep, so many at a time. Runs whose records are there already are
-    not repeated. Errors: UserError. Cost: the runs.
+def run_cells(study: Study, cells: list[Cell], jobs: int = 1) -> list[store.Row]:
+    """Runs these cells of one base as one sweep, so many at a time, with those of the same base whose runs
+    they are measured with (function `needs` of the rule: study, cell -> cells). Runs whose records are there
+    already are not repeated. Errors: UserError. Cost: the runs.
     """
-    out = (folder or RUNS) / study.name
-    cases = [{"label": f"{cell.label} {cell.key[:KEY_DIGITS]}", "set": cell.settings} for cell in cells]
+    out = study.out / "runs" if study.out else RUNS / study.name
+    needs = getattr(study.module, "needs", lambda *_: [])
+    others = {cell.key: needs(study, cell) for cell in cells}
+    every = {cell.key: cell for cell in itertools.chain(*others.values(), cells)}
+    cases = [
+        {"label": f"{cell.label} {key[:KEY_DIGITS]}", "set": cell.settings} for key, cell in every.items()
+    ]
     made = runs.sweep(study.name, cells[0].base, study.data.get("set", {}), cases)
     runs.run(made, out, jobs=jobs)
-    records = runs.collect(made, out)
-    return [row_of(study, cell, records[note]) for cell, note in zip(cells, made.notes, strict=True)]
+    found = runs.collect(made, out)
+    records = {key: found[note] for key, note in zip(every, made.notes, strict=True)}
+    return [
+        row_of(study, cell, records[cell.key], *(records[other.key] for other in others[cell.key]))
+        for cell in cells
+    ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -65,6 +66,7 @@ def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
         "made": made_of(rows),
         "command": f"{study.command} run",
         "spec": study.file.name,
+        "pictures": os.path.relpath(study.figures, study.page.parent),
     }
     try:
         return environment.from_string(input_file.read_text(study.template)).render(about | numbers)

@@ -45,6 +45,12 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "--minutes", type=finite_number, metavar="M", help="begins no further sweep after so many minutes"
     )
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs at a time (default 1)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="runs, rows, page and figures in this folder, apart from kept rows: repeats a study",
+    )
     args = parser.parse_args(argv[1:])
     if args.jobs < 1:
         raise UserError(f"--jobs: found {args.jobs}; allowed: a number from 1 on")
@@ -121,7 +127,7 @@ def main(argv: list[str]) -> int:
 
 def _main(argv: list[str]) -> int:
     args = arguments(argv)
-    study = read_study(argv[0])
+    study = read_study(argv[0], args.out)
     cells = chosen(study, args.only, args.part)
     if args.plan:
         print("\n".join(cost.plan(study, store.read_rows(store.file_of(study)), cells)))
