@@ -76,23 +76,24 @@ def test_a_mesh_file_is_its_contents(tmp_path):
     assert a == b != c
 
 
-def tuning(tmp_path, folder, data):
-    (tmp_path / folder).mkdir(parents=True, exist_ok=True)
-    (tmp_path / folder / "x.json").write_text(json.dumps(data))
+def tuning(tmp_path, place, data):
+    file = tmp_path / place.replace("*", "x")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(data))
     fresh.used.cache_clear()
     return fresh.used(tmp_path)
 
 
-@pytest.mark.parametrize("folder", fresh.TUNING)
-def test_all_folders_of_tuning_are_looked_into(tmp_path, folder):
-    assert identity(scene()) in tuning(tmp_path, folder, {"axes": [{"cases": [{"set": {"/scene": scene()}}]}]})
+@pytest.mark.parametrize("place", fresh.TUNING)
+def test_all_places_of_tuning_are_looked_into(tmp_path, place):
+    assert any(ROOT.glob(place)) and identity(scene()) in tuning(tmp_path, place, {"axes": [{"cases": [{"set": {"/scene": scene()}}]}]})
 
 
 def test_settings_of_a_base_make_its_scenes(tmp_path):
     (tmp_path / "claims/sweeps").mkdir(parents=True)
     (tmp_path / "claims/sweeps/base.cfg.json").write_text(json.dumps({"scene": scene()}))
     softer, faster = {"/scene/bodies/0/material/youngs_N_per_m": 2}, {"/scene/bodies/0/velocity_m_per_s": [0, 0, -1]}
-    found = tuning(tmp_path, "claims/sweeps", {"base": "base.cfg.json", "axes": [{"cases": [{"set": softer}]}, {"cases": [{"set": faster}, {"set": {"/scene/n": 3}}]}]})
+    found = tuning(tmp_path, "claims/sweeps/*.json", {"base": "base.cfg.json", "axes": [{"cases": [{"set": softer}]}, {"cases": [{"set": faster}, {"set": {"/scene/n": 3}}]}]})
     both = changed(("bodies", 0, "material", "youngs_N_per_m"), 2)
     both["bodies"][0]["velocity_m_per_s"] = [0, 0, -1]
     assert {identity(scene()), identity(changed(("bodies", 0, "material", "youngs_N_per_m"), 2)), identity(both)} <= set(found)

@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -251,6 +252,14 @@ def test_values_that_the_rule_measures_are_missing_once_they_are_measured_otherw
     assert len(collect.missing(study, rows)) == len(study.cells)
 
 
+def test_what_values_depend_on_beside_the_run_makes_another_cell(tmp_path, rule_of_small):
+    def key(**against):
+        rule_of_small.cells = lambda study: [Case({"dt": "1"}, {"/time/dt_s": 0.01}, **against)]
+        return written(tmp_path).cells[0].key
+
+    assert key() == key(against={}) != key(against={"closed_form": "a"}) != key(against={"closed_form": "b"})
+
+
 def test_cells_that_others_decide_are_not_run(tmp_path, rule_of_small):
     study = written(tmp_path)
     rule_of_small.decided = lambda study, rows: {study.cells[1].key} if study.cells[0].key in rows else set()
@@ -303,6 +312,14 @@ def test_seconds_are_expected_from_the_nearest_rows(tmp_path):
     assert cost.growth(far) == pytest.approx(2.5)
 
 
+def test_rows_and_page_of_a_call_with_a_folder_lie_in_it(tmp_path):
+    study = written(tmp_path)
+    there = read_study(str(study.file), tmp_path / "out")
+    assert store.file_of(there) == tmp_path / "out/small.rows.jsonl" and there.page == tmp_path / "out/small.page.md"
+    drift = read_study("drift", tmp_path)
+    assert not drift.is_ours and drift.figures == tmp_path and drift.template == read_study("drift").template
+
+
 def test_a_template_that_asks_for_more_is_refused(tmp_path):
     study = written(tmp_path)
     rows = [row(cell) for cell in study.cells]
@@ -350,3 +367,24 @@ def test_a_study_runs_what_is_missing_and_nothing_twice(tmp_path, monkeypatch, p
     assert verb.make_rows(traced) == 4 and all(r.values["bound"] is not None for r in page.rows_of(traced))
     longer = written(tmp_path, seeds=[1], set={"/threads": 1, "/time/steps": 3})  # the same labels, other runs
     assert verb.make_rows(longer) == 4 and {r.values["steps"] for r in page.rows_of(longer)} == {3}
+
+
+def test_a_cell_is_measured_with_the_runs_that_it_needs(tmp_path, monkeypatch, program, rule_of_small):
+    """The row of a needed cell may be there already, its run or not."""
+    monkeypatch.setattr(collect, "RUNS", tmp_path / "runs")
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
+    rule_of_small.MEASURED = {"over": "Newton iterations over those of the log"}
+    rule_of_small.needs = lambda study, cell: [other for other in study.cells[:1] if cell is not other]
+    rule_of_small.measure = lambda study, cell, record, *others: {
+        "over": record["summary"]["newton_iterations"] / others[0]["summary"]["newton_iterations"] if others else 1.0
+    }
+    study = written(tmp_path, seeds=[1], axes=SPEC["axes"][1:])
+    assert verb.make_rows(study, study.cells[:1]) == 1
+    first, = store.read_rows(store.file_of(study)).values()
+    for left in (True, False):
+        store.write_rows(store.file_of(study), {first.key: first})
+        if not left:
+            shutil.rmtree(tmp_path / "runs")
+        assert verb.make_rows(study) == 1
+        log, cubic = page.rows_of(study)
+        assert log == first and cubic.values["over"] == pytest.approx(cubic.values["newton"] / log.values["newton"])

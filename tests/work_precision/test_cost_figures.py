@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from barrierbench_analysis.figures import style
-from barrierbench_analysis.studies.work_precision import figure
+from barrierbench_analysis.studies.rules.work_precision import figure
 
 NAMES = ("log", "log_squared", "quadratic", "cubic", "two_stage", "ipc2020", "cubic_dynamic")
 COSTS = np.geomspace(10, 400, 9)
@@ -15,7 +15,7 @@ def rows(name: str, worse: float, factorizations, products) -> list[dict]:
     found = []
     for k, cost in enumerate(COSTS):
         both = {"formulation": name, "axis": "d_hat_m" if k else "anchor", "factor": 0.5**k, "outcome": "ok", "error": worse / cost, "newton": cost, "seconds": 10 / cost, "run": "",
-                "factorizations": factorizations(cost), "products": products(cost), "errors": {}}
+                "factorizations": factorizations(cost), "products": products(cost)}
         found += [both | {"solver": "direct"}, both | {"solver": "pcg"}]
     return found
 

@@ -1,17 +1,25 @@
 """Who reaches what and at which cost, on made-up runs whose answers are known."""
 
 import math
+from types import SimpleNamespace
 
-import pytest
 
-from barrierbench_analysis.studies.work_precision.judge import aside, band_of, cheapest, cost_to, formulations, front, points, profile, smallest_error, standing
-from barrierbench_analysis.studies.work_precision.figure import draw, draw_profile
-from barrierbench_analysis.studies.work_precision.report import intervals, markdown, text
+from barrierbench_analysis.studies.kit.study import page as study_page
+from barrierbench_analysis.studies.kit.study.spec import read_study
+from barrierbench_analysis.studies.rules.work_precision.figure import draw, draw_profile
+from barrierbench_analysis.studies.rules.work_precision.judge import band_of, cheapest, cost_to, formulations, front, points, profile, smallest_error, standing
+from barrierbench_analysis.studies.rules.work_precision.tables import intervals, numbers
 
 
 def row(formulation, axis, factor, newton, error, outcome="ok", solver="direct"):
     return {"formulation": formulation, "axis": axis, "factor": factor, "solver": solver, "outcome": outcome, "error": error, "seconds": newton / 100, "newton": newton,
-            "factorizations": newton + 1, "products": 10 * newton, "run": f"{formulation}{axis}{factor}", "errors": {} if error is None else {"e_traj": error}}
+            "factorizations": newton + 1, "products": 10 * newton, "run": f"{formulation}{axis}{factor}"}
+
+
+def markdown(*scenes) -> str:
+    """The page of scenes."""
+    made = SimpleNamespace(origin=scenes[0]["about"], unknowns=9)
+    return study_page.text_of(read_study("work_precision"), [made], {"doc": "made up", **numbers(list(scenes))})
 
 
 def scene(band=0.0):
@@ -48,9 +56,8 @@ def test_a_formulation_that_is_the_cheapest_twice_is_not_so_in_between():
     assert a.cheapest_in == ((0.1, math.inf), (0.001, 0.01)) and b.cheapest_in == ((0.001, 0.1),)
     assert cheapest(found, ["a", "b"]) == [(0.1, ("a",)), (0.01, ("b",)), (0.001, ("a", "b"))]
     assert intervals(a) == "from 0.1 up; 0.001 to 0.01" and intervals(b) == "0.001 to 0.1"
-    page = markdown({"doc": "", "scenes": [made]})
+    page = markdown(made)
     assert "| a | 2 of 2 | 0.001 | 40 | from 0.1 up; 0.001 to 0.01 |" in page and "cheaper |" not in page
-    assert "cheapest from 0.1 up; 0.001 to 0.01" in text({"scenes": [made]})
 
 
 def test_ends_of_an_interval_are_told_apart():
@@ -73,12 +80,12 @@ def test_time_steps_whose_error_nobody_sees_are_not_ranked(tmp_path):
     assert front(found, "a") == [(30, 0.01)] and cost_to(found, "a", 0.01) == 30 and standing(found, names, "a").runs == 1
     assert standing(found, names, "a").cheapest_in == () and standing(found, names, "b").cheapest_in == ((0.01, math.inf),)
     assert profile([refined], "newton", "a", 0) == ([30], 1)
-    assert [(p.formulation, p.cost, p.error) for p in aside(refined, "newton")] == [("a", 1, 0.001), ("b", 2, None)]
+    assert [(p.formulation, p.cost, p.error) for p in points(refined, "newton", ranked=False)] == [("a", 1, 0.001), ("b", 2, None)]
     # A closed form has no time step of its own: there they are ranked.
-    assert aside(closed, "newton") == [] and standing(points(closed, "newton"), names, "a").cheapest_in == ((0.001, math.inf),)
-    page = markdown({"doc": "", "scenes": [refined]})
+    assert points(closed, "newton", ranked=False) == [] and standing(points(closed, "newton"), names, "a").cheapest_in == ((0.001, math.inf),)
+    page = markdown(refined)
     assert "4 runs of other time steps (dt_s) are not ranked" in page and "| a | 1 of 1 | 0.01 | 30 | nowhere |" in page
-    assert "not ranked" not in markdown({"doc": "", "scenes": [closed]}).split("## made")[1]
+    assert "not ranked" not in markdown(closed).split("## made")[1]
     draw(refined, tmp_path / "refined")
     assert "Faint marks: other time steps" in " ".join((tmp_path / "refined.txt").read_text().split())
     rows = (tmp_path / "refined.csv").read_text().split("\n")
@@ -115,7 +122,7 @@ def test_a_run_has_the_band_of_its_own_time_step():
     made = scene(band=0.01)
     made["references"].append({"dt_factor": 2.0, "name": "of 2 dt", "band": {"e_traj": 0.07}})
     made["rows"] = [row("a", "dt_s", 2.0, 5, 0.02), row("a", "d_hat_m", 2.0, 6, 0.02)]
-    assert [p.error for p in aside(made, "newton")] == [0.07] and [p.error for p in points(made, "newton")] == [0.02]
+    assert [p.error for p in points(made, "newton", ranked=False)] == [0.07] and [p.error for p in points(made, "newton")] == [0.02]
 
 
 def test_profile_counts_failures_as_never():
@@ -132,18 +139,16 @@ def test_costs_come_from_the_solver_that_has_them():
 
 
 def test_the_page_names_what_failed_and_what_is_useless():
-    page = markdown({"doc": "made up", "scenes": [scene(band=0.002)]})
+    page = markdown(scene(band=0.002))
     assert "c d_hat_m x0.5 (direct) stall_overload" in page and "Failed or not valid, 2 of 12" in page
     assert "| a | 2 of 2 | 0.05 | 20 | from 0.05 up |" in page and "| b | 2 of 2 | 0.002 (band) | 40 | 0.002 to 0.05 |" in page
     assert "| c | 1 of 2 | 0.1 | 50 | nowhere |" in page and "never" in page and "a made-up truth; e_traj 0.002" in page
     assert "one start" in page and "did other work" in page
-    assert "cheapest from 0.05 up" in text({"scenes": [scene()]})
 
 
-@pytest.mark.parametrize("error", [None])
-def test_nobody_counts(error):
+def test_nobody_counts():
     made = scene()
-    made["rows"] = [row("a", "anchor", 1.0, 10, error, "newton_stall")]
+    made["rows"] = [row("a", "anchor", 1.0, 10, None, "newton_stall")]
     s = standing(points(made, "newton"), ["a"], "a")
     assert s.solved == 0 and math.isinf(s.smallest) and math.isinf(s.cost_there)
-    assert "| a | 0 of 1 | never | never | nowhere |" in markdown({"doc": "", "scenes": [made]})
+    assert "| a | 0 of 1 | never | never | nowhere |" in markdown(made)

@@ -1,6 +1,6 @@
-"""The one reader of specs: JSON files of what to run and to judge (claims, gap maps, Pareto sweeps,
-work-precision studies, stress tests, sets of gates, the corpus of matrices, figures), held against their
-JSON Schema in configs/schema/. What no schema can say, a reader checks after it.
+"""The one reader of specs: JSON files of what to run and to judge (studies, claims, gap maps, Pareto sweeps,
+stress tests, sets of gates, the corpus of matrices, figures), held against their JSON Schema in
+configs/schema/. What no schema can say, a reader checks after it.
 """
 
 from __future__ import annotations
@@ -76,7 +76,8 @@ def read_spec(path: Path, kind: str) -> dict:
 
 
 def checked(data: dict, path: Path, kind: str, above: str = "") -> dict:
-    """What was read of a file that is no JSON, or stands at the key `above` of one; otherwise as read_spec."""
+    """What was read of a file that is no JSON, or stands at the key `above` of one; otherwise as
+    read_spec."""
     if errors := sorted(_validator(kind).iter_errors(data), key=_order):
         raise UserError(f"{path}#/{_fault(errors[0], above)}")
     return data

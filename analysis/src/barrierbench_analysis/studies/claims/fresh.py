@@ -25,6 +25,7 @@ TUNING = (
     "configs/pareto/*.json",
     "configs/studies/pareto.json",
     "configs/work_precision/*.json",
+    "configs/studies/work_precision.json",
     "configs/gates/*.json",
     "configs/stress/*.json",
     "configs/gap_map/*.json",

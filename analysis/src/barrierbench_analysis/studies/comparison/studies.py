@@ -25,10 +25,7 @@ from barrierbench_analysis.studies.kit.study import page
 from barrierbench_analysis.studies.kit.study.spec import read_study
 from barrierbench_analysis.studies.kit.study.verb import make_rows
 from barrierbench_analysis.studies.rules.pareto import figure as pareto_figure
-from barrierbench_analysis.studies.work_precision import figure as work_figure
-from barrierbench_analysis.studies.work_precision import verb as work_precision
-from barrierbench_analysis.studies.work_precision.spec import read_spec as read_work
-from barrierbench_analysis.tables.numbers import rounded
+from barrierbench_analysis.studies.rules.work_precision import figure as work_figure
 from barrierbench_analysis.tables.outcomes import OK
 
 
@@ -51,15 +48,6 @@ def _gap_make(spec, kept: Path, jobs: int) -> None:
     gap_map.make_map(gap_map.arguments(words), spec, kept)
 
 
-def _work_read(spec, kept: Path) -> dict:
-    return work_precision.read_for(kept, spec)
-
-
-def _work_make(spec, kept: Path, _: int) -> None:
-    made = work_precision.made(spec, kept.parent / "records")
-    write_whole(kept, work_precision.table_text(rounded(made)))
-
-
 STUDIES = {
     "barrierbench.gap_map/1": Study(
         "gap-map",
@@ -68,14 +56,6 @@ STUDIES = {
         read_gap_map,
         lambda spec, kept: gap_kept.read_for(kept, spec),
         _gap_make,
-    ),
-    "barrierbench.work_precision/1": Study(
-        "work-precision",
-        "work_precision.json",
-        work_precision.DEFAULT,
-        read_work,
-        _work_read,
-        _work_make,
     ),
 }
 
@@ -111,7 +91,7 @@ def of_file(file: Path, runs: Path, may_run: bool, jobs: int):
     folder = ROOT / "results" if is_default else runs / f"{study.verb}-{file.stem}"
     kept = folder / study.kept
     again = f"; this makes them: ./bench study {study.verb} {file}" + (
-        "" if is_default else f" {'--out' if study.verb == 'work-precision' else '--results'} {folder}"
+        "" if is_default else f" --results {folder}"
     )
     try:
         if kept.is_file():
@@ -163,8 +143,8 @@ def gap_sizes(found, drawing: Drawing) -> list[Path]:
     return size_figure.draw(found, drawing.stem, drawing.width_in, drawing.title)
 
 
-def work_precisions(table: dict, drawing: Drawing) -> list[Path]:
-    scenes = table["scenes"]
+def work_precisions(numbers: dict, drawing: Drawing) -> list[Path]:
+    scenes = numbers["scenes"]
     ranks, paths = work_figure.by_rank(scenes), []
     for scene in scenes:
         rows = scene["rows"]

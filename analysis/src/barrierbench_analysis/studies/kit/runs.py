@@ -17,7 +17,6 @@ from barrierbench_analysis.program.start import check_ended, run_sweep
 from barrierbench_analysis.studies.gate.configs import differences
 
 from . import formulations
-from .formulations import known
 from .metrics import FOLDER, METRICS
 
 # What formulations may differ in; everything else of two configs has to be equal.
@@ -89,8 +88,8 @@ def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
     elif isinstance(node, list):
         for one in node:
             yield from _inputs(one, folder, name)
-    elif name == "formulation" and node in known():
-        yield input_file.read_bytes(formulations.PRESETS / f"{node}.json")
+    elif name == "formulation" and (file := formulations.PRESETS / f"{node}.json").is_file():
+        yield input_file.read_bytes(file)
     elif name == "method" and isinstance(node, str) and (file := places.METHODS / f"{node}.json").is_file():
         yield input_file.read_bytes(file)
         yield from _inputs(read_object(file)["set"], folder)
@@ -100,21 +99,29 @@ def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
             yield from _inputs(read_object(folder / node), (folder / node).parent)
 
 
+def inputs(node, folder: Path) -> bytes:
+    """sha256 of every file that settings name, one behind the other; files of paths relative to `folder`."""
+    return b"".join(hashlib.sha256(part).digest() for part in _inputs(node, folder))
+
+
+def contents(plugins: Iterable[str]) -> bytes:
+    """sha256 of every plugin, one behind the other; of one that is missing that of nothing: the program
+    refuses it."""
+    files = [Path(plugin) for plugin in plugins]
+    return b"".join(
+        hashlib.sha256(input_file.read_bytes(file) if file.is_file() else b"").digest() for file in files
+    )
+
+
 def inputs_sha256(made: Sweep, overrides: list[str] | None = None, plugins: list[str] | None = None) -> str:
-    """Of the contents, not the places, of all files that the runs of a sweep are made from. A base or a
-    plugin that is missing adds nothing: the program refuses it.
+    """Of the contents, not the places, of all files that the runs of a sweep are made from. A base that is
+    missing adds nothing: the program refuses it.
     """
     data = json.loads(made.text)
-    found = hashlib.sha256()
-    for part in _inputs(
+    found = inputs(
         [data, dict(text.partition("=")[::2] for text in overrides or [])], Path(data["base"]).parent
-    ):
-        found.update(hashlib.sha256(part).digest())
-    for plugin in plugins or []:
-        found.update(
-            hashlib.sha256(input_file.read_bytes(Path(plugin)) if Path(plugin).is_file() else b"").digest()
-        )
-    return found.hexdigest()
+    )
+    return hashlib.sha256(found + contents(plugins or [])).hexdigest()
 
 
 def run(

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 from barrierbench_analysis.tables.statistics import slope
 from barrierbench_analysis.tables.words import counted
 
 from . import store
-from .collect import missing
+from .collect import current, left_out, missing
 from .spec import SEED, Cell, Study
 
 # The power of the unknowns by which seconds grow where kept rows do not tell: a cloth of 192 to 2,352
@@ -21,6 +22,7 @@ SPAN = 3.0  # largest over smallest number of unknowns from which on rows tell t
 def growth(rows: list[store.Row]) -> float:
     """Power p of seconds ~ unknowns^p, at least 1; GROWTH where less than a factor SPAN in size was
     measured."""
+    rows = [row for row in rows if row.unknowns]  # of those that left a record
     sizes = {row.unknowns for row in rows}
     if not sizes or max(sizes) < SPAN * min(sizes):
         return GROWTH
@@ -52,26 +54,36 @@ def expected(cell: Cell, rows: list[store.Row], power: float) -> float | None:
     return sum(grown) / len(grown)
 
 
-def plan(study: Study, rows: dict[str, store.Row], chosen: list[Cell]) -> list[str]:
-    """Lines: cells, those with a row, those that need none, and what the rest takes as far as rows tell.
-    chosen: the cells that a call would run, all that are missing or some of them.
+def in_lines(
+    name: str, file: Path, cells: int, there: int, seconds: list[float | None], decided: int = 0
+) -> list[str]:
+    """What a plan says: cells, those with a row in a file, those that need none, and what the rest takes.
+    seconds: expected of each cell to run, None where no kept row is like it.
     """
-    lacking = {cell.key for cell in missing(study, rows)}
-    left = [cell for cell in chosen if cell.key in lacking]
-    there = sum(cell.key in rows and cell.key not in lacking for cell in study.cells)
-    lines = [
-        f"{study.name}: {counted(len(study.cells), 'cell')}, {there} with a row in"
-        f" {store.file_of(study).name}, {len(left)} to run"
-    ]
-    if decided := len(study.cells) - there - len(lacking):
+    lines = [f"{name}: {counted(cells, 'cell')}, {there} with a row in {file.name}, {len(seconds)} to run"]
+    if decided:
         need = "needs" if decided == 1 else "need"
         lines.append(f"{counted(decided, 'more cell')} {need} no run, since others decide the outcome")
-    kept = [replace(rows[cell.key], place=cell.place) for cell in study.cells if cell.key in rows]
-    power = growth(kept)
-    known = [seconds for cell in left if (seconds := expected(cell, kept, power)) is not None]
-    if known:
+    if known := [one for one in seconds if one is not None]:
         total = f"{sum(known):.0f} s" if sum(known) < 3600 else f"{sum(known) / 3600:.1f} h"
         lines.append(f"about {total} of one core for {counted(len(known), 'run')} of these")
-    if unknown := len(left) - len(known):
+    if unknown := len(seconds) - len(known):
         lines.append(f"{counted(unknown, 'run')} without a kept row whose labels are alike: not estimated")
     return lines
+
+
+def plan(study: Study, rows: dict[str, store.Row], chosen: list[Cell], every: bool = False) -> list[str]:
+    """Lines: cells, those with a row, those that need none, and what the rest takes as far as rows tell.
+    chosen: the cells that a call would run, all that are missing or some of them. every: as missing().
+    """
+    lacking = {cell.key for cell in missing(study, rows, every)}
+    kept = [
+        replace(row, place=cell.place)
+        for cell in study.cells
+        if (row := rows.get(cell.key)) and row.seconds is not None
+    ]
+    power = growth(kept)
+    seconds = [expected(cell, kept, power) for cell in chosen if cell.key in lacking]
+    decided = 0 if every else len(left_out(study, rows))
+    there = len(current(study, rows))
+    return in_lines(study.name, store.file_of(study), len(study.cells), there, seconds, decided)

@@ -17,28 +17,23 @@ from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.tables.words import counted
 
 from . import store
-from .collect import missing
+from .collect import current, decided, missing
 from .spec import Study
 
 
-def rows_of(study: Study) -> list[store.Row]:
+def rows_of(study: Study, file: Path | None = None) -> list[store.Row]:
     """The kept rows of the cells that the spec asks for today, in its order. Errors: UserError where one is
     missing, so that no number is of a part of the cells; a rule whose page says what was not run (PARTIAL)
-    is given what there is.
+    is given what there is. file: of the rows, where another one is meant than that of the study.
     """
-    rows = store.read_rows(store.file_of(study))
-    lacking = missing(study, rows)
+    rows = store.read_rows(file or store.file_of(study))
+    there, lacking = current(study, rows), missing(study, rows)
     if lacking and not getattr(study.module, "PARTIAL", False):
         raise UserError(
-            f"{store.file_of(study)}: {counted(len(lacking), 'cell')} of {len(study.cells)} without a"
+            f"{file or store.file_of(study)}: {counted(len(lacking), 'cell')} of {len(study.cells)} without a"
             f" row, the first {lacking[0].label!r}; {study.command} run makes them"
         )
-    without = {cell.key for cell in lacking}
-    return [
-        replace(rows[cell.key], place=cell.place)  # labels of today
-        for cell in study.cells
-        if cell.key in rows and cell.key not in without
-    ]
+    return [replace(there[cell.key], place=cell.place) for cell in study.cells if cell.key in there]
 
 
 def numbers_of(study: Study) -> dict:
@@ -48,18 +43,36 @@ def numbers_of(study: Study) -> dict:
 
 def made_of(rows: list[store.Row]) -> str:
     """A sentence: when, on which machine and by which program the rows were made."""
-    found = {name: sorted({row.origin[name] for row in rows}) for name in ("date", "machine", "commit")}
-    sizes = sorted({row.unknowns for row in rows})
-    unknowns = f"{sizes[0]} to {sizes[-1]}" if len(sizes) > 1 else f"{sizes[0]}"
+    known = [row for row in rows if row.run]  # of those that left a record
+    found = {name: sorted({row.origin[name] for row in known}) for name in ("date", "machine", "commit")}
+    sizes = sorted({row.unknowns for row in known})
+    unknowns = " to ".join(map(str, dict.fromkeys([*sizes[:1], *sizes[-1:]])))
     return (
         f"{counted(len(rows), 'run')} of {unknowns} unknowns were made on"
         f" {', '.join(found['date'])} on {', '.join(found['machine'])} (commit {', '.join(found['commit'])})."
     )
 
 
+def checks_of(study: Study, rows: list[store.Row]) -> dict[str, int]:
+    """Of the cells that others decide: how many have no run, how many were run all the same, and how many of
+    these ended as it follows from the others."""
+    of = {row.key: row for row in rows}
+    found = decided(study, of)
+    run = {key: of[key].outcome == outcome for key, outcome in found.items() if key in of}
+    return {"left_out": len(found) - len(run), "run": len(run), "held": sum(run.values())}
+
+
+def filled(template: Path, numbers: dict) -> str:
+    """A template (Jinja) with numbers. Errors: UserError for one that asks for what is not there."""
+    environment = Environment(undefined=StrictUndefined, keep_trailing_newline=True, autoescape=False)
+    try:
+        return environment.from_string(input_file.read_text(template)).render(numbers)
+    except TemplateError as fault:
+        raise UserError(f"{template}: {fault}; allowed: {', '.join(sorted(numbers))}") from None
+
+
 def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
     """The page. Errors: UserError for a template that asks for what the rule does not give."""
-    environment = Environment(undefined=StrictUndefined, keep_trailing_newline=True, autoescape=False)
     about = {
         "name": study.name,
         "question": study.data["question"],
@@ -67,11 +80,9 @@ def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
         "command": f"{study.command} run",
         "spec": study.file.name,
         "pictures": os.path.relpath(study.figures, study.page.parent),
+        "checks": checks_of(study, rows),
     }
-    try:
-        return environment.from_string(input_file.read_text(study.template)).render(about | numbers)
-    except TemplateError as fault:
-        raise UserError(f"{study.template}: {fault}; allowed: {', '.join(sorted(about | numbers))}") from None
+    return filled(study.template, about | numbers)
 
 
 def write_page(study: Study) -> Path:
@@ -80,9 +91,7 @@ def write_page(study: Study) -> Path:
     """
     rows = rows_of(study)
     if not rows:
-        raise UserError(
-            f"{store.file_of(study)}: found no row; allowed: some; {study.command} run makes them"
-        )
+        raise UserError(f"{store.file_of(study)}: found no row; allowed: some; {study.command} run makes them")
     numbers = study.module.rule(study, rows)
     write_whole(study.page, text_of(study, rows, numbers))
     if hasattr(study.module, "draw"):

@@ -7,12 +7,13 @@ import itertools
 import json
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from hashlib import sha256
 from pathlib import Path
 from types import ModuleType
 
-from barrierbench_analysis.io.digests import of_file, of_text
+from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import checked, read_spec, refused, require_base
@@ -30,12 +31,14 @@ KEY_DIGITS = 24
 class Case:
     """A run that the rule of a study asks for, in place of a combination of axes. place: the label of every
     axis. base: another config than that of the spec. unknowns: where the rule knows them before the run.
+    against: what the measured values depend on beside the run; another one makes another cell.
     """
 
     place: dict[str, str]
     settings: dict
     base: Path | None = None
     unknowns: int | None = None
+    against: dict = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -58,13 +61,13 @@ class Cell:
 @dataclass(frozen=True)
 class Study:
     """A spec that has been read. Places are names of axes, and `seed`. out: the folder of its runs, rows,
-    page and figures where a call names one. plugins: shared libraries that every run loads.
+    page and figures where a call names one. more_plugins: shared libraries that a call names.
     """
 
     file: Path
     data: dict
     out: Path | None = None
-    plugins: tuple[str, ...] = ()
+    more_plugins: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -77,6 +80,13 @@ class Study:
     @property
     def base(self) -> Path:
         return self.file.parent / self.data["base"]
+
+    @property
+    def plugins(self) -> list[str]:
+        """Shared libraries that every run loads: of the spec, whose paths begin in its folder, and of the
+        call."""
+        own = [str((self.file.parent / name).resolve()) for name in self.data.get("plugins", [])]
+        return [*own, *self.more_plugins]
 
     @property
     def is_ours(self) -> bool:
@@ -149,12 +159,22 @@ class Study:
         """Of the axes."""
         return list(self.cells[0].place) if self.cells else []
 
+    @cached_property
+    def _of_bases(self) -> dict[Path, tuple[Path, bytes]]:
+        """Base config -> the folder that its paths begin in, and the hashes of the files of it and of `set`,
+        as they are read."""
+        return {}
+
     def _cell(self, case: Case) -> Cell:
         base, common = case.base or self.base, self.data.get("set", {})
-        made = runs.sweep(self.name, base, common, [{"label": "cell", "set": case.settings}])
-        content = {"set": common, "cell": case.settings, "files": runs.inputs_sha256(made)}
-        if self.plugins:  # the program refuses one that is missing
-            content["plugins"] = [of_file(Path(p)) if Path(p).is_file() else "" for p in self.plugins]
+        if base not in self._of_bases:
+            whole = base.resolve()
+            files = runs.inputs({"base": str(whole), "set": common}, whole.parent)
+            self._of_bases[base] = whole.parent, files + runs.contents(self.plugins)
+        folder, of_base = self._of_bases[base]
+        files = runs.inputs({"set": case.settings}, folder) + of_base
+        content = {"set": common, "cell": case.settings, "files": sha256(files).hexdigest()}
+        content |= {"against": case.against} if case.against else {}
         key = of_text(json.dumps(content, sort_keys=True))[:KEY_DIGITS]
         return Cell(case.place, case.settings, key, base, case.unknowns)
 
@@ -184,7 +204,7 @@ def _place(file: Path, number: int, names: list[str], label: str) -> dict[str, s
 
 
 def read_study(name: str, out: Path | None = None, plugins: Iterable[str] = ()) -> Study:
-    """The study of a name, or of the path of a spec. Errors: UserError, with the names of what there is."""
+    """The study of a name, or of the path of a spec. out, plugins: of a call (Study). Errors: UserError, with the names of what there is."""
     file = Path(name) if name.endswith(".json") else FOLDER / f"{name}.json"
     if not file.is_file():
         raise UserError(f"study: found {name!r}; allowed: {', '.join(known())}, or the path of a spec")

@@ -1,30 +1,26 @@
 """The rows of a study, results/studies/NAME.jsonl. A row belongs to the key of its cell and is never changed
 by another one. Rows are added at the end; a row is made again alone where the spec takes a metric from
-elsewhere than it did.
-
-One JSON value a line: an object says what the rows below it share (names of the axes, where each value comes
-from, and what made them), an array is a row.
+elsewhere than it did. Rows share (io/shared_rows.py) the names of their axes, where each value comes from,
+and what made them.
 """
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.shared_rows import read_shared, write_shared
 from barrierbench_analysis.io.store import merged
-from barrierbench_analysis.io.whole_file import write_whole
 
 from .spec import Study
 
 FOLDER = ROOT / "results" / "studies"
 BESIDE = ".rows.jsonl"  # behind the name of a spec that is none of this tree: its rows lie beside it
 SCHEMA = "barrierbench.study_rows/2"
-FIRST = json.dumps({"schema": SCHEMA})
 OF_ROW = ("key", "outcome", "unknowns", "seconds", "run")  # before the words of the place and the values
+SHARED = ("axes", "sources", "origin")
 
 
 @dataclass(frozen=True)
@@ -36,8 +32,8 @@ class Row:
     outcome: str
     values: dict
     sources: dict[str, str]  # metric -> where its number is from, as the spec or the rule had it
-    unknowns: int
-    seconds: float  # of the whole run, from start to end
+    unknowns: int  # 0 of a run that left no record
+    seconds: float | None  # of the whole run, from start to end; None where an earlier store did not keep it
     run: str  # the first digits of run_id
     origin: dict[str, str]  # date, machine, commit, build
 
@@ -52,7 +48,7 @@ def file_of(study: Study) -> Path:
 
 
 def _row(line: list, shared: dict) -> Row:
-    """Errors: ValueError for another number of entries."""
+    """Errors: ValueError for another number of entries, KeyError without a line above it."""
     names = [*OF_ROW, *shared["axes"], *shared["sources"]]
     found = dict(zip(names, line, strict=True))
     place = {name: found[name] for name in shared["axes"]}
@@ -65,26 +61,12 @@ def read_rows(path: Path) -> dict[str, Row]:
     """key -> row, in the order of the file; empty where there is no file. Errors: UserError with the line
     of what is no row, or of a key that is there twice.
     """
-    if not path.is_file():
-        return {}
-    first, *lines = input_file.read_text(path).splitlines() or [""]
-    if first != FIRST:
-        raise UserError(f"{path}: line 1: found {first[:60]!r}; allowed: {FIRST}")
     found: dict[str, Row] = {}
-    shared: dict = {}
-    for number, line in enumerate(lines, 2):
-        try:
-            data = json.loads(line)
-            if isinstance(data, dict):
-                shared = {name: data[name] for name in ("axes", "sources", "origin")}
-                continue
-            row = _row(data, shared)
-        except (ValueError, TypeError, KeyError) as fault:
-            raise UserError(f"{path}: line {number}: {fault}; allowed: a row of ./bench study") from None
+    if not path.is_file():
+        return found
+    for line, row in read_shared(path, SCHEMA, SHARED, _row, "a row of ./bench study"):
         if row.key in found:
-            raise UserError(
-                f"{path}: line {number}: the key {row.key} is there twice; allowed: each key once"
-            )
+            raise UserError(f"{line}: the key {row.key} is there twice; allowed: each key once")
         found[row.key] = row
     return found
 
@@ -99,14 +81,9 @@ def added(kept: dict[str, Row], new: list[Row], replace: bool = False) -> dict[s
 
 
 def write_rows(path: Path, rows: dict[str, Row]) -> None:
-    """Errors: UserError where the disk is full, and then the file is as it was; ValueError for a number that
-    is not finite.
-    """
-    lines, shared = [FIRST], None
-    for row in rows.values():
-        if row.shared != shared:
-            shared = row.shared
-            lines.append(json.dumps(shared))
-        line = [*(getattr(row, name) for name in OF_ROW), *row.place.values(), *row.values.values()]
-        lines.append(json.dumps(line, separators=(",", ":"), allow_nan=False))
-    write_whole(path, "\n".join(lines) + "\n")
+    """Errors: as write_shared."""
+    lines = (
+        (row.shared, [*(getattr(row, name) for name in OF_ROW), *row.place.values(), *row.values.values()])
+        for row in rows.values()
+    )
+    write_shared(path, SCHEMA, lines)

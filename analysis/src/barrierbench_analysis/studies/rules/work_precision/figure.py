@@ -14,7 +14,7 @@ import pandas as pd
 from barrierbench_analysis.figures import panels, style
 from barrierbench_analysis.tables import series
 
-from .judge import COSTS, Point, aside, band_of, formulations, front, points, profile
+from .judge import COSTS, Point, band_of, formulations, front, points, profile
 
 ERRORS = {
     "e_traj": "largest distance of a vertex / scene",
@@ -38,6 +38,7 @@ ASIDE = (
     " Faint marks: other time steps, which are not ranked, since the reference has the time step of the run"
     " and sees no error in time."
 )
+BAND = " Grey: its own uncertainty, {band:.2g}; what lies in it is not ranked and is drawn at its edge."
 PROFILE = (
     "Share of the problems (scene, variation) that were solved with at most that work: the run counts and its"
     " error is at most the target of its scene ({targets}). Failed runs are never solved. Other time steps"
@@ -65,7 +66,7 @@ def _costs(scenes: list[dict], cost: str, names: tuple[str, ...]) -> panels.Pane
     found = {
         (scene["name"], p.formulation, *p.problem): p
         for scene in scenes
-        for p in (*points(scene, cost), *aside(scene, cost))
+        for p in (*points(scene, cost), *points(scene, cost, ranked=False))
         if p.formulation in names
     }
     index = pd.Index(list(found), tupleize_cols=False)
@@ -81,78 +82,45 @@ def _chosen(scenes: list[dict], costs: tuple[str, ...], names: tuple[str, ...]) 
     return [cost for cost in costs if COSTS[cost][1] in kept], said
 
 
-def _mark_runs(axis, name: str, drawn: list[tuple[Point, bool]]) -> None:
-    """The runs of a formulation that have an error; faint those that are not ranked."""
-    look = style.look(name)
-    mine = [(p, ranked) for p, ranked in drawn if p.formulation == name]
-    for opacity, which in ((0.45, True), (0.15, False)):
-        good = [p for p, ranked in mine if p.error is not None and ranked == which]
-        axis.plot(
-            [p.cost for p in good],
-            [p.error for p in good],
-            linestyle="none",
-            marker=look.marker,
-            color=look.color,
-            markersize=2.6,
-            alpha=opacity,
-            markeredgewidth=0,
-        )
+def _mark_runs(axis, name: str, runs: list[Point], opacity: float) -> None:
+    """The runs of a formulation that have an error."""
+    look, good = style.look(name), [p for p in runs if p.formulation == name and p.error is not None]
+    how = {"linestyle": "none", "marker": look.marker, "markersize": 2.6, "markeredgewidth": 0}
+    axis.plot([p.cost for p in good], [p.error for p in good], color=look.color, alpha=opacity, **how)
 
 
-def _draw_front(axis, name: str, all_points: list[Point]) -> None:
+def _draw_front(axis, name: str, ranked: list[Point]) -> None:
     """The runs of a formulation that none of its cheaper ones equals; where there are none, its legend says
     so.
     """
-    look = style.look(name)
-    line = [(c, e) for c, e in front(all_points, name) if c > 0]
-    if line:
-        axis.plot(
-            [c for c, _ in line],
-            [e for _, e in line],
-            color=look.color,
-            linestyle=look.dash,
-            marker=look.marker,
-            markersize=4,
-            label=name,
-        )
-    else:
-        axis.plot(
-            [],
-            [],
-            color=look.color,
-            linestyle=look.dash,
-            marker=look.marker,
-            label=f"{name} (no run counts)",
-        )
+    look, line = style.look(name), [(c, e) for c, e in front(ranked, name) if c > 0]
+    how = {"linestyle": look.dash, "marker": look.marker, "color": look.color, "markersize": 4}
+    label = name if line else f"{name} (no run counts)"
+    axis.plot([c for c, _ in line], [e for _, e in line], label=label, **how)
 
 
-def _cross_failures(axis, drawn: list[tuple[Point, bool]]) -> None:
+def _cross_failures(axis, runs: list[Point]) -> None:
     """Runs without an error, at the upper edge."""
-    for p, _ in drawn:
-        if p.error is None:
-            axis.plot(
-                [p.cost],
-                [0.96],
-                transform=axis.get_xaxis_transform(),
-                marker="x",
-                color=style.look(p.formulation).color,
-                linestyle="none",
-                markersize=5,
-                markeredgewidth=1.2,
-                gid=style.FAILURE,
-            )
+    how = {"linestyle": "none", "marker": "x", "markersize": 5, "markeredgewidth": 1.2, "gid": style.FAILURE}
+    for p in (p for p in runs if p.error is None):
+        across = axis.get_xaxis_transform()
+        axis.plot([p.cost], [0.96], transform=across, color=style.look(p.formulation).color, **how)
+
+
+def _drawn(scene: dict, cost: str, names: tuple[str, ...], ranked: bool) -> list[Point]:
+    return [p for p in points(scene, cost, ranked) if p.formulation in names and 0 < p.cost < math.inf]
 
 
 def _panel(axis, scene: dict, cost: str, names: tuple[str, ...]) -> None:
-    all_points, band = points(scene, cost), band_of(scene)
-    drawn = [(p, True) for p in all_points] + [(p, False) for p in aside(scene, cost)]
-    drawn = [(p, ranked) for p, ranked in drawn if 0 < p.cost < math.inf and p.formulation in names]
+    """Runs that are not ranked are faint."""
+    band, drawn = band_of(scene), [_drawn(scene, cost, names, ranked) for ranked in (True, False)]
     for name in names:
-        _mark_runs(axis, name, drawn)
-        _draw_front(axis, name, all_points)
+        for runs, opacity in zip(drawn, (0.45, 0.15)):
+            _mark_runs(axis, name, runs, opacity)
+        _draw_front(axis, name, points(scene, cost))
     axis.set_xscale("log")
     axis.set_yscale("log")
-    _cross_failures(axis, drawn)
+    _cross_failures(axis, [*drawn[0], *drawn[1]])
     if band > 0:
         axis.axhspan(band / 1e6, band, color="#bbbbbb", alpha=0.5, linewidth=0, zorder=0, gid=style.REFERENCE)
     axis.set_xlabel(COSTS[cost][1])
@@ -163,112 +131,83 @@ def _numbers(scene: dict, names: tuple[str, ...]) -> pd.DataFrame:
     rows = [
         {"against": cost, **p.__dict__, "ranked": ranked}
         for cost in COSTS
-        for found, ranked in ((points, True), (aside, False))
-        for p in found(scene, cost)
-        if p.formulation in names and 0 < p.cost < math.inf
+        for ranked in (True, False)
+        for p in _drawn(scene, cost, names, ranked)
     ]
     return pd.DataFrame(rows, columns=["against", *Point.__dataclass_fields__, "ranked"])
 
 
 def _limits(scene: dict) -> tuple[float, float]:
     """Of the errors, with room above for the crosses of failed runs and below for the band."""
-    errors = [
-        max(r["error"], band_of(scene, r), 1e-300) for r in scene["rows"] if r["error"] is not None
-    ] or [1.0]
-    low, high = min(errors), max(errors)
-    room = max(high / low, 10.0)
-    return (
-        min(low, band_of(scene) or low) / room**0.1,
-        high * room ** (0.2 if any(r["error"] is None for r in scene["rows"]) else 0.05),
-    )
+    found = [r for r in scene["rows"] if r["error"] is not None]
+    errors = [max(r["error"], band_of(scene, r), 1e-300) for r in found] or [1.0]
+    room = max(max(errors) / min(errors), 10.0)
+    above = 0.2 if len(found) < len(scene["rows"]) else 0.05
+    return min(*errors, band_of(scene) or math.inf) / room**0.1, max(errors) * room**above
 
 
 def _solvers(costs: list[str]) -> str:
     """Which panels are of which solver."""
-    of = {
-        solver: [f"({letter})" for letter, cost in zip("abcd", costs) if COSTS[cost][0] == solver]
-        for solver in SOLVERS
-    }
-    return "; ".join(f"{', '.join(letters)}: {SOLVERS[solver]}" for solver, letters in of.items() if letters)
+    found = []
+    for solver, words in SOLVERS.items():
+        if letters := [f"({letter})" for letter, cost in zip("abcd", costs) if COSTS[cost][0] == solver]:
+            found.append(f"{', '.join(letters)}: {words}")
+    return "; ".join(found)
 
 
 def _shown(scene: dict, costs: list[str], names: tuple[str, ...]) -> str:
     rows, band = [r for r in scene["rows"] if r["formulation"] in names], band_of(scene)
-    bad = {solver: sum(r["error"] is None for r in rows if r["solver"] == solver) for solver in SOLVERS}
-    counts = ", ".join(
-        f"{n} of {sum(r['solver'] == solver for r in rows)} with the {SOLVERS[solver].split(',')[0]}"
-        for solver, n in bad.items()
-        if n
-    )
-    of_direct = sum(r["solver"] == "direct" for r in rows)
+    of = {solver: [r for r in rows if r["solver"] == solver] for solver in SOLVERS}
+    bad = {solver: sum(r["error"] is None for r in mine) for solver, mine in of.items()}
+    counts = [f"{n} of {len(of[s])} with the {SOLVERS[s].split(',')[0]}" for s, n in bad.items() if n]
+    aside = any(p.formulation in names for p in points(scene, "newton", ranked=False))
     return SHOWN.format(
         scene=scene["name"],
         error=scene["error"],
-        n=of_direct // len(names),
+        n=len(of["direct"]) // len(names),
         reference=scene["references"][0]["name"],
-        band=(
-            f" Grey: its own uncertainty, {band:.2g}; what lies in it is not ranked and is drawn at its edge."
-            if band
-            else ""
-        ),
-        aside=ASIDE if any(p.formulation in names for p in aside(scene, "newton")) else "",
-        failed=CROSSES.format(counts=counts) if counts else "",
+        band=BAND.format(band=band) if band else "",
+        aside=ASIDE if aside else "",
+        failed=CROSSES.format(counts=", ".join(counts)) if counts else "",
         solvers=_solvers(costs),
     )
 
 
 def draw(scene: dict, stem: Path, ranks: list[str] | None = None) -> list[Path]:
-    """The figure of one scene of results/work_precision.json, and its supplement. ranks: by_rank of all
-    scenes, so that their figures have the same formulations.
+    """The figure of one scene, and its supplement. ranks: by_rank of all scenes, so that their figures have
+    the same formulations.
     """
-    paths = []
+    paths, about = [], scene["about"]
+    made = f"{about['unknowns']} unknowns; {about['machine']}; commit {about['commit']}; {about['date']}."
     for part in series.parts(formulations(scene), ranks or by_rank([scene]), stem.name):
         costs, left_out = _chosen([scene], tuple(COSTS), part.names)
         fig, axes = panels.grid(len(costs), style.WIDE_IN, 2.4, most=2 if len(costs) != 3 else 3, sharey=True)
         for axis, cost in zip(axes, costs):
             _panel(axis, scene, cost, part.names)
-        axes[0].set_ylim(*_limits(scene))
-        for axis in axes:
             if axis.get_subplotspec().is_first_col():
                 axis.set_ylabel(ERRORS[scene["error"]])
+        axes[0].set_ylim(*_limits(scene))
         style.letter_panels(axes)
         style.legend_below(fig, axes[0])
-        shown = " ".join(
-            filter(None, [_shown(scene, costs, part.names), left_out, part.says, machine(scene)])
-        )
+        shown = " ".join(filter(None, [_shown(scene, costs, part.names), left_out, part.says, made]))
         paths += style.save(fig, stem.with_name(stem.name + part.suffix), _numbers(scene, part.names), shown)
     return paths
-
-
-def machine(scene: dict) -> str:
-    about = scene["about"]
-    return f"{about['unknowns']} unknowns; {about['machine']}; commit {about['commit']}; {about['date']}."
 
 
 def _profile_panel(
     axis, scenes: list[dict], cost: str, level: int, names: tuple[str, ...], most: float
 ) -> list[dict]:
+    """A line goes on from its last solved problem to the edge of the figure, so that one which ends low is
+    seen to stay there.
+    """
     rows = []
     for name in names:
         costs, total = profile(scenes, cost, name, level)
         look, share = style.look(name), np.arange(len(costs) + 1) / total
-        # From the first solved problem on to the edge of the figure, so that a line which ends low is seen
-        # to stay there.
-
-        axis.plot(
-            [*costs, most],
-            [*share[1:], share[-1]],
-            color=look.color,
-            linestyle=look.dash,
-            drawstyle="steps-post",
-            marker=look.marker,
-            markevery=[len(costs)],
-            label=name,
-        )
-        rows += [
-            {"level": level, "cost": cost, "formulation": name, "budget": c, "share": s}
-            for c, s in zip(costs, share[1:])
-        ]
+        how = {"color": look.color, "linestyle": look.dash, "marker": look.marker, "markevery": [len(costs)]}
+        axis.plot([*costs, most], [*share[1:], share[-1]], drawstyle="steps-post", label=name, **how)
+        both = {"level": level, "cost": cost, "formulation": name}
+        rows += [{**both, "budget": c, "share": s} for c, s in zip(costs, share[1:])]
     axis.set_xscale("log")
     return rows
 
@@ -289,26 +228,16 @@ def _largest(scenes: list[dict], cost: str) -> float:
 def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
     """Data profiles over all scenes: one row a target level, one column a cost; and the supplement."""
     names, paths, levels = formulations(scenes[0]), [], range(max(len(scene["targets"]) for scene in scenes))
-    targets = _targets(scenes)
+    problems = profile(scenes, "newton", names[0], 0)[1]
     for part in series.parts(names, by_rank(scenes), stem.name):
         costs, left_out = _chosen(scenes, ("newton", "factorizations", "products"), part.names)
-        fig, axes = plt.subplots(
-            len(levels),
-            len(costs),
-            figsize=(style.WIDE_IN, 0.8 + 1.7 * len(levels)),
-            sharex="col",
-            sharey="row",
-            layout="constrained",
-            squeeze=False,
-        )
-        most = {cost: _largest(scenes, cost) for cost in costs}
-        rows = [
-            row
-            for level in levels
-            for axis, cost in zip(axes[level], costs)
-            for row in _profile_panel(axis, scenes, cost, level, part.names, most[cost])
-        ]
+        size = (style.WIDE_IN, 0.8 + 1.7 * len(levels))
+        how = {"sharex": "col", "sharey": "row", "layout": "constrained", "squeeze": False}
+        fig, axes = plt.subplots(len(levels), len(costs), figsize=size, **how)
+        rows = []
         for level in levels:
+            for axis, cost in zip(axes[level], costs):
+                rows += _profile_panel(axis, scenes, cost, level, part.names, _largest(scenes, cost))
             axes[level, 0].set_ylabel(f"share solved, target {level + 1}")
             axes[level, 0].set_ylim(0, None)
         for axis, cost in zip(axes[-1], costs):
@@ -316,11 +245,7 @@ def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
         style.letter_panels(axes)
         style.legend_below(fig, axes[0, 0])
         table = pd.DataFrame(rows, columns=["level", "cost", "formulation", "budget", "share"])
-        shown = PROFILE.format(targets=targets, n=profile(scenes, "newton", names[0], 0)[1])
-        paths += style.save(
-            fig,
-            stem.with_name(stem.name + part.suffix),
-            table,
-            " ".join(filter(None, [shown, left_out, part.says])),
-        )
+        shown = PROFILE.format(targets=_targets(scenes), n=problems)
+        words = " ".join(filter(None, [shown, left_out, part.says]))
+        paths += style.save(fig, stem.with_name(stem.name + part.suffix), table, words)
     return paths

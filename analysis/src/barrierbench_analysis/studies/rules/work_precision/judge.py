@@ -1,5 +1,5 @@
-"""Numbers of a work-precision study: what a formulation reaches, what it costs, who is cheaper. Failed runs
-never solve anything and stay counted.
+"""What a formulation reaches, what it costs, who is cheaper. Failed runs never solve anything and stay
+counted.
 """
 
 from __future__ import annotations
@@ -41,7 +41,12 @@ def shares_time_step(scene: dict) -> bool:
     return any(ref["band"] for ref in scene["references"])
 
 
-def _points(scene: dict, cost: str, ranked: bool) -> list[Point]:
+def points(scene: dict, cost: str, ranked: bool = True) -> list[Point]:
+    """What is ranked by one cost, or what is not. An error below its band counts as the band: below it
+    nothing is known. A cost that was not measured is infinite. Other time steps are not ranked where the
+    references share the time step of the runs, so that no error in time is seen: a large step would be cheap
+    and cost no precision.
+    """
     solver, shared = COSTS[cost][0], shares_time_step(scene)
     return [
         Point(
@@ -57,43 +62,23 @@ def _points(scene: dict, cost: str, ranked: bool) -> list[Point]:
     ]
 
 
-def points(scene: dict, cost: str) -> list[Point]:
-    """What is ranked by one cost. An error below its band counts as the band: below it nothing is known. A
-    cost that was not measured is infinite. Other time steps are left out where no error in time is seen: a
-    large step would be cheap and cost no precision.
-    """
-    return _points(scene, cost, True)
-
-
-def aside(scene: dict, cost: str) -> list[Point]:
-    """What is not ranked: the runs of other time steps in a scene whose references share the time step of the
-    runs.
-    """
-    return _points(scene, cost, False)
-
-
 def formulations(scene: dict) -> list[str]:
     return list(dict.fromkeys(row["formulation"] for row in scene["rows"]))
 
 
+def _counted(all_points: list[Point], formulation: str) -> list[Point]:
+    """The runs of a formulation that have an error."""
+    return [p for p in all_points if p.formulation == formulation and p.error is not None]
+
+
 def smallest_error(all_points: list[Point], formulation: str) -> float:
     """inf where no run counts."""
-    return min(
-        (p.error for p in all_points if p.formulation == formulation and p.error is not None),
-        default=math.inf,
-    )
+    return min((p.error for p in _counted(all_points, formulation)), default=math.inf)
 
 
 def cost_to(all_points: list[Point], formulation: str, error: float) -> float:
     """The least cost of a run of the formulation with at most that error; inf: none of its runs."""
-    return min(
-        (
-            p.cost
-            for p in all_points
-            if p.formulation == formulation and p.error is not None and p.error <= error
-        ),
-        default=math.inf,
-    )
+    return min((p.cost for p in _counted(all_points, formulation) if p.error <= error), default=math.inf)
 
 
 def front(all_points: list[Point], formulation: str) -> list[tuple[float, float]]:
@@ -101,11 +86,8 @@ def front(all_points: list[Point], formulation: str) -> list[tuple[float, float]
     cost.
     """
     out: list[tuple[float, float]] = []
-    for p in sorted(
-        (p for p in all_points if p.formulation == formulation and p.error is not None and p.cost < math.inf),
-        key=lambda p: (p.cost, p.error),
-    ):
-        if not out or p.error < out[-1][1]:
+    for p in sorted(_counted(all_points, formulation), key=lambda p: (p.cost, p.error)):
+        if p.cost < math.inf and (not out or p.error < out[-1][1]):
             out.append((p.cost, p.error))
     return out
 
@@ -124,18 +106,15 @@ def cheapest(all_points: list[Point], names: list[str]) -> list[tuple[float, tup
 
 @dataclass(frozen=True)
 class Standing:
-    formulation: str
     solved: int  # runs that count
     runs: int
     smallest: float
     cost_there: float
-    cheapest_in: tuple[
-        tuple[float, float], ...
-    ]  # [from, to) of an error that is asked for, the largest first; inf: no upper end
+    # [from, to) of a requested error, the largest first; inf: no upper end
+    cheapest_in: tuple[tuple[float, float], ...]
 
 
 def standing(all_points: list[Point], names: list[str], formulation: str) -> Standing:
-    mine = [p for p in all_points if p.formulation == formulation]
     smallest = smallest_error(all_points, formulation)
     intervals: list[tuple[float, float]] = []
     above = math.inf  # costs change at the errors that occur and nowhere in between
@@ -145,9 +124,8 @@ def standing(all_points: list[Point], names: list[str], formulation: str) -> Sta
             intervals[-1:] = [(error, intervals[-1][1])] if joined else [*intervals[-1:], (error, above)]
         above = error
     return Standing(
-        formulation,
-        sum(p.error is not None for p in mine),
-        len(mine),
+        len(_counted(all_points, formulation)),
+        sum(p.formulation == formulation for p in all_points),
         smallest,
         cost_to(all_points, formulation, smallest),
         tuple(intervals),
@@ -162,9 +140,8 @@ def profile(scenes: list[dict], cost: str, formulation: str, level: int) -> tupl
     costs, total = [], 0
     for scene in scenes:
         target = scene["targets"][min(level, len(scene["targets"]) - 1)]
-        for p in points(scene, cost):
-            if p.formulation == formulation:
-                total += 1
-                if p.error is not None and p.error <= target and p.cost < math.inf:
-                    costs.append(p.cost)
+        found = [p for p in points(scene, cost) if p.formulation == formulation]
+        total += len(found)
+        solved = [p.cost for p in found if p.error is not None and p.error <= target]
+        costs += [one for one in solved if one < math.inf]
     return sorted(costs), total
