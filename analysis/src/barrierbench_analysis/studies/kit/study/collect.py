@@ -83,8 +83,8 @@ def row_of(study: Study, cell: Cell, record: dict, *others: dict) -> store.Row:
     found = record["scene"]["free_dofs"]
     if cell.unknowns not in (None, found):
         raise UserError(
-            f"{study.file}: found {cell.unknowns} unknowns for {cell.label!r}; allowed: {found}, which its run"
-            " has"
+            f"{study.file}: found {cell.unknowns} unknowns for {cell.label!r}; allowed: {found}, those of its"
+            " run"
         )
     values = {name: _value(record, source) for name, source in study.data["metrics"].items()}
     if hasattr(study.module, "measure"):

@@ -91,7 +91,7 @@ def write_page(study: Study) -> Path:
     """
     rows = rows_of(study)
     if not rows:
-        raise UserError(f"{store.file_of(study)}: found no row; allowed: some; {study.command} run makes them")
+        raise UserError(f"{store.file_of(study)}: found no row; {study.command} run makes them")
     numbers = study.module.rule(study, rows)
     write_whole(study.page, text_of(study, rows, numbers))
     if hasattr(study.module, "draw"):

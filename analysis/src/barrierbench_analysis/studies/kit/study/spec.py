@@ -204,7 +204,9 @@ def _place(file: Path, number: int, names: list[str], label: str) -> dict[str, s
 
 
 def read_study(name: str, out: Path | None = None, plugins: Iterable[str] = ()) -> Study:
-    """The study of a name, or of the path of a spec. out, plugins: of a call (Study). Errors: UserError, with the names of what there is."""
+    """The study of a name, or of the path of a spec. out, plugins: of a call (Study). Errors: UserError, with
+    the names of what there is.
+    """
     file = Path(name) if name.endswith(".json") else FOLDER / f"{name}.json"
     if not file.is_file():
         raise UserError(f"study: found {name!r}; allowed: {', '.join(known())}, or the path of a spec")
