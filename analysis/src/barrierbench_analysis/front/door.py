@@ -24,7 +24,9 @@ COLUMN = 16  # of what a verb is for, in the list of all
 def _listed(name: str, words: str) -> list[str]:
     """A name and what it is for, beside each other."""
     indent = COLUMN * " "
-    lines = textwrap.wrap(words, text_width(), initial_indent=indent, subsequent_indent=indent)
+    lines = textwrap.wrap(
+        words, text_width(), initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False
+    )
     return [f"  {name}".ljust(COLUMN) + lines[0][COLUMN:], *lines[1:]]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from itertools import groupby
+from pathlib import Path
 
 from barrierbench_analysis.io.origin import origin, run_of, seconds_of_run
 from barrierbench_analysis.io.places import ROOT
@@ -80,13 +81,29 @@ def parts(cells: list[Cell]) -> Iterator[list[Cell]]:
         yield from (mine[at : at + AT_ONCE] for at in range(0, len(mine), AT_ONCE))
 
 
+def _sweep(study: Study, cells: list[Cell]) -> runs.Sweep:
+    cases = [{"label": f"{cell.label} {cell.key[:KEY_DIGITS]}", "set": cell.settings} for cell in cells]
+    budget = {"run_s": study.data["run_s"]} if "run_s" in study.data else None
+    return runs.sweep(study.name, cells[0].base, study.data.get("set", {}), cases, budget=budget)
+
+
+def _out(study: Study) -> Path:
+    return study.out / "runs" if study.out else RUNS / study.name
+
+
+def folders(study: Study, cells: list[Cell]) -> dict[str, Path]:
+    """key -> folder of the run, of those of these cells of one base whose records are there. Errors: as
+    records_in."""
+    made = _sweep(study, cells)
+    found = runs.records_in([_out(study)], made.notes)
+    return {cell.key: found[note][1] for cell, note in zip(cells, made.notes, strict=True) if note in found}
+
+
 def run_cells(study: Study, cells: list[Cell], jobs: int = 1) -> list[store.Row]:
     """Runs these cells of one base as one sweep, so many at a time. Runs whose records are there already are
     not repeated. Errors: UserError. Cost: the runs.
     """
-    out = study.out / "runs" if study.out else RUNS / study.name
-    cases = [{"label": f"{cell.label} {cell.key[:KEY_DIGITS]}", "set": cell.settings} for cell in cells]
-    made = runs.sweep(study.name, cells[0].base, study.data.get("set", {}), cases)
+    out, made = _out(study), _sweep(study, cells)
     runs.run(made, out, plugins=[*study.plugins], jobs=jobs)
     records = runs.collect(made, out)
     return [row_of(study, cell, records[note]) for cell, note in zip(cells, made.notes, strict=True)]

@@ -66,7 +66,11 @@ def plan(study: Study, rows: dict[str, store.Row], chosen: list[Cell]) -> list[s
     if decided := len(study.cells) - there - len(lacking):
         need = "needs" if decided == 1 else "need"
         lines.append(f"{counted(decided, 'more cell')} {need} no run, since others decide the outcome")
-    kept = [replace(rows[cell.key], place=cell.place) for cell in study.cells if cell.key in rows]
+    kept = [
+        replace(row, place=cell.place)
+        for cell in study.cells
+        if (row := rows.get(cell.key)) and row.seconds is not None
+    ]
     power = growth(kept)
     known = [seconds for cell in left if (seconds := expected(cell, kept, power)) is not None]
     if known:

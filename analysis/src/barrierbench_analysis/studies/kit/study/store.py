@@ -37,7 +37,7 @@ class Row:
     values: dict
     sources: dict[str, str]  # metric -> where its number is from, as the spec or the rule had it
     unknowns: int
-    seconds: float  # of the whole run, from start to end
+    seconds: float | None  # of the whole run, from start to end; None where an earlier store did not keep it
     run: str  # the first digits of run_id
     origin: dict[str, str]  # date, machine, commit, build
 

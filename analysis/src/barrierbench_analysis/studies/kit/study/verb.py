@@ -4,7 +4,8 @@ run: makes the runs that have no row, keeps their rows, writes the page and its 
 again, and it goes on. plan: counts the cells, those that have a row, and what the rest is expected to take.
 page: writes the page from the kept rows.
 
-Exit codes: 0 done, 2 a spec that cannot be read, or a page whose cells are not all there.
+Exit codes: 0 done, 1 runs of a study that judges them do not pass, 2 a spec that cannot be read, or a page
+whose cells are not all there.
 """
 
 from __future__ import annotations
@@ -43,6 +44,9 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--minutes", type=finite_number, metavar="M", help="begins no further sweep after so many minutes"
+    )
+    parser.add_argument(
+        "--again", action="store_true", help="runs chosen cells that have a row, too, and replaces their rows"
     )
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs at a time (default 1)")
     parser.add_argument(
@@ -97,20 +101,24 @@ def chosen(study: Study, only: list[str], part: str | None) -> list[Cell]:
 
 
 def make_rows(
-    study: Study, cells: list[Cell] | None = None, jobs: int = 1, minutes: float | None = None
+    study: Study,
+    cells: list[Cell] | None = None,
+    jobs: int = 1,
+    minutes: float | None = None,
+    again: bool = False,
 ) -> int:
     """Runs what is missing of the cells, all without any, and keeps it, a sweep at a time. Returns how many
-    runs were made.
+    runs were made. again: cells that have a row are run, too, unless their records are there.
     """
     file, begun, made = store.file_of(study), time.monotonic(), 0
     rows = store.read_rows(file)
     keys = {cell.key for cell in (study.cells if cells is None else cells)}
-    lacking = [cell for cell in missing(study, rows) if cell.key in keys]
+    lacking = [cell for cell in (study.cells if again else missing(study, rows)) if cell.key in keys]
     for part in parts(lacking):
         if minutes is not None and time.monotonic() - begun > 60 * minutes:
             break
         left = {cell.key for cell in missing(study, rows)}  # fewer, where new rows decide others
-        if not (asked := [cell for cell in part if cell.key in left]):
+        if not (asked := [cell for cell in part if again or cell.key in left]):
             continue
         rows = store.added(
             rows, run_cells(study, asked, jobs), replace=True
@@ -135,7 +143,12 @@ def _main(argv: list[str]) -> int:
         return 0
     if not args.no_run:
         built_program()
-        made = make_rows(study, cells, args.jobs, args.minutes)
+        made = make_rows(study, cells, args.jobs, args.minutes, args.again)
         print(f"{study.name}: {counted(made, 'new row')} in {store.file_of(study).name}")
     print(page.write_page(study))
-    return 0
+    if not hasattr(study.module, "judged"):
+        return 0
+    keys = {cell.key for cell in cells}
+    lines, passed = study.module.judged(study, [row for row in page.rows_of(study) if row.key in keys])
+    print("\n".join(lines))
+    return 0 if passed else 1

@@ -1,0 +1,162 @@
+"""Catalogue: what a run of each scene shows, beside what the scene expects (`expect` in configs/catalogue).
+
+A run is red where an expectation is not fulfilled or has no subject, and where a scene that the program
+should start does not end `ok`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from barrierbench_analysis.io.text_table import aligned, markdown
+from barrierbench_analysis.studies.catalogue.cases import cases as cells
+from barrierbench_analysis.studies.catalogue.checks import judge
+from barrierbench_analysis.studies.catalogue.entry import names, read_entry
+from barrierbench_analysis.studies.kit.study import collect
+from barrierbench_analysis.studies.kit.study.spec import Cell, Study
+from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.tables.outcomes import OK, outcome_of
+from barrierbench_analysis.tables.words import counted
+
+PARTIAL = True
+SHOWN = "log"  # the formulation of the picture, and of what was seen in each scene
+MEASURED = {
+    "detail": "/status/detail",
+    "red": "expectations of the scene that do not hold or have no subject, and what was seen",
+    "seen": "expectations of the scene that hold, and what was seen",
+}
+__all__ = ["MEASURED", "PARTIAL", "cells", "draw", "judged", "measure", "rule"]
+
+
+def measure(study: Study, cell: Cell, record: dict) -> dict:
+    entry, outcome = read_entry(cell.place["scene"]), outcome_of(record)
+    found = judge(record, entry.data["expect"])
+    ends = [] if outcome == OK or entry.is_rejected else [f"ends_ok: {outcome}"]
+    return {
+        "detail": record["status"]["detail"],
+        "red": [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
+        "seen": [f"{name}: {finding.saw}" for name, finding in found if not finding.red],
+    }
+
+
+def _seconds(row: Row) -> str:
+    return f"{round(row.seconds, 1):g} s"
+
+
+def _cell(row: Row) -> str:
+    """Outcome and seconds; bold where something is red."""
+    text, red = f"{row.outcome}, {_seconds(row)}", ", ".join(one.split(":")[0] for one in row.values["red"])
+    return f"**{text}, red: {red}**" if red else text
+
+
+def _text(words: str) -> str:
+    return words.replace("|", "/").replace("\n", " ")
+
+
+def _outcomes(study: Study, of_scene: dict[str, list[Row]]) -> list[str]:
+    labels = list(dict.fromkeys(cell.place["formulation"] for cell in study.cells))
+    body = []
+    for scene, rows in of_scene.items():
+        found = ["; ".join(_cell(row) for row in rows if row.place["formulation"] == one) for one in labels]
+        size = f"{rows[0].values['vertices']}/{rows[0].values['triangles']}"
+        body.append([scene, size, *(cell or "-" for cell in found)])
+    return markdown(["scene", "vertices/triangles with a membrane", *labels], body)
+
+
+def _red(rows: list[Row]) -> list[str]:
+    body = [
+        [
+            row.place["scene"],
+            row.place["formulation"],
+            row.outcome,
+            _text("; ".join(row.values["red"]))[:300],
+            _text(row.values["detail"])[:200],
+        ]
+        for row in rows
+        if row.values["red"]
+    ]
+    head = ["scene", "formulation", "outcome", "red", "what the record says"]
+    return markdown(head, body) if body else ["Nothing."]
+
+
+def _described(of_scene: dict[str, list[Row]]) -> Iterator[str]:
+    """Of every scene where it comes from, what it stresses, how it deviates and what was seen."""
+    for scene, rows in of_scene.items():
+        data = read_entry(scene).data
+        seen = [one for row in rows if row.place["formulation"] == SHOWN for one in row.values["seen"]]
+        yield from (f"### {scene}: {data['title']}", "")
+        yield from (f"From {data['source']}. Stresses {data['stresses']}.", "")
+        yield from (f"- deviates: {word}." for word in data["deviations"])
+        yield from (f"- seen with {SHOWN}: {_text(word)}." for word in seen)
+        yield ""
+
+
+def rule(study: Study, rows: list[Row]) -> dict:
+    """The tables of the page."""
+    of_scene: dict[str, list[Row]] = {}
+    for row in rows:
+        of_scene.setdefault(row.place["scene"], []).append(row)
+    picture = study.figures / f"{study.name}.png"
+    return {
+        "scenes": len(of_scene),
+        "of": len(names()),
+        "runs": len(rows),
+        "expected": sum(not row.values["red"] for row in rows),
+        "picture": os.path.relpath(picture, study.page.parent) if picture.is_file() else "",
+        "outcomes": "\n".join(_outcomes(study, of_scene)),
+        "red": "\n".join(_red(rows)),
+        "described": "\n".join(_described(of_scene)).rstrip(),
+    }
+
+
+def judged(study: Study, rows: list[Row]) -> tuple[list[str], bool]:
+    """A line for each run of a call of some cells, for each red one of a call of all."""
+    red = [row for row in rows if row.values["red"]]
+    shown = red if len(rows) == len(study.cells) else rows
+    lines = [
+        [
+            row.place["scene"],
+            row.place["formulation"],
+            row.outcome,
+            _seconds(row),
+            f"{row.values['newton']}",
+            ("; ".join(row.values["red"]) or "as expected")[:150],
+        ]
+        for row in shown
+    ]
+    scenes = counted(len({row.place["scene"] for row in rows}), "scene")
+    end = f"{len(rows) - len(red)} of {counted(len(rows), 'run')} of {scenes} end as expected"
+    return [*aligned([""] * 6, lines)[1:], end], not red
+
+
+def draw(study: Study, rows: list[Row], numbers: dict, folder: Path) -> list[Path]:
+    """One picture of the last state of every scene that starts, where the records of all these runs are
+    there; none otherwise.
+    """
+    from barrierbench_analysis.figures.pictures.frame_pixels import Look
+    from barrierbench_analysis.figures.pictures.stills import COLUMNS, PIXELS, VIEW, Still, sheet
+
+    scenes = {
+        cell.key: entry.data
+        for cell in study.cells
+        if cell.place["formulation"] == SHOWN and not (entry := read_entry(cell.place["scene"])).is_rejected
+    }
+    runs = collect.folders(study, [cell for cell in study.cells if cell.key in scenes]) if scenes else {}
+    if len(runs) < len(scenes) or not scenes:
+        return []
+    stills = [
+        Still(
+            data["name"],
+            runs[key],
+            Look(
+                view=tuple(data.get("view_deg", VIEW)),
+                size=PIXELS,
+                bare=True,
+                hidden=tuple(data.get("hidden_bodies", ())),
+            ),
+        )
+        for key, data in scenes.items()
+    ]
+    return [sheet(stills, folder / f"{study.name}.png", COLUMNS)]
