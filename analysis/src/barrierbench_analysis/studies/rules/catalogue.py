@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from barrierbench_analysis.io.text_table import aligned, markdown
-from barrierbench_analysis.studies.catalogue.cases import cases as cells
+from barrierbench_analysis.studies.catalogue.cells import cells as cells
 from barrierbench_analysis.studies.catalogue.checks import judge
 from barrierbench_analysis.studies.catalogue.entry import names, read_entry
 from barrierbench_analysis.studies.kit.study import collect
@@ -27,7 +27,6 @@ MEASURED = {
     "red": "expectations of the scene that do not hold or have no subject, and what was seen",
     "seen": "expectations of the scene that hold, and what was seen",
 }
-__all__ = ["MEASURED", "PARTIAL", "cells", "draw", "judged", "measure", "rule"]
 
 
 def measure(study: Study, cell: Cell, record: dict) -> dict:
@@ -39,6 +38,10 @@ def measure(study: Study, cell: Cell, record: dict) -> dict:
         "red": [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
         "seen": [f"{name}: {finding.saw}" for name, finding in found if not finding.red],
     }
+
+
+def _run(row: Row) -> list[str]:
+    return [row.place["scene"], row.place["formulation"], row.outcome]
 
 
 def _seconds(row: Row) -> str:
@@ -67,13 +70,7 @@ def _outcomes(study: Study, of_scene: dict[str, list[Row]]) -> list[str]:
 
 def _red(rows: list[Row]) -> list[str]:
     body = [
-        [
-            row.place["scene"],
-            row.place["formulation"],
-            row.outcome,
-            _text("; ".join(row.values["red"]))[:300],
-            _text(row.values["detail"])[:200],
-        ]
+        [*_run(row), _text("; ".join(row.values["red"]))[:300], _text(row.values["detail"])[:200]]
         for row in rows
         if row.values["red"]
     ]
@@ -114,17 +111,14 @@ def rule(study: Study, rows: list[Row]) -> dict:
 def judged(study: Study, rows: list[Row]) -> tuple[list[str], bool]:
     """A line for each run of a call of some cells, for each red one of a call of all."""
     red = [row for row in rows if row.values["red"]]
-    shown = red if len(rows) == len(study.cells) else rows
     lines = [
         [
-            row.place["scene"],
-            row.place["formulation"],
-            row.outcome,
+            *_run(row),
             _seconds(row),
             f"{row.values['newton']}",
             ("; ".join(row.values["red"]) or "as expected")[:150],
         ]
-        for row in shown
+        for row in (red if len(rows) == len(study.cells) else rows)
     ]
     scenes = counted(len({row.place["scene"] for row in rows}), "scene")
     end = f"{len(rows) - len(red)} of {counted(len(rows), 'run')} of {scenes} end as expected"
@@ -138,25 +132,19 @@ def draw(study: Study, rows: list[Row], numbers: dict, folder: Path) -> list[Pat
     from barrierbench_analysis.figures.pictures.frame_pixels import Look
     from barrierbench_analysis.figures.pictures.stills import COLUMNS, PIXELS, VIEW, Still, sheet
 
-    scenes = {
-        cell.key: entry.data
-        for cell in study.cells
-        if cell.place["formulation"] == SHOWN and not (entry := read_entry(cell.place["scene"])).is_rejected
-    }
-    runs = collect.folders(study, [cell for cell in study.cells if cell.key in scenes]) if scenes else {}
-    if len(runs) < len(scenes) or not scenes:
-        return []
-    stills = [
-        Still(
-            data["name"],
-            runs[key],
-            Look(
-                view=tuple(data.get("view_deg", VIEW)),
-                size=PIXELS,
-                bare=True,
-                hidden=tuple(data.get("hidden_bodies", ())),
-            ),
-        )
-        for key, data in scenes.items()
+    data = {name: entry.data for name in names() if not (entry := read_entry(name)).is_rejected}
+    drawn = [
+        cell for cell in study.cells if cell.place["formulation"] == SHOWN and cell.place["scene"] in data
     ]
-    return [sheet(stills, folder / f"{study.name}.png", COLUMNS)]
+    runs = collect.folders(study, drawn) if drawn else {}
+    if not drawn or len(runs) < len(drawn):
+        return []
+
+    def still(cell: Cell) -> Still:
+        scene = data[cell.place["scene"]]
+        view, hidden = tuple(scene.get("view_deg", VIEW)), tuple(scene.get("hidden_bodies", ()))
+        return Still(
+            cell.place["scene"], runs[cell.key], Look(view=view, size=PIXELS, bare=True, hidden=hidden)
+        )
+
+    return [sheet(list(map(still, drawn)), folder / f"{study.name}.png", COLUMNS)]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from barrierbench_analysis.io.text_table import fitted, markdown
-from barrierbench_analysis.studies.catalogue.cases import cases
+from barrierbench_analysis.studies.catalogue import cells as mini
 from barrierbench_analysis.studies.catalogue.checks import judge, no_crossing
 from barrierbench_analysis.studies.catalogue.entry import names, read_entry
 from barrierbench_analysis.studies.kit.study.spec import Case, Cell, Study
@@ -21,7 +21,7 @@ MEASURED = {"failed": "why the start did not pass: outcome, crossings, or the re
 
 
 def cells(study: Study) -> Iterator[Case]:
-    return cases(study, lambda entry: {"/seeds/jitter_m": entry.data["jitter_m"]})
+    return mini.cells(study, lambda entry: {"/seeds/jitter_m": entry.data["jitter_m"]})
 
 
 def measure(study: Study, cell: Cell, record: dict) -> dict:

@@ -9,7 +9,7 @@ from barrierbench_analysis.studies.kit.study.spec import Case, Study, product
 from .entry import Entry, entries
 
 
-def cases(study: Study, more: Callable[[Entry], dict] = lambda entry: {}) -> Iterator[Case]:
+def cells(study: Study, more: Callable[[Entry], dict] = lambda entry: {}) -> Iterator[Case]:
     """Each mini scene (about/scenes; all without it) with every combination of the axes and seeds of the
     spec. more: settings of a scene. The base of the study has no section that a scene does not set.
     """
