@@ -7,7 +7,7 @@ import math
 import re
 import shutil
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NoReturn
 
 from barrierbench_analysis.io.errors import UserError
@@ -110,15 +110,29 @@ def bicubic_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def finite_number(text: str) -> float:
-    """The type of an argument that is a number: neither nan nor inf, which float() takes."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"found {text!r}; allowed: a finite number")
-    return value
+def number_type(
+    allowed: str, holds: Callable[[float], bool] = lambda value: True, kind: type = float
+) -> Callable[[str], float]:
+    """The type of an argument that is a number, neither nan nor inf, which float() takes; `allowed` says in
+    words which ones `holds` lets pass.
+    """
+
+    def read(text: str) -> float:
+        try:
+            value = kind(text)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and holds(value)):
+            raise argparse.ArgumentTypeError(f"found {text!r}; allowed: {allowed}")
+        return value
+
+    return read
+
+
+finite_number = number_type("a finite number")
+positive_number = number_type("a number above 0", lambda value: value > 0)
+count_from_0 = number_type("a whole number from 0", lambda value: value >= 0, int)
+count_from_1 = number_type("a whole number from 1", lambda value: value >= 1, int)
 
 
 def set_argument(parser: argparse.ArgumentParser, words: str, example: str = "/scene/n=8") -> None:

@@ -58,13 +58,13 @@ class Entry:
         return made
 
     def _copies(self, body: dict, index: int) -> list[dict]:
-        asked = body.get("copies")
-        if asked is None:
+        copies = body.get("copies")
+        if copies is None:
             return [body]
         body = {key: value for key, value in body.items() if key != "copies"}
         return [
             {**body, "name": f"{body['name']}_{k}", "transform": placed(body.get("transform", {}), place)}
-            for k, place in enumerate(places(asked, self.path, f"config/scene/bodies/{index}/copies"))
+            for k, place in enumerate(places(copies, self.path, f"config/scene/bodies/{index}/copies"))
         ]
 
 
@@ -91,9 +91,9 @@ def read_entry(name: str, folder: Path = FOLDER) -> Entry:
     return Entry(path, data)
 
 
-def entries(asked: list[str], folder: Path = FOLDER) -> list[Entry]:
+def entries(chosen: list[str], folder: Path = FOLDER) -> list[Entry]:
     """The scenes of these names, all without one."""
-    return [read_entry(name, folder) for name in asked or names(folder)]
+    return [read_entry(name, folder) for name in chosen or names(folder)]
 
 
 def config_text(entry: Entry, size: str = MINI) -> str:

@@ -82,9 +82,9 @@ def house_of_cards(rows: int, height_m: float, lean_deg: float, gap_m: float) ->
 LAYOUTS = (row, grid, spiral, house_of_cards)
 
 
-def places(asked: dict, path: Path, where: str) -> Iterator[Place]:
+def places(copies: dict, path: Path, where: str) -> Iterator[Place]:
     """Of `copies` at its place in a file. Errors: as call."""
-    return call(LAYOUTS, "layout", asked, path, where)()
+    return call(LAYOUTS, "layout", copies, path, where)()
 
 
 def placed(transform: dict, place: Place) -> dict:

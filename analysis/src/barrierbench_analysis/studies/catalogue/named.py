@@ -11,16 +11,16 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.spec_file import refused
 
 
-def call(functions: tuple, key: str, asked: dict, path: Path, place: str, own: tuple = ()) -> Callable:
-    """The function that `asked` names at `key`, with all other keys but the `own` ones as parameters; a
+def call(functions: tuple, key: str, keys: dict, path: Path, place: str, own: tuple = ()) -> Callable:
+    """The function that `keys` names at `key`, with all other keys but the `own` ones as parameters; a
     parameter `record` is left to the caller. Errors: UserError with the place: a function that is unknown, a
     parameter that is missing or unknown.
     """
     known = {function.__name__: function for function in functions}
-    function = known.get(asked.get(key))
+    function = known.get(keys.get(key))
     if function is None:
-        raise refused(path, f"{place}/{key}", asked.get(key), f"one of {', '.join(known)}")
-    given = {name: value for name, value in asked.items() if name not in (key, *own)}
+        raise refused(path, f"{place}/{key}", keys.get(key), f"one of {', '.join(known)}")
+    given = {name: value for name, value in keys.items() if name not in (key, *own)}
     takes = {n: p for n, p in inspect.signature(function).parameters.items() if n != "record"}
     if missing := [name for name, one in takes.items() if one.default is one.empty and name not in given]:
         raise UserError(f"{path}#/{place}/{missing[0]}: is missing")

@@ -40,16 +40,16 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
 
 def _sizes() -> int:
     """1: a count is off without a reason, or has a reason and is not off."""
-    asked = entries([])
-    kept = sizes.built(asked)
+    chosen = entries([])
+    kept = sizes.built(chosen)
     sizes.write(kept)
     write_whole(sizes.PAGE, sizes.page())
-    complaints = [words for entry in asked if (words := sizes.complaint(entry, kept[entry.name]))]
+    complaints = [words for entry in chosen if (words := sizes.complaint(entry, kept[entry.name]))]
     print("\n".join([*complaints, str(sizes.PAGE)]))
     return 1 if complaints else 0
 
 
-def _print_table(asked: list[Entry], build_large: bool) -> int:
+def _print_table(chosen: list[Entry], build_large: bool) -> int:
     def cell(of: tuple[Entry, str]) -> tuple[str, str]:
         """vertices/faces, and what is wrong with them."""
         entry, size = of
@@ -63,10 +63,10 @@ def _print_table(asked: list[Entry], build_large: bool) -> int:
         wrong = unlike(counts, stated)
         return f"{counts['vertices']}/{counts['faces']}", f"{entry.path}#/{size}: {wrong}" if wrong else ""
 
-    cells = list(each_built(cell, [(entry, size) for entry in asked for size in (MINI, FULL)], "scenes"))
+    cells = list(each_built(cell, [(entry, size) for entry in chosen for size in (MINI, FULL)], "scenes"))
     rows = [
         [entry.name, mini, full, entry.data["stresses"]]
-        for entry, (mini, _), (full, _) in zip(asked, cells[::2], cells[1::2], strict=True)
+        for entry, (mini, _), (full, _) in zip(chosen, cells[::2], cells[1::2], strict=True)
     ]
     complaints = [wrong for _, wrong in cells if wrong]
     print("\n".join(fitted(["scene", "mini", "full", "what it stresses"], rows, {1, 2})))
@@ -97,13 +97,13 @@ def _is_written(entry: Entry, file: Path, size: str) -> bool:
 @tells("scenes")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
-    asked = entries(args.names)
+    chosen = entries(args.names)
     if args.write:
         if len(args.names) != 1:
             raise UserError("--write: one NAME is needed")
         size = FULL if args.full else MINI
-        if not _is_written(asked[0], args.write, size):
-            write_config(asked[0], args.write, size)
+        if not _is_written(chosen[0], args.write, size):
+            write_config(chosen[0], args.write, size)
         print(args.write)
         return 0
     if args.sizes:
@@ -113,9 +113,9 @@ def main(argv: list[str]) -> int:
     if args.full:
         raise UserError("--full: --write FILE is needed with it")
     if args.list:
-        rows = [[one.name, one.data["title"]] for one in asked]
+        rows = [[one.name, one.data["title"]] for one in chosen]
         print("\n".join(fitted(["scene", "title"], rows)))
         return 0
     if len(args.names) == 1:
-        _print_one(asked[0])
-    return _print_table(asked, build_large=bool(args.names))
+        _print_one(chosen[0])
+    return _print_table(chosen, build_large=bool(args.names))

@@ -26,11 +26,11 @@ def _built(entry: Entry) -> dict[str, int]:
     return {kind: counts[kind] for kind in KINDS if counts.get(kind)}
 
 
-def built(asked: list[Entry]) -> dict[str, dict[str, int]]:
+def built(chosen: list[Entry]) -> dict[str, dict[str, int]]:
     """Scene -> the counts that the program builds; of one that is LARGE those that it states, which the
     test of its generator holds. Errors: UserError. Cost: seconds a scene.
     """
-    return dict(zip([entry.name for entry in asked], each_built(_built, asked, "sizes"), strict=True))
+    return dict(zip([entry.name for entry in chosen], each_built(_built, chosen, "sizes"), strict=True))
 
 
 def ratios(entry: Entry, own: dict[str, int]) -> dict[str, float]:
@@ -64,8 +64,8 @@ def _cell(entry: Entry, own: dict[str, int], kind: str) -> str:
     return text if _is_near(mine / published) else f"**{text}**"
 
 
-def markdown_page(asked: list[Entry], kept: dict[str, dict[str, int]]) -> str:
-    here = [(entry, kept[entry.name]) for entry in asked if entry.name in kept]
+def markdown_page(chosen: list[Entry], kept: dict[str, dict[str, int]]) -> str:
+    here = [(entry, kept[entry.name]) for entry in chosen if entry.name in kept]
     rows = [
         [
             entry.name,
@@ -76,7 +76,7 @@ def markdown_page(asked: list[Entry], kept: dict[str, dict[str, int]]) -> str:
     ]
     compared = [list(found.values()) for entry, own in here if (found := ratios(entry, own))]
     counts = [ratio for one in compared for ratio in one]
-    sources = sorted({entry.data["source_counts"]["of"] for entry in asked})
+    sources = sorted({entry.data["source_counts"]["of"] for entry in chosen})
     head = (
         "Written by `./bench scenes --sizes`. Counts of every scene at the size `full`, as the program builds"
         " it, of those that its source publishes, and their ratio; of scenes of more than"

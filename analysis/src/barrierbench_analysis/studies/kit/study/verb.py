@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import finite_number, parser_of, plugin_argument
+from barrierbench_analysis.program.arguments import count_from_1, parser_of, plugin_argument, positive_number
 from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.program.verbs import of_spec
 from barrierbench_analysis.tables.words import counted
@@ -43,12 +43,14 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "--part", metavar="NAME", help="runs no more than the part of the spec with this name (key `parts`)"
     )
     parser.add_argument(
-        "--minutes", type=finite_number, metavar="M", help="begins no further sweep after so many minutes"
+        "--minutes", type=positive_number, metavar="M", help="begins no further sweep after so many minutes"
     )
     parser.add_argument(
         "--again", action="store_true", help="runs chosen cells that have a row, too, and replaces their rows"
     )
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs at a time (default 1)")
+    parser.add_argument(
+        "--jobs", type=count_from_1, default=1, metavar="N", help="runs at a time (default 1)"
+    )
     parser.add_argument(
         "--out",
         type=Path,
@@ -56,12 +58,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         help="runs, rows, page and figures in this folder, apart from kept rows: repeats a study",
     )
     plugin_argument(parser)
-    args = parser.parse_args(argv[1:])
-    if args.jobs < 1:
-        raise UserError(f"--jobs: found {args.jobs}; allowed: a number from 1 on")
-    if args.minutes is not None and not args.minutes > 0:
-        raise UserError(f"--minutes: found {args.minutes}; allowed: a number above 0")
-    return args
+    return parser.parse_args(argv[1:])
 
 
 def _asked(texts: list[str]) -> dict[str, list[str]]:
@@ -118,13 +115,11 @@ def make_rows(
         if minutes is not None and time.monotonic() - begun > 60 * minutes:
             break
         left = {cell.key for cell in missing(study, rows)}  # fewer, where new rows decide others
-        if not (asked := [cell for cell in part if again or cell.key in left]):
+        if not (part := [cell for cell in part if again or cell.key in left]):
             continue
-        rows = store.added(
-            rows, run_cells(study, asked, jobs), replace=True
-        )  # of rows without a value of today
+        rows = store.added(rows, run_cells(study, part, jobs), replace=True)  # rows without a value of today
         store.write_rows(file, rows)
-        made += len(asked)
+        made += len(part)
         print(f"{study.name}: {made} of {len(lacking)} runs", file=sys.stderr)
     return made
 
