@@ -25,16 +25,11 @@ from .entry import FULL, MINI, Entry, config_text, entries, write_config
 def _arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("scenes", __doc__, "./bench scenes twist --write twist.json --full")
     parser.add_argument("names", nargs="*", metavar="NAME", help="configs/catalogue/NAME.json (default: all)")
-    parser.add_argument(
-        "--write", type=Path, metavar="FILE", help="write the config of the one scene that is named"
-    )
+    parser.add_argument("--write", type=Path, metavar="FILE", help="write the config of the scene NAME")
     parser.add_argument("--full", action="store_true", help="at the size of the source")
     parser.add_argument("--list", action="store_true", help="names and titles alone, nothing is built")
-    parser.add_argument(
-        "--sizes",
-        action="store_true",
-        help="build all full scenes and write results/CATALOGUE_SIZES.md: their counts beside their sources'",
-    )
+    words = "build all full scenes and write results/CATALOGUE_SIZES.md: their counts beside their sources'"
+    parser.add_argument("--sizes", action="store_true", help=words)
     return parser.parse_args(argv)
 
 

@@ -66,14 +66,10 @@ def _cell(entry: Entry, own: dict[str, int], kind: str) -> str:
 
 def markdown_page(chosen: list[Entry], kept: dict[str, dict[str, int]]) -> str:
     here = [(entry, kept[entry.name]) for entry in chosen if entry.name in kept]
-    rows = [
-        [
-            entry.name,
-            *(_cell(entry, own, kind) for kind in KINDS),
-            entry.data["source_counts"].get("because", ""),
-        ]
-        for entry, own in here
-    ]
+    rows = []
+    for entry, own in here:
+        why = entry.data["source_counts"].get("because", "")
+        rows.append([entry.name, *(_cell(entry, own, kind) for kind in KINDS), why])
     compared = [list(found.values()) for entry, own in here if (found := ratios(entry, own))]
     counts = [ratio for one in compared for ratio in one]
     sources = sorted({entry.data["source_counts"]["of"] for entry in chosen})

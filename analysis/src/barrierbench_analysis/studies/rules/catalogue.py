@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
 
 from barrierbench_analysis.io.text_table import aligned, markdown
@@ -38,6 +39,9 @@ def measure(study: Study, cell: Cell, record: dict) -> dict:
         "red": [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
         "seen": [f"{name}: {finding.saw}" for name, finding in found if not finding.red],
     }
+
+
+HEAD = ("scene", "formulation", "outcome")
 
 
 def _run(row: Row) -> list[str]:
@@ -74,8 +78,7 @@ def _red(rows: list[Row]) -> list[str]:
         for row in rows
         if row.values["red"]
     ]
-    head = ["scene", "formulation", "outcome", "red", "what the record says"]
-    return markdown(head, body) if body else ["Nothing."]
+    return markdown([*HEAD, "red", "what the record says"], body) if body else ["Nothing."]
 
 
 def _described(of_scene: dict[str, list[Row]]) -> Iterator[str]:
@@ -92,9 +95,7 @@ def _described(of_scene: dict[str, list[Row]]) -> Iterator[str]:
 
 def rule(study: Study, rows: list[Row]) -> dict:
     """The tables of the page."""
-    of_scene: dict[str, list[Row]] = {}
-    for row in rows:
-        of_scene.setdefault(row.place["scene"], []).append(row)
+    of_scene = {scene: list(mine) for scene, mine in groupby(rows, key=lambda row: row.place["scene"])}
     picture = study.figures / f"{study.name}.png"
     return {
         "scenes": len(of_scene),
@@ -111,15 +112,10 @@ def rule(study: Study, rows: list[Row]) -> dict:
 def judged(study: Study, rows: list[Row]) -> tuple[list[str], bool]:
     """A line for each run of a call of some cells, for each red one of a call of all."""
     red = [row for row in rows if row.values["red"]]
-    lines = [
-        [
-            *_run(row),
-            _seconds(row),
-            f"{row.values['newton']}",
-            ("; ".join(row.values["red"]) or "as expected")[:150],
-        ]
-        for row in (red if len(rows) == len(study.cells) else rows)
-    ]
+    lines = []
+    for row in red if len(rows) == len(study.cells) else rows:
+        found = "; ".join(row.values["red"]) or "as expected"
+        lines.append([*_run(row), _seconds(row), f"{row.values['newton']}", found[:150]])
     scenes = counted(len({row.place["scene"] for row in rows}), "scene")
     end = f"{len(rows) - len(red)} of {counted(len(rows), 'run')} of {scenes} end as expected"
     return [*aligned([""] * 6, lines)[1:], end], not red
@@ -133,18 +129,16 @@ def draw(study: Study, rows: list[Row], numbers: dict, folder: Path) -> list[Pat
     from barrierbench_analysis.figures.pictures.stills import COLUMNS, PIXELS, VIEW, Still, sheet
 
     data = {name: entry.data for name in names() if not (entry := read_entry(name)).is_rejected}
-    drawn = [
-        cell for cell in study.cells if cell.place["formulation"] == SHOWN and cell.place["scene"] in data
-    ]
+    shown = [cell for cell in study.cells if cell.place["formulation"] == SHOWN]
+    drawn = [cell for cell in shown if cell.place["scene"] in data]
     runs = collect.folders(study, drawn) if drawn else {}
     if not drawn or len(runs) < len(drawn):
         return []
 
-    def still(cell: Cell) -> Still:
+    stills = []
+    for cell in drawn:
         scene = data[cell.place["scene"]]
         view, hidden = tuple(scene.get("view_deg", VIEW)), tuple(scene.get("hidden_bodies", ()))
-        return Still(
-            cell.place["scene"], runs[cell.key], Look(view=view, size=PIXELS, bare=True, hidden=hidden)
-        )
-
-    return [sheet(list(map(still, drawn)), folder / f"{study.name}.png", COLUMNS)]
+        look = Look(view=view, size=PIXELS, bare=True, hidden=hidden)
+        stills.append(Still(scene["name"], runs[cell.key], look))
+    return [sheet(stills, folder / f"{study.name}.png", COLUMNS)]

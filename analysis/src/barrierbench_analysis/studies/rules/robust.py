@@ -7,10 +7,11 @@ A run passes when it ends `ok` without a crossing; one of a scene that must be r
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import groupby
 
 from barrierbench_analysis.io.text_table import fitted, markdown
 from barrierbench_analysis.studies.catalogue import cells as mini
-from barrierbench_analysis.studies.catalogue.checks import judge, no_crossing
+from barrierbench_analysis.studies.catalogue.checks import judge
 from barrierbench_analysis.studies.catalogue.entry import names, read_entry
 from barrierbench_analysis.studies.kit.study.spec import Case, Cell, Study
 from barrierbench_analysis.studies.kit.study.store import Row
@@ -26,23 +27,18 @@ def cells(study: Study) -> Iterator[Case]:
 
 def measure(study: Study, cell: Cell, record: dict) -> dict:
     entry, outcome = read_entry(cell.place["scene"]), outcome_of(record)
-    if entry.is_rejected:
-        findings = [finding for _, finding in judge(record, entry.data["expect"])]
-    elif outcome != OK:
+    if not entry.is_rejected and outcome != OK:
         return {"failed": outcome}
-    else:
-        findings = [no_crossing(record)]
-    return {"failed": next((finding.saw for finding in findings if finding.red), "")}
+    expected = entry.data["expect"] if entry.is_rejected else [{"check": "no_crossing"}]
+    return {"failed": next((found.saw for _, found in judge(record, expected) if found.red), "")}
 
 
 def _passed(rows: list[Row], of: str) -> Iterator[list[str]]:
     """Scene, formulation, how many seeds of how many passed, and which failed why."""
-    of_pair: dict[tuple[str, str], list[Row]] = {}
-    for row in rows:
-        of_pair.setdefault((row.place["scene"], row.place["formulation"]), []).append(row)
-    for (scene, formulation), mine in of_pair.items():
+    for pair, of_pair in groupby(rows, key=lambda row: (row.place["scene"], row.place["formulation"])):
+        mine = list(of_pair)
         failed = [f"seed {row.place['seed']}: {why}" for row in mine if (why := row.values["failed"])]
-        yield [scene, formulation, f"{len(mine) - len(failed)}{of}{len(mine)}", "; ".join(failed)]
+        yield [*pair, f"{len(mine) - len(failed)}{of}{len(mine)}", "; ".join(failed)]
 
 
 def rule(study: Study, rows: list[Row]) -> dict:
