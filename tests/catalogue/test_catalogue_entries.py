@@ -1,11 +1,15 @@
 """Scenes as data: what is refused, and what configs they make."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from own_spec import written
 
-from barrierbench_analysis.studies.catalogue import page, table
+from barrierbench_analysis.studies.kit.study import page
+from barrierbench_analysis.studies.kit.study.spec import read_study
+from barrierbench_analysis.studies.rules import catalogue
 from barrierbench_analysis.studies.catalogue.entry import FOLDER, FULL, MINI, entries, names, read_entry
 from barrierbench_analysis.studies.catalogue.layouts import house_of_cards, placed, row, spiral
 from barrierbench_analysis.studies.catalogue.scenes import main
@@ -72,34 +76,43 @@ def test_an_unknown_scene_ends_with_2(capsys):
     assert main(["drapes"]) == 2 and "one of ball-in-funnel, beam-on-wedge, belt" in capsys.readouterr().err
 
 
-def test_the_page_is_made_of_the_kept_numbers():
-    assert page.PAGE.read_text() == page.page_of(table.read())
+def kept(scenes, *red):
+    """The kept rows of these scenes, the first one of the last scene with these red checks."""
+    study = read_study("catalogue")
+    rows = [row for row in page.rows_of(study) if row.place["scene"] in scenes]
+    rows = [replace(row, values={**row.values, "red": []}) for row in rows]
+    at = [row.place["scene"] for row in rows].index(scenes[-1])
+    rows[at] = replace(rows[at], values={**rows[at].values, "red": list(red)})
+    return study, rows
 
 
-def kept_of(monkeypatch, tmp_path, *red: str) -> None:
-    """Two scenes, one of them with a red row, and a page elsewhere."""
-    scenes = {name: table.read()[name] for name in ("belt", "drape")}
-    for record in (record for one in scenes.values() for record in one["rows"]):
-        record["red"] = []
-    scenes["drape"]["rows"][0]["red"] = list(red)
-    monkeypatch.setattr(table, "read", lambda: scenes)
-    monkeypatch.setattr(page, "PAGE", tmp_path / "CATALOGUE.md")
+def test_a_call_says_what_is_red_of_its_runs():
+    lines, passed = catalogue.judged(*kept(["belt", "drape"], "fell: 0.1"))
+    assert not passed and lines[-1] == "9 of 10 runs of 2 scenes end as expected" and len(lines) == 11
+    (red,) = (line for line in lines if "fell: 0.1" in line)
+    assert red.startswith("drape") and sum("as expected" in line for line in lines[:-1]) == 9
+    lines, passed = catalogue.judged(*kept(["belt"]))
+    assert passed and lines[-1] == "5 of 5 runs of 1 scene end as expected"
+    study = read_study("catalogue")
+    lines, passed = catalogue.judged(study, page.rows_of(study))  # of all, those that are red alone
+    assert not passed and len(lines) == 160 - 149 + 1 and lines[-1].startswith("149 of 160 runs of 32 scenes")
 
 
-def test_without_runs_it_says_what_is_red_and_which_page_is_written(tmp_path, monkeypatch, capsys):
-    kept_of(monkeypatch, tmp_path, "fell: 0.1")
-    assert page.main(["--no-run"]) == 1
-    *red, count, file = capsys.readouterr().out.splitlines()
-    assert len(red) == 1 and red[0].startswith("drape") and "fell: 0.1" in red[0] and "9 of 10 runs of 2 scenes" in count
-    assert file == str(tmp_path / "CATALOGUE.md") and (tmp_path / "CATALOGUE.md").is_file()
+def test_the_page_has_outcomes_and_what_is_red():
+    study, rows = kept(["belt", "intersect-2"])
+    numbers = catalogue.rule(study, rows)
+    assert numbers["red"] == "Nothing." and numbers["expected"] == numbers["runs"] == 10 and numbers["scenes"] == 2
+    assert "| intersect-2 | 288/484 | initial_intersection, 0.2 s |" in numbers["outcomes"]
+    numbers = catalogue.rule(*kept(["belt", "intersect-2"], "rejected: it made 3 steps"))
+    assert "red: rejected** |" in numbers["outcomes"] and "| intersect-2 | log | initial_intersection | rejected: it made 3 steps |" in numbers["red"]
+    assert "| intersect-2 | - |" not in numbers["outcomes"]
+    without = catalogue.rule(study, [row for row in rows if (row.place["scene"], row.place["formulation"]) != ("belt", "cubic")])
+    assert "s | - | ok" in without["outcomes"] and "### belt: " in without["described"]
 
 
-def test_without_runs_a_scene_of_which_nothing_is_kept_is_an_error(tmp_path, monkeypatch, capsys):
-    kept_of(monkeypatch, tmp_path)
-    assert page.main(["belt", "--no-run"]) == 0 and "5 of 5 runs of 1 scene end as expected" in capsys.readouterr().out
-    assert page.main(["twist", "--no-run"]) == 2
-    said = capsys.readouterr()
-    assert said.out == "" and "nothing kept of twist: ./bench study catalogue twist" in said.err
+def test_a_scene_that_is_not_there_is_refused_where_a_spec_names_it(tmp_path):
+    with pytest.raises(UserError, match="scene 'drapes': one of ball-in-funnel, beam-on-wedge, belt"):
+        _ = written(tmp_path, "catalogue", ["drapes"]).cells
 
 
 def test_one_is_written_as_an_ordinary_config(tmp_path, capsys):

@@ -43,7 +43,7 @@ def changed(place, value):
     return record
 
 
-@pytest.mark.parametrize("name", CHECKS)
+@pytest.mark.parametrize("name", [check.__name__ for check in CHECKS])
 def test_it_holds_of_its_subject(name):
     assert found(name, {"rejected": EMPTY, "bounced": BOUNCE}.get(name, RECORD)).holds is True
 

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.studies.catalogue import table
 from barrierbench_analysis.studies.catalogue.entry import read_entry, write_config
+from barrierbench_analysis.studies.kit.study.page import rows_of
+from barrierbench_analysis.studies.kit.study.spec import read_study
 from barrierbench_analysis.studies.engines import card as cards
 from barrierbench_analysis.studies.engines import compare, environment, figure, launch, level, matching, scene, verb
 from barrierbench_analysis.studies.engines.judged import energy_of, error_of, judge
@@ -113,9 +114,9 @@ def test_scenes_that_peers_cannot_run_are_refused_by_name_and_the_page_says_so(p
     write_config(entry, tmp_path / "scene.json")
     with pytest.raises(UserError, match=f"found {term} .*engines share no other term"):
         scene.exported(tmp_path / "scene.json")
-    kept = {row["formulation"]: row for row in table.read()[name]["rows"]}
+    kept = {row.place["formulation"]: row for row in rows_of(read_study("catalogue")) if row.place["scene"] == name}
     log, dynamic = kept["log"], kept["cubic_dynamic_consistent"]
-    cells = f"| `{name}` | {log['seconds']:g} s, {log['newton']} | {dynamic['seconds']:g} s, {dynamic['newton']} |"
+    cells = f"| `{name}` | {log.seconds:g} s, {log.values['newton']} | {dynamic.seconds:g} s, {dynamic.values['newton']} |"
     assert cells in (ROOT / "docs/results/engines.md").read_text()
 
 

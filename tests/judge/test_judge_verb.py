@@ -92,7 +92,7 @@ def test_what_only_the_straight_line_shows_is_said_apart(program, tmp_path):
     assert record["total"]["crossings"] == 0 and record["total"]["passages"] > 0
     code, record = judge(tmp_path, path, "--states-only")
     assert (code, record["verdict"], record["findings"]) == (0, "clean", [])
-    assert "what happens between frames was not asked" in meaning(record) and "straight line" not in meaning(record)
+    assert "what happens between frames was not judged" in meaning(record) and "straight line" not in meaning(record)
 
 
 def test_numbers_that_are_none_are_a_verdict(program, tmp_path):
@@ -208,7 +208,7 @@ REFUSED = {
     "a sum of 11 vertices": lambda f: [written(f / "a", "npz", CLEAN)[0], *about(f, bodies=[{"name": "x", "vertices": 3}])],
     "needs times of the frames": lambda f: [written(f / "a", "obj", CLEAN)[0], *about(f, density={"part 1": 1})],
     "frames; the trajectory has 3": lambda f: [written(f / "a", "npz", CLEAN)[0], "--reference", written(f / "b", "npz", CLEAN[:2])[0]],
-    "--scale 0": lambda f: [written(f / "a", "npz", CLEAN)[0], "--scale", "0"],
+    "--scale: found '0'": lambda f: [written(f / "a", "npz", CLEAN)[0], "--scale", "0"],
 }
 
 

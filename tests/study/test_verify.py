@@ -197,7 +197,7 @@ def test_an_empty_folder_and_none_are_not_green(tmp_path, capsys):
 
 def test_reruns_are_the_same_to_the_last_bit(study, capsys, built):
     code, said = told(capsys, study, "--rerun", "2", "--seed", "3")
-    assert code == 0 and "reruns: 2 of 2 asked for: 2 the same to the last bit, 0 differ, 0 not judged" in said
+    assert code == 0 and "reruns: 2 of 2 requested: 2 the same to the last bit, 0 differ, 0 not judged" in said
 
 
 def test_a_rerun_tells_a_number_that_no_sum_knows(study, capsys, built):

@@ -8,7 +8,6 @@ target; the input is kept. Exit code 1 when there was one, 2 for a wrong request
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import re
@@ -23,7 +22,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program import building
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import count_from_1, parser_of
 
 BUILD = ROOT / "build" / "fuzz"
 CRASHES = ROOT / "results" / "runs" / "fuzz"
@@ -145,13 +144,6 @@ def table(rows: list[dict]) -> str:
     return "\n".join(aligned(head, lines[1:], set(range(1, len(head)))))
 
 
-def positive(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"found {text}; allowed: an integer >= 1")
-    return value
-
-
 def prepare(names: list[str]) -> None:
     """Targets and seeds. Errors: UserError where clang cannot be installed or something does not build."""
     building.setup("clang", "libclang-rt-14-dev")
@@ -170,11 +162,11 @@ def main(argv: list[str]) -> int:
         "targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)"
     )
     length = parser.add_mutually_exclusive_group()
-    length.add_argument("--seconds", type=positive, default=30, help="for each target (default 30)")
-    length.add_argument("--runs", type=positive, help="executions of each target")
+    length.add_argument("--seconds", type=count_from_1, default=30, help="for each target (default 30)")
+    length.add_argument("--runs", type=count_from_1, help="executions of each target")
     parser.add_argument(
         "--seed",
-        type=positive,
+        type=count_from_1,
         default=1,
         help="of libFuzzer; the corpus of earlier runs matters too (default 1)",
     )

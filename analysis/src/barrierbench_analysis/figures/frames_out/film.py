@@ -10,12 +10,12 @@ import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import parser_of, positive_number
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import Trajectory, has_cells
 
 from .formats import write
-from .verb import in_new_folder, positive
+from .verb import in_new_folder
 
 ABOUT = """
 SOURCE: a folder of OBJ, PLY, STL, MSH or VTK frames, a PVD, PC2, MDD or NPZ file, or a run that kept
@@ -90,8 +90,12 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("source", type=Path, metavar="SOURCE", help="a folder or file with frames, or a run")
     parser.add_argument("out", type=Path, metavar="OUT", help="a folder that is not there yet")
     parser.add_argument("--body", help="of a run: the body whose vertices are wanted")
-    parser.add_argument("--frame-s", type=positive, help="time (s) of a frame, where the source has no times")
-    parser.add_argument("--scale", type=positive, default=1.0, help="factor to m, as 0.001 of files in mm")
+    parser.add_argument(
+        "--frame-s", type=positive_number, help="time (s) of a frame, where the source has no times"
+    )
+    parser.add_argument(
+        "--scale", type=positive_number, default=1.0, help="factor to m, as 0.001 of files in mm"
+    )
     return parser.parse_args(argv)
 
 

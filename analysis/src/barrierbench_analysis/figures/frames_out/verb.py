@@ -22,7 +22,7 @@ from barrierbench_analysis.figures.surfaces.sequence import (
 )
 from barrierbench_analysis.figures.surfaces.uv_binding import bound_by_uv
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import bicubic_argument, parser_of
+from barrierbench_analysis.program.arguments import bicubic_argument, number_type, parser_of, positive_number
 from barrierbench_analysis.program.mesh_arrays import SUFFIXES, read_frame_file
 
 from .formats import WRITERS, write
@@ -132,26 +132,6 @@ def export(run: Run, parts: list[Binding], kind: str, out: Path) -> str:
     )
 
 
-def positive(text: str) -> float:
-    value = float(text)
-    if not 0 < value < float("inf"):
-        raise ValueError(text)
-    return value
-
-
-positive.__name__ = "number above 0"
-
-
-def _times(text: str) -> int:
-    value = int(text)
-    if not 1 <= value <= MOST_TIMES:
-        raise ValueError(text)
-    return value
-
-
-_times.__name__ = f"number from 1 to {MOST_TIMES}"
-
-
 def parse(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
         "data frames",
@@ -173,7 +153,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     finer.add_argument(
         "--subdivide",
-        type=_times,
+        type=number_type(f"a number from 1 to {MOST_TIMES}", lambda value: 1 <= value <= MOST_TIMES, int),
         metavar="N",
         help=f"cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})",
     )
@@ -194,7 +174,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--reach",
-        type=positive,
+        type=positive_number,
         metavar="M",
         help="largest distance (m) of a vertex of --render-mesh from the surface (default:"
         f" {REACH:g} of the diagonal of the body's box)",

@@ -11,7 +11,13 @@ from pathlib import Path
 from barrierbench_analysis.figures.pictures.film import Film, Source, filmed, kept, opened
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import bicubic_argument, color_argument, parser_of
+from barrierbench_analysis.program.arguments import (
+    bicubic_argument,
+    color_argument,
+    count_from_1,
+    parser_of,
+    positive_number,
+)
 from barrierbench_analysis.tables.run_rows import case_name, own_name
 
 from .page import page, page_bytes
@@ -110,26 +116,6 @@ def play(
     return [*notes, f"{out} ({_megabytes(out.stat().st_size)}): {shown}"]
 
 
-def _count(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise ValueError(text)
-    return value
-
-
-_count.__name__ = "number of frames, 1 or more"
-
-
-def _megabytes_asked(text: str) -> float:
-    value = float(text)
-    if not 0 < value < float("inf"):
-        raise ValueError(text)
-    return value
-
-
-_megabytes_asked.__name__ = "number of MB above 0"
-
-
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = parser_of("draw player", "Frames are written by runs with --set /output/frames_every=1.")
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUN", help="folder of run.json; one or two")
@@ -137,13 +123,13 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     color_argument(parser, COLOURS, "gap", "what colors mean at first; the page can change it")
     parser.add_argument(
         "--every",
-        type=_count,
+        type=count_from_1,
         metavar="N",
         help="one of every N frames, and the last one (default: 1, or what --limit-mb needs)",
     )
     parser.add_argument(
         "--limit-mb",
-        type=_megabytes_asked,
+        type=positive_number,
         default=LIMIT_MB,
         metavar="MB",
         help=f"most that the file may take where --every is not given (default: {LIMIT_MB})",

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, code_of, tells
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import count_from_0, parser_of
 from barrierbench_analysis.tables.archive import beside, study
 
 from . import figures, players
@@ -61,16 +61,6 @@ def report_of_two(a: Folder, b: Folder, out: Path) -> str:
     return f"{diff_page.verdict(diff)[0].text}\n{out} ({out.stat().st_size / 1e6:.1f} MB)"
 
 
-def _count(text: str) -> int:
-    value = int(text)
-    if value < 0:
-        raise ValueError(text)
-    return value
-
-
-_count.__name__ = "number of players, 0 or more"
-
-
 @tells("report")
 def main(argv: list[str]) -> int:
     parser = parser_of("report", __doc__, "./bench report results/runs/before results/runs/after")
@@ -86,7 +76,7 @@ def main(argv: list[str]) -> int:
     )
     parser.add_argument(
         "--players",
-        type=_count,
+        type=count_from_0,
         default=players.MOST,
         metavar="N",
         help=f"scenes in motion at most; each takes up to 3 MB (default: {players.MOST})",

@@ -41,9 +41,9 @@ def _work_precision(data: dict) -> tuple[int, float]:
     return sum(about["runs"] for about in abouts), sum(about["seconds"] for about in abouts)
 
 
-def _catalogue(data: dict) -> tuple[int, float]:
-    seconds = [row["seconds"] for scene in data["scenes"].values() for row in scene["rows"]]
-    return len(seconds), sum(seconds)
+def _of_rows(rows: dict[str, Row]) -> tuple[int, float]:
+    """Of a study of the kit."""
+    return _counted([row.seconds for row in rows.values() if row.seconds is not None])
 
 
 def _counted(seconds: list[float]) -> tuple[int, float]:
@@ -60,7 +60,7 @@ STUDIES = {
     "gap map": ("gap_map.json", "./bench study gap-map", lambda d: _counted(_column(d, "seconds"))),
     "Pareto fronts": ("studies/pareto.jsonl", "./bench study pareto", None),
     "work-precision": ("work_precision.json", "./bench study work-precision", _work_precision),
-    "catalogue": ("catalogue.json", "./bench study catalogue", _catalogue),
+    "catalogue": ("studies/catalogue.jsonl", "./bench study catalogue", None),
     "stress suite": ("stress.json", "./bench study stress", _stress),
     "ablation": ("studies/ablation.jsonl", "./bench study ablation", None),
 }

@@ -38,11 +38,11 @@ def _of_audit(record: dict) -> list[str]:
     if audit.get("obstacles_judge", "surface") == "surface":
         decides += ["crossings", "violations"]
     counts = {name: audit[name] for name in decides}
-    told = ", ".join(f"{count} {name}" for name, count in counts.items())
+    found = ", ".join(f"{count} {name}" for name, count in counts.items())
     if any(counts.values()) and _ranks_below_penetration(outcome) and outcome not in CUT:
-        return [f"status/outcome is {outcome}, and its audit has {told}"]
+        return [f"status/outcome is {outcome}, and its audit has {found}"]
     if outcome == "penetration" and not any(counts.values()):
-        return [f"status/outcome is penetration, and its audit has {told}"]
+        return [f"status/outcome is penetration, and its audit has {found}"]
     open_counts = ["scene_faults", *(["unproven"] if "crossings" in counts else [])]
     if outcome == "ok" and (left := {name: n for name in open_counts if (n := audit[name])}):
         return [f"status/outcome is ok, and its audit has {n} {name}" for name, n in left.items()]

@@ -43,7 +43,7 @@ class Held:
     def judged(self) -> int:
         return self.records + self.cases + self.listed
 
-    def say(self, kind: str, path: Path, root: Path, found: str) -> None:
+    def add(self, kind: str, path: Path, root: Path, found: str) -> None:
         self.wrong.append((kind, str(path.relative_to(root)), found.replace(f"{root}/", "")))
 
 
@@ -64,17 +64,17 @@ def _of_steps() -> dict[str, Callable]:
 def _check_sums(record: dict, path: Path, root: Path, held: Held) -> None:
     summary, steps = record["summary"], record["steps"]
     if (count := summary.get("steps", len(steps))) != len(steps):
-        held.say(EDITED, path, root, f"summary/steps is {count}, and there are {len(steps)} steps")
+        held.add(EDITED, path, root, f"summary/steps is {count}, and there are {len(steps)} steps")
         return
     for name, follows in _of_steps().items():
         values = [value for step in steps if (value := step.get(name)) is not None]
-        is_told = bool(values) or (not steps and follows is sum)  # the sum of no steps is 0
-        if not is_told or name not in summary:
+        is_known = bool(values) or (not steps and follows is sum)  # the sum of no steps is 0
+        if not is_known or name not in summary:
             continue
         held.sums += 1
         if follows(values) != summary[name]:
             why = f"summary/{name} is {summary[name]}, the {follows.__name__} of its steps {follows(values)}"
-            held.say(EDITED, path, root, why)
+            held.add(EDITED, path, root, why)
 
 
 def _check_ids(record: dict, path: Path, root: Path, held: Held) -> None:
@@ -83,7 +83,7 @@ def _check_ids(record: dict, path: Path, root: Path, held: Held) -> None:
         held.ids += 1
         if stated != found:
             why = f"ids/{name} is {stated[:16]}, that of its contents {found[:16]}"
-            held.say(EDITED, path, root, why)
+            held.add(EDITED, path, root, why)
 
 
 def _own_files(folder: Path) -> Iterator[Path]:
@@ -102,17 +102,17 @@ def _check_files(record: dict, path: Path, root: Path, held: Held) -> None:
         held.files += 1
         file = path.parent / name
         if not file.is_file():
-            held.say(MISSING, path, root, f"{name}, which it names, is not there")
+            held.add(MISSING, path, root, f"{name}, which it names, is not there")
         elif (found := sha256_of(file)) != sha256:
-            held.say(EDITED, path, root, f"{name} has sha256 {found[:16]}; it names {sha256[:16]}")
+            held.add(EDITED, path, root, f"{name} has sha256 {found[:16]}; it names {sha256[:16]}")
     for name in unlike_config(record):
-        held.say(EDITED, path, root, f"{name}: its sha256 in the config is not that of scene/mesh_sha256")
+        held.add(EDITED, path, root, f"{name}: its sha256 in the config is not that of scene/mesh_sha256")
     known = {path, path.with_name(LOCK), *(path.parent / name for name in named)}
     if record["status"]["outcome"] in CUT:
         known |= {path.with_name(name) for name in CHECKPOINT}
     for file in _own_files(path.parent):
         if file not in known:
-            held.say(EXTRA, file, root, "the record beside it does not name it")
+            held.add(EXTRA, file, root, "the record beside it does not name it")
 
 
 def _check_record(path: Path, root: Path, held: Held) -> None:
@@ -121,18 +121,18 @@ def _check_record(path: Path, root: Path, held: Held) -> None:
     try:
         record = read_record(path)
     except RecordError as error:
-        held.say(EDITED, path, root, str(error))
+        held.add(EDITED, path, root, str(error))
         return
     _check_files(record, path, root, held)
     _check_ids(record, path, root, held)
     _check_sums(record, path, root, held)
     for why in contradictions(record):
-        held.say(EDITED, path, root, why)
+        held.add(EDITED, path, root, why)
     if len(held.wrong) == before:
         try:
             read_trace(record, path.parent)
         except RecordError as error:
-            held.say(EDITED, path, root, str(error))
+            held.add(EDITED, path, root, str(error))
     if len(held.wrong) == before and path not in held.outside:
         held.good.append(path)
 
@@ -142,24 +142,24 @@ def _check_cases(folder: Path, root: Path, held: Held) -> None:
     try:
         cases = read_cases(folder)
     except (UserError, KeyError, TypeError, ValueError) as error:
-        held.say(EDITED, folder / "cases.json", root, str(error))
+        held.add(EDITED, folder / "cases.json", root, str(error))
         return
     for case in cases:
         held.cases += 1
         if not case.record.is_file():
-            held.say(MISSING, case.record, root, f"the record of the case {case.label}")
+            held.add(MISSING, case.record, root, f"the record of the case {case.label}")
             continue
         try:
             own = read_record(case.record)["ids"]["config_id"]
         except RecordError:
-            continue  # told by its own check
+            continue  # its own check reports it
         if own != case.config_id:
             why = f"its config_id is {own[:16]}, in cases.json {case.config_id[:16]}"
-            held.say(EDITED, case.record, root, why)
+            held.add(EDITED, case.record, root, why)
     known = {case.record for case in cases}
     for record in sorted(folder.glob("*/run.json")):
         if record not in known:
-            held.say(EXTRA, record, root, "no case of the sweep")
+            held.add(EXTRA, record, root, "no case of the sweep")
 
 
 def held_folder(root: Path, of_archive: bool = False) -> Held:
@@ -183,9 +183,9 @@ def against(root: Path, lines: list[dict], held: Held) -> None:
     for name in sorted(listed):
         held.listed += 1
         if name not in there:
-            held.say(MISSING, root / name, root, "it is in the archive")
+            held.add(MISSING, root / name, root, "it is in the archive")
         elif (found := of_file(root / name)) != listed[name]:
-            held.say(EDITED, root / name, root, f"sha256 {found[:16]}, in the archive {listed[name][:16]}")
+            held.add(EDITED, root / name, root, f"sha256 {found[:16]}, in the archive {listed[name][:16]}")
     for name in sorted(there - listed.keys() - {MANIFEST}):
         if Path(name).name != LOCK:
-            held.say(EXTRA, root / name, root, "it is not in the archive")
+            held.add(EXTRA, root / name, root, "it is not in the archive")

@@ -21,7 +21,7 @@ from pathlib import Path
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.record_file import RecordError, leaves
 from barrierbench_analysis.io.text_table import fitted
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import count_from_0, parser_of
 from barrierbench_analysis.program.start import require_program, started
 from barrierbench_analysis.studies.gate.determinism import same_state
 from barrierbench_analysis.studies.gate.records import read_run
@@ -37,22 +37,14 @@ OF_THE_MACHINE = set(
 )
 
 
-def _whole(text: str) -> int:
-    value = int(text)
-    if value < 0:
-        raise ValueError(text)
-    return value
-
-
-_whole.__name__ = "whole number, 0 or more"
-
-
 def _arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("verify", __doc__, "./bench verify strip.zip --rerun 2")
     parser.add_argument(
         "study", type=Path, metavar="STUDY", help="a folder with records, or an archive of one"
     )
-    parser.add_argument("--rerun", type=_whole, default=0, metavar="N", help="make N runs again (default: 0)")
+    parser.add_argument(
+        "--rerun", type=count_from_0, default=0, metavar="N", help="make N runs again (default: 0)"
+    )
     parser.add_argument("--seed", type=int, default=1, help="of the choice of these runs (default: 1)")
     parser.add_argument("--archive", type=Path, metavar="FILE.zip", help="an archive of this folder")
     return parser.parse_args(argv)
@@ -66,8 +58,10 @@ def _rerun(path: Path) -> tuple[str, str]:
         try:
             old, new = read_run(path), read_run(again)
         except RecordError:
-            said = (done.stderr.strip() or done.stdout.strip() or "nothing was said").splitlines()[-1]
-            return DIFFERS, f"exit code {done.returncode}: {said}"
+            message = (
+                done.stderr.strip() or done.stdout.strip() or "the program printed nothing"
+            ).splitlines()[-1]
+            return DIFFERS, f"exit code {done.returncode}: {message}"
         (state,) = same_state("", old, new, False)
         if state.verdict == "not_judged":
             return NOT_JUDGED, state.note
@@ -108,13 +102,13 @@ def rerun(held: Held, root: Path, most: int, seed: int) -> Counter:
         verdict, why = _rerun(path)
         counts[verdict] += 1
         if verdict == DIFFERS:
-            held.say("rerun differs", path, root, why)
+            held.add("rerun differs", path, root, why)
         elif verdict == NOT_JUDGED:
             print(f"{path.relative_to(root)}: the rerun is not judged: {why}")
     return counts
 
 
-def report(held: Held, reruns: Counter, asked: int) -> int:
+def report(held: Held, reruns: Counter, requested: int) -> int:
     """Prints what is wrong and the counts; the exit code."""
     if held.wrong:
         print("\n".join(fitted(["what", "file", "found"], [list(one) for one in held.wrong])))
@@ -129,12 +123,12 @@ def report(held: Held, reruns: Counter, asked: int) -> int:
             f"not judged: {sum(map(len, held.outside.values()))} inputs of {len(held.outside)} records lie"
             " outside the archive, and these records cannot be run again from it"
         )
-    if asked:
+    if requested:
         print(
-            f"reruns: {reruns.total()} of {asked} asked for: {reruns[SAME]} the same to the last bit,"
+            f"reruns: {reruns.total()} of {requested} requested: {reruns[SAME]} the same to the last bit,"
             f" {reruns[DIFFERS]} differ, {reruns[NOT_JUDGED]} not judged"
         )
-    idle = not held.judged or (asked and not reruns[SAME] + reruns[DIFFERS])
+    idle = not held.judged or (requested and not reruns[SAME] + reruns[DIFFERS])
     print(f"verify: {wrong}" if not idle else f"verify: {wrong}, and red: nothing was judged")
     return 1 if held.wrong or idle else 0
 

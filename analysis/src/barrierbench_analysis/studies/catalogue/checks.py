@@ -1,6 +1,6 @@
 """What a scene of the catalogue is expected to show, each a named check of the record of a run. A check
 says whether it holds and what it saw; without a subject (no friction in the scene, no step) it does not
-hold. A check is one function here and one line of CHECKS.
+hold. A check is one function here and a word of CHECKS.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError
+from .named import call
 
 
 @dataclass(frozen=True)
@@ -176,50 +176,17 @@ def rejected(record: dict, outcome: str, says: str) -> Finding:
     )
 
 
-@dataclass(frozen=True)
-class Check:
-    judge: Callable[..., Finding]
-    needs: tuple[str, ...] = ()
-    takes: tuple[str, ...] = ()
+CHECKS = (
+    *(no_crossing, contacts_active, contact_work, friction_engaged, sticks, limit_engaged),
+    *(turned, came_to_rest, fell, carries, bounced, rejected),
+)
 
 
-CHECKS = {
-    "no_crossing": Check(no_crossing),
-    "contacts_active": Check(contacts_active, takes=("between",)),
-    "contact_work": Check(contact_work),
-    "friction_engaged": Check(friction_engaged),
-    "sticks": Check(sticks),
-    "limit_engaged": Check(limit_engaged),
-    "turned": Check(turned, ("body", "turns")),
-    "came_to_rest": Check(came_to_rest, ("share",)),
-    "fell": Check(fell, ("share",)),
-    "carries": Check(carries, ("load_N", "within")),
-    "bounced": Check(bounced, ("share",)),
-    "rejected": Check(rejected, ("outcome", "says")),
-}
-
-
-def _parameters(expected: dict) -> dict:
-    return {key: value for key, value in expected.items() if key not in ("check", "because")}
-
-
-def require_known(expected: dict, path: Path, place: str) -> None:
-    """Errors: UserError: a check that is unknown, a parameter that is missing or unknown."""
-    check = CHECKS.get(expected["check"])
-    if check is None:
-        raise UserError(
-            f"{path}#/{place}/check: found {expected['check']!r}; one of {', '.join(CHECKS)} is needed"
-        )
-    given = _parameters(expected)
-    if missing := [key for key in check.needs if key not in given]:
-        raise UserError(f"{path}#/{place}/{missing[0]}: is missing")
-    allowed = check.needs + check.takes
-    if unknown := [key for key in given if key not in allowed]:
-        raise UserError(
-            f"{path}#/{place}/{unknown[0]}: unknown; allowed: {', '.join(('check', 'because', *allowed))}"
-        )
+def check_of(expected: dict, path: Path = Path(), place: str = "expect") -> Callable[[dict], Finding]:
+    """What an expectation names, as a function of a record. Errors: as call."""
+    return call(CHECKS, "check", expected, path, place, own=("because",))
 
 
 def judge(record: dict, expectations: list[dict]) -> list[tuple[str, Finding]]:
     """Name of each expected check, and what it found."""
-    return [(one["check"], CHECKS[one["check"]].judge(record, **_parameters(one))) for one in expectations]
+    return [(one["check"], check_of(one)(record)) for one in expectations]

@@ -15,8 +15,8 @@ from barrierbench_analysis.io.spec_file import read_spec, refused
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.claims.merged import put
 
-from .checks import require_known
-from .layouts import LAYOUTS, placed
+from .checks import check_of
+from .layouts import placed, places
 
 FOLDER = ROOT / "configs" / "catalogue"
 MINI, FULL = "mini", "full"
@@ -58,25 +58,13 @@ class Entry:
         return made
 
     def _copies(self, body: dict, index: int) -> list[dict]:
-        body = dict(body)
-        asked = body.pop("copies", None)
-        if asked is None:
+        copies = body.get("copies")
+        if copies is None:
             return [body]
-        where = f"config/scene/bodies/{index}/copies"
-        layout = LAYOUTS.get(asked.get("layout"))
-        if layout is None:
-            raise refused(self.path, f"{where}/layout", asked.get("layout"), f"one of {', '.join(LAYOUTS)}")
-        given = {key: value for key, value in asked.items() if key != "layout"}
-        if missing := [key for key in layout.needs if key not in given]:
-            raise UserError(f"{self.path}#/{where}/{missing[0]}: is missing")
-        if unknown := [key for key in given if key not in layout.needs + layout.takes]:
-            raise UserError(
-                f"{self.path}#/{where}/{unknown[0]}: unknown; allowed: layout,"
-                f" {', '.join(layout.needs + layout.takes)}"
-            )
+        body = {key: value for key, value in body.items() if key != "copies"}
         return [
             {**body, "name": f"{body['name']}_{k}", "transform": placed(body.get("transform", {}), place)}
-            for k, place in enumerate(layout.make(**given))
+            for k, place in enumerate(places(copies, self.path, f"config/scene/bodies/{index}/copies"))
         ]
 
 
@@ -95,7 +83,7 @@ def read_entry(name: str, folder: Path = FOLDER) -> Entry:
     if data["name"] != name:
         raise refused(path, "name", data["name"], "the name of the file")
     for k, expected in enumerate(data["expect"]):
-        require_known(expected, path, f"expect/{k}")
+        check_of(expected, path, f"expect/{k}")
     mini, full = (set(data[size]["set"]) for size in (MINI, FULL))
     if unlike := sorted(mini ^ full):
         size = MINI if unlike[0] in full else FULL
@@ -103,9 +91,9 @@ def read_entry(name: str, folder: Path = FOLDER) -> Entry:
     return Entry(path, data)
 
 
-def entries(asked: list[str], folder: Path = FOLDER) -> list[Entry]:
+def entries(chosen: list[str], folder: Path = FOLDER) -> list[Entry]:
     """The scenes of these names, all without one."""
-    return [read_entry(name, folder) for name in asked or names(folder)]
+    return [read_entry(name, folder) for name in chosen or names(folder)]
 
 
 def config_text(entry: Entry, size: str = MINI) -> str:

@@ -1,16 +1,18 @@
 """Where the copies of a body stand. A body of the catalogue may have `copies`: {"layout": NAME,
 parameters}; the rigid motion of each copy comes after the body's own `transform`. A layout is one function
-here and one line of LAYOUTS.
+here and a word of LAYOUTS.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+
+from .named import call
 
 Place = tuple[Rotation, np.ndarray]  # x -> rotation x + translation (m)
 
@@ -77,19 +79,12 @@ def house_of_cards(rows: int, height_m: float, lean_deg: float, gap_m: float) ->
         floor = top + 2 * gap_m if n > 2 else top + gap_m
 
 
-@dataclass(frozen=True)
-class Layout:
-    make: Callable[..., Iterator[Place]]
-    needs: tuple[str, ...]
-    takes: tuple[str, ...] = ()
+LAYOUTS = (row, grid, spiral, house_of_cards)
 
 
-LAYOUTS = {
-    "row": Layout(row, ("count", "step_m"), ("turn_deg", "axis")),
-    "grid": Layout(grid, ("counts", "step_m"), ("lift_m",)),
-    "spiral": Layout(spiral, ("count", "spacing_m")),
-    "house_of_cards": Layout(house_of_cards, ("rows", "height_m", "lean_deg", "gap_m")),
-}
+def places(copies: dict, path: Path, where: str) -> Iterator[Place]:
+    """Of `copies` at its place in a file. Errors: as call."""
+    return call(LAYOUTS, "layout", copies, path, where)()
 
 
 def placed(transform: dict, place: Place) -> dict:

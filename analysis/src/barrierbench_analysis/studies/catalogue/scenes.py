@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
@@ -17,66 +16,57 @@ from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.text_table import fitted
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
-from barrierbench_analysis.program.progress import counted
 
 from . import sizes
-from .counts import counts_of
+from .counts import counts_of, each_built, is_large, unlike
 from .entry import FULL, MINI, Entry, config_text, entries, write_config
-from .sizes import LARGE
 
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("scenes", __doc__, "./bench scenes twist --write twist.json --full")
     parser.add_argument("names", nargs="*", metavar="NAME", help="configs/catalogue/NAME.json (default: all)")
-    parser.add_argument(
-        "--write", type=Path, metavar="FILE", help="write the config of the one scene that is named"
-    )
+    parser.add_argument("--write", type=Path, metavar="FILE", help="write the config of the scene NAME")
     parser.add_argument("--full", action="store_true", help="at the size of the source")
     parser.add_argument("--list", action="store_true", help="names and titles alone, nothing is built")
-    parser.add_argument(
-        "--sizes",
-        action="store_true",
-        help="build all full scenes and write results/CATALOGUE_SIZES.md: their counts beside their sources'",
-    )
+    words = "build all full scenes and write results/CATALOGUE_SIZES.md: their counts beside their sources'"
+    parser.add_argument("--sizes", action="store_true", help=words)
     return parser.parse_args(argv)
 
 
 def _sizes() -> int:
     """1: a count is off without a reason, or has a reason and is not off."""
-    asked = entries([])
-    kept = sizes.built(asked)
+    chosen = entries([])
+    kept = sizes.built(chosen)
     sizes.write(kept)
     write_whole(sizes.PAGE, sizes.page())
-    complaints = [said for entry in asked if (said := sizes.complaint(entry, kept[entry.name]))]
+    complaints = [words for entry in chosen if (words := sizes.complaint(entry, kept[entry.name]))]
     print("\n".join([*complaints, str(sizes.PAGE)]))
     return 1 if complaints else 0
 
 
-def _cell(entry: Entry, size: str, build_large: bool) -> tuple[str, str]:
-    """vertices/faces, and what is wrong with them."""
-    stated = entry.data[size]
-    if not build_large and stated.get("vertices", 0) > LARGE:
-        return f"({stated['vertices']}/{stated['faces']})", ""
-    try:
-        counts = counts_of(entry, size)
-    except UserError as error:
-        return "-", str(error)
-    wrong = counts.unlike(stated)
-    return f"{counts.vertices}/{counts.faces}", f"{entry.path}#/{size}: {wrong}" if wrong else ""
+def _print_table(chosen: list[Entry], build_large: bool) -> int:
+    def cell(of: tuple[Entry, str]) -> tuple[str, str]:
+        """vertices/faces, and what is wrong with them."""
+        entry, size = of
+        stated = entry.data[size]
+        if not build_large and is_large(entry, size):
+            return f"({stated['vertices']}/{stated['faces']})", ""
+        try:
+            counts = counts_of(entry, size)
+        except UserError as error:
+            return "-", str(error)
+        wrong = unlike(counts, stated)
+        return f"{counts['vertices']}/{counts['faces']}", f"{entry.path}#/{size}: {wrong}" if wrong else ""
 
-
-def _print_table(asked: list[Entry], build_large: bool) -> int:
-    rows, complaints = [], []
-    asked_for = [(entry, size, build_large) for entry in asked for size in (MINI, FULL)]
-    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:  # each waits for a program of its own
-        cells = counted(pool.map(lambda words: _cell(*words), asked_for), len(asked_for), "scenes: built")
-        for entry, mini, full in zip(asked, cells, cells):
-            rows.append([entry.name, mini[0], full[0], entry.data["stresses"]])
-            complaints += [wrong for _, wrong in (mini, full) if wrong]
+    cells = list(each_built(cell, [(entry, size) for entry in chosen for size in (MINI, FULL)], "scenes"))
+    rows = [
+        [entry.name, mini, full, entry.data["stresses"]]
+        for entry, (mini, _), (full, _) in zip(chosen, cells[::2], cells[1::2], strict=True)
+    ]
+    complaints = [wrong for _, wrong in cells if wrong]
     print("\n".join(fitted(["scene", "mini", "full", "what it stresses"], rows, {1, 2})))
     print("mini, full: vertices/faces of the whole scene; in brackets: stated, and built where it is named")
-    for wrong in complaints:
-        print(wrong)
+    print("\n".join(complaints), end="\n" if complaints else "")
     return 1 if complaints else 0
 
 
@@ -102,13 +92,13 @@ def _is_written(entry: Entry, file: Path, size: str) -> bool:
 @tells("scenes")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
-    asked = entries(args.names)
+    chosen = entries(args.names)
     if args.write:
         if len(args.names) != 1:
             raise UserError("--write: one NAME is needed")
         size = FULL if args.full else MINI
-        if not _is_written(asked[0], args.write, size):
-            write_config(asked[0], args.write, size)
+        if not _is_written(chosen[0], args.write, size):
+            write_config(chosen[0], args.write, size)
         print(args.write)
         return 0
     if args.sizes:
@@ -118,9 +108,9 @@ def main(argv: list[str]) -> int:
     if args.full:
         raise UserError("--full: --write FILE is needed with it")
     if args.list:
-        rows = [[one.name, one.data["title"]] for one in asked]
+        rows = [[one.name, one.data["title"]] for one in chosen]
         print("\n".join(fitted(["scene", "title"], rows)))
         return 0
     if len(args.names) == 1:
-        _print_one(asked[0])
-    return _print_table(asked, build_large=bool(args.names))
+        _print_one(chosen[0])
+    return _print_table(chosen, build_large=bool(args.names))

@@ -9,7 +9,7 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.spec_file import read_spec, refused
-from barrierbench_analysis.program.trajectories.trajectory import MOST_METRES, Topology, Trajectory, checked
+from barrierbench_analysis.program.trajectories.trajectory import Topology, Trajectory, checked
 
 
 @dataclass(frozen=True)
@@ -30,20 +30,6 @@ def _cells(data: dict, path: Path, key: str, topology: Topology) -> np.ndarray:
         if max(row) >= n or len(set(row)) < len(row):
             raise refused(path, f"{key}/{k}", row, f"a list of different numbers from 0 to {n - 1}")
     return np.concatenate([own, np.array(rows, np.int64).reshape(-1, own.shape[1])])
-
-
-def _check_obstacle(one: dict, path: Path, place: str) -> None:
-    """What the schema does not say. Errors: UserError."""
-    point, axis, radius = one.get("point_m", [0]), one.get("axis", [1]), one.get("radius_m", 0.0)
-    if not np.isfinite(axis).all():
-        raise refused(path, f"{place}/axis", axis, "a direction of finite numbers")
-    for key, numbers in (("point_m", point), ("radius_m", [radius])):
-        if max(map(abs, numbers)) > MOST_METRES:
-            raise refused(path, f"{place}/{key}", one[key], f"at most {MOST_METRES:g} in size")
-    if not any(axis):
-        raise refused(path, f"{place}/axis", axis, "a direction, a vector that is not zero,")
-    if one["kind"] != "plane" and "radius_m" not in one:
-        raise UserError(f"{path}#/{place}/radius_m: is missing; a {one['kind']} needs a number > 0 in m")
 
 
 def _check_whole_cells(path: Path, topology: Topology) -> None:
@@ -99,8 +85,6 @@ def with_cells(trajectory: Trajectory, path: Path | None) -> tuple[dict, Traject
         t,
         **{name: _cells(data, path, name, t) for name in ("triangles", "segments", "tetrahedra")},
     )
-    for k, one in enumerate(data.get("obstacles", [])):
-        _check_obstacle(one, path, f"obstacles/{k}")
     more = replace(
         trajectory,
         topology=topology,
@@ -113,13 +97,11 @@ def with_cells(trajectory: Trajectory, path: Path | None) -> tuple[dict, Traject
 def _half_thickness(data: dict, path: Path, trajectory: Trajectory) -> np.ndarray | None:
     if "thickness_m" not in data:
         return trajectory.half_thickness_m
-    said, n = data["thickness_m"], trajectory.topology.n_vertices
-    by_body = said if isinstance(said, dict) else {}
-    half = np.full(n, 0.0 if isinstance(said, dict) else said / 2)
+    thickness, n = data["thickness_m"], trajectory.topology.n_vertices
+    by_body = thickness if isinstance(thickness, dict) else {}
+    half = np.full(n, 0.0 if isinstance(thickness, dict) else thickness / 2)
     for name, value in by_body.items():
         half[_body(name, path, f"thickness_m/{name}", trajectory)] = value / 2
-    if half.max() > MOST_METRES:
-        raise refused(path, "thickness_m", said, f"at most {2 * MOST_METRES:g} m")
     return half
 
 

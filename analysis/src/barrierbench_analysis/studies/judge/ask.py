@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import subprocess
 import tempfile
-import threading
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
@@ -62,33 +62,25 @@ def audited(
     with tempfile.TemporaryDirectory(prefix="barrierbench-judge-") as folder:
         path = Path(folder) / "subject.json"
         path.write_text(json.dumps(subject, allow_nan=False))
-        with piped("audit", str(path)) as child:
-            said: dict[str, bytes] = {}
-            threads = [
-                threading.Thread(target=lambda name=name: said.update({name: getattr(child, name).read()}))
-                for name in ("stdout", "stderr")
-            ]
-            for thread in threads:
-                thread.start()
+        with piped("audit", str(path)) as child, ThreadPoolExecutor(2) as pool:
+            answers, errors = (pool.submit(stream.read) for stream in (child.stdout, child.stderr))
             try:
                 reading = _hand_on(trajectory.frames(), child, each)
             except BaseException:
                 child.kill()
                 raise
-            finally:
-                for thread in threads:
-                    thread.join()
     if child.returncode not in (CLEAN, CROSSED):
-        why = said["stderr"].decode().strip().replace(str(path), f"what was handed on of {trajectory.source}")
+        why = errors.result().decode().strip()
+        why = why.replace(str(path), f"what was handed on of {trajectory.source}")
         raise UserError(
             f"the program's audit ended with {child.returncode}: {why}", passed_on(child.returncode)
         )
-    lines = [json.loads(line) for line in said["stdout"].splitlines()]
+    lines = [json.loads(line) for line in answers.result().splitlines()]
     return lines[:-1], lines[-1]["total"], reading
 
 
 def _hand_on(frames: Iterator[np.ndarray], child: subprocess.Popen, each: Callable) -> float:
-    """Seconds that reading took. A program that no longer listens has said why, and its exit code tells."""
+    """Seconds that reading took. A program that no longer reads has written why; its exit code shows it."""
     reading, number = 0.0, 0
     start = time.perf_counter()
     with suppress(BrokenPipeError), child.stdin:

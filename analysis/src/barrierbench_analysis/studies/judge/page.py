@@ -111,11 +111,11 @@ def figure_of(record: dict) -> str:
 
 def page_of(record: dict) -> str:
     notes = "".join(f"<p><strong>Note:</strong> {escape(note)}.</p>" for note in record["notes"])
-    word, said = record["verdict"], meaning(record)
+    word, text = record["verdict"], meaning(record)
     return Template(input_file.read_text(HERE / "page.html")).substitute(
         verdict=escape(word.replace("_", " ")),
         source=escape(record["trajectory"]["source"]),
-        meaning=escape(said[0].upper() + said[1:]),
+        meaning=escape(text[0].upper() + text[1:]),
         notes=notes,
         findings=_findings(record),
         figure=figure_of(record),

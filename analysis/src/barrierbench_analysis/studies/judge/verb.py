@@ -14,7 +14,7 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.whole_file import check_can_be_written, write_whole
-from barrierbench_analysis.program.arguments import finite_number, parser_of
+from barrierbench_analysis.program.arguments import number_type, parser_of, positive_number
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import MOST_METRES, Trajectory, checked, with_parts
 
@@ -26,23 +26,11 @@ from .weld import seam_note, welded
 
 CLEAN, NOT_CLEAN = 0, 1
 FILES = ("judgement.json", "judgement.html")  # record and page
-WIDE_M = 100.0  # beyond it coordinates are asked about: millimetres look like that
+WIDE_M = 100.0  # beyond it a note asks for the unit: millimetres look like that
 DOC = """TRAJECTORY: a folder of numbered frames (OBJ, PLY, STL, VTU, VTP, VTK, MSH, VTM), a .pvd collection,
 .pc2, .mdd, .npz, or a run of barrierbench. What its files do not say (obstacles, rods, thickness, densities):
 --about FILE (configs/schema/judge.schema.json). Every frame is judged by exact signs, and the straight line
 from each frame to the next as a motion. Exit 0: clean, 1: not, 2: cannot be judged."""
-
-
-def _check(options: argparse.Namespace) -> None:
-    """Errors: UserError for a scale, a tolerance or a reach that is none, and a reach that no gap has."""
-    if options.weld is not None and not (np.isfinite(options.weld) and options.weld >= 0):
-        raise UserError(f"--weld {options.weld}: a finite number of 0 or more is needed")
-    for name in ("scale", "reach"):
-        value = getattr(options, name)
-        if value is not None and not (np.isfinite(value) and value > 0):
-            raise UserError(f"--{name} {value}: a finite number above 0 is needed")
-    if options.reach is not None and options.reach > MOST_METRES:
-        raise UserError(f"--reach {options.reach:g}: at most {MOST_METRES:g} m is allowed")
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
@@ -65,7 +53,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--weld",
-        type=finite_number,
+        type=number_type("a number from 0", lambda value: value >= 0),
         metavar="M",
         help="vertices of the first frame that are so close (0: in one place) are one",
     )
@@ -74,13 +62,15 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--scale",
-        type=finite_number,
+        type=positive_number,
         default=1.0,
         help="of all coordinates of the frames; 0.001: they are in mm",
     )
     parser.add_argument(
         "--reach",
-        type=finite_number,
+        type=number_type(
+            f"a number above 0, at most {MOST_METRES:g}", lambda value: 0 < value <= MOST_METRES
+        ),
         metavar="M",
         help="gaps above it are not measured (default: a tenth of the mean edge)",
     )
@@ -93,17 +83,13 @@ def parse(argv: list[str]) -> argparse.Namespace:
         default=Path("judgement"),
         help="folder of judgement.json and .html (default: judgement)",
     )
-    options = parser.parse_args(argv)
-    _check(options)
-    return options
+    return parser.parse_args(argv)
 
 
 def scaled(trajectory: Trajectory, scale: float) -> Trajectory:
     if scale == 1.0:
         return trajectory
-    of_one = np.errstate(over="ignore")(
-        lambda x: x * scale
-    )  # beyond double it is not finite, which the verdict says
+    of_one = np.errstate(over="ignore")(lambda x: x * scale)  # the verdict reports what is not finite
     return replace(trajectory, frames=lambda: map(of_one, trajectory.frames()))
 
 
@@ -159,7 +145,7 @@ class Watch:
 def reference_of(options: argparse.Namespace, trajectory: Trajectory) -> Trajectory | None:
     if options.reference is None:
         return None
-    found = read_trajectory(options.reference, None, options.displacement)  # its vertices alone are asked for
+    found = read_trajectory(options.reference, None, options.displacement)  # its vertices alone are read
     found, _ = welded(found, options.weld)
     n, m = trajectory.topology.n_vertices, found.topology.n_vertices
     if n != m:
@@ -231,7 +217,7 @@ def still(record: dict) -> str:
     return f" (no vertex moves in {record['trajectory']['frames']} frames)"
 
 
-def said(record: dict) -> str:
+def summary(record: dict) -> str:
     """What is printed: verdict, what was judged, the first findings."""
     total = record["total"]
     closed = len(total["closed_bodies"])
@@ -260,8 +246,8 @@ def main(argv: list[str]) -> int:
     text = json.dumps(record, indent=1, allow_nan=False)
     json_file, page_file = (options.out / name for name in FILES)
     write_whole(json_file, text + "\n")
-    print(said(record), flush=True)
-    from .page import page_of  # draws: what was found is said before a second goes by with loading that
+    print(summary(record), flush=True)
+    from .page import page_of  # takes a second to load: what was found is printed before
 
     write_whole(page_file, page_of(record))
     print(page_file, file=sys.stderr)

@@ -24,7 +24,7 @@ VERDICTS = {  # word: what it says; the first that holds is the verdict
 }
 
 
-CLEAN_STATES = "no frame shows a crossing; what happens between frames was not asked"
+CLEAN_STATES = "no frame shows a crossing; what happens between frames was not judged"
 
 
 def meaning(record: dict) -> str:
@@ -34,7 +34,7 @@ def meaning(record: dict) -> str:
 
 
 def verdict_of(total: dict, frames: list[dict], states_only: bool) -> str:
-    """A word of VERDICTS. states_only: what happens between frames is not asked."""
+    """A word of VERDICTS. states_only: what happens between frames is not judged."""
     beyond = sum(frame["obstacle_violations"] for frame in frames)
     between = total["passages"] + total["obstacle_violations"] - beyond
     given = sum(frame["given_faults"] for frame in frames) if states_only else total["given_faults"]
@@ -72,7 +72,7 @@ BETWEEN = ("passages before it", "unproven before it")  # of the motion to a fra
 
 
 def findings(frames: list[dict], labels: list[str], states_only: bool) -> list[dict]:
-    """One row for each kind of thing that was found in a frame, in order, of what was asked."""
+    """One row for each kind of thing that was found in a frame, in order, of what was judged."""
     return [
         {"frame": label, "what": what, "count": count, "pair": pair, "depth_m": depth}
         for frame, label in zip(frames, labels)

@@ -1,4 +1,4 @@
-"""Vertices that stand for one place: joined by --weld, and said where a body is closed but for them."""
+"""Vertices that stand for one place: joined by --weld, and a note where a body is closed but for them."""
 
 from __future__ import annotations
 
@@ -56,16 +56,16 @@ def welded(trajectory: Trajectory, tolerance: float | None) -> tuple[Trajectory,
     topology = _cells(trajectory.topology, weld)
     apart = Apart(weld, tolerance)
     lost = sum(len(getattr(trajectory.topology, n)) - len(getattr(topology, n)) for n in CELLS)
-    said = f"--weld {tolerance:g}: {len(weld.number) - len(weld.kept)} vertices were joined to others"
+    note = f"--weld {tolerance:g}: {len(weld.number) - len(weld.kept)} vertices were joined to others"
     if lost:
-        said += f", and {lost} cells, which have no size then, left out"
+        note += f", and {lost} cells, which have no size then, left out"
     return (
         replace(
             trajectory,
             topology=topology,
             half_thickness_m=None if (half := trajectory.half_thickness_m) is None else half[weld.kept],
             frames=lambda: (apart.of(x) for x in trajectory.frames()),
-            notes=(*trajectory.notes, said),
+            notes=(*trajectory.notes, note),
             heard=Both(trajectory.heard, apart),
         ),
         weld,
@@ -91,7 +91,7 @@ class Apart:
 
 
 class Both:
-    """Notes of two sources, each as far as it is when they are asked for."""
+    """Notes of two sources, each as far as it is when they are read."""
 
     def __init__(self, one: Iterable[str], other: Iterable[str]) -> None:
         self.parts = (one, other)

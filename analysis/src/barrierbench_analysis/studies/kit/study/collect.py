@@ -127,7 +127,7 @@ def sweep_of(study: Study, cells: list[Cell]) -> runs.Sweep:
     return runs.sweep(study.name, cells[0].base, study.data.get("set", {}), cases, budget=budget)
 
 
-def run_folders(study: Study, cells: list[Cell]) -> dict[str, Path]:
+def folders(study: Study, cells: list[Cell]) -> dict[str, Path]:
     """key -> folder of the run, of those of these cells of one base whose records are there. Errors: as
     records_in."""
     made = sweep_of(study, cells)
