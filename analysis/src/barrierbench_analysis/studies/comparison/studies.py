@@ -13,7 +13,6 @@ from barrierbench_analysis.figures.plots.drawing import Drawing
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.gap_map import entry as gap_map
 from barrierbench_analysis.studies.gap_map import figure as gap_figure
 from barrierbench_analysis.studies.gap_map import kept as gap_kept
