@@ -8,6 +8,7 @@ from pathlib import Path
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.studies.kit.study.store import Row, read_rows
 
 RESULTS = ROOT / "results"
 CORES = (4, 64)  # of a laptop and of a node
@@ -20,9 +21,9 @@ def _column(data: dict, name: str) -> list[float]:
     return [row[place] for row in data["rows"] if row[place] is not None]
 
 
-def _stress(data: dict) -> tuple[int, float]:
-    tests = data["tests"].values()
-    return sum(len(test["rows"]) for test in tests), sum(test["about"]["seconds"] for test in tests)
+def _stress(rows: list[Row]) -> tuple[int, float]:
+    """Without the rows of geometry, which are no runs."""
+    return _counted([row.seconds for row in rows if row.values["counts"] is None])
 
 
 def _listed(parts) -> list:
@@ -59,9 +60,13 @@ STUDIES = {
     ),
     "work-precision": ("work_precision.json", "./bench study work-precision", _work_precision),
     "catalogue": ("catalogue.json", "./bench study catalogue", _catalogue),
-    "stress suite": ("stress.json", "./bench study stress", _stress),
+    "stress suite": ("studies/stress.jsonl", "./bench study stress", _stress),
     "ablation": ("ablation.json", "./bench study ablation", lambda d: _counted(_column(d, "core_s"))),
 }
+
+
+def _read(file: Path) -> dict | list[Row]:
+    return list(read_rows(file).values()) if file.suffix == ".jsonl" else read_object(file)
 
 
 def gather(folder: Path = RESULTS) -> list[dict]:
@@ -74,7 +79,7 @@ def gather(folder: Path = RESULTS) -> list[dict]:
 def _studies(folder: Path) -> Iterator[dict]:
     for study, (name, command, read) in STUDIES.items():
         if (folder / name).is_file():
-            runs, core_s = read(read_object(folder / name))
+            runs, core_s = read(_read(folder / name))
             yield {"study": study, "command": command, "runs": runs, "core_s": core_s}
 
 

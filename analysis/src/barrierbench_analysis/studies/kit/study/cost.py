@@ -21,6 +21,7 @@ SPAN = 3.0  # largest over smallest number of unknowns from which on rows tell t
 def growth(rows: list[store.Row]) -> float:
     """Power p of seconds ~ unknowns^p, at least 1; GROWTH where less than a factor SPAN in size was
     measured."""
+    rows = [row for row in rows if row.unknowns]  # of those that left a record
     sizes = {row.unknowns for row in rows}
     if not sizes or max(sizes) < SPAN * min(sizes):
         return GROWTH

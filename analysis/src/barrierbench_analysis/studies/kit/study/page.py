@@ -47,9 +47,10 @@ def numbers_of(study: Study) -> dict:
 
 def made_of(rows: list[store.Row]) -> str:
     """A sentence: when, on which machine and by which program the rows were made."""
-    found = {name: sorted({row.origin[name] for row in rows}) for name in ("date", "machine", "commit")}
-    sizes = sorted({row.unknowns for row in rows})
-    unknowns = f"{sizes[0]} to {sizes[-1]}" if len(sizes) > 1 else f"{sizes[0]}"
+    known = [row for row in rows if row.run]  # of those that left a record
+    found = {name: sorted({row.origin[name] for row in known}) for name in ("date", "machine", "commit")}
+    sizes = sorted({row.unknowns for row in known})
+    unknowns = " to ".join(map(str, dict.fromkeys([*sizes[:1], *sizes[-1:]])))
     return (
         f"{counted(len(rows), 'run')} of {unknowns} unknowns were made on"
         f" {', '.join(found['date'])} on {', '.join(found['machine'])} (commit {', '.join(found['commit'])})."

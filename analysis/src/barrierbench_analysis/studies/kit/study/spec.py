@@ -57,10 +57,13 @@ class Cell:
 
 @dataclass(frozen=True)
 class Study:
-    """A spec that has been read. Places are names of axes, and `seed`."""
+    """A spec that has been read. Places are names of axes, and `seed`. out: the folder of its runs, rows,
+    page and figures where a call names one.
+    """
 
     file: Path
     data: dict
+    out: Path | None = None
 
     @property
     def name(self) -> str:
@@ -76,12 +79,16 @@ class Study:
 
     @property
     def is_ours(self) -> bool:
-        """Whether the spec is one of this tree, whose rows and page are kept with its results."""
-        return self.file.parent.resolve() == FOLDER
+        """Whether rows and page are kept with the results of this tree."""
+        return self.out is None and self.file.parent.resolve() == FOLDER
+
+    def beside(self, suffix: str) -> Path:
+        """A file of a study whose results are not kept in this tree: in `out`, or beside its spec."""
+        return (self.out or self.file.parent) / f"{self.file.stem}{suffix}"
 
     @property
     def page(self) -> Path:
-        return ROOT / self.data["page"] if self.is_ours else self.file.with_suffix(".page.md")
+        return ROOT / self.data["page"] if self.is_ours else self.beside(".page.md")
 
     @property
     def template(self) -> Path:
@@ -92,11 +99,12 @@ class Study:
     @property
     def figures(self) -> Path:
         """The folder of the pictures that the page shows."""
-        return ROOT / "docs" if self.is_ours else self.file.parent
+        return ROOT / "docs" if self.is_ours else self.out or self.file.parent
 
     @property
     def command(self) -> str:
-        return f"./bench study {self.name.replace('_', '-') if self.is_ours else self.file}"
+        is_named = self.file.parent.resolve() == FOLDER
+        return f"./bench study {self.name.replace('_', '-') if is_named else self.file}"
 
     @property
     def rule(self) -> str:
@@ -172,7 +180,7 @@ def _place(file: Path, number: int, names: list[str], label: str) -> dict[str, s
     return dict(zip(names, words))
 
 
-def read_study(name: str) -> Study:
+def read_study(name: str, out: Path | None = None) -> Study:
     """The study of a name, or of the path of a spec. Errors: UserError, with the names of what there is."""
     file = Path(name) if name.endswith(".json") else FOLDER / f"{name}.json"
     if not file.is_file():
@@ -184,7 +192,7 @@ def read_study(name: str) -> Study:
             raise refused(file, f"metrics/{metric}", source, f"a pointer, or one of {', '.join(METRICS)},")
     if data["name"] != file.stem:
         raise refused(file, "name", data["name"], f"{file.stem!r}, as its file is called,")
-    study = Study(file, data)
+    study = Study(file, data, out)
     if not hasattr(study.module, "cells") and not {"axes", "seeds"} <= data.keys():
         raise refused(file, "axes", data.get("axes"), "axes and seeds, since the rule makes no cells,")
     return study

@@ -47,8 +47,8 @@ class Row:
 
 
 def file_of(study: Study) -> Path:
-    """Rows of a spec of this tree are kept with its results; those of another one lie beside it."""
-    return FOLDER / f"{study.name}.jsonl" if study.is_ours else study.file.with_suffix(BESIDE)
+    """Rows of a spec of this tree are kept with its results; others lie beside the spec, or in `out`."""
+    return FOLDER / f"{study.name}.jsonl" if study.is_ours else study.beside(BESIDE)
 
 
 def _row(line: list, shared: dict) -> Row:

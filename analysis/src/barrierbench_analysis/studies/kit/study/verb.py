@@ -4,7 +4,8 @@ run: makes the runs that have no row, keeps their rows, writes the page and its 
 again, and it goes on. plan: counts the cells, those that have a row, and what the rest is expected to take.
 page: writes the page from the kept rows.
 
-Exit codes: 0 done, 2 a spec that cannot be read, or a page whose cells are not all there.
+Exit codes: 0 done, 1 runs of a study that judges them do not pass, 2 a spec that cannot be read, or a page
+whose cells are not all there.
 """
 
 from __future__ import annotations
@@ -45,6 +46,12 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "--minutes", type=finite_number, metavar="M", help="begins no further sweep after so many minutes"
     )
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs at a time (default 1)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="runs, rows, page and figures in this folder, apart from kept rows: repeats a study",
+    )
     args = parser.parse_args(argv[1:])
     if args.jobs < 1:
         raise UserError(f"--jobs: found {args.jobs}; allowed: a number from 1 on")
@@ -121,7 +128,7 @@ def main(argv: list[str]) -> int:
 
 def _main(argv: list[str]) -> int:
     args = arguments(argv)
-    study = read_study(argv[0])
+    study = read_study(argv[0], args.out)
     cells = chosen(study, args.only, args.part)
     if args.plan:
         print("\n".join(cost.plan(study, store.read_rows(store.file_of(study)), cells)))
@@ -131,4 +138,9 @@ def _main(argv: list[str]) -> int:
         made = make_rows(study, cells, args.jobs, args.minutes)
         print(f"{study.name}: {counted(made, 'new row')} in {store.file_of(study).name}")
     print(page.write_page(study))
-    return 0
+    if not hasattr(study.module, "judged"):
+        return 0
+    keys = {cell.key for cell in cells}
+    lines, passed = study.module.judged(study, [row for row in page.rows_of(study) if row.key in keys])
+    print("\n".join(lines))
+    return 0 if passed else 1
