@@ -83,6 +83,15 @@ def test_the_key_of_a_cell_is_of_all_that_its_run_is_made_of(tmp_path):
     assert not set(before) & {cell.key for cell in Study(study.file, study.data).cells}
 
 
+def test_a_plugin_is_a_part_of_the_key(tmp_path):
+    plain = written(tmp_path).cells[0].key
+    (tmp_path / "mine.so").write_bytes(b"one")
+    study = written(tmp_path, plugins=["mine.so"])
+    assert study.plugins == [str(tmp_path / "mine.so")] and study.cells[0].key != plain
+    (tmp_path / "mine.so").write_bytes(b"another")
+    assert written(tmp_path, plugins=["mine.so"]).cells[0].key != study.cells[0].key
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

@@ -9,6 +9,7 @@ import os
 import re
 import signal
 import subprocess
+from collections.abc import Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -50,7 +51,7 @@ def without_record(outcome: str, detail: str, begun: datetime, valid: bool = Fal
     }
 
 
-def run(made: Sweep, folder: Path, limit_s: float, plugins: tuple[str, ...] = ()) -> dict:
+def run(made: Sweep, folder: Path, limit_s: float, plugins: Sequence[str] = ()) -> dict:
     """The record of the one case of a sweep, or `without_record`. A record that is there is not made again.
     Errors: UserError for what is a fault of the machine and no result.
     """
@@ -86,7 +87,7 @@ def run(made: Sweep, folder: Path, limit_s: float, plugins: tuple[str, ...] = ()
         return without_record(CRASH, str(fault), begun)
 
 
-def _record(spec: Path, folder: Path, plugins: tuple[str, ...]) -> Path:
+def _record(spec: Path, folder: Path, plugins: Sequence[str]) -> Path:
     """The record of this very config; those that an earlier program made of it may lie beside it."""
     made = sorted(folder.glob("*/run.json"))
     if len(made) == 1:

@@ -104,7 +104,7 @@ def run_each(study: Study, cells: list[Cell], folder: Path, jobs: int, limit_s: 
     """
 
     def one(cell: Cell) -> store.Row:
-        record = alone.run(sweep_of(study, [cell]), folder / cell.key[:KEY_DIGITS], limit_s)
+        record = alone.run(sweep_of(study, [cell]), folder / cell.key[:KEY_DIGITS], limit_s, study.plugins)
         return row_of(study, cell, record)
 
     with ThreadPoolExecutor(jobs) as pool:
@@ -120,6 +120,6 @@ def run_cells(study: Study, cells: list[Cell], jobs: int = 1) -> list[store.Row]
     if hasattr(study.module, "run"):
         return study.module.run(study, cells, out, jobs)
     made = sweep_of(study, cells)
-    runs.run(made, out, jobs=jobs)
+    runs.run(made, out, plugins=study.plugins, jobs=jobs)
     records = runs.collect(made, out)
     return [row_of(study, cell, records[note]) for cell, note in zip(cells, made.notes, strict=True)]

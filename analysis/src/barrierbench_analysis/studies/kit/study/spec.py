@@ -78,6 +78,11 @@ class Study:
         return self.file.parent / self.data["base"]
 
     @property
+    def plugins(self) -> list[str]:
+        """Shared libraries that every run loads."""
+        return [str((self.file.parent / name).resolve()) for name in self.data.get("plugins", [])]
+
+    @property
     def is_ours(self) -> bool:
         """Whether rows and page are kept with the results of this tree."""
         return self.out is None and self.file.parent.resolve() == FOLDER
@@ -151,7 +156,11 @@ class Study:
     def _cell(self, case: Case) -> Cell:
         base, common = case.base or self.base, self.data.get("set", {})
         made = runs.sweep(self.name, base, common, [{"label": "cell", "set": case.settings}])
-        content = {"set": common, "cell": case.settings, "files": runs.inputs_sha256(made)}
+        content = {
+            "set": common,
+            "cell": case.settings,
+            "files": runs.inputs_sha256(made, plugins=self.plugins),
+        }
         key = of_text(json.dumps(content, sort_keys=True))[:KEY_DIGITS]
         return Cell(case.place, case.settings, key, base, case.unknowns)
 
