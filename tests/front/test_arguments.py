@@ -15,7 +15,7 @@ from barrierbench_analysis.program import verbs
 from barrierbench_analysis.studies.matching import match
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.pages.play import verb as play
-from barrierbench_analysis.studies.score import verb as score
+from barrierbench_analysis.studies.rules.score import verb as score
 
 COMPACT = ["-(d-d_hat)^2*log(d/d_hat)", "-d_hat^2*log(d/d_hat)", "-log(d/d_hat)*(d-d_hat)^2", "(d_hat-d)^3/d"]
 

@@ -45,12 +45,12 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
     *((f"{words} out", file, 1000) for words, file in (  # and what they begin with, which names the first of hours of runs
         ("study causes config.json --out", "out/probe"), ("gate run --case drape --out", "out/"), ("gate calibrate --copies 1 --out", "out/"),
         ("study matrix-corpus --out", "probe"), ("study step-corpus --results", "out/"),
-        ("draw figure work_precision --quick --out out --runs", "out/"), ("study stress S09 --runs", "out/"), ("study claims K3 --runs", "out/"),
+        ("draw figure work_precision --quick --out out --runs", "out/"), ("study claims K3 --runs", "out/"),
         ("draw pictures --runs", "out/"), ("study gpu-report --results", "out/GPU.md"),
         ("study condition-table --out", "a temporary file"))),
     ("study gap-map --quick --results out --runs out", "a temporary file", 0),
 ]
-PLANNED = {"study match", "study causes", "gate run", "gate calibrate", "draw figure", "study stress", "study claims", "draw pictures", "study matrix-corpus", "study step-corpus"}
+PLANNED = {"study match", "study causes", "gate run", "gate calibrate", "draw figure", "study claims", "draw pictures", "study matrix-corpus", "study step-corpus"}
 READ = {"status", "data surface-gaps", "gate trend", "setup", "verify", "completion"}  # which write nothing, or for the script ./bench
 DEVELOP = {verb.name for verb in verbs.TABLE if verb.group == "develop" or verb.needs not in (verbs.ENVIRONMENT, verbs.PROGRAM)}
 IN_THE_TREE = {"demo", "engine", "gate accept", "dev readme"}  # what they write is at a fixed place

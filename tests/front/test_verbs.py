@@ -291,7 +291,7 @@ def test_every_mode_is_an_option_of_its_study(capfd):
 
 
 @pytest.mark.parametrize(("verb", "arguments", "needed"), [
-    ("study claims", [], True), ("study claims", ["--no-run"], False), ("study stress", ["--list"], False), ("gate run", [], True),
+    ("study claims", [], True), ("study claims", ["--no-run"], False), ("gate run", [], True),
     ("gate run", ["--matrix", "a.mtx"], False), ("gate run", ["--record=run.json"], False), ("study gap-map", ["--help"], False),
     ("gate compare", ["a", "b"], False), ("study compare-toolkit", [], True)])
 def test_what_judges_kept_numbers_needs_no_built_program(verb, arguments, needed):

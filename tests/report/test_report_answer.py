@@ -13,7 +13,7 @@ from barrierbench_analysis.figures.plots import answer as plot
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.pages.report import answer, apart, closing, expected, figures, page, tables, verb, verdict
 from barrierbench_analysis.pages.report.gather import gathered
-from barrierbench_analysis.studies.stress.entry import OUTCOMES
+from barrierbench_analysis.studies.rules.stress.entry import OUTCOMES
 from barrierbench_analysis.tables import answer as rows_of
 from report_runs import changed, conditions
 
@@ -195,8 +195,10 @@ def test_every_expected_end_is_of_a_case_of_a_committed_sweep():
 
 
 def test_a_stress_test_says_itself_what_is_expected():
-    row = {"group": "stress S01", "series": "log dt=0.02", "outcome": "ok", "valid": True}
-    assert expected.end_of(row) is None and expected.end_of({**row, "group": "stress S999"}) is None
+    row = {"group": "stress", "series": "S01 log dt=0.02 0123456789", "outcome": "ok", "valid": True}
+    assert expected.end_of(row) is None and expected.end_of({**row, "series": "S999 log dt=0.02 0123456789"}) is None
+    assert expected.end_of({**row, "series": "S17 log analytic wall 0123456789"}) is None
+    assert expected.end_of({**row, "series": "S22 log below a plane 0123456789"}).outcomes == ("initial_intersection",)
     found = [end for path in sorted((ROOT / "configs/stress").glob("[SM][0-9][0-9].json")) for end in expected._of_stress(path.stem).values()]
     assert len(found) > 10 and all("ok" not in end.outcomes and end.because for end in found)
 

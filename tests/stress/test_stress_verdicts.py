@@ -1,4 +1,4 @@
-"""Verdicts on made-up runs and counts: each is seen green and red, and red when nothing was judged."""
+"""Verdicts on made-up rows and counts: each is seen green and red, and red when nothing was judged."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -7,21 +7,37 @@ import numpy as np
 import pytest
 
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.studies.stress import verb
-from barrierbench_analysis.studies.stress import exact
-from barrierbench_analysis.studies.stress.entry import ROOT, ids, read_test
-from barrierbench_analysis.studies.stress.geometry import Count, _judge_ccd
-from barrierbench_analysis.studies.stress.geometry import judge as judge_count
-from barrierbench_analysis.studies.stress.relations import relations
-from barrierbench_analysis.studies.stress.report import markdown, text
-from barrierbench_analysis.studies.stress.run import Row, judge
-from barrierbench_analysis.studies.stress.table import FILE, Result, read, write
+from barrierbench_analysis.studies.kit.study import page
+from barrierbench_analysis.studies.kit.study.spec import read_study
+from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.studies.rules import stress
+from barrierbench_analysis.studies.rules.stress import exact
+from barrierbench_analysis.studies.rules.stress.entry import read_test
+from barrierbench_analysis.studies.rules.stress.geometry import Count, judge_ccd
+from barrierbench_analysis.studies.rules.stress.geometry import judge as judge_count
+from barrierbench_analysis.studies.rules.stress.relations import relations
+from barrierbench_analysis.studies.rules.stress.results import Result, result_of, run_of
 
 CASES = ("d_hat", "one ulp less", "one ulp more")
+NAMES = ("detail", "seconds", "newton", "linear", "contacts", "gap_min_rel", "gap_min_ulps", "gap_end_rel", "state_hash", "counts")
+ORIGIN = {"date": "2024-01-31", "machine": "m", "commit": "c", "build": "b"}
+
+
+def row(case, formulation, outcome="ok", **values):
+    of = {**dict.fromkeys(NAMES), "detail": "", "contacts": 3, **values}
+    return Row(f"{formulation} {case}", {"test": "M09", "formulation": formulation, "case": case}, outcome, of, dict.fromkeys(of, ""), 9, 1.0, "r", ORIGIN)
 
 
 def rows(gaps=(0.5, 0.5, 0.5), formulations=("log", "cubic"), **more):
-    return [Row("M09", case, f, "ok", "", gap_end_rel=gap, contacts=3, state_hash=f"{gap}", expected=("ok",), as_expected=True, **more) for f in formulations for case, gap in zip(CASES, gaps)]
+    return [row(case, f, gap_end_rel=gap, state_hash=f"{gap}", **more) for f in formulations for case, gap in zip(CASES, gaps)]
+
+
+def with_values(one, **values):
+    return replace(one, values={**one.values, **values})
+
+
+def ended(one, outcome, **values):
+    return replace(with_values(one, **values), outcome=outcome)
 
 
 def related(entry, made):
@@ -63,18 +79,16 @@ def test_what_is_over_zero_is_not_judged(entry, gaps):
 def test_a_bound_on_every_run_takes_all_that_ran():
     test = read_test("M09")
     test.data["relations"] = [{"metric": "gap_end_rel", "kind": "bound", "below": 0.5, "reason": "r"}]
-    needy = replace(test, cases=tuple(replace(case, needs=({"pointer": "/precision", "value": "float"},)) if case.label == CASES[2] else case for case in test.cases))
-    found = relations(needy, rows((0.1, 0.2, 0.9)))[0]
+    found = relations(test, rows((0.1, 0.2, 0.9)))[0]
     assert found.judged == 6 and not found.holds and found.broken[0].startswith("log, one ulp more")
-    waiting = [replace(row, outcome="waits", gap_end_rel=None) if row.case == CASES[2] else row for row in rows()]
-    found = relations(needy, waiting)[0]
+    found = relations(test, [one for one in rows() if one.place["case"] != CASES[2]])[0]
     assert (found.judged, found.not_judged, found.holds) == (4, 0, True)
 
 
 def test_a_relation_that_judged_nothing_does_not_hold():
-    found = related({"kind": "equal", "within": 1}, [replace(row, gap_end_rel=None) for row in rows()])
+    found = related({"kind": "equal", "within": 1}, [with_values(one, gap_end_rel=None) for one in rows()])
     assert (found.judged, found.not_judged, found.holds) == (0, 2, False)
-    stalled = related({"kind": "equal", "within": 1}, [replace(row, outcome="newton_stall") for row in rows()])
+    stalled = related({"kind": "equal", "within": 1}, [ended(one, "newton_stall") for one in rows()])
     assert stalled.judged == 0 and not stalled.holds
 
 
@@ -82,47 +96,68 @@ def test_a_relation_of_some_formulations_leaves_the_others():
     assert related({"kind": "equal", "within": 0.01, "formulations": ["log"]}, rows() + rows((0.1, 0.2, 0.3), ("quadratic",))).holds
 
 
+def test_a_relation_of_cases_that_were_not_all_run_is_left_out():
+    test = read_test("M09")
+    test.data["relations"] = [{"metric": "gap_end_rel", "kind": "rises", "groups": [list(CASES)], "reason": "r"}]
+    assert relations(test, rows()) and not relations(test, [one for one in rows() if one.place["case"] != CASES[2]])
+
+
 def test_outcomes_against_expectations():
-    row, test = rows()[0], read_test("M09")
-    assert judge(replace(row), test).as_expected and not judge(replace(row, outcome="newton_stall"), test).as_expected
-    idle = judge(replace(row, contacts=0), test)
+    one, test = rows()[0], read_test("M09")
+    assert run_of(one, test).as_expected and not run_of(ended(one, "newton_stall"), test).as_expected
+    idle = run_of(with_values(one, contacts=0), test)
     assert not idle.as_expected and "no contact" in idle.detail
     test.data["expect"][0]["outcomes"] = ["not_valid", "unproven", "newton_stall"]
     for outcome in ("not_valid", "unproven"):  # these came to the end as well
-        idle = judge(replace(row, outcome=outcome, contacts=0), test)
-        assert not idle.as_expected and "no contact" in idle.detail and judge(replace(row, outcome=outcome), test).as_expected
-    assert judge(replace(row, outcome="newton_stall", contacts=0), test).as_expected  # contacts are counted at step ends, and it has none
+        idle = run_of(ended(one, outcome, contacts=0), test)
+        assert not idle.as_expected and "no contact" in idle.detail and run_of(ended(one, outcome), test).as_expected
+    assert run_of(ended(one, "newton_stall", contacts=0), test).as_expected  # contacts are counted at step ends, and it has none
     test.data["expect"][0]["outcomes"] = ["ok"]
     test.data["contacts"] = False
-    assert judge(replace(row, contacts=0), test).as_expected
+    assert run_of(with_values(one, contacts=0), test).as_expected
 
 
-def test_a_known_defect_excuses_its_outcome_and_no_other():
+def result(test, made):
+    return result_of(test, made)
+
+
+def page_of(test, made, monkeypatch):
+    """The page of a study of this test alone."""
+    study = read_study("stress")
+    monkeypatch.setattr(stress, "tests", lambda study: [test])
+    return page.text_of(study, made, stress.rule(study, made))
+
+
+def test_a_known_defect_excuses_its_outcome_and_no_other(monkeypatch):
     test = read_test("M09")
     test.data["defects"] = [{"formulations": ["log"], "cases": ["d_hat"], "outcomes": ["not_pd"], "why": "that"}]
-    found = lambda outcome, k=0: judge(replace(rows()[k], outcome=outcome), test)
+    found = lambda outcome, k=0: run_of(ended(rows()[k], outcome), test)
     assert found("not_pd").defect == "that" and not found("not_pd").as_expected
     assert not found("ccd_cap").defect and not found("not_pd", 1).defect and not found("ok").defect
-    excused = Result([found("not_pd"), *rows()[1:]])
-    assert excused.as_expected and not Result([found("ccd_cap"), *rows()[1:]]).as_expected
-    page = markdown({"M09": excused}, {"M09": test})
-    assert "*not_pd*" in page and "1 runs | that" in page and "no run shows it any more" in markdown({"M09": Result(rows())}, {"M09": test})
+    excused = [ended(rows()[0], "not_pd"), *rows()[1:]]
+    assert result(test, excused).as_expected and not result(test, [ended(rows()[0], "ccd_cap"), *rows()[1:]]).as_expected
+    text = page_of(test, excused, monkeypatch)
+    assert "| ok 2, *not_pd* |" in text and "1 runs | that" in text and "1 show a known defect" in text
+    assert "no run shows it any more" in page_of(test, rows(), monkeypatch)
 
 
 def test_what_judged_nothing_is_red():
-    assert Result(rows()).as_expected and not Result().as_expected
-    assert not Result([replace(row, outcome="waits", as_expected=False) for row in rows()]).as_expected
-    assert not Result(rows() + [replace(rows()[0], as_expected=False)]).as_expected
+    test = read_test("M09")
+    assert result(test, rows()).as_expected and not Result(test).as_expected
+    assert not result(test, [*rows(), ended(rows()[0], "ccd_cap")]).as_expected
 
 
 def test_counts_against_expectations():
     test = read_test("S02")
     case = "edge_edge offset 1 m, above 10 ulps"
-    count = lambda judged, through: judge_count(Count("S02", case, "float", judged, {"let_through": through, "early": 3}), test)
-    assert count(5, 0).as_expected and not count(5, 1).as_expected and not count(0, 0).as_expected
-    assert judge_count(Count("S02", "x below 10 ulps", "float", 5, {"let_through": 5, "early": 0}), test).as_expected
+    holds = lambda judged, through, case=case: judge_count(Count(case, judged, 0, {"let_through": through, "early": 3}), "float", test)[1]
+    assert holds(5, 0) and not holds(5, 1) and not holds(0, 0)
+    assert holds(5, 5, "x below 10 ulps")
     with pytest.raises(UserError, match="nothing is expected of half"):
-        judge_count(Count("S02", case, "half", 5, {"let_through": 0, "early": 0}), test)
+        judge_count(Count(case, 5), "half", test)
+    test.data["expect"][1]["most"] = {"late": 0}
+    with pytest.raises(UserError, match="S02.json#/expect/1/most: found 'late'; one of let_through, early is needed"):
+        holds(5, 0)
 
 
 def moving_point(way):
@@ -133,8 +168,8 @@ def moving_point(way):
 
 @pytest.mark.parametrize("toi, hit, expected", [(0.499, True, (0, 0)), (0.5, True, (0, 0)), (0.501, True, (1, 0)), (0.9, False, (1, 0)), (0.3, True, (0, 1))])
 def test_a_step_bound_that_lets_through_is_counted(toi, hit, expected):
-    count = Count("S02", "c", "double", 0, {"let_through": 0, "early": 0})
-    _judge_ccd(count, "point_triangle", *moving_point(-1.0), float(np.spacing(1.0)), {"hit": hit, "toi": toi - 1e-16 if toi == 0.5 else toi})
+    count = Count("c", numbers={"let_through": 0, "early": 0})
+    judge_ccd(count, "point_triangle", *moving_point(-1.0), float(np.spacing(1.0)), {"hit": hit, "toi": toi - 1e-16 if toi == 0.5 else toi})
     assert (count.judged, tuple(count.numbers.values())) == (1, expected)
 
 
@@ -160,38 +195,20 @@ def test_exact_shapes_are_derivatives_of_each_other():
         assert abs(exact.shape(name, 1 - 1e-12, 1.0)[0]) < 1e-20
 
 
-def test_the_table_is_read_as_it_was_written(tmp_path):
-    result = Result(rows(newton=7), [Count("S02", "c", "float", 4, {"early": 1}, 2, "r", {"early": 2}, True)], [related({"kind": "rises"}, rows((1.0, 2.0, 3.0)))], {"date": "2024-01-31", "seconds": 1.5})
-    write({"M09": result}, tmp_path / "t.json")
-    assert read(tmp_path / "t.json") == {"M09": result} and read(tmp_path / "none.json") == {}
-
-
-@pytest.mark.parametrize("kept", ['{"schema": "barrierbench.stress_res', '{"schema": "barrierbench.stress_results/1"}', "[]", '{"schema": "barrierbench.stress_results/1", "columns": [], "tests": {"M09": 3}}'])
-def test_a_torn_table_is_refused(tmp_path, monkeypatch, capsys, kept):
-    file = tmp_path / "stress.json"
-    file.write_text(kept)
-    with pytest.raises(UserError, match="stress.json: .*remove it, then ./bench study stress"):
-        read(file)
-    monkeypatch.setattr(verb, "FILE", file)
-    assert verb.main(["M09", "--no-run"]) == 2 and "stress.json" in capsys.readouterr().err
-
-
-def test_what_is_missing_is_named_with_its_file(tmp_path, capsys):
-    assert verb.main(["M09", "--no-run", "--full", "--runs", str(tmp_path)]) == 2
-    assert f"{tmp_path / 'full' / 'stress.json'}: nothing kept of M09: ./bench study stress M09 --full" in capsys.readouterr().err
-
-
-def test_what_was_not_expected_stands_in_the_page_and_on_the_terminal():
+def test_what_was_not_expected_stands_in_the_page_and_on_the_terminal(monkeypatch):
     test = read_test("M09")
-    bad = replace(rows()[0], outcome="ccd_cap", detail="why", as_expected=False)
+    bad = ended(rows()[0], "ccd_cap", detail="why | not")
     test.data["changed"] = [{"what": "log", "old": "ok", "new": "newton_stall", "why": "because of that"}]
-    results = {"M09": Result([bad, *rows()[1:]], relations=[related({"kind": "rises"}, rows())], about={"date": "2024-01-31", "seconds": 2})}
-    page, lines = markdown(results, {"M09": test}), text(results, {"M09": test})
-    assert "ok 2, **ccd_cap**" in page and "because of that" in page and "5 of 6 runs" in page and "0 of 1 relations" in page
-    assert "UNEXPECTED" in lines and "ccd_cap, expected ok: why" in lines and "rises from each to the next: log" in lines
+    test.data["relations"] = [{"metric": "gap_end_rel", "kind": "rises", "groups": [list(CASES)], "reason": "r"}]
+    made = [bad, *rows()[1:]]
+    text = page_of(test, made, monkeypatch)
+    assert "| ok 2, **ccd_cap** |" in text and "because of that" in text and "5 of 6 runs" in text and "0 of 1 relations" in text
+    assert "| M09 | log | d_hat | ccd_cap | ok | why / not |" in text and "**cubic, d_hat, then one ulp less, then one ulp more: 1**" in text
+    lines, passed = stress.judged(read_study("stress"), made)
+    assert not passed and lines[0] == "M09 log, d_hat: ccd_cap, expected ok: why | not" and "rises from each to the next: cubic" in lines[1]
 
 
-def test_the_committed_page_is_that_of_the_committed_table():
-    kept = read(FILE)
-    assert kept, "results/stress.json is missing"
-    assert (ROOT / "results" / "STRESS.md").read_text() == markdown(kept, {name: read_test(name) for name in ids()})
+def test_a_test_without_rows_is_not_on_the_page(monkeypatch):
+    text = page_of(read_test("M09"), rows()[:2], monkeypatch)
+    assert "2 of 2 runs ended" in text and "runs of the tests were not made" in text and "0 of 0 relations" in text
+    assert "## Relations" not in text and "## Geometry" not in text and "## Known defects" not in text and "Nothing." in text

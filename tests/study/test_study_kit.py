@@ -4,12 +4,14 @@ import importlib
 import json
 import shutil
 from dataclasses import replace
+from datetime import datetime, timezone
 from types import SimpleNamespace
 
 import pytest
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.studies.kit import alone
 from barrierbench_analysis.studies.kit.study import collect, cost, page, store, verb
 from barrierbench_analysis.studies.kit.study.spec import Case, Study, known, read_study
 
@@ -82,6 +84,15 @@ def test_the_key_of_a_cell_is_of_all_that_its_run_is_made_of(tmp_path):
     assert not set(before) & {cell.key for cell in Study(study.file, study.data).cells}
 
 
+def test_a_plugin_is_a_part_of_the_key(tmp_path):
+    plain = written(tmp_path).cells[0].key
+    (tmp_path / "mine.so").write_bytes(b"one")
+    study = written(tmp_path, plugins=["mine.so"])
+    assert study.plugins == [str(tmp_path / "mine.so")] and study.cells[0].key != plain
+    (tmp_path / "mine.so").write_bytes(b"another")
+    assert written(tmp_path, plugins=["mine.so"]).cells[0].key != study.cells[0].key
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -110,6 +121,7 @@ def test_a_spec_that_says_too_little_is_refused_with_its_place(tmp_path, changes
 
 def test_a_study_that_is_not_there_names_those_that_are():
     with pytest.raises(UserError, match="found .none.; allowed: .*answer, .*drift.*, or the path of a spec"):
+    with pytest.raises(UserError, match="found 'none'; allowed: answer, drift, .*or the path of a spec"):
         read_study("none")
 
 
@@ -355,6 +367,58 @@ def test_the_page_of_a_study_is_that_of_its_kept_rows(name):
     whole = not getattr(study.module, "PARTIAL", False)
     assert 0 < len(rows) <= len(study.cells) and (len(rows) == len(study.cells) or not whole)
     assert study.page.read_text() == page.text_of(study, rows, study.module.rule(study, rows))
+
+
+def test_a_study_in_a_folder_begins_with_no_row(tmp_path):
+    study = written(tmp_path)
+    store.write_rows(store.file_of(study), {cell.key: row(cell) for cell in study.cells})
+    mine = read_study(str(study.file), tmp_path / "mine")
+    assert store.read_rows(store.file_of(mine)) == {} and mine.page.parent == mine.figures == tmp_path / "mine"
+    ours = read_study("drift", tmp_path)
+    assert not ours.is_ours and ours.page == tmp_path / "drift.page.md" and ours.template == read_study("drift").template
+
+
+# --- runs that leave no record, and rules that judge
+
+
+def without_record(**more) -> dict:
+    return alone.without_record("crash", "the program ended with -11: oh", datetime(2026, 1, 1, tzinfo=timezone.utc), **more)
+
+
+def test_a_run_without_a_record_is_a_row_without_numbers(tmp_path, rule_of_small):
+    study = written(tmp_path, metrics={**SPEC["metrics"], "detail": "/status/detail"})
+    made = collect.row_of(study, study.cells[0], without_record())
+    assert (made.outcome, made.unknowns, made.run) == ("crash", 0, "") and made.seconds > 0 and made.origin["date"] == "2026-01-01"
+    assert made.values == {"newton": None, "steps": None, "detail": "the program ended with -11: oh"}
+    rows = [made, *(replace(row(cell), values={**row(cell).values, "detail": ""}) for cell in study.cells[1:])]
+    assert "8 runs of 12 unknowns were made on 2026-01-01 on m" in page.made_of(rows) and "1 run of " in page.made_of([made])
+    assert cost.growth(rows) == cost.GROWTH
+    store.write_rows(store.file_of(study), {one.key: replace(one, sources=made.sources) for one in rows})
+    assert collect.missing(study, store.read_rows(store.file_of(study))) == []
+
+
+def test_a_rule_may_run_its_cells_itself(tmp_path, rule_of_small):
+    study = written(tmp_path)
+    asked = []
+
+    def run(of, cells, folder, jobs):
+        asked.append((len(cells), folder, jobs))
+        return [collect.row_of(of, cell, without_record()) for cell in cells]
+
+    rule_of_small.run = run
+    assert verb.make_rows(study, jobs=2) == 8 and asked == [(8, collect.RUNS / "small", 2)]
+    assert {one.outcome for one in page.rows_of(study)} == {"crash"}
+    assert verb.make_rows(read_study(str(study.file), tmp_path / "mine")) == 8 and asked[-1][1] == tmp_path / "mine" / "runs"
+
+
+def test_a_rule_that_judges_gives_the_exit_code(tmp_path, rule_of_small, capsys):
+    study = written(tmp_path)
+    store.write_rows(store.file_of(study), {cell.key: row(cell, newton=float(k)) for k, cell in enumerate(study.cells)})
+    study.file.with_suffix(".md").write_text("{{ number }}")
+    assert verb.main([str(study.file), "--no-run"]) == 0
+    rule_of_small.judged = lambda study, rows: ([f"{len(rows)} judged"], all(r.values["newton"] < 7 for r in rows))
+    assert verb.main([str(study.file), "--no-run"]) == 1 and "8 judged" in capsys.readouterr().out
+    assert verb.main([str(study.file), "--no-run", "--only", "seed=1"]) == 0 and "4 judged" in capsys.readouterr().out
 
 
 # --- the whole of it

@@ -131,6 +131,14 @@ def check_ended(done: subprocess.CompletedProcess, what: str) -> None:
         )
 
 
+def shape_names(plugins: list[str] = ()) -> list[str]:
+    """Shapes that the program has with these plugins. Errors: UserError with what it says."""
+    done = started("list", "shapes", plugins=plugins)
+    if done.returncode != 0:
+        raise UserError(done.stderr.strip())
+    return [line.split()[0] for line in done.stdout.splitlines() if line[:1] == " " and line.split()]
+
+
 def evaluated(queries: list[dict], plugins: list[str] = ()) -> list[dict]:
     """Answers of one process of `eval`, in order. Errors: UserError with the first one that is an error."""
     done = started("eval", plugins=plugins, input="".join(json.dumps(query) + "\n" for query in queries))

@@ -14,7 +14,7 @@ import pandas as pd
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.io.record_file import sha256_of
-from barrierbench_analysis.program.start import evaluated, started
+from barrierbench_analysis.program.start import evaluated, shape_names
 
 from .drawing import Drawing
 
@@ -74,12 +74,6 @@ def plugins_of(runs: pd.DataFrame | None) -> list[str]:
     return list(found.values())
 
 
-def known_shapes(plugins: list[str]) -> set[str]:
-    """Shapes that the program has with these plugins."""
-    done = started("list", "shapes", plugins=plugins)
-    return {line.split()[0] for line in done.stdout.splitlines() if line.startswith("  ") and line.strip()}
-
-
 def values(u: np.ndarray, shapes: dict[str, tuple[str, str]], plugins: list[str]) -> pd.DataFrame:
     """b, -b', b'' and rho at d = u, d_hat = 1, kappa = 1: one row a shape and u."""
     tables = []
@@ -100,7 +94,7 @@ def values(u: np.ndarray, shapes: dict[str, tuple[str, str]], plugins: list[str]
 def figure(out: Path, runs: pd.DataFrame | None = None) -> list[Path]:
     """runs: Records.runs, whose shapes are drawn. A shape of a plugin that is gone is left out and said."""
     plugins = plugins_of(runs)
-    known, asked = known_shapes(plugins), shapes_of(runs)
+    known, asked = shape_names(plugins), shapes_of(runs)
     shapes = {
         name: pair for name, pair in asked.items() if pair[0] in known or pair[0].startswith("formula:")
     }

@@ -14,7 +14,7 @@ from barrierbench_analysis.io.spec_file import read_spec
 from barrierbench_analysis.tables.outcomes import counted_as
 
 FILE = ROOT / "configs/report/expected.json"
-STRESS = "stress "  # the names of the sweeps of a stress test begin with it (studies/stress/run.py)
+STRESS = "stress"  # the name of the sweeps of the stress suite
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,10 @@ def _listed() -> dict[tuple[str, str], End]:
 
 @cache
 def _of_stress(name: str) -> dict[str, End]:
-    """Label of a run -> its end, of a stress test by its id; empty where this tree has no such test."""
-    from barrierbench_analysis.studies.stress.entry import OUTCOMES, read_test  # other pages need no test
+    """Label of a run without the key of its cell -> its end, of a stress test by its id; empty where this
+    tree has no such test.
+    """
+    from barrierbench_analysis.studies.rules.stress.entry import OUTCOMES, read_test  # others need no test
 
     try:
         test = read_test(name)
@@ -50,7 +52,7 @@ def _of_stress(name: str) -> dict[str, End]:
             expected = test.expected(formulation.label, case.label)
             if not expected.holds("ok"):
                 outcomes = tuple(word for word in OUTCOMES if expected.holds(word))
-                label = f"{formulation.label} {case.label}".replace("/", " per ")
+                label = f"{name} {formulation.label} {case.label}".replace("/", " per ")
                 found[label] = End(outcomes, expected.reason)
     return found
 
@@ -58,8 +60,8 @@ def _of_stress(name: str) -> dict[str, End]:
 def end_of(row: Mapping) -> End | None:
     """Of a row of `runs`: how it is expected to fail; None where it is expected to end ok and to be valid."""
     group, series = row["group"], row["series"]
-    if group.startswith(STRESS):
-        return _of_stress(group.removeprefix(STRESS)).get(series)
+    if group == STRESS:
+        return _of_stress(series.partition(" ")[0]).get(series.rpartition(" ")[0])
     return _listed().get((group, series))
 
 

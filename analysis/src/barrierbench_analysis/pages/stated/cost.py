@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from barrierbench_analysis.io.json_file import read_object
@@ -15,39 +15,9 @@ CORES = (4, 64)  # of a laptop and of a node
 PRICE = 0.05  # of a core hour in a cloud, in any currency: an assumption that readers replace
 
 
-def _column(data: dict, name: str) -> list[float]:
-    """Of a table with columns once: the numbers that are there."""
-    place = data["columns"].index(name)
-    return [row[place] for row in data["rows"] if row[place] is not None]
-
-
-def _stress(data: dict) -> tuple[int, float]:
-    tests = data["tests"].values()
-    return sum(len(test["rows"]) for test in tests), sum(test["about"]["seconds"] for test in tests)
-
-
-def _listed(parts) -> list:
-    return list(parts.values()) if isinstance(parts, dict) else parts
-
-
-# Study -> file, command, and its runs with their core seconds. Every run has one thread.
-def _claims(data: dict) -> tuple[int, float]:
-    sweeps = _listed(data["sweeps"])
-    return sum(len(one["rows"]) for one in sweeps), sum(one["about"]["seconds"] for one in sweeps)
-
-
-def _work_precision(data: dict) -> tuple[int, float]:
-    abouts = [one["about"] for one in _listed(data["scenes"])]
-    return sum(about["runs"] for about in abouts), sum(about["seconds"] for about in abouts)
-
-
-def _of_rows(rows: dict[str, Row]) -> tuple[int, float]:
-    """Of a study of the kit."""
-    return _counted([row.seconds for row in rows.values() if row.seconds is not None])
-
-
-def _counted(seconds: list[float]) -> tuple[int, float]:
-    return len(seconds), sum(seconds)
+def _counted(seconds: list[float | None]) -> tuple[int, float]:
+    known = [one for one in seconds if one is not None]
+    return len(known), sum(known)
 
 
 def _of_rows(file: Path) -> tuple[int, float]:
@@ -55,14 +25,26 @@ def _of_rows(file: Path) -> tuple[int, float]:
     return _counted([row.seconds for row in read_rows(file).values()])
 
 
-STUDIES = {
+def _claims(file: Path) -> tuple[int, float]:
+    sweeps = read_object(file)["sweeps"].values()
+    return sum(len(one["rows"]) for one in sweeps), sum(one["about"]["seconds"] for one in sweeps)
+
+
+def _gap_map(file: Path) -> tuple[int, float]:
+    data = read_object(file)
+    place = data["columns"].index("seconds")
+    return _counted([row[place] for row in data["rows"]])
+
+
+# Study -> file, command, and its runs with their core seconds. Every run has one thread.
+STUDIES: dict[str, tuple[str, str, Callable[[Path], tuple[int, float]]]] = {
     "claims": ("claims.json", "./bench study claims", _claims),
-    "gap map": ("gap_map.json", "./bench study gap-map", lambda d: _counted(_column(d, "seconds"))),
-    "Pareto fronts": ("studies/pareto.jsonl", "./bench study pareto", None),
-    "work-precision": ("work_precision.json", "./bench study work-precision", _work_precision),
-    "catalogue": ("studies/catalogue.jsonl", "./bench study catalogue", None),
-    "stress suite": ("stress.json", "./bench study stress", _stress),
-    "ablation": ("studies/ablation.jsonl", "./bench study ablation", None),
+    "gap map": ("gap_map.json", "./bench study gap-map", _gap_map),
+    "Pareto fronts": ("studies/pareto.jsonl", "./bench study pareto", _of_rows),
+    "work-precision": ("studies/work_precision.jsonl", "./bench study work-precision", _of_rows),
+    "catalogue": ("studies/catalogue.jsonl", "./bench study catalogue", _of_rows),
+    "stress suite": ("studies/stress.jsonl", "./bench study stress", _of_rows),
+    "ablation": ("studies/ablation.jsonl", "./bench study ablation", _of_rows),
 }
 
 
@@ -76,7 +58,7 @@ def gather(folder: Path = RESULTS) -> list[dict]:
 def _studies(folder: Path) -> Iterator[dict]:
     for study, (name, command, read) in STUDIES.items():
         if (folder / name).is_file():
-            runs, core_s = read(read_object(folder / name)) if read else _of_rows(folder / name)
+            runs, core_s = read(folder / name)
             yield {"study": study, "command": command, "runs": runs, "core_s": core_s}
 
 

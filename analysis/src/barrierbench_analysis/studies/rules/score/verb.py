@@ -7,20 +7,21 @@ import json
 import shlex
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.io.origin import machine_of
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
-from barrierbench_analysis.studies.gap_map.spec import read_spec
+from barrierbench_analysis.studies.kit.study.page import rows_of
+from barrierbench_analysis.studies.kit.study.spec import Study, read_study
+from barrierbench_analysis.studies.kit.study.verb import make_rows
 
-from . import judge, runs
 from .candidate import Candidate, candidate
 from .page import page
 
-SPEC = ROOT / "configs" / "score" / "default.json"
+SPEC = ROOT / "configs" / "score" / "score.json"
 SCHEMA = "barrierbench.score/1"
 DOC = """
 WHAT is a formula, FILE.so (FILE.so:SHAPE where a plugin has several), a formulation of configs/formulations
@@ -46,28 +47,12 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
-def _score(
-    of: Candidate, records: dict, rows: list[dict], starts: list[dict], cases: list[dict], begun: float
-) -> dict:
-    """The content of score.json. begun: by time.monotonic()."""
-    some = next((one[0] for one in records.values() if one), None)
-    return {
-        "schema": SCHEMA,
-        "candidate": {"label": of.label, "formulation": of.formulation, "about": of.about},
-        "command": shlex.join(["./bench", "study", "score", *of.place]),
-        "machine": machine_of(some) if some else "",
-        "seconds": round(time.monotonic() - begun, 1),
-        "decides": judge.decides(rows, starts, cases, of.label),
-        "comparisons": [vars(one) | {"verdict": one.verdict} for one in judge.comparisons(rows, of.label)],
-        "at_equal_gap": [
-            vars(ratio) | {"metric": metric, "gap": gap}
-            for metric, gap, ratio in judge.at_equal_gap(rows, of.label)
-        ],
-        "row_ns": {method: ns for method, (ns, _) in judge.row_times(rows).items()},
-        "rows": rows,
-        "starts": starts,
-        "hard_cases": cases,
-    }
+def study_of(of: Candidate, out: Path) -> Study:
+    """The study of configs/score/score.json with this candidate, whose runs and rows lie in a folder."""
+    study = read_study(str(SPEC), out)
+    about = study.about | {"candidate": vars(of)}
+    plugins = [str(Path(file).resolve()) for file in of.plugins]
+    return replace(study, data={**study.data, "about": about, "plugins": plugins})
 
 
 @tells("study score")
@@ -77,18 +62,18 @@ def main(argv: list[str]) -> int:
     begun = time.monotonic()
     of = candidate(args.what)
     out = args.out or ROOT / "results" / "runs" / "score" / of.label
-    spec = read_spec(SPEC)
-
-    def say(text: str) -> None:
-        print(f"score: {text}, {time.monotonic() - begun:.0f} s", file=sys.stderr)
-
-    records = runs.run(runs.matched(spec, of), of, out, args.jobs)
-    say(f"{len(records)} matched runs")
-    starts = runs.starts(of, runs.run(runs.jittered(spec, of), of, out, args.jobs))
-    say("jittered starts")
-    cases = runs.hard_cases(of, out, args.jobs)
-    say(f"{len(cases)} hard runs")
-    score = _score(of, records, runs.rows(spec, of, records), starts, cases, begun)
+    study = study_of(of, out)
+    made = make_rows(study, jobs=args.jobs)
+    print(f"score: {made} runs, {time.monotonic() - begun:.0f} s", file=sys.stderr)
+    rows = rows_of(study)
+    score = {
+        "schema": SCHEMA,
+        "candidate": {"label": of.label, "formulation": of.formulation, "about": of.about},
+        "command": shlex.join(["./bench", "study", "score", *of.place]),
+        "machine": next((row.origin["machine"] for row in rows if row.run), ""),
+        "seconds": round(time.monotonic() - begun, 1),
+        **study.module.rule(study, rows),
+    }
     write_whole(out / "score.json", json.dumps(score, indent=1, allow_nan=False) + "\n")
     write_whole(out / "score.html", page(score))
     print("\n".join(score["decides"]))

@@ -10,7 +10,7 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.program.formula.compiled import compiled
 from barrierbench_analysis.program.formula.grammar import FormulaError
 from barrierbench_analysis.program.formula.verb import card
-from barrierbench_analysis.program.start import started
+from barrierbench_analysis.program.start import shape_names
 from barrierbench_analysis.studies.kit.formulations import known
 
 NAME = re.compile(r"[a-z][a-z0-9_]*(:[0-9.]+)?")
@@ -29,14 +29,6 @@ class Candidate:
     about: str  # lines for the page
     plugins: tuple[str, ...] = ()
     place: tuple[str, ...] = ()  # words that name it on the command line
-
-
-def shape_names(plugins: tuple[str, ...] = ()) -> list[str]:
-    """Shapes that the program has with these plugins. Errors: UserError with what it says."""
-    done = started("list", "shapes", plugins=list(plugins))
-    if done.returncode != 0:
-        raise UserError(done.stderr.strip())
-    return [line.split()[0] for line in done.stdout.splitlines() if line[:1] == " " and line.split()]
 
 
 def fixed(label: str, shape: str) -> dict:
@@ -61,7 +53,7 @@ def candidate(text: str) -> Candidate:
 
 def _of_plugin(file: str, wanted: str) -> Candidate:
     before = shape_names()
-    added = [name for name in shape_names((file,)) if name not in before]
+    added = [name for name in shape_names([file]) if name not in before]
     if wanted not in added and (wanted or len(added) != 1):
         raise UserError(
             f"{file}: found the shapes {', '.join(added) or 'none'}; FILE.so:SHAPE names one of them"

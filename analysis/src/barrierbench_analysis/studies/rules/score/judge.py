@@ -4,6 +4,7 @@ One number decides nothing: a barrier that does not come to the end somewhere is
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from statistics import median
@@ -50,9 +51,9 @@ class Comparison:
         return WORSE if self.ratio >= SAME and self.low >= 1 else EVEN
 
 
-def value(row: dict, metric: str) -> float | None:
+def value(row: dict | None, metric: str) -> float | None:
     """A number of a row that ended ok; None where there is none."""
-    if row["outcome"] != "ok":
+    if row is None or row["outcome"] != "ok":
         return None
     if metric == "off_target":
         return max(row["gap"] / row["theta"], row["theta"] / row["gap"]) if row["gap"] else None
@@ -63,25 +64,14 @@ def value(row: dict, metric: str) -> float | None:
 
 def comparisons(rows: list[dict], label: str) -> list[Comparison]:
     """Where at least one scene has both numbers."""
+    by = {(row["theta"], row["shape"], row["scene"]): row for row in rows}
+    thetas, scenes = (dict.fromkeys(row[name] for row in rows) for name in ("theta", "scene"))
     found = []
-    for metric in METRICS:
-        for theta in sorted({row["theta"] for row in rows}, reverse=True):
-            for rival in RIVALS:
-                logs = _logs(rows, metric, theta, label, rival)
-                if logs:
-                    found.append(Comparison(metric, theta, rival, *spread(logs), len(logs)))
+    for metric, theta, rival in itertools.product(METRICS, sorted(thetas, reverse=True), RIVALS):
+        pairs = [[value(by.get((theta, one, scene)), metric) for one in (label, rival)] for scene in scenes]
+        if logs := [math.log(mine / theirs) for mine, theirs in pairs if mine and theirs]:
+            found.append(Comparison(metric, theta, rival, *spread(logs), len(logs)))
     return found
-
-
-def _logs(rows: list[dict], metric: str, theta: float, label: str, rival: str) -> list[float]:
-    by = {
-        (row["scene"], row["resolution"], row["shape"]): value(row, metric)
-        for row in rows
-        if row["theta"] == theta
-    }
-    places = dict.fromkeys((scene, resolution) for scene, resolution, _ in by)
-    both = [(by.get((*place, label)), by.get((*place, rival))) for place in places]
-    return [math.log(mine / theirs) for mine, theirs in both if mine and theirs]
 
 
 def at_equal_gap(rows: list[dict], label: str) -> list[tuple[str, float, Ratio]]:

@@ -1,3 +1,0 @@
-"""The stress suite: configs/stress/ID.json run over all formulations and held against what was expected
-before the first run.
-"""
