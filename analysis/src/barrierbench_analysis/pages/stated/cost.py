@@ -21,8 +21,9 @@ def _counted(seconds: list[float | None]) -> tuple[int, float]:
 
 
 def _of_rows(file: Path) -> tuple[int, float]:
-    """Of a study of the kit."""
-    return _counted([row.seconds for row in read_rows(file).values()])
+    """Of a study of the kit, without rows of counts, which are no runs."""
+    rows = read_rows(file).values()
+    return _counted([row.seconds for row in rows if row.values.get("counts") is None])
 
 
 def _claims(file: Path) -> tuple[int, float]:
