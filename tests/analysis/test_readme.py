@@ -14,8 +14,7 @@ from barrierbench_analysis.pages.readme import verb as readme
 from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
 from barrierbench_analysis.studies.claims.inputs import inputs_of
 from barrierbench_analysis.studies.claims.table import Runs, Table
-from barrierbench_analysis.studies.gap_map.rows import COLUMNS
-from barrierbench_analysis.studies.gap_map.table import Map
+from barrierbench_analysis.studies.rules.gap_map.table import COLUMNS, Map
 from barrierbench_analysis.pages.readme import map as gap_map
 from barrierbench_analysis.pages.readme import numbers, slices, snippets, templates
 from barrierbench_analysis.pages.stated import sources
@@ -77,7 +76,7 @@ def the_map() -> Map:
             for shape, factor in (("log", 1.0), ("cubic", 0.0)):
                 row = dict.fromkeys(COLUMNS) | {"scene": scene, "resolution": "1", "shape": shape, "limit": "on", "theta": theta, "outcome": "ok", "gap": theta, "unknowns": 100}
                 every.append(row | {"cond_p95": 4.0**factor, "bj_p95": 3.0**factor, "pcg": 1.2**factor, "newton": 1.5**factor})
-    return Map({"shapes": {s: [s, "gap"] for s in ("log", "cubic")}, "main": ["log", "cubic"], "gaps": list(slices.LIKE), "limits": ["on"]}, every)
+    return Map({"shapes": [{"label": s, "shape": s, "argument": "gap"} for s in ("log", "cubic")], "main": ["log", "cubic"], "gaps": list(slices.LIKE), "limits": ["on"]}, every)
 
 
 def gathered() -> dict:
@@ -340,12 +339,10 @@ def test_the_pages_have_the_numbers_that_are_kept(kept_numbers):
     assert readme.stale(ROOT, kept_numbers) == []
 
 
-def test_the_gap_map_says_how_much_of_it_is_there(kept_numbers, tmp_path):
+def test_the_gap_map_says_how_much_of_it_is_there(kept_numbers):
     found = kept_numbers["gap_map"]
     assert len(found) == 6 and found[0].startswith("With no strain limit") and " cells " in found[5] and " unknowns" in found[5]
     assert all(len(line) <= 100 for line in gap_map.lines(found, 100)) and gap_map.lines(["one"], 100) == ["- one"]
-    with pytest.raises(UserError, match="gap-map --quick"):
-        gap_map.gather(tmp_path / "none.json")
 
 
 def test_the_page_says_how_long_and_how_often_the_longer_drape_was_looked_at(tmp_path):

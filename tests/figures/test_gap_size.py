@@ -2,15 +2,15 @@
 
 from barrierbench_analysis.studies.comparison import spec
 from barrierbench_analysis.figures.plots.drawing import Drawing
-from barrierbench_analysis.studies.gap_map import size, size_figure, table
+from barrierbench_analysis.studies.comparison.studies import of_file
+from barrierbench_analysis.studies.rules.gap_map import size, size_figure
+from barrierbench_analysis.studies.rules.gap_map.table import kept_map
 from barrierbench_analysis.io.places import ROOT
-
-KEPT = ROOT / "results" / "gap_map.json"
 
 
 def drawn(folder, title=size_figure.TITLE):
     folder.mkdir()
-    return {path.suffix: path.read_bytes() for path in size_figure.draw(table.read(KEPT), folder / "gap_size", title=title)}
+    return {path.suffix: path.read_bytes() for path in size_figure.draw(kept_map(), folder / "gap_size", title=title)}
 
 
 def test_it_is_rebuilt_to_the_same_bytes_whoever_asks(tmp_path):
@@ -18,14 +18,14 @@ def test_it_is_rebuilt_to_the_same_bytes_whoever_asks(tmp_path):
     page, of = drawn(tmp_path / "page"), spec.read_spec(ROOT / "configs/figures/gap_size.json")
     (tmp_path / "figure").mkdir()
     drawing = Drawing(of.name, of.title, tmp_path / "figure/gap_size", of.width_in, of.options)
-    figure = {path.suffix: path.read_bytes() for path in of.kind.draw(table.read(KEPT), drawing)}
+    figure = {path.suffix: path.read_bytes() for path in of.kind.draw(of_file(of.records.what, tmp_path, False, 1), drawing)}
     assert figure == page and set(page) >= {".png", ".pdf", ".csv", ".txt"}
     assert (ROOT / "docs/gap_size.txt").read_bytes() == page[".txt"]
 
 
 def test_its_numbers_are_ratios_of_kept_rows(tmp_path):
     lines = drawn(tmp_path / "page")[".csv"].decode().splitlines()
-    rows = {(r["shape"], r["scene"], r["resolution"], r["theta"]): r for r in table.read(KEPT).rows if r["limit"] == size.LIMIT}
+    rows = {(r["shape"], r["scene"], r["resolution"], r["theta"]): r for r in kept_map().rows if r["limit"] == size.LIMIT}
     heads = lines[0].split(",")
     assert len(lines) > 90
     for line in lines[1:]:

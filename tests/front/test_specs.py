@@ -11,7 +11,7 @@ from barrierbench_analysis.studies.matrices.matrix_corpus import read_corpus
 from barrierbench_analysis.io.spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMITTED = {"gap_map": "configs/gap_map/*.json", "gates": "configs/gates/*.json",
+COMMITTED = {"gates": "configs/gates/*.json",
              "study": "configs/studies/*.json", "matrix_corpus": "configs/matrices/*.json", "stress": "configs/stress/[SM][0-9][0-9].json", "claim": "claims/*.json", "catalogue": "configs/catalogue/*.json", "figure": "configs/figures/*.json", "step_corpus": "configs/steps/corpus.json", "expected_ends": "configs/report/expected.json"}
 
 

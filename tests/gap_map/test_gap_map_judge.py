@@ -4,15 +4,17 @@ import math
 import re
 
 import pytest
-from barrierbench_analysis.studies.gap_map import compare, judge, plan, report, rows, size, size_page
-from barrierbench_analysis.studies.gap_map.spec import Cell
-from barrierbench_analysis.studies.gap_map.table import Map
+from barrierbench_analysis.studies.rules.gap_map import compare, law, measured, page, size, size_tables
+from barrierbench_analysis.studies.rules.gap_map.table import COLUMNS, Map
+
+
+METRICS = ("newton", "pcg", "pcg_max", *(f"{name}_{k}" for name in measured.STAGES for k in measured.CONDS))
 
 
 def made(shape="log", theta=0.1, gap=0.1, scene="s", resolution="1", limit="off", **more):
-    found = dict.fromkeys(rows.COLUMNS) | {"scene": scene, "resolution": resolution, "shape": shape, "limit": limit, "theta": theta, "outcome": "ok", "gap": gap, "gap_p05": gap,
+    found = dict.fromkeys(COLUMNS) | {"scene": scene, "resolution": resolution, "shape": shape, "limit": limit, "theta": theta, "outcome": "ok", "gap": gap, "gap_p05": gap,
                                            "rho": 10.0, "rho_p05": 10.0, "load": 1.0, "unknowns": 100, "seconds": 1.0}
-    return found | {m: 100.0 for m in rows.METRICS} | {"nc_end": 1.0, "nc_bj_end": 1.0} | more
+    return found | {m: 100.0 for m in METRICS} | {"nc_end": 1.0, "nc_bj_end": 1.0} | more
 
 
 def sample(cond, stage="full", scaling="none", status=None):
@@ -21,39 +23,39 @@ def sample(cond, stage="full", scaling="none", status=None):
 
 def test_the_reached_gap_is_the_load_weighted_median():
     one = [(1.0, [0.01, 0.1, 0.5])]
-    assert rows.quantile_of_mixture(one, 0.5) == pytest.approx(0.1) and rows.quantile_of_mixture(one, 0.05) == pytest.approx(0.01)
+    assert measured.quantile_of_mixture(one, 0.5) == pytest.approx(0.1) and measured.quantile_of_mixture(one, 0.05) == pytest.approx(0.01)
     # nine parts of ten of the load rest at 0.2, whatever a light pair does
-    assert rows.quantile_of_mixture([(0.9, [0.19, 0.2, 0.21]), (0.1, [0.001, 0.0011, 0.0012])], 0.5) == pytest.approx(0.2, rel=0.02)
+    assert measured.quantile_of_mixture([(0.9, [0.19, 0.2, 0.21]), (0.1, [0.001, 0.0011, 0.0012])], 0.5) == pytest.approx(0.2, rel=0.02)
     # half of the load in each of two pairs that share no gap; between 5% and 50% of a pair linear in the logarithm
     two = [(0.5, [0.01, 0.04, 0.1]), (0.5, [0.2, 0.3, 0.4])]
-    assert rows.quantile_of_mixture(two, 0.25) == pytest.approx(0.04) and rows.quantile_of_mixture(two, 0.1375) == pytest.approx(0.02)
-    assert rows.quantile_of_mixture([], 0.5) is None and rows.quantile_of_mixture([(0.0, [0.1, 0.2, 0.3])], 0.5) is None
+    assert measured.quantile_of_mixture(two, 0.25) == pytest.approx(0.04) and measured.quantile_of_mixture(two, 0.1375) == pytest.approx(0.02)
+    assert measured.quantile_of_mixture([], 0.5) is None and measured.quantile_of_mixture([(0.0, [0.1, 0.2, 0.3])], 0.5) is None
 
 
 def test_conditions_are_of_iterations_in_contact_and_of_the_last_ones_of_steps():
     def line(step, iteration, contacts, cond):
         return {"step": step, "iteration": iteration, "contacts": {"obstacle": contacts}, "cond": [sample(cond), sample(2.0, "without_contact")], "probe_pcg_iterations": cond / 10}
 
-    found = rows.conditions([line(0, 0, 0, 9e9), line(1, 0, 3, 1000.0), line(1, 1, 3, 10.0), line(2, 0, 3, 30.0), line(3, 0, 4, 5e5), line(3, 1, 0, 1.0)])
+    found = measured.conditions([line(0, 0, 0, 9e9), line(1, 0, 3, 1000.0), line(1, 1, 3, 10.0), line(2, 0, 3, 30.0), line(3, 0, 4, 5e5), line(3, 1, 0, 1.0)])
     assert found["cond_end"] == 20.0 and found["cond_end_max"] == 30.0  # of steps 1 and 2: step 3 ends without contact
     assert found["cond_median"] == 515.0 and found["nc_end"] == 2.0 and found["bj_p95"] is None
     assert found["pcg"] == 51.5 and found["pcg_max"] == 5e4
-    infinite = rows.conditions([{"step": 0, "iteration": 0, "contacts": {"obstacle": 1}, "cond": [sample(None)]}])
-    assert infinite["cond_p95"] == rows.LARGEST and infinite["pcg"] is None and infinite["unknown"] == 0
+    infinite = measured.conditions([{"step": 0, "iteration": 0, "contacts": {"obstacle": 1}, "cond": [sample(None)]}])
+    assert infinite["cond_p95"] == measured.LARGEST and infinite["pcg"] is None and infinite["unknown"] == 0
 
 
-@pytest.mark.parametrize("status, largest, unknown", [("singular", rows.LARGEST, 0), ("not_pd", rows.LARGEST, 0), ("not_converged", 10.0, 1), ("lower_bound", 10.0, 1)])
+@pytest.mark.parametrize("status, largest, unknown", [("singular", measured.LARGEST, 0), ("not_pd", measured.LARGEST, 0), ("not_converged", 10.0, 1), ("lower_bound", 10.0, 1)])
 def test_an_estimate_without_a_number_is_no_condition_number(status, largest, unknown):
     """As the summary of the program counts."""
     line = {"step": 0, "iteration": 0, "contacts": {"obstacle": 1}, "cond": [sample(10.0), sample(None, status=status)]}
-    found = rows.conditions([line])
+    found = measured.conditions([line])
     assert found["cond_end_max"] == largest and found["unknown"] == unknown
-    alone = rows.conditions([line | {"cond": [sample(None, status="not_converged")]}])
+    alone = measured.conditions([line | {"cond": [sample(None, status="not_converged")]}])
     assert alone["cond_p95"] is None and alone["cond_end"] is None and alone["unknown"] == 1
 
 
 def page_of(rows_of, shapes=("log", "cubic"), gaps=(0.5, 0.01)) -> Map:
-    return Map({"shapes": {s: [s, "gap"] for s in shapes}, "main": list(shapes), "gaps": list(gaps), "limits": ["off"]}, rows_of)
+    return Map({"shapes": [{"label": s, "shape": s, "argument": "gap"} for s in shapes], "main": list(shapes), "gaps": list(gaps), "limits": ["off"]}, rows_of)
 
 
 def in_places(shape, places, theta=0.1, **more):
@@ -86,7 +88,7 @@ def test_shapes_are_ranked_on_places_that_all_of_them_have():
     assert {s: r["cond_p95"].value for s, r in here.ratios.items()} == {"cubic": pytest.approx(0.5), "exponential": pytest.approx(0.4)}
     alone = compare.at_theta(every, "off", 0.1, ["cubic"]).ratios["cubic"]["cond_p95"]
     assert alone.value < 0.2 and alone.scenes == 3
-    said = report.sentences(page_of(every, ("log", "cubic", "exponential"), (0.1,)))[0]
+    said = page.sentences(page_of(every, ("log", "cubic", "exponential"), (0.1,)))[0]
     assert "(the 2 places of 2 scenes in which all of these got through) `exponential` 0.4 [0.4, 0.4], `cubic` 0.5 [0.5, 0.5]" in said
 
 
@@ -94,7 +96,7 @@ def test_rows_of_a_table_that_stand_together_are_of_the_same_places():
     every = in_places("log", [("a", "1"), ("b", "1"), ("c", "1")]) + in_places("cubic", [("a", "1"), ("b", "1"), ("c", "1")])
     every += in_places("quadratic", [("a", "1"), ("b", "1")]) + in_places("quadratic", [("c", "1")], outcome="newton_stall")
     every += in_places("two_stage", [("a", "1")]) + in_places("two_stage", [("b", "1"), ("c", "1")], outcome="newton_stall")
-    lines = report._table(page_of(every, ("log", "cubic", "quadratic", "two_stage"), (0.1,)), "off", "theta", compare.at_theta)
+    lines = page.beside_table(page_of(every, ("log", "cubic", "quadratic", "two_stage"), (0.1,)), "off", "theta", compare.at_theta)
     rows_of = [line for line in lines if line.startswith("| 0.1 ")]
     assert [row.split(" | ")[-1] for row in rows_of[:2]] == ["2 places of 2 scenes |"] * 2
     assert rows_of[2].startswith("| 0.1 | not compared: `two_stage` (1 of 3)") and len(rows_of) == 3
@@ -104,15 +106,15 @@ def test_where_contact_rests_is_said_of_one_target_and_of_shared_places():
     """cubic reached more at 0.01 in a place that the log did not, and its softest gap is at another target."""
     every = [made("log", 0.01, 0.02, "a"), made("log", 0.01, 0.02, "c"), made("log", 0.01, None, "b", outcome="newton_stall"), made("log", 0.5, 0.001, "a"),
              made("cubic", 0.01, 0.3, "a"), made("cubic", 0.01, 0.3, "c"), made("cubic", 0.01, 0.1, "b"), made("two_stage", 0.01, None, "a", outcome="newton_stall"), made("two_stage", 0.5, 0.2, "a")]
-    cut = compare.gaps_at(every, "off", 0.01, ["log", "cubic", "two_stage"])
+    cut = compare.deepest(every, "off", ["log", "cubic", "two_stage"], 0.01)
     assert compare.middles(cut) == {"log": 0.02, "cubic": 0.3} and cut.places == (("a", "1"), ("c", "1")) and cut.left_out == {"two_stage": (0, 1)}
-    said = report.sentences(page_of(every, ("log", "cubic", "two_stage")))[1]
+    said = page.sentences(page_of(every, ("log", "cubic", "two_stage")))[1]
     assert said.endswith("rests at 0.02 (`log`), 0.3 (`cubic`) (median of the 2 places of 2 scenes that all of these reached); without a gap in half of the places or more: `two_stage`.")
 
 
 def test_where_nothing_rests_is_said():
     for rows_of in ([made("log", 0.5, 0.4), made("cubic", 0.5, 0.4)], [made("log", 0.01, 0.02, "a"), made("cubic", 0.01, 0.02, "b")]):
-        assert report.sentences(page_of(rows_of))[1].endswith("there is no place where every shape that reached a gap has one.")
+        assert page.sentences(page_of(rows_of))[1].endswith("there is no place where every shape that reached a gap has one.")
 
 
 def test_a_ratio_averages_resolutions_before_scenes():
@@ -137,13 +139,13 @@ def test_nothing_is_filled_in_where_a_gap_was_not_reached():
         return compare.at_gap(rows_of, "off", gap, ["cubic"]).ratios
 
     assert at(all_rows, 0.4) and not at(all_rows, 0.1) and not at(all_rows, 0.55)
-    assert judge.unreached(all_rows, [0.5, 0.1, 0.01]) == [("off", "cubic", 0.1), ("off", "cubic", 0.01)]
+    assert law.unreached(all_rows, [0.5, 0.1, 0.01]) == {("off", "cubic"): [0.1, 0.01]}
     assert compare.deepest(all_rows, "off", ["cubic"]).of == {"cubic": {("s", "1"): 0.3}}
     broken = all_rows[:2] + [made("cubic", 0.5, 0.6), made("cubic", 0.1, 0.5, outcome="stall_overload"), made("cubic", 0.01, 0.3)]
     assert not at(broken, 0.4)  # not across a run that failed
     assert not compare.at_theta(broken, "off", 0.1, ["cubic"]).ratios
-    assert judge.failures(broken) == {("cubic", "off", 0.1): {"stall_overload": 1}}
-    assert judge.failures([*broken, made("log", 0.25, None, "s", outcome="not run")]) == judge.failures(broken)  # no failure
+    assert law.failures(broken) == {("cubic", "off", 0.1): {"stall_overload": 1}}
+    assert law.failures([*broken, made("log", 0.25, None, "s", outcome="not run")]) == law.failures(broken)  # no failure
 
 
 def test_every_step_of_every_line_is_of_the_same_places():
@@ -183,9 +185,9 @@ def test_sizes_are_compared_in_the_same_scenes():
     assert both.scenes == ("a",) and [r.value for r in both.ratios["cond_p95"]] == pytest.approx([8.0, 2.0])
     assert both.unknowns == ((100, 100), (2000, 2000)) and size.halves(sizes, 0.1) is None
     assert sizes[-1].failed == "cubic: stall_overload"
-    [said] = size_page.sentences(page_of(by_sizes()))
+    [said] = size_tables.sentences(page_of(by_sizes()))
     assert "with 100 to 100 unknowns and with 2000 to 2000 unknowns of the same scenes, at theta 0.01 (1 scenes) raw cond 8 and 2" in said
-    assert size_page.sentences(page_of(by_sizes()[:2])) == [] and "c 1 at theta 0.01 (cubic: stall_overload)" in "\n".join(size_page.section(page_of(by_sizes())))
+    assert size_tables.sentences(page_of(by_sizes()[:2])) == [] and "c 1 at theta 0.01 (cubic: stall_overload)" in size_tables.failed(page_of(by_sizes()))
 
 
 POWERS = {"cond_p95": 1.0, "bj_p95": 0.5, "pcg": -0.25, "newton": -2.0}  # metric -> its slope over that of cond
@@ -206,9 +208,9 @@ SLOPES = (("a", "1", 100, -1.0), ("a", "2", 400, -1.0), ("b", "1", 100, -0.5), (
 
 def test_every_column_of_slopes_has_the_metric_of_its_head_and_every_row_its_target():
     rows_of = with_slopes(SLOPES) + with_slopes(SLOPES, 0.5, shift=0.125)
-    first, second = [line.strip("| ").split(" | ") for line in size_page._slopes(page_of(rows_of)) if line.startswith("| 0.")]
-    [heads] = [line.strip("| ").split(" | ") for line in size_page._slopes(page_of(rows_of)) if line.startswith("| theta")]
-    assert [head.partition(",")[0] for head in heads[3:]] == [size_page.NAMES[metric] for metric in POWERS]
+    first, second = [line.strip("| ").split(" | ") for line in size_tables.slope_table(page_of(rows_of)) if line.startswith("| 0.")]
+    [heads] = [line.strip("| ").split(" | ") for line in size_tables.slope_table(page_of(rows_of)) if line.startswith("| theta")]
+    assert [head.partition(",")[0] for head in heads[3:]] == [size_tables.NAMES[metric] for metric in POWERS]
     for row, theta, middle in ((first, "0.5", -0.625), (second, "0.01", -0.75)):
         assert row[:3] == [theta, "2", "100 to 2500"]
         for cell, power in zip(row[3:], POWERS.values()):
@@ -235,7 +237,7 @@ def test_one_sheet_over_a_sphere_of_two_kinds_is_one_sample():
     found = with_slopes(scenes)
     of = size.slope(size.drawn_sizes(found), "cond_p95")
     assert of.value == pytest.approx(-0.625) and (of.lower, of.upper) == pytest.approx((-0.625 - 0.375 * 12.7062047, -0.625 + 0.375 * 12.7062047))
-    assert len(of.by_scene) == 3 and "| 0.01 | 2 | 100 to 2000 |" in "\n".join(size_page._slopes(page_of(found)))
+    assert len(of.by_scene) == 3 and "| 0.01 | 2 | 100 to 2000 |" in "\n".join(size_tables.slope_table(page_of(found)))
     ratio = compare.at_theta(found, "off", 0.01, ["cubic"])
     logs = [power * (math.log(100) + math.log(2000)) / 2 for power in (-1.0, -0.25)]
     assert ratio.ratios["cubic"]["cond_p95"].turned().value == pytest.approx(math.exp(sum(logs) / 2)) and ratio.ratios["cubic"]["cond_p95"].scenes == 2
@@ -248,7 +250,7 @@ def test_the_sentence_decides_what_the_intervals_of_the_slopes_decide():
     """-1 in two scenes and -0.9 in a third: cond falls, Newton (times -2) grows. With -1, 0 and 1 nothing is decided."""
     def said(powers):
         scenes = [(scene, mesh, n, power) for scene, power in zip("abc", powers) for mesh, n in (("1", 100), ("2", 2000))]
-        [sentence] = size_page.sentences(page_of(with_slopes(scenes)))
+        [sentence] = size_tables.sentences(page_of(with_slopes(scenes)))
         return sentence
 
     assert "leaves 0 out: raw cond falls at theta 0.01; block Jacobi falls at theta 0.01; PCG grows at theta 0.01; Newton grows at theta 0.01; elsewhere" in said((-1.0, -1.0, -0.9))
@@ -257,20 +259,20 @@ def test_the_sentence_decides_what_the_intervals_of_the_slopes_decide():
 
 def test_how_often_contact_makes_the_largest_eigenvalue_counts_each_run_once():
     every = [made("log", cond_end=10.0, nc_end=1.0), made("log", 0.5, cond_end=1.5, nc_end=1.0), made("cubic"), made("quadratic")]
-    assert judge.made_by_contact(every, "off") == (1, 2)
+    assert law.made_by_contact(every, "off") == (1, 2)
 
 
 def test_the_law_is_the_ratio_of_rho_and_its_floor_what_is_left_without_contact():
     log = made("log", rho=100.0, cond_end=1000.0, nc_end=10.0)
-    [both] = judge.pairs([log, made("cubic", rho=5.0, cond_end=60.0, nc_end=10.0)])
+    [both] = law.pairs([log, made("cubic", rho=5.0, cond_end=60.0, nc_end=10.0)])
     assert both.predicted == pytest.approx(0.05) and both.measured == pytest.approx(0.06) and both.by_contact and both.error == pytest.approx(math.log(1.2))
     assert both.floored == pytest.approx(0.05)
-    [soft] = judge.pairs([log, made("cubic", rho=0.1, cond_end=10.5, nc_end=10.0)])
+    [soft] = law.pairs([log, made("cubic", rho=0.1, cond_end=10.5, nc_end=10.0)])
     assert soft.by_log and not soft.by_contact and soft.floored == pytest.approx(0.01) and soft.floor_error == pytest.approx(math.log(1.05))
-    [none] = judge.pairs([made("log", cond_end=20.0, nc_end=10.0), made("cubic", cond_end=60.0, nc_end=10.0)])
+    [none] = law.pairs([made("log", cond_end=20.0, nc_end=10.0), made("cubic", cond_end=60.0, nc_end=10.0)])
     assert not none.by_log and not none.by_contact
-    assert judge.pairs([log, made("cubic", theta=0.01)]) == []  # other loads
-    assert judge.pairs([log, made("cubic", outcome="stall_overload")]) == [] and judge.pairs([log, made("cubic", rho=-3.0)]) == []
+    assert law.pairs([log, made("cubic", theta=0.01)]) == []  # other loads
+    assert law.pairs([log, made("cubic", outcome="stall_overload")]) == [] and law.pairs([log, made("cubic", rho=-3.0)]) == []
 
 
 def test_exceptions_are_those_of_the_log_by_contact_and_have_reasons():
@@ -279,28 +281,18 @@ def test_exceptions_are_those_of_the_log_by_contact_and_have_reasons():
     loads = made("quadratic", rho=10.0, cond_end=1000.0, load=10.0)
     deep = made("two_stage", rho=10.0, rho_p05=50.0, cond_end=500.0)
     odd = made("log_squared", rho=10.0, rho_p05=10.0, cond_end=900.0)
-    of = judge.pairs([log, fine, loads, deep, odd])
-    assert {p.row["shape"] for p in judge.exceptions(of)} == {"quadratic", "two_stage", "log_squared"}
-    text = {p.row["shape"]: judge.reason(p) for p in of}
+    of = law.pairs([log, fine, loads, deep, odd])
+    assert {p.row["shape"] for p in law.exceptions(of)} == {"quadratic", "two_stage", "log_squared"}
+    text = {p.row["shape"]: law.reason(p) for p in of}
     assert "10.00 times the log's" in text["quadratic"] and "deepest 5%" in text["two_stage"] and text["log_squared"].startswith("not explained")
-    [light] = judge.pairs([log, made("quadratic", rho=10.0, rho_p05=10.0, cond_end=900.0)])
-    [below] = judge.pairs([log, made("quadratic", rho=10.0, rho_p05=10.0, cond_end=5.0)])
-    assert "as stiff when it bears nothing" in judge.reason(light) and judge.reason(below).startswith("not explained")
-    masked = judge.pairs([made("log", cond_end=1.5, nc_end=1.0), made("cubic")])[0]
-    assert "does not make the log's" in judge.reason(masked) and judge.exceptions([masked]) == []
-    assert judge.scatter([p.error for p in of if p.row["shape"] == "cubic"]) is None
-    mean, sd = judge.scatter([0.0, 2.0])
+    [light] = law.pairs([log, made("quadratic", rho=10.0, rho_p05=10.0, cond_end=900.0)])
+    [below] = law.pairs([log, made("quadratic", rho=10.0, rho_p05=10.0, cond_end=5.0)])
+    assert "as stiff when it bears nothing" in law.reason(light) and law.reason(below).startswith("not explained")
+    masked = law.pairs([made("log", cond_end=1.5, nc_end=1.0), made("cubic")])[0]
+    assert "does not make the log's" in law.reason(masked) and law.exceptions([masked]) == []
+    assert law.scatter([p.error for p in of if p.row["shape"] == "cubic"]) is None
+    mean, sd = law.scatter([0.0, 2.0])
     assert (mean, sd) == (1.0, pytest.approx(math.sqrt(2)))
-
-
-def test_a_plan_grows_with_the_unknowns_and_counts_what_is_there():
-    cells = [Cell("a", r, "log", "off", t) for r in ("1", "2") for t in (0.5, 0.1)]
-    timed = [made("log", 0.5, scene="a", resolution="1", unknowns=100, seconds=2.0), made("cubic", 0.5, scene="b", resolution="1", unknowns=1000, seconds=200.0)]
-    found = plan.estimate(cells, timed, {("a", "1"): 100, ("a", "2"): 1000})
-    assert found["a", "1"] == (2, 1, pytest.approx(2.0)) and found["a", "2"] == (2, 0, pytest.approx(400.0, rel=1e-6))  # seconds grow as the square here
-    assert plan.growth([(100, 1.0), (200, 5.0)]) == plan.GROWTH
-    assert plan.estimate(cells, [], {("a", "1"): 100, ("a", "2"): 1000})["a", "1"] == (2, 0, None)
-    assert "nothing measured" in plan.lines(plan.estimate(cells, [], {}))[0]
 
 
 def test_a_step_that_ends_without_contact_has_no_end_in_contact():
@@ -311,6 +303,6 @@ def test_a_step_that_ends_without_contact_has_no_end_in_contact():
         return {"step": step, "iteration": iteration, "contacts": {"obstacle": contacts}, "cond": [sample]}
 
     lines = [line(0, 0, 2, 10.0), line(0, 1, 2, 30.0), line(1, 0, 3, 500.0), line(1, 1, 0, 7.0)]
-    found = rows.conditions(lines)
+    found = measured.conditions(lines)
     assert found["cond_end"] == found["cond_end_max"] == 30.0 and found["cond_median"] == 30.0
-    assert rows.conditions(lines[2:])["cond_end"] is None
+    assert measured.conditions(lines[2:])["cond_end"] is None

@@ -27,7 +27,7 @@ def named(verb: str, kind: str, content: Content, words: tuple, says: str, name:
 
 READERS = {  # a verb whose file is x: its words
     "gate compare": ("x", "x"), "gate run": ("--record", "x", "--baseline", "x"), "gate accept": ("--record", "x", "--baseline", "b.json", "--reason", "r"), "draw figure": ("x",),
-    "study match": ("x",), "study gap-map": ("x",),
+    "study match": ("x",),
 }
 SPECIAL = {"fifo": fifo, "zero": link_to("/dev/zero")}
 HUGE_MATRIX = "%%MatrixMarket matrix coordinate real symmetric\n2000000000 2000000000 1\n1 1 1\n"
@@ -39,6 +39,7 @@ VERBS = [
     *[named("gate accept", f"matrix-{kind}", text, ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "its header says") for kind, text in
       {"huge": HUGE_MATRIX, "entries": MANY_ENTRIES, "dense": DENSE}.items()],
     *[named("study", kind, content, ("x.json", "plan"), "x.json", "x.json") for kind, content in SPECIAL.items()],
+    *[named("study", f"own-{kind}", content, ("x.json",), "x.json", "x.json") for kind, content in SPECIAL.items()],
     named("gate accept", "matrix-fifo", fifo, ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "x: a FIFO"),
     named("gate accept", "matrix-sparse", sparse(1 << 40), ("--matrix", "x", "--baseline", "b.json", "--reason", "r"), "1099511627776 bytes; at most"),
     named("data collect", "fifo", fifo, ("run", "t.csv"), "no record that can be read", "run/run.json"),

@@ -5,7 +5,7 @@ fronts, on their page and figure, in claims at equal gap and in the gap map. All
 import pytest
 from made_runs import METRICS, page_of, row, runs_of
 
-from barrierbench_analysis.studies.gap_map import compare as gap_map
+from barrierbench_analysis.studies.rules.gap_map import compare as gap_map
 from barrierbench_analysis.studies.rules.pareto.figure import _means, failure_sentence
 from barrierbench_analysis.studies.rules.pareto.fronts import Runs, at_gap, failures, over_shared, range_of, unreached
 

@@ -127,7 +127,7 @@ def test_a_table_by_size_that_the_kept_data_do_not_have_is_told(row, head):
     number = pages.NUMBER.search(line)
     changed = line[: number.start()] + other(number[0]) + line[number.end() :]
     [told] = check.contradictions([*of_data, *pages.pair(text.replace(line, changed), "GAP_MAP.md")])
-    assert head in told and "in gap_map.json" in told and "in GAP_MAP.md" in told
+    assert head in told and "in studies/gap_map.jsonl" in told and "in GAP_MAP.md" in told
 
 
 def test_a_study_without_a_name_is_a_fault():

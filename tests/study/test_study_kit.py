@@ -120,7 +120,7 @@ def test_a_spec_that_says_too_little_is_refused_with_its_place(tmp_path, changes
 
 
 def test_a_study_that_is_not_there_names_those_that_are():
-    with pytest.raises(UserError, match="found .none.; allowed: .*answer, .*drift.*, or the path of a spec"):
+    with pytest.raises(UserError, match="found 'none'; allowed: .*answer, .*drift.*, or the path of a spec"):
         read_study("none")
 
 
@@ -255,9 +255,12 @@ def test_values_that_the_rule_measures_are_missing_once_they_are_measured_otherw
         },
         "machine": {"cpu_model": "m", "cores": 2},
         "provenance": {},
+        "schema": {"version": "3.7.0"},
     }
     made = collect.row_of(study, study.cells[0], record)
-    assert made.values == {"newton": 3, "steps": 2, "error": 0.5}
+    assert made.values == {"newton": 3, "steps": 2, "error": 0.5} and made.origin["version"]
+    with pytest.raises(UserError, match="small.json: found 13 unknowns for 'strip a one 1'; allowed: 12, those of its run"):
+        collect.row_of(study, replace(study.cells[0], unknowns=13), record)
     rows = {cell.key: replace(made, key=cell.key) for cell in study.cells}
     assert collect.missing(study, rows) == []
     rule_of_small.MEASURED = {"error": "distance to a refined run"}
@@ -272,16 +275,79 @@ def test_what_values_depend_on_beside_the_run_makes_another_cell(tmp_path, rule_
     assert key() == key(against={}) != key(against={"closed_form": "a"}) != key(against={"closed_form": "b"})
 
 
-def test_cells_that_others_decide_are_not_run(tmp_path, rule_of_small):
+@pytest.fixture
+def decided(rule_of_small):
+    """The first cell, once it has a row, decides how the three after it end."""
+    rule_of_small.decided = lambda study, rows: (
+        {cell.key: "stalled" for cell in study.cells[1:4]} if study.cells[0].key in rows else {}
+    )
+
+
+def test_cells_that_others_decide_are_not_run(tmp_path, decided):
     study = written(tmp_path)
-    rule_of_small.decided = lambda study, rows: {study.cells[1].key} if study.cells[0].key in rows else set()
     assert len(collect.missing(study, {})) == 8
     rows = {study.cells[0].key: row(study.cells[0])}
-    assert study.cells[1] not in collect.missing(study, rows) and len(collect.missing(study, rows)) == 6
+    assert collect.missing(study, rows) == study.cells[4:] and len(collect.missing(study, rows, every=True)) == 7
     assert cost.plan(study, rows, study.cells)[:2] == [
-        "small: 8 cells, 1 with a row in small.rows.jsonl, 6 to run",
-        "1 more cell needs no run, since others decide the outcome",
+        "small: 8 cells, 1 with a row in small.rows.jsonl, 4 to run",
+        "3 more cells need no run, since others decide the outcome",
     ]
+    assert cost.plan(study, rows, study.cells, every=True)[0].endswith("7 to run")
+    outdated = {key: replace(one, sources={}) for key, one in rows.items()}
+    assert len(collect.missing(study, outdated)) == 8  # a row that has to be made again decides nothing
+
+
+def test_a_page_counts_the_decided_cells_that_were_run_all_the_same(tmp_path, decided):
+    study = written(tmp_path)
+    rows = [row(study.cells[0]), row(study.cells[1], "stalled"), row(study.cells[2], "ok")]
+    assert page.checks_of(study, rows) == {"left_out": 1, "run": 2, "held": 1}
+    assert page.checks_of(study, rows[1:]) == {"left_out": 0, "run": 0, "held": 0}
+    study.file.with_suffix(".md").write_text("{{ checks.held }} of {{ checks.run }}")
+    assert page.text_of(study, rows, {}) == "1 of 2"
+
+
+def test_a_spot_check_runs_a_seeded_sample_of_the_decided_cells(tmp_path, decided, monkeypatch, capsys):
+    study, asked = written(tmp_path), []
+    monkeypatch.setattr(
+        verb, "run_cells", lambda study, cells, *_: asked.append(cells) or [row(cell, "stalled") for cell in cells]
+    )
+
+    def sample(most, seed, cells=study.cells):
+        store.write_rows(store.file_of(study), {study.cells[0].key: row(study.cells[0])})
+        asked.clear()
+        return verb.spot_check(study, cells, most, seed), [cell.key for of in asked for cell in of]
+
+    made, keys = sample(2, 1)
+    assert made == 2 and set(keys) < {cell.key for cell in study.cells[1:4]} and sample(2, 1) == (made, keys)
+    assert len({tuple(sample(2, seed)[1]) for seed in range(8)}) > 1
+    assert sample(9, 1)[0] == 3 and sample(9, 1, study.cells[2:]) [0] == 2
+    assert "spot check of 3 cells that others decide" in capsys.readouterr().err
+    assert page.checks_of(study, page_rows(study)) == {"left_out": 1, "run": 2, "held": 2}
+
+
+def page_rows(study):
+    return list(collect.current(study, store.read_rows(store.file_of(study))).values())
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["--plan", "--spot-check", "2"], "--spot-check: found beside --plan, which runs nothing; allowed: one of the"),
+        (["--no-run", "--spot-check", "2"], "--spot-check: found beside --no-run"),
+        (["--spot-check", "-1"], "--spot-check"),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(tmp_path, words, text):
+    with pytest.raises(UserError, match=text):
+        verb.arguments([str(written(tmp_path).file), *words])
+
+
+def test_cells_of_one_sweep_have_the_labels_alike_that_the_rule_names(tmp_path, rule_of_small):
+    study = written(tmp_path)
+    assert [len(part) for part in collect.parts(study, study.cells)] == [8]
+    rule_of_small.ALIKE = ("level", "formulation")
+    parts = list(collect.parts(study, study.cells))
+    assert [[cell.label for cell in part] for part in parts][0] == ["strip a one 1", "strip a one 2"] and len(parts) == 4
 
 
 # --- what a call may run, and what it is expected to take
@@ -333,6 +399,7 @@ def test_rows_and_page_of_a_call_with_a_folder_lie_in_it(tmp_path):
 
 
 def test_a_row_whose_seconds_were_not_kept_is_no_estimate(tmp_path):
+    study = written(tmp_path)
     rows = {cell.key: replace(row(cell), seconds=None) for cell in study.cells[:4]}
     assert cost.plan(study, rows, study.cells)[1:] == [
         "4 runs without a kept row whose labels are alike: not estimated"
@@ -341,6 +408,7 @@ def test_a_row_whose_seconds_were_not_kept_is_no_estimate(tmp_path):
     assert cost.plan(study, rows, study.cells[4:])[1] == "4 runs without a kept row whose labels are alike: not estimated"
 def test_a_call_whose_runs_do_not_pass_ends_with_1(tmp_path, rule_of_small, capsys):
     """The rule judges the cells of the call alone."""
+    study = written(tmp_path)
     rows = [row(cell, "ok" if cell.place["level"] == "a" else "nan") for cell in study.cells]
     store.write_rows(store.file_of(study), {one.key: one for one in rows})
     study.file.with_suffix(".md").write_text("{{ number }}")

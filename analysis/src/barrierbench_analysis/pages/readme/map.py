@@ -1,29 +1,17 @@
-"""The sentences of the gap map that README shows, from results/gap_map.json."""
+"""The sentences of the gap map that README shows, from results/studies/gap_map.jsonl."""
 
 from __future__ import annotations
 
 import textwrap
-from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.studies.gap_map.judge import counts
-from barrierbench_analysis.studies.gap_map.report import sentences
-from barrierbench_analysis.studies.gap_map.rows import NOT_RUN
-from barrierbench_analysis.studies.gap_map.table import read
-
-FILE = ROOT / "results" / "gap_map.json"
+from barrierbench_analysis.studies.rules.gap_map.page import sentences
+from barrierbench_analysis.studies.rules.gap_map.table import NOT_RUN, Map
 
 
-def gather(file: Path = FILE) -> list[str]:
-    """Errors: UserError where the kept map cannot be read."""
-    try:
-        found = read(file)
-    except (UserError, OSError) as error:
-        raise UserError(f"{file}: {error}; ./bench study gap-map --quick makes one") from error
-    n, (low, high) = counts(found.rows), found.about["unknowns"]
+def gather(found: Map) -> list[str]:
+    n, (low, high) = found.counts(), found.unknowns
     of = (
-        f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {found.about['runs']} runs of"
+        f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {len(found.made)} runs of"
         f" {low} to {high} unknowns"
     )
     return [

@@ -1,6 +1,6 @@
 """The log beside the cubic over theta, without a strain limit and with one: the first results of
-docs/results/which-barrier.md, from results/claims.json and results/gap_map.json. Each is the number of the
-strongest evidence there is.
+docs/results/which-barrier.md, from results/claims.json and results/studies/gap_map.jsonl. Each is the number
+of the strongest evidence there is.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ import textwrap
 from dataclasses import dataclass
 
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.pages.stated.number import OFF, OWN, SAME, Number, strongest
 from barrierbench_analysis.pages.stated.sources import confirmation, of_claim, of_map
 from barrierbench_analysis.studies.claims import table as claims_table
@@ -17,16 +16,14 @@ from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import missing
 from barrierbench_analysis.studies.claims.slices import rows_of
 from barrierbench_analysis.studies.claims.table import Table
-from barrierbench_analysis.studies.gap_map import size_page
-from barrierbench_analysis.studies.gap_map import table as map_table
-from barrierbench_analysis.studies.gap_map.table import Map
+from barrierbench_analysis.studies.rules.gap_map import size_tables
+from barrierbench_analysis.studies.rules.gap_map.table import Map, kept_map
 
 CLAIM = "H1"
 METRIC, PAIR = "cond_p95", ("log", "cubic")
 AXIS = {OFF: "off", SAME: "log"}  # limit -> its word in the parts of the claim
 LIKE_METRICS = (METRIC, "pcg", "newton")
 LIKE = (0.1, 0.01, 0.001)  # targets of the comparison in which contact and limiter have one form
-MAP = ROOT / "results" / "gap_map.json"
 
 
 @dataclass(frozen=True)
@@ -74,14 +71,14 @@ def gather(table: Table | None = None, found: Map | None = None) -> dict:
     confirmed = [n for n in every if n.confirmed and n.limit == OWN]
     thetas = sorted({part["theta"] for part in parts[False]}, reverse=True)
     slices = {limit: [_headline(table, parts, numbers, theta, limit) for theta in thetas] for limit in AXIS}
-    found = found or map_table.read(MAP)
+    found = found or kept_map()
     like = [
         {n.metric: n for n in of_map(found, PAIR[1], "on", theta) if n.metric in LIKE_METRICS}
         for theta in LIKE
     ]
     if not all(like):
-        raise UserError(f"{MAP}: no place in which both got through with a limit of their own form")
-    return {"slices": slices, "like": like, "confirmed": confirmed, "size": size_page.sentences(found)}
+        raise UserError("gap map: found no place in which both got through with a limit of their own form")
+    return {"slices": slices, "like": like, "confirmed": confirmed, "size": size_tables.sentences(found)}
 
 
 def headlines(gathered: dict) -> list[Headline]:

@@ -22,14 +22,13 @@ from barrierbench_analysis.pages.stated.cost import gather as gather_cost
 from barrierbench_analysis.program.arguments import parser_of
 from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.studies.claims import table as claims_table
-from barrierbench_analysis.studies.gap_map import table as map_table
 from barrierbench_analysis.studies.kit.study import page as study_page
 from barrierbench_analysis.studies.kit.study.spec import read_study
+from barrierbench_analysis.studies.rules.gap_map.table import kept_map
 
 from . import figures
 from .map import gather as gather_map
 from .numbers import FILE, RUNS, gather, read, write
-from .slices import MAP
 from .slices import gather as gather_slices
 from .snippets import faults
 from .templates import PARTS, filled, lacking
@@ -43,11 +42,11 @@ def kept() -> dict:
     """The answer, the numbers of the demo, those of the claims' slices, the sentences of the gap map, what
     several studies say of one quantity, and what studies take. Errors: UserError where one is missing.
     """
-    claims, found = claims_table.read(claims_table.FILE), map_table.read(MAP)
+    claims, found = claims_table.read(claims_table.FILE), kept_map()
     studies = {
         "answer": study_page.numbers_of(read_study("answer"))["table"],
         "slices": gather_slices(claims, found),
-        "gap_map": gather_map(),
+        "gap_map": gather_map(found),
         "several": several.gather(claims, found, read_study("ablation")),
     }
     return read() | studies | {"cost": gather_cost()}

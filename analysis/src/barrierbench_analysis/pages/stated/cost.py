@@ -31,16 +31,10 @@ def _claims(file: Path) -> tuple[int, float]:
     return sum(len(one["rows"]) for one in sweeps), sum(one["about"]["seconds"] for one in sweeps)
 
 
-def _gap_map(file: Path) -> tuple[int, float]:
-    data = read_object(file)
-    place = data["columns"].index("seconds")
-    return _counted([row[place] for row in data["rows"]])
-
-
 # Study -> file, command, and its runs with their core seconds. Every run has one thread.
 STUDIES: dict[str, tuple[str, str, Callable[[Path], tuple[int, float]]]] = {
     "claims": ("claims.json", "./bench study claims", _claims),
-    "gap map": ("gap_map.json", "./bench study gap-map", _gap_map),
+    "gap map": ("studies/gap_map.jsonl", "./bench study gap-map", _of_rows),
     "Pareto fronts": ("studies/pareto.jsonl", "./bench study pareto", _of_rows),
     "work-precision": ("studies/work_precision.jsonl", "./bench study work-precision", _of_rows),
     "catalogue": ("studies/catalogue.jsonl", "./bench study catalogue", _of_rows),

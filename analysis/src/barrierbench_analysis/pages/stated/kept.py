@@ -7,17 +7,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from barrierbench_analysis.studies.gap_map import size_page
-from barrierbench_analysis.studies.gap_map import table as map_table
-from barrierbench_analysis.studies.gap_map.judge import counts
-from barrierbench_analysis.studies.gap_map.rows import CANNOT, NO_CONTACT, NOT_RUN
+from barrierbench_analysis.studies.rules.gap_map import size_tables
+from barrierbench_analysis.studies.rules.gap_map.table import CANNOT, NO_CONTACT, NOT_RUN, kept_map
+from barrierbench_analysis.tables.outcomes import OK
 
 from . import cost
 from .counted import CELLS, OF_CELLS, STUDIES
 from .pages import pair
 from .statement import Statement
 
-MAP = "gap_map.json"
+MAP = "studies/gap_map.jsonl"
 
 
 def kept(results: Path) -> Iterator[Statement]:
@@ -25,9 +24,11 @@ def kept(results: Path) -> Iterator[Statement]:
     for row in cost.gather(results):
         yield Statement(f"kept data of {row['study']}", STUDIES[row["study"]], "", str(row["runs"]))
     if (results / MAP).is_file():
-        found = map_table.read(results / MAP)
-        n = counts(found.rows)
-        ends = (n["ok"], n[CANNOT], n[NO_CONTACT], n["failed"], n[NOT_RUN])
+        found = kept_map(results / MAP)
+        n = found.counts()
+        ends = (n[OK], n[CANNOT], n[NO_CONTACT], n["failed"], n[NOT_RUN])
         for quantity, number in zip((CELLS, *OF_CELLS), (n["cells"], *ends)):
             yield Statement(MAP, quantity, "", str(number))
-        yield from pair("\n".join([*size_page.pair_section(found), *size_page.section(found)]), MAP)
+        pairs = [f"## {size_tables.PAIR_TITLE}", "", *size_tables.pair_table(found), ""]
+        sizes = [*size_tables.size_table(found), "", *size_tables.slope_table(found)]
+        yield from pair("\n".join([*pairs, f"## {size_tables.SIZE_TITLE}", "", *sizes]), MAP)

@@ -10,10 +10,10 @@ from dataclasses import replace
 
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.claims.table import Table
-from barrierbench_analysis.studies.gap_map.compare import METRICS
-from barrierbench_analysis.studies.gap_map.spec import REFERENCE
-from barrierbench_analysis.studies.gap_map.table import Map
 from barrierbench_analysis.studies.kit.study.spec import Study
+from barrierbench_analysis.studies.rules.gap_map.compare import METRICS
+from barrierbench_analysis.studies.rules.gap_map.spec import REFERENCE
+from barrierbench_analysis.studies.rules.gap_map.table import Map
 
 from .number import OFF, OWN, SAME, Number
 from .sources import of_ablation, of_claims, of_map

@@ -12,13 +12,13 @@ from barrierbench_analysis.studies.claims.judge import judge_part, missing
 from barrierbench_analysis.studies.claims.proofs import Eval
 from barrierbench_analysis.studies.claims.table import Table
 from barrierbench_analysis.studies.claims.verdict import Judged
-from barrierbench_analysis.studies.gap_map.compare import METRICS, at_theta
-from barrierbench_analysis.studies.gap_map.spec import REFERENCE
-from barrierbench_analysis.studies.gap_map.table import Map
 from barrierbench_analysis.studies.kit.study import page
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.rules.ablation.effects import main_effects
 from barrierbench_analysis.studies.rules.ablation.factors import read_factorial
+from barrierbench_analysis.studies.rules.gap_map.compare import METRICS, at_theta
+from barrierbench_analysis.studies.rules.gap_map.spec import REFERENCE
+from barrierbench_analysis.studies.rules.gap_map.table import Map
 
 from .number import ALIKE, OFF, OWN, SAME, Number
 

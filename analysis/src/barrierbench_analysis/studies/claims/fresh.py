@@ -29,6 +29,7 @@ TUNING = (
     "configs/gates/*.json",
     "configs/stress/*.json",
     "configs/gap_map/*.json",
+    "configs/studies/gap_map.json",
 )
 # Of a generated mesh `level`, `n` and all that begins with n_ is its resolution, and a finer mesh is no other
 # scene; these numbers are its shape.

@@ -36,9 +36,16 @@ def rows_of(study: Study, file: Path | None = None) -> list[store.Row]:
     return [replace(there[cell.key], place=cell.place) for cell in study.cells if cell.key in there]
 
 
+def _some(study: Study) -> list[store.Row]:
+    """As rows_of. Errors: UserError where there is none."""
+    if rows := rows_of(study):
+        return rows
+    raise UserError(f"{store.file_of(study)}: found no row; {study.command} run makes them")
+
+
 def numbers_of(study: Study) -> dict:
     """What the rule makes of the kept rows. Errors: UserError."""
-    return study.module.rule(study, rows_of(study))
+    return study.module.rule(study, _some(study))
 
 
 def made_of(rows: list[store.Row]) -> str:
@@ -89,9 +96,7 @@ def write_page(study: Study) -> Path:
     """Writes the page of the study from its kept rows, and the figures that its rule draws (function `draw`:
     study, rows, numbers, folder -> files). Errors: UserError.
     """
-    rows = rows_of(study)
-    if not rows:
-        raise UserError(f"{store.file_of(study)}: found no row; {study.command} run makes them")
+    rows = _some(study)
     numbers = study.module.rule(study, rows)
     write_whole(study.page, text_of(study, rows, numbers))
     if hasattr(study.module, "draw"):

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from barrierbench_analysis.io.record_file import read_trace
 from barrierbench_analysis.program.start import evaluated
-from barrierbench_analysis.studies.gap_map.rows import conditions, reached
 from barrierbench_analysis.studies.kit.metrics import FOLDER
 from barrierbench_analysis.studies.kit.study import collect
 from barrierbench_analysis.studies.kit.study.spec import Case, Cell, Study
 from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.studies.rules.gap_map.measured import conditions, reached
 from barrierbench_analysis.studies.rules.stress.entry import Formulation, Test, read_test
 from barrierbench_analysis.tables.outcomes import OK
 

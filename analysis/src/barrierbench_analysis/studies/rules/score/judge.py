@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from statistics import median
 
-from barrierbench_analysis.studies.gap_map.compare import at_gap
+from barrierbench_analysis.studies.rules.gap_map.compare import at_gap
 from barrierbench_analysis.tables.statistics import Ratio, spread
 
 from .candidate import RIVALS

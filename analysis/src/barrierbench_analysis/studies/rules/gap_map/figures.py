@@ -4,7 +4,6 @@ measured.
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -14,23 +13,20 @@ import pandas as pd
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.figures.ticks import log_ticks
 from barrierbench_analysis.program.start import evaluated
+from barrierbench_analysis.studies.kit.study.spec import Study
+from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.tables.outcomes import OK
 
 from . import size_figure
-from .compare import Lines, counted_once, lines
-from .judge import FAR, MADE, Pair, counts, extent, pairs, scatter
-from .rows import NOT_RUN
+from .compare import Lines, counted_once, lines, runs_of
+from .law import FAR, MADE, pairs, sentences
+from .page import TITLES
 from .size import drawn_sizes
+from .size_figure import METRICS
 from .spec import LIMITS, REFERENCE
-from .table import Map
+from .table import NOT_RUN, Map
 
-METRICS = (
-    ("cond_p95", "cond, raw"),
-    ("bj_p95", "cond, block Jacobi"),
-    ("pcg", "PCG iterations"),
-    ("newton", "Newton iterations"),
-)
 COLUMN_IN = 2.45  # of one limit mode, on the page of the study
-TITLES = {"on": "limit on", "contact": "limit the same in every run", "off": "no strain limit"}
 SHOWN = (
     "What a run takes against the gap that its contacts reach: the load-weighted median of d/d_hat at step"
     " ends, deeper to the right. A marker is a target theta ({gaps}), geometric mean over scenes ({scenes}),"
@@ -49,29 +45,25 @@ LAW = (
     " over steps). (a) Across: the ratio of rho at the median gaps that both reached. Filled: contact makes"
     " the largest eigenvalue in both (cond at least {made:g} times that without contact). (b) Across: the"
     " same, but not below the ratio that is left without contact. Filled: contact makes the log's. Lines:"
-    " equal, and a factor {far:g} off. {sentence}"
+    " equal, and a factor {far:g} off. Of all shapes, those of the other figure too. {sentence}"
 )
 
 
 def _over(found: Map, limit: str, metric: str):
     """What a number of a row is divided by: the log's at its first target in the same place."""
+    logs = [r for of in runs_of(found.rows, limit, REFERENCE).values() for r in of]
     first = {
         (r["scene"], r["resolution"]): r[metric]
-        for r in found.rows
-        if r["limit"] == limit
-        and r["shape"] == REFERENCE
-        and r["theta"] == max(found.gaps)
-        and r["outcome"] == "ok"
+        for r in logs
+        if r["theta"] == max(found.gaps) and r["outcome"] == OK
     }
     return lambda row: first.get((row["scene"], row["resolution"]))
 
 
 def _rho(found: Map, shape: str, gaps: list[float]) -> list[float]:
-    name, argument = found.about["shapes"][shape]
-    return [
-        a["rho"]
-        for a in evaluated([{"kind": "rho", "shape": name, "argument": argument, "u": u} for u in gaps])
-    ]
+    of = next(one for one in found.about["shapes"] if one["label"] == shape)
+    query = {"kind": "rho", "shape": of["shape"], "argument": of["argument"]}
+    return [answer["rho"] for answer in evaluated([{**query, "u": u} for u in gaps])]
 
 
 def _law(axis, found: Map, drawn: Lines) -> None:
@@ -85,20 +77,15 @@ def _law(axis, found: Map, drawn: Lines) -> None:
         if len(steps) > 1:
             reached = [p.gap for p in steps]
             gaps = list(np.geomspace(min(reached), max(reached), 40))
-            axis.plot(
-                gaps,
-                [max(1.0, scale * r) for r in _rho(found, shape, gaps)],
-                color=style.look(shape).color,
-                linestyle=":",
-                linewidth=1.0,
-                gid=style.REFERENCE,
-            )
+            law = [max(1.0, scale * rho) for rho in _rho(found, shape, gaps)]
+            color = style.look(shape).color
+            axis.plot(gaps, law, color=color, linestyle=":", linewidth=1.0, gid=style.REFERENCE)
 
 
 def _series(axis, drawn: Lines, shape: str) -> None:
     look, points = style.look(shape), drawn.of[shape]
-    for pairs_ in drawn.thin[shape].values():
-        axis.plot([g for g, _ in pairs_], [v for _, v in pairs_], color=look.color, linewidth=0.4, alpha=0.35)
+    for line in drawn.thin[shape].values():
+        axis.plot([x for x, _ in line], [y for _, y in line], color=look.color, linewidth=0.4, alpha=0.35)
     axis.plot(
         [p.gap for p in points],
         [p.value for p in points],
@@ -111,19 +98,11 @@ def _series(axis, drawn: Lines, shape: str) -> None:
 
 
 def _numbers(drawn: Lines, limit: str, metric: str) -> list[dict]:
+    of = {"places": len(drawn.whole), "places_run": len(drawn.run)}
     return [
-        {
-            "limit": limit,
-            "shape": shape,
-            "metric": metric,
-            "theta": p.theta,
-            "gap": p.gap,
-            "value": p.value,
-            "places": len(drawn.whole),
-            "places_run": len(drawn.run),
-        }
-        for shape, points in drawn.of.items()
-        for p in points
+        {"limit": limit, "shape": shape, "metric": metric, **vars(step), **of}
+        for shape, steps in drawn.of.items()
+        for step in steps
     ]
 
 
@@ -134,23 +113,16 @@ def _span(values: list[float], least: float) -> tuple[float, float]:
 
 
 def _part(found: Map) -> str:
-    """Of which runs a figure is; empty where all are there."""
-    left = counts(found.rows)[NOT_RUN]
-    return (
-        f"{left} of {len(found.rows)} cells are not run yet; resolution: runs that are there, of those that"
-        f" can be: {extent(found.rows)}."
-        if left
-        else ""
-    )
+    """Of which runs a figure is, behind a blank; empty where all are there."""
+    left = found.counts()[NOT_RUN]
+    words = "cells are not run yet; resolution: runs that are there, of those that can be:"
+    return f" {left} of {len(found.rows)} {words} {found.extent()}." if left else ""
 
 
 def _fit_y(axis) -> None:
     """Holds 1 and every number that is drawn, over a factor 3 at least."""
-    low, high = _span(
-        [1.0]
-        + [float(y) for shown in axis.lines if shown.get_gid() != style.REFERENCE for y in shown.get_ydata()],
-        3.0,
-    )
+    shown = [line for line in axis.lines if line.get_gid() != style.REFERENCE]
+    low, high = _span([1.0, *(float(y) for line in shown for y in line.get_ydata())], 3.0)
     axis.set_ylim(low, high)
     log_ticks(axis.yaxis, low, high)
 
@@ -164,7 +136,7 @@ def _panel(axis, found: Map, limit: str, shapes: list[str], metric: str) -> list
     drawn = lines(found.rows, limit, shapes, metric, over)
     for shape in shapes:
         _series(axis, drawn, shape)
-    if metric == METRICS[0][0]:
+    if metric == next(iter(METRICS)):
         axis.set_title(TITLES[limit], fontsize=8)
         if limit != "on":
             _law(axis, found, drawn)
@@ -181,15 +153,18 @@ def _legend(fig, axis) -> None:
 
 
 def _shown(found: Map, numbers: list[dict]) -> str:
-    scenes = found.about["scenes"]
     modes = " ".join(
         f"{TITLES[m][0].upper()}{TITLES[m][1:]}: {LIMITS[m]}." for m in found.limits if LIMITS[m] != TITLES[m]
     )
     of = {n["limit"]: (n["places"], n["places_run"]) for n in numbers}
     places = "; ".join(f"{n} of {run} ({TITLES[limit]})" for limit, (n, run) in of.items())
-    gaps = ", ".join(f"{g:g}" for g in found.gaps)
-    once = counted_once(scenes)
-    return SHOWN.format(once=once, scenes=", ".join(scenes), gaps=gaps, modes=modes, places=places or "none")
+    return SHOWN.format(
+        once=counted_once(found.scenes),
+        scenes=", ".join(found.scenes),
+        gaps=", ".join(f"{gap:g}" for gap in found.gaps),
+        modes=modes,
+        places=places or "none",
+    )
 
 
 def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None = None) -> list[Path]:
@@ -204,7 +179,7 @@ def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None =
         squeeze=False,
     )
     numbers = []
-    for k, (metric, title) in enumerate(METRICS):
+    for k, (metric, title) in enumerate(METRICS.items()):
         for axis, limit in zip(axes[k], limits):
             numbers += _panel(axis, found, limit, shapes, metric)
         axes[k, 0].set_ylabel(f"{title}\nover the log's at first")
@@ -215,31 +190,7 @@ def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None =
         log_ticks(axis.xaxis, low, 1.0, 7 if len(limits) < 3 else 5)
         axis.set_xlabel(r"reached gap / $\hat d$ (deeper to the right)")
     _legend(fig, axes[0, 0])
-    return style.save(fig, stem, pd.DataFrame(numbers), f"{_shown(found, numbers)} {_part(found)}".strip())
-
-
-def law_sentence(found: list[Pair], what: str) -> str:
-    """Scatter of both forms of the law."""
-    parts = []
-    for form, errors in (
-        ("the law, contact making both", [p.error for p in found if p.by_contact]),
-        ("the law with its floor, contact making the log's", [p.floor_error for p in found if p.by_log]),
-    ):
-        spread = scatter(errors)
-        parts.append(
-            f"{form}: {len(errors)} of {len(found)} pairs"
-            + (
-                f", ln(measured/predicted) {spread[0]:+.2f} in the mean with standard deviation"
-                f" {spread[1]:.2f} (a factor {math.exp(spread[1]):.2f})"
-                if spread
-                else ", too few for a scatter"
-            )
-        )
-    floor = sum(p.by_log and p.floor > p.predicted for p in found)
-    parts.append(
-        f"in {floor} of the latter the floor decides, which says no more than that contact adds nothing there"
-    )
-    return f"{what}: {'; '.join(parts)}."
+    return style.save(fig, stem, pd.DataFrame(numbers), (_shown(found, numbers) + _part(found)).strip())
 
 
 def _draw_pairs(axis, of: list, shapes: list[str], predicted, made) -> None:
@@ -262,19 +213,9 @@ def _draw_pairs(axis, of: list, shapes: list[str], predicted, made) -> None:
 
 
 def _law_numbers(of: list) -> pd.DataFrame:
-    rows = [
-        {
-            "pair": p.name,
-            "predicted": p.predicted,
-            "predicted_p05": p.predicted_p05,
-            "floor": p.floor,
-            "measured": p.measured,
-            "made": p.made[0],
-            "made_log": p.made[1],
-        }
-        for p in of
-    ]
-    return pd.DataFrame(rows)
+    columns = ["pair", "predicted", "predicted_p05", "floor", "measured", "made", "made_log"]
+    rows = [[p.name, p.predicted, p.predicted_p05, p.floor, p.measured, *p.made] for p in of]
+    return pd.DataFrame(rows, columns=columns)
 
 
 def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
@@ -293,14 +234,8 @@ def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
         axis.set(xscale="log", yscale="log", xlabel="predicted", title=title)
         _draw_pairs(axis, of, shapes, predicted, made)
         for factor, width in ((1, 0.8), (FAR, 0.4), (1 / FAR, 0.4)):
-            axis.plot(
-                [low, high],
-                [factor * low, factor * high],
-                color="#666666",
-                linewidth=width,
-                gid=style.REFERENCE,
-                zorder=0,
-            )
+            ends = [low, high], [factor * low, factor * high]
+            axis.plot(*ends, color="#666666", linewidth=width, gid=style.REFERENCE, zorder=0)
         axis.set(xlim=(low, high), ylim=(low, high))
         log_ticks(axis.xaxis, low, high)
         log_ticks(axis.yaxis, low, high)
@@ -309,22 +244,18 @@ def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     handles, labels = axes[0].get_legend_handles_labels()
     handles.append(plt.Line2D([], [], color="#444444", marker="o", markerfacecolor="none", linestyle="none"))
     fig.legend(handles, [*labels, "not made by contact"], loc="outside lower center", ncols=4, frameon=False)
-    scaled = pairs(found.rows, raw=False)
-    sentence = (
-        f"Of all shapes, those of the other figure too. {law_sentence(every, 'Raw')}"
-        f" {law_sentence(scaled, 'Block Jacobi')}"
-    )
-    return style.save(
-        fig,
-        stem,
-        _law_numbers(of),
-        f"{LAW.format(made=MADE, far=FAR, sentence=sentence)} {_part(found)}".strip(),
-    )
+    caption = LAW.format(made=MADE, far=FAR, sentence=" ".join(sentences(found.rows))) + _part(found)
+    return style.save(fig, stem, _law_numbers(of), caption)
+
+
+def draw(study: Study, rows: list[Row], numbers: dict, folder: Path) -> list[Path]:
+    """The figures of the page."""
+    return draw_all(numbers["map"], folder)
 
 
 def draw_all(found: Map, folder: Path, width_in: float | None = None) -> list[Path]:
     """gap_map and gap_law, each with _more where there are more shapes than one figure holds, and gap_size;
-    all their files. width_in: as in draw_map. Asks `eval` for rho.
+    all their files. width_in: as in draw_map. The program evaluates rho.
     """
     folder.mkdir(parents=True, exist_ok=True)
     rest = [s for s in found.shapes if s not in found.main]

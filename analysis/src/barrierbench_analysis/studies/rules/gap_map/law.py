@@ -1,19 +1,21 @@
-"""What the rows of a gap map say of single runs and of the log's pairs: who fails, who reaches which gap, and
-the area law against what was measured. Shapes beside each other: compare.py.
+"""What the rows of a gap map say of single runs and of pairs of a shape and the log: which runs fail, which
+gaps are not reached, and the area law against what was measured. Shapes beside each other: compare.py.
 """
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 
 from barrierbench_analysis.studies.kit.front import reached
+from barrierbench_analysis.tables.outcomes import OK
 
 from .compare import path, runs_of
-from .rows import CANNOT, NO_CONTACT, NOT_RUN
 from .spec import REFERENCE
+from .table import NOT_RUN
 
 MADE = 3.0  # contact makes the largest eigenvalue where cond is at least this many times that without contact
 FAR = 2.0  # a measured ratio farther than this factor from the predicted one is an exception
@@ -25,25 +27,20 @@ def failures(rows: list[dict]) -> dict[tuple[str, str, float], dict[str, int]]:
     """(shape, limit, theta) -> outcome -> runs; runs that reached a gap, and cells that were not run, are not
     in it.
     """
-    found: dict[tuple[str, str, float], dict[str, int]] = {}
+    found: dict[tuple[str, str, float], Counter] = {}
     for r in rows:
-        if r["outcome"] not in ("ok", NOT_RUN):
-            of = found.setdefault((r["shape"], r["limit"], r["theta"]), {})
-            of[r["outcome"]] = of.get(r["outcome"], 0) + 1
+        if r["outcome"] not in (OK, NOT_RUN):
+            found.setdefault((r["shape"], r["limit"], r["theta"]), Counter())[r["outcome"]] += 1
     return found
 
 
-def unreached(rows: list[dict], targets: list[float]) -> list[tuple[str, str, float]]:
-    """(limit, shape, target) that no place's path comes down to: named, never filled in."""
-    found = []
-    for limit in dict.fromkeys(r["limit"] for r in rows):
-        for shape in dict.fromkeys(r["shape"] for r in rows if r["limit"] == limit):
-            ranges = [reached(path(of, "gap")) for of in runs_of(rows, limit, shape).values()]
-            found += [
-                (limit, shape, target)
-                for target in targets
-                if not any(r and r[0] <= target <= r[1] for r in ranges)
-            ]
+def unreached(rows: list[dict], targets: list[float]) -> dict[tuple[str, str], list[float]]:
+    """(limit, shape) -> targets that no place's path comes down to: named, never filled in."""
+    found = {}
+    for limit, shape in dict.fromkeys((r["limit"], r["shape"]) for r in rows):
+        ranges = [reached(path(of, "gap")) for of in runs_of(rows, limit, shape).values()]
+        if left := [t for t in targets if not any(r and r[0] <= t <= r[1] for r in ranges)]:
+            found[limit, shape] = left
     return found
 
 
@@ -95,31 +92,18 @@ def pairs(rows: list[dict], raw: bool = True) -> list[Pair]:
     """
     cond, without = ("cond_end", "nc_end") if raw else ("bj_end", "nc_bj_end")
 
-    def key(r):
+    def key(r: dict) -> tuple:
         return r["scene"], r["resolution"], r["limit"], r["theta"]
 
-    good = [
-        r
-        for r in rows
-        if r["outcome"] == "ok" and all(r[c] and r[c] > 0 for c in ("rho", "rho_p05", cond, without))
-    ]
+    def beside(r: dict, log: dict) -> Pair:
+        made = (r[cond] / r[without], log[cond] / log[without])
+        rho = (r[name] / log[name] for name in ("rho", "rho_p05"))
+        return Pair(r, log, *rho, r[cond] / log[cond], made, r[without] / log[cond])
+
+    needed = ("rho", "rho_p05", cond, without)
+    good = [r for r in rows if r["outcome"] == OK and all(r[name] and r[name] > 0 for name in needed)]
     logs = {key(r): r for r in good if r["shape"] == REFERENCE}
-    found = []
-    for r in good:
-        log = logs.get(key(r))
-        if log and r["shape"] != REFERENCE:
-            found.append(
-                Pair(
-                    r,
-                    log,
-                    r["rho"] / log["rho"],
-                    r["rho_p05"] / log["rho_p05"],
-                    r[cond] / log[cond],
-                    (r[cond] / r[without], log[cond] / log[without]),
-                    r[without] / log[cond],
-                )
-            )
-    return found
+    return [beside(r, logs[key(r)]) for r in good if r["shape"] != REFERENCE and key(r) in logs]
 
 
 def scatter(errors: list[float]) -> tuple[float, float] | None:
@@ -165,35 +149,33 @@ def exceptions(found: list[Pair]) -> list[Pair]:
 
 def made_by_contact(rows: list[dict], limit: str) -> tuple[int, int]:
     """In how many runs of the log contact makes the largest eigenvalue at step ends, and of how many."""
-    logs = [
-        r["cond_end"] / r["nc_end"]
-        for r in rows
-        if r["limit"] == limit
-        and r["shape"] == REFERENCE
-        and r["outcome"] == "ok"
-        and r["cond_end"]
-        and r["nc_end"]
-    ]
+    mine = [r for of in runs_of(rows, limit, REFERENCE).values() for r in of if r["outcome"] == OK]
+    logs = [r["cond_end"] / r["nc_end"] for r in mine if r["cond_end"] and r["nc_end"]]
     return sum(ratio >= MADE for ratio in logs), len(logs)
 
 
-def counts(rows: list[dict]) -> dict[str, int]:
-    """How the cells of the map ended."""
-    return {
-        "cells": len(rows),
-        "ok": sum(r["outcome"] == "ok" for r in rows),
-        **{word: sum(r["outcome"] == word for r in rows) for word in (CANNOT, NO_CONTACT, NOT_RUN)},
-        "failed": sum(r["outcome"] not in ("ok", CANNOT, NO_CONTACT, NOT_RUN) for r in rows),
-    }
+def sentences(rows: list[dict]) -> list[str]:
+    """Of condition numbers as they are, and scaled."""
+    return [_sentence(pairs(rows), "Raw"), _sentence(pairs(rows, raw=False), "Block Jacobi")]
 
 
-def extent(rows: list[dict]) -> str:
-    """Of every scene: its resolutions with the runs that are there, of those that can be."""
-    by: dict[str, dict[str, list[bool]]] = {}
-    for r in rows:
-        if r["outcome"] != CANNOT:
-            by.setdefault(r["scene"], {}).setdefault(r["resolution"], []).append(r["outcome"] != NOT_RUN)
-    return "; ".join(
-        f"{scene} " + ", ".join(f"{size}: {sum(there)} of {len(there)}" for size, there in sizes.items())
-        for scene, sizes in by.items()
+def _sentence(found: list[Pair], what: str) -> str:
+    """Scatter of both forms of the law."""
+    parts = []
+    for form, errors in (
+        ("the law, contact making both", [p.error for p in found if p.by_contact]),
+        ("the law with its floor, contact making the log's", [p.floor_error for p in found if p.by_log]),
+    ):
+        text = ", too few for a scatter"
+        if spread := scatter(errors):
+            mean, deviation = spread
+            text = (
+                f", ln(measured/predicted) {mean:+.2f} in the mean with standard deviation {deviation:.2f} (a"
+                f" factor {math.exp(deviation):.2f})"
+            )
+        parts.append(f"{form}: {len(errors)} of {len(found)} pairs{text}")
+    floor = sum(p.by_log and p.floor > p.predicted for p in found)
+    parts.append(
+        f"in {floor} of the latter the floor decides, which says no more than that contact adds nothing there"
     )
+    return f"{what}: {'; '.join(parts)}."

@@ -7,15 +7,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
 
 from barrierbench_analysis.studies.kit.front import Point, value_at
+from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import Ratio, ratio_over
+from barrierbench_analysis.tables.words import counted
 
-from .rows import CANNOT, NOT_RUN
 from .spec import REFERENCE
+from .table import CANNOT, NOT_RUN
 
 Place = tuple[str, str]  # scene, resolution
 Key = TypeVar("Key", bound=Hashable)
@@ -61,11 +64,7 @@ class Common:
     @property
     def words(self) -> str:
         scenes = count(scene for scene, _ in self.places)
-        return f"{_counted(len(self.places), 'place')} of {_counted(scenes, 'scene')}"
-
-
-def _counted(n: int, what: str) -> str:
-    return f"{n} {what}" + ("" if n == 1 else "s")
+        return f"{counted(len(self.places), 'place')} of {counted(scenes, 'scene')}"
 
 
 def common(found: dict[Key, dict[Place, Value | None]]) -> Common:
@@ -112,7 +111,7 @@ def _logs(of_shape: list[float | None], of_log: list[float | None]) -> tuple[flo
     return tuple(math.log(a / b) for a, b in zip(of_shape, of_log))
 
 
-def _beside_the_log(rows: list[dict], limit: str, shapes: Iterable[str], numbers: Callable) -> Common:
+def _beside_the_log(rows: list[dict], limit: str, shapes: Iterable[str], numbers: Callable) -> Beside:
     """numbers(runs of a shape in a place) -> its METRICS there, None where it was not tried."""
     logs, found = runs_of(rows, limit, REFERENCE), {}
     for shape in shapes:
@@ -123,25 +122,25 @@ def _beside_the_log(rows: list[dict], limit: str, shapes: Iterable[str], numbers
                 of[place] = _logs(mine, log)
         if of:
             found[shape] = of
-    return common(found)
-
-
-def _ratios(cut: Common) -> dict[str, dict[str, Ratio]]:
-    return {
-        shape: {
-            metric: over_scenes({place: logs[k] for place, logs in of.items()})
-            for k, metric in enumerate(METRICS)
-        }
-        for shape, of in cut.of.items()
-    }
+    return Beside(common(found))
 
 
 @dataclass(frozen=True)
 class Beside:
-    """ratios: shape -> metric -> over that of the log, all of the places of `cut`."""
+    """Shapes beside the log. cut: the logarithms of all METRICS over those of the log."""
 
-    ratios: dict[str, dict[str, Ratio]]
     cut: Common
+
+    @cached_property
+    def ratios(self) -> dict[str, dict[str, Ratio]]:
+        """shape -> metric -> over that of the log."""
+        return {
+            shape: {
+                metric: over_scenes({place: logs[k] for place, logs in of.items()})
+                for k, metric in enumerate(METRICS)
+            }
+            for shape, of in self.cut.of.items()
+        }
 
 
 def at_theta(rows: list[dict], limit: str, theta: float, shapes: Iterable[str]) -> Beside:
@@ -151,10 +150,9 @@ def at_theta(rows: list[dict], limit: str, theta: float, shapes: Iterable[str]) 
         mine = next((r for r in runs if r["theta"] == theta), None)
         if mine is None:
             return None
-        return [mine[metric] if mine["outcome"] == "ok" else None for metric in METRICS]
+        return [mine[metric] if mine["outcome"] == OK else None for metric in METRICS]
 
-    cut = _beside_the_log(rows, limit, shapes, numbers)
-    return Beside(_ratios(cut), cut)
+    return _beside_the_log(rows, limit, shapes, numbers)
 
 
 def path(runs: list[dict], metric: str) -> list[Point]:
@@ -162,7 +160,7 @@ def path(runs: list[dict], metric: str) -> list[Point]:
     failed breaks the path.
     """
     return [
-        Point(r["theta"], r["gap"], r[metric]) if r["outcome"] == "ok" else Point(r["theta"], None, None)
+        Point(r["theta"], r["gap"], r[metric]) if r["outcome"] == OK else Point(r["theta"], None, None)
         for r in runs
     ]
 
@@ -173,37 +171,17 @@ def at_gap(rows: list[dict], limit: str, gap: float, shapes: Iterable[str]) -> B
     def numbers(runs: list[dict]) -> list[float | None] | None:
         return [value_at(path(runs, metric), gap) for metric in METRICS] if runs else None
 
-    cut = _beside_the_log(rows, limit, shapes, numbers)
-    return Beside(_ratios(cut), cut)
+    return _beside_the_log(rows, limit, shapes, numbers)
 
 
-def gaps_at(rows: list[dict], limit: str, theta: float, shapes: Iterable[str]) -> Common:
-    """shape -> place -> gap that was reached at a target."""
-    return common(
-        {
-            shape: of
-            for shape in shapes
-            if (
-                of := {
-                    place: (r["gap"] or None) if r["outcome"] == "ok" else None
-                    for place, runs in runs_of(rows, limit, shape).items()
-                    for r in runs
-                    if r["theta"] == theta
-                }
-            )
-        }
-    )
-
-
-def deepest(rows: list[dict], limit: str, shapes: Iterable[str]) -> Common:
-    """shape -> place -> smallest gap that some run of it reached there."""
-    found = {}
+def deepest(rows: list[dict], limit: str, shapes: Iterable[str], theta: float | None = None) -> Common:
+    """shape -> place -> smallest gap that some run of it reached there, at a target where one is given."""
+    found: dict[str, dict[Place, float | None]] = {}
     for shape in shapes:
-        if runs := runs_of(rows, limit, shape):
-            found[shape] = {
-                place: min((r["gap"] for r in of if r["outcome"] == "ok" and r["gap"]), default=None)
-                for place, of in runs.items()
-            }
+        for place, runs in runs_of(rows, limit, shape).items():
+            if mine := [r for r in runs if theta in (None, r["theta"])]:
+                gaps = [r["gap"] for r in mine if r["outcome"] == OK and r["gap"]]
+                found.setdefault(shape, {})[place] = min(gaps, default=None)
     return common(found)
 
 
@@ -237,7 +215,7 @@ def _numbers(rows: list[dict], limit: str, shape: str, metric: str, over: Callab
     """(place, theta) -> gap and number of runs that have both; None of a run that has not."""
     return {
         (place, r["theta"]): (r["gap"], r[metric] / over(r))
-        if r["outcome"] == "ok" and r["gap"] and r[metric] and over(r)
+        if r["outcome"] == OK and r["gap"] and r[metric] and over(r)
         else None
         for place, runs in runs_of(rows, limit, shape).items()
         for r in runs

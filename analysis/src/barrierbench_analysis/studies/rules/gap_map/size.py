@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import Mean, Ratio, mean_over
 from barrierbench_analysis.tables.statistics import slope as line_slope
 
-from .compare import METRICS, Place, over_scenes, samples
-from .rows import NOT_RUN
+from .compare import METRICS, Place, over_scenes, runs_of, samples
 from .spec import REFERENCE
 
 BORDER = 1000  # unknowns: what is below and what is not is shown side by side
@@ -33,23 +33,18 @@ class Size:
         return self.scene, self.resolution
 
 
-def by_size(rows: list[dict], limit: str = LIMIT, shape: str = SHAPE) -> list[Size]:
+def by_size(rows: list[dict]) -> list[Size]:
     """Of every place and target at which both were run, the fewest unknowns first."""
-    of = {
-        (r["shape"], r["scene"], r["resolution"], r["theta"]): r
-        for r in rows
-        if r["limit"] == limit and r["shape"] in (REFERENCE, shape) and r["outcome"] != NOT_RUN
-    }
-    found = []
-    for (name, *place), other in of.items():
-        log = of.get((REFERENCE, *place))
-        if name == shape and log is not None and log["unknowns"]:
-            found.append(_size(log, other))
+    log, other = (
+        {(place, r["theta"]): r for place, runs in runs_of(rows, LIMIT, shape).items() for r in runs}
+        for shape in (REFERENCE, SHAPE)
+    )
+    found = [_size(log[at], r) for at, r in other.items() if at in log]
     return sorted(found, key=lambda size: (size.scene, size.unknowns, -size.theta))
 
 
 def _size(log: dict, other: dict) -> Size:
-    failed = "; ".join(f"{r['shape']}: {r['outcome']}" for r in (log, other) if r["outcome"] != "ok")
+    failed = "; ".join(f"{r['shape']}: {r['outcome']}" for r in (log, other) if r["outcome"] != OK)
     whole = not failed and all(log[metric] and other[metric] for metric in METRICS)
     ratios = {metric: log[metric] / other[metric] for metric in METRICS} if whole else None
     return Size(log["scene"], log["resolution"], log["theta"], log["unknowns"], ratios, failed)

@@ -13,6 +13,7 @@ from barrierbench_analysis.figures.ticks import log_ticks
 from barrierbench_analysis.io.errors import UserError
 
 from .size import LIMIT, SHAPE, Size, by_size, drawn_sizes, thetas_of
+from .size_tables import failed
 from .table import Map
 
 TITLE = "The log over the cubic against the number of unknowns"
@@ -23,16 +24,8 @@ METRICS = {
     "newton": "Newton iterations",
 }
 # Scenes are no formulations: other colours and markers than those of style.LOOKS, dark enough for a line.
-LOOKS = (
-    ("#1b1b1b", "o"),
-    ("#c23b22", "s"),
-    ("#1f6fb4", "^"),
-    ("#7a3e9d", "v"),
-    ("#2e8b57", "D"),
-    ("#b8860b", "P"),
-    ("#d6509b", "X"),
-    ("#5f6a72", "<"),
-)
+COLORS = ("#1b1b1b", "#c23b22", "#1f6fb4", "#7a3e9d", "#2e8b57", "#b8860b", "#d6509b", "#5f6a72")
+LOOKS = tuple(zip(COLORS, "os^vDPX<"))
 LEAST = 1.5  # over and under 1 that an axis shows at least
 SHOWN = (
     "The log's numbers over the {shape}'s in the same scene with the same mesh and the same loads, no strain"
@@ -43,22 +36,12 @@ SHOWN = (
 )
 
 
-def _failed(sizes: list[Size], thetas: list[float]) -> str:
-    named = [
-        f"{s.scene} {s.resolution} at theta {s.theta:g} ({s.failed})"
-        for s in sizes
-        if s.ratios is None and s.theta in thetas
-    ]
-    return "Not drawn, since one of the two did not get through: " + ", ".join(named) + "." if named else ""
-
-
 def _panel(axis, sizes: list[Size], metric: str, looks: dict[str, tuple[str, str]]) -> None:
     axis.axhline(1, color="#888888", linewidth=0.8, gid=style.REFERENCE, zorder=0)
     for scene, (color, marker) in looks.items():
         mine = sorted((s.unknowns, s.ratios[metric]) for s in sizes if s.scene == scene)
-        axis.plot(
-            [n for n, _ in mine], [r for _, r in mine], color=color, marker=marker, label=scene, markersize=3
-        )
+        x, y = [n for n, _ in mine], [ratio for _, ratio in mine]
+        axis.plot(x, y, color=color, marker=marker, label=scene, markersize=3)
 
 
 def _facts(sizes: list[Size]) -> Facts:
@@ -72,11 +55,10 @@ def _facts(sizes: list[Size]) -> Facts:
 
 
 def draw(found: Map, stem: Path, width_in: float = style.WIDE_IN, title: str = TITLE) -> list[Path]:
-    """The same files whoever asks: the page of the map, or ./bench draw figure. Errors: UserError where no
-    run of the log has one of the other shape beside it.
+    """The same files for the page of the map and for ./bench draw figure. Errors: UserError where no run of
+    the log has one of the other shape beside it.
     """
-    every = by_size(found.rows)
-    thetas, sizes = thetas_of(every), drawn_sizes(found.rows)
+    thetas, sizes = thetas_of(by_size(found.rows)), drawn_sizes(found.rows)
     if not sizes:
         raise UserError(f"nothing to draw: no run of the log beside one of {SHAPE}, limit {LIMIT}")
     looks = dict(zip(dict.fromkeys(s.scene for s in sizes), LOOKS))
@@ -101,7 +83,9 @@ def draw(found: Map, stem: Path, width_in: float = style.WIDE_IN, title: str = T
         {"scene": s.scene, "resolution": s.resolution, "theta": s.theta, "unknowns": s.unknowns, **s.ratios}
         for s in sizes
     ]
-    shown = SHOWN.format(shape=SHAPE, failed=_failed(every, thetas)).strip()
+    left = failed(found, thetas)
+    left = left and f"Not drawn, since one of the two did not get through: {left}."
+    shown = SHOWN.format(shape=SHAPE, failed=left).strip()
     return style.save(fig, stem, pd.DataFrame(numbers), f"{title}. {shown} {_facts(sizes).sentence()}")
 
 
