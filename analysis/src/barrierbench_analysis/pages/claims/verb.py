@@ -1,8 +1,9 @@
 """Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every
-verdict from the records by the rule of its claim, and writes results/CLAIMS.md, results/claims.json (the
-numbers used), docs/claims.png and the table of docs/results/claims.md. With names of claims it runs the
-sweeps of these alone. Confirmation sweeps are run for claims that are registered (--register ID, then commit
-claims/confirmation/registry.json).
+verdict from the records by the rule of its claim, and writes results/CLAIMS.md, the numbers used
+(results/studies/claims.jsonl), docs/claims.png and the table of docs/results/claims.md. With names of claims
+it runs the sweeps of these alone. Confirmation sweeps are run for claims that are registered (--register ID,
+then commit claims/confirmation/registry.json). plan: counts the runs, those that are kept, and what the rest
+is expected to take. page: judges the records that are there, or the kept numbers.
 
 Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them;
 a bad entry; no program), or calls itself confirmed and is not.
@@ -25,6 +26,7 @@ from barrierbench_analysis.program.start import built_program, run_sweep
 from barrierbench_analysis.studies.claims import coverage, figure, frontiers, registry
 from barrierbench_analysis.studies.claims.entry import ROOT, Claim, ids, read_claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import judge, missing
+from barrierbench_analysis.studies.claims.plan import plan, sweeps_to_run
 from barrierbench_analysis.studies.claims.proofs import Eval
 from barrierbench_analysis.studies.claims.table import FILE, RUNS, Table, collect, read, used_metrics, write
 
@@ -46,11 +48,7 @@ def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
     for claim in claims:
         if claim.id in entries:
             registry.ready(claim, entries)
-    for name in dict.fromkeys(
-        name
-        for claim in claims
-        for name in claim.sweeps + (claim.confirmation_sweeps if claim.id in entries else [])
-    ):
+    for name in sweeps_to_run(claims, entries):
         sweep, start = read_sweep(name), time.monotonic()
         print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
         done = run_sweep(ROOT / sweep.file, runs / name, plugins=plugins, stdout=subprocess.DEVNULL)
@@ -75,15 +73,16 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
         "study claims",
         __doc__,
-        "./bench study claims",
-        "./bench study claims --no-run",
+        "./bench study claims run K3",
+        "./bench study claims page",
         "./bench study claims --register K3",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
+    parser.add_argument("--plan", action="store_true", help="counts runs and expected seconds; runs nothing")
     parser.add_argument(
         "--no-run",
         action="store_true",
-        help="run nothing: judge the records that are there, or the numbers in results/claims.json",
+        help="run nothing: judge the records that are there, or the kept numbers",
     )
     parser.add_argument(
         "--runs",
@@ -123,6 +122,9 @@ def main(argv: list[str]) -> int:
     claims = [read_claim(name) for name in args.ids or ids()]
     if args.register:
         return register(claims if args.ids else [], args.runs, args.run_before)
+    if args.plan:
+        print("\n".join(plan(claims, gather(claims, args.runs, read(FILE)), registry.read())))
+        return 0
     return judge_all(claims, args)
 
 

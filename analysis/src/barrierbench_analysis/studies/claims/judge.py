@@ -75,7 +75,7 @@ class Answer:
         return same[0] if same else None
 
 
-def _stale(runs: Runs, sweep: Sweep) -> str:
+def stale(runs: Runs, sweep: Sweep) -> str:
     """Why kept numbers are none of this sweep; empty when they are."""
     if runs.about.get("sha256") != sweep.sha256:
         return f"the records of {sweep.name} are of another {sweep.file}"
@@ -98,8 +98,8 @@ def missing(claim: Claim, table: Table) -> list[str]:
     for name in claim.sweeps:
         sweep, runs = read_sweep(name), table.sweeps.get(name)
         found = len(runs.rows) if runs else 0
-        if runs and (stale := _stale(runs, sweep)):
-            lines.append(f"{claim.id}: {stale}: {sweep.command}")
+        if runs and (other := stale(runs, sweep)):
+            lines.append(f"{claim.id}: {other}: {sweep.command}")
         elif runs and runs.rows and (absent := used.get(name, set()) - set(runs.rows[0])):
             lines.append(
                 f"{claim.id}: the kept numbers of {name} have no {', '.join(sorted(absent))}, which its rule"

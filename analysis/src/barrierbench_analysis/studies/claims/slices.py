@@ -38,7 +38,7 @@ def rows_of(part: dict, runs: Runs, sweep: Sweep) -> Runs:
         return runs
     wanted = {name: _wanted(part, sweep, name) for name in sweep.axes}
     rows = [row for row in runs.rows if all(_equal(value, row[name]) for name, value in wanted.items())]
-    return Runs(runs.about, rows, runs.expected)
+    return Runs(runs.about, rows)
 
 
 @cache

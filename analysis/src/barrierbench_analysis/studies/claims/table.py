@@ -1,10 +1,9 @@
-"""What the verdicts are computed from: the numbers of all runs and the answers of `eval`, in
-results/claims.json.
+"""What the verdicts are computed from, results/studies/claims.jsonl: the numbers of all runs, and the answers
+of `eval`. Rows share (io/shared_rows.py) their sweep, what made them and their columns.
 """
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -15,8 +14,7 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.origin import origin, run_of, seconds_of_run
 from barrierbench_analysis.io.record_file import RecordError, other_meanings, read_record
-from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
-from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.io.shared_rows import read_shared, write_shared
 from barrierbench_analysis.studies.kit.metrics import FOLDER, METRICS
 from barrierbench_analysis.studies.kit.success import RESIDUAL, read_for
 from barrierbench_analysis.tables.gap_rule import gaps_of
@@ -29,10 +27,11 @@ from .inputs import asked, contradiction, inputs_of
 from .merged import base_path
 from .parts import MOST
 
-FILE = ROOT / "results" / "claims.json"
+FILE = ROOT / "results" / "studies" / "claims.jsonl"
 RUNS = ROOT / "results" / "runs" / "claims"
-NAME = "barrierbench.claims/1"
-AGAIN = "; remove it, then ./bench study claims"
+NAME = "barrierbench.claims/2"
+SHARED, ANSWER = ("sweep", "about", "columns"), ("query", "answer")
+AGAIN = "; remove it, then ./bench study claims run"
 PLACE = ("scene", "level", "case", "seed")
 # run: the first 16 digits of run_id. pair: that is not comparable. Numbers of records before 3.5.0 have no
 # pair, gaps and ends
@@ -48,7 +47,6 @@ class Runs:
         dict  # sha256 of the sweep file, inputs_sha256 of all that it names, date, machine, program, seconds
     )
     rows: list[dict]
-    expected: int
 
     @property
     def of_earlier_rule(self) -> bool:
@@ -68,10 +66,6 @@ class Runs:
                 f" {len(later)} later ones, of another rule of comparability: remove the folders of the"
                 f" earlier ones, then {sweep.command}"
             )
-
-    @property
-    def complete(self) -> bool:
-        return len(self.rows) == self.expected
 
 
 @dataclass
@@ -172,32 +166,36 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
     about |= origin(records)
     sizes = [r["scene"]["free_dofs"] for r in records]
     about["unknowns"] = f"{min(sizes)} to {max(sizes)}" if sizes else ""
-    return Runs(about, rows, len(sweep.cases))
+    return Runs(about, rows)
 
 
 def write(table: Table, path: Path) -> None:
-    blocks = []
-    for name, runs in sorted(table.sweeps.items()):
-        columns = list(runs.rows[0]) if runs.rows else list(PLACE + STATE)
-        blocks.append(
-            f'"{name}": {{"about": {json.dumps(runs.about)}, "expected": {runs.expected},\n   "columns":'
-            f' {json.dumps(columns)}, "rows": {a_line_each(in_columns(runs.rows, columns), 3)}}}'
-        )
-    answers = [
-        f"{json.dumps(query)}: {json.dumps(answer)}" for query, answer in sorted(table.answers.items())
+    """Answers of `eval` stand below the name of no sweep."""
+    answers = [dict(zip(ANSWER, one)) for one in sorted(table.answers.items())]
+    blocks = [
+        *((name, runs.about, runs.rows) for name, runs in sorted(table.sweeps.items())),
+        ("", {}, answers),
     ]
-    sweeps, answers = (a_line_each(texts, 2, ("{", "\n }")) for texts in (blocks, answers))
-    write_whole(path, f'{{\n "schema": "{NAME}",\n "sweeps": {sweeps},\n "answers": {answers}\n}}\n')
+    rows = (
+        (dict(zip(SHARED, (name, about, list(rows[0])))), list(row.values()))
+        for name, about, rows in blocks
+        for row in rows
+    )
+    write_shared(path, NAME, rows)
+
+
+def _kept(row: list, shared: dict) -> tuple[str, dict, dict]:
+    """Sweep, what made it, and the row. Errors: ValueError for another number of values, KeyError."""
+    return shared["sweep"], shared["about"], dict(zip(shared["columns"], row, strict=True))
 
 
 def read(path: Path) -> Table:
-    """The kept table; empty when there is none."""
-
-    def of(data: dict) -> Table:
-        sweeps = {
-            name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"])
-            for name, s in data["sweeps"].items()
-        }
-        return Table(sweeps, data["answers"])
-
-    return read_store(path, NAME, of, AGAIN, Table())
+    """The kept table; empty when there is none. Errors: UserError."""
+    table = Table()
+    rows = read_shared(path, NAME, SHARED, _kept, "a row of ./bench study claims", AGAIN)
+    for _, (sweep, about, row) in rows if path.is_file() else ():
+        if sweep:
+            table.sweeps.setdefault(sweep, Runs(about, [])).rows.append(row)
+        else:
+            table.answers[row["query"]] = row["answer"]
+    return table
