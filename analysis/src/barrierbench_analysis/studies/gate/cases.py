@@ -44,6 +44,11 @@ def case_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def is_chosen(name: str, words: list[str]) -> bool:
+    """Whether a name has one of the words of --case in it, or there is none."""
+    return not words or any(word in name for word in words)
+
+
 def read_set(name: str) -> list[Case]:
     """Every scene with every formulation of the set, then with those of its own, of which one with the same
     name takes the place of that of the set. Raises UserError with file and place.
@@ -71,20 +76,11 @@ def read_set(name: str) -> list[Case]:
 
 
 def words_of(case: Case, out: Path, threads: int, more: dict) -> list[str]:
-    """What the program is asked for a run of a case."""
+    """The words of the program for a run of a case."""
     settings = {**case.set, "/threads": threads, **more}
-    return [
-        "run",
-        str(case.config),
-        "--out",
-        str(out),
-        "--replace",  # the folder is the gate's, whatever an earlier call left there
-        *(
-            word
-            for pointer, value in settings.items()
-            for word in ("--set", f"{pointer}={json.dumps(value)}")
-        ),
-    ]
+    sets = [word for at, value in settings.items() for word in ("--set", f"{at}={json.dumps(value)}")]
+    # --replace: the folder is the gate's, whatever an earlier call left there.
+    return ["run", str(case.config), "--out", str(out), "--replace", *sets]
 
 
 def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:

@@ -85,20 +85,11 @@ LAST_STEP = [
     (Metric("elastic_end", "III", "J", TWO_SIDED, PHYSICS), ("elastic_J",)),
     (Metric("gravity_end", "III", "J", TWO_SIDED, PHYSICS), ("gravity_J",)),
 ]
-NEVER_RECORDED = (
-    "crossings",
-    "violations",
-    "unproven",
-    "audit",
-    "numbers",
-    "state_hash",
-    "matrices",
-    "outcome",
-    "trace",
-    "schema",
-    "config_id",
-    "judged",
-)  # class I and II: exact, so there is nothing to accept
+# Class I and II: exact, so there is nothing to accept.
+NEVER_RECORDED = frozenset(
+    "crossings violations unproven audit numbers state_hash matrices outcome trace schema config_id"
+    " judged".split()
+)
 
 
 def _number(value) -> float | None:

@@ -12,7 +12,7 @@ from barrierbench_analysis.io.errors import UserError, passed_on
 from barrierbench_analysis.program.start import begun, started
 
 from .cases import Case, run_case, words_of
-from .finding import Finding
+from .finding import Finding, exact
 from .records import Run, read_run
 
 NEVER_EQUAL = ("wall_s", "unaccounted_s", "time")
@@ -69,13 +69,4 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
         if judged
         else "the run was over before it could be killed"
     )
-    return Finding(
-        case.name,
-        "I",
-        "resumed run",
-        "pass" if judged and not unlike else "FAIL",
-        value=unlike,
-        reference=0,
-        judged=judged,
-        note=note,
-    )
+    return exact(case.name, "I", "resumed run", unlike, judged, note, "")
