@@ -32,6 +32,15 @@ from barrierbench_analysis.studies.claims.table import FILE, RUNS, Table, collec
 
 from . import report
 
+# Options with which no sweep is run -> what is done instead.
+NOTHING_IS_RUN = {
+    "--plan": "count the runs, and the seconds that the missing ones are expected to take",
+    "--no-run": "judge the records that are there, or the kept numbers",
+    "--register": f"write rule and confirmation sweeps of these claims to {registry.KEPT}; commit it before"
+    " the first run",
+    "--coverage": "simulate how often the intervals cover, and write results/COVERAGE.md",
+}
+
 
 def program(needed: bool = True) -> str | None:
     """None where it is not needed and not built."""
@@ -78,38 +87,12 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "./bench study claims --register K3",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
-    parser.add_argument("--plan", action="store_true", help="counts runs and expected seconds; runs nothing")
-    parser.add_argument(
-        "--no-run",
-        action="store_true",
-        help="run nothing: judge the records that are there, or the kept numbers",
-    )
-    parser.add_argument(
-        "--runs",
-        type=Path,
-        default=RUNS,
-        metavar="DIR",
-        help="folder of the sweeps (default: results/runs/claims)",
-    )
-    parser.add_argument(
-        "--register",
-        action="store_true",
-        help=(
-            "run nothing: write rule and confirmation sweeps of these claims to"
-            " claims/confirmation/registry.json; commit it before the first run"
-        ),
-    )
-    parser.add_argument(
-        "--run-before",
-        default="",
-        metavar="TEXT",
-        help="with --register, where the scenes were run before: when, and by which rule; the page says so",
-    )
-    parser.add_argument(
-        "--coverage",
-        action="store_true",
-        help="run nothing: simulate how often the intervals cover, and write results/COVERAGE.md",
-    )
+    for option, text in NOTHING_IS_RUN.items():
+        parser.add_argument(option, action="store_true", help=f"run nothing: {text}")
+    of_sweeps = "folder of the sweeps (default: results/runs/claims)"
+    parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help=of_sweeps)
+    before = "with --register, where the scenes were run before: when, and by which rule; the page says so"
+    parser.add_argument("--run-before", default="", metavar="TEXT", help=before)
     plugin_argument(parser)
     return parser.parse_args(argv)
 
@@ -160,9 +143,7 @@ def register(claims: list[Claim], runs: Path, run_before: str) -> int:
         entry = registry.register(claim, table, run_before=run_before)
         print(
             f"{claim.id}: registered on {entry['date']}, rule {entry['rule_sha256'][:12]}, sweeps"
-            f" {', '.join(entry['sweeps'])}. Commit claims/confirmation/registry.json before ./bench study"
-            f" claims"
-            f" {claim.id}"
+            f" {', '.join(entry['sweeps'])}. Commit {registry.KEPT} before {claim.command}"
         )
     return 0
 
@@ -174,11 +155,10 @@ def write_all(table: Table, asker: Eval) -> None:
         table.answers = {text: table.answers[text] for text in asker.asked}
     write(table, FILE)
     write_whole(ROOT / "results" / "CLAIMS.md", report.markdown(answers, table))
-    drawn = figure.draw(answers, RUNS / "figure" / "claims")
+    drawn, folder = figure.draw(answers, RUNS / "figure" / "claims"), RUNS / "figure"
     for claim in (a.claim for a in answers if frontiers.has_runs(a.claim, table)):
-        drawn += frontiers.draw(
-            claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}"
-        )
+        runs = table.sweeps[claim.frontier["sweep"]]
+        drawn += frontiers.draw(claim, runs, folder / f"policies_{claim.id}")
     copy_to_page(drawn, ROOT / "docs")
     page = ROOT / "docs/results/claims.md"
     write_whole(page, report.in_page(input_file.read_text(page), answers))

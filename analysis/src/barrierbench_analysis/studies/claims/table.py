@@ -78,12 +78,8 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     """Sweep -> metrics that some part reads."""
     used: dict[str, set] = {}
     for part in (part for claim in claims for part in claim.parts if "sweep" in part):
-        names = {
-            part.get("metric"),
-            *read_for(part.get("bad")),
-            (part.get("equal") or {}).get("metric"),
-            RESIDUAL if MOST in part else None,
-        } - {None}
+        equal, residual = (part.get("equal") or {}).get("metric"), RESIDUAL if MOST in part else None
+        names = {part.get("metric"), *read_for(part.get("bad")), equal, residual} - {None}
         if unknown := names - set(METRICS):
             raise UserError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
         for sweep in (part["sweep"], *((part["confirm"]["sweep"],) if "confirm" in part else ())):
@@ -95,16 +91,11 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
 
 def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
     comparability = record["comparability"]
-    row = dict(zip(PLACE, place))
-    row |= {
-        "outcome": outcome_of(record),
-        "comparability": comparability["verdict"],
-        "gap_rel": rounded(comparability.get("gap_rel")),
-        "run": run_of(record),
-        "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "",
-        "gaps": rounded(gaps_of(record)),
-        **rounded(end_of_run(record)),
-    }
+    verdict = comparability["verdict"]
+    pair = comparability.get("pair", "") if verdict == "not_comparable" else ""
+    state = outcome_of(record), verdict, rounded(comparability.get("gap_rel")), run_of(record), pair
+    row = dict(zip(PLACE, place)) | dict(zip(STATE, (*state, rounded(gaps_of(record)))))
+    row |= rounded(end_of_run(record))
     return row | {name: rounded(METRICS[name][3](record), DIGITS) for name in metrics}
 
 
@@ -131,9 +122,8 @@ def _one_version(sweep: Sweep, folder: Path, records: list[dict]) -> str:
     """The versions of the records in words. Errors: UserError where a field means one thing in some of them
     and another in others.
     """
-    versions = sorted(
-        {r["schema"]["version"] for r in records}, key=lambda v: [int(part) for part in v.split(".")]
-    )
+    found = {record["schema"]["version"] for record in records}
+    versions = sorted(found, key=lambda version: [int(part) for part in version.split(".")])
     if records and (fields := other_meanings(versions[0], versions[-1])):
         raise UserError(
             f"{folder}: records of version {versions[0]} beside those of {versions[-1]}, in which"

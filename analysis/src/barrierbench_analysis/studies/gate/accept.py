@@ -35,8 +35,7 @@ def _envelope(kept) -> str:
 
 def changes(old: Baseline | None, new: Baseline) -> dict[str, str]:
     """A line for every metric whose envelope changes: old, new, direction."""
-    lines = {}
-    before = old.metrics if old else {}
+    lines, before = {}, old.metrics if old else {}
     for name in sorted(before.keys() | new.metrics.keys()):
         a, b = before.get(name), new.metrics.get(name)
         if a and b and a.envelope == b.envelope:
@@ -95,14 +94,6 @@ def _remember(old: Baseline, new: Baseline) -> None:
             now.first = replace(first, here=bool(new.made_by) and first.made_by == digest(new.made_by))
 
 
-def _drifts(new: Baseline) -> list[str]:
-    return sorted(
-        name
-        for name, kept in new.metrics.items()
-        if judge.drifted(kept, kept.envelope.value, bool(new.made_by))
-    )
-
-
 def _take_drifts(new: Baseline, names: list[str]) -> None:
     """These numbers start anew from their last values; the baseline says so."""
     if not names:
@@ -115,12 +106,7 @@ def _take_drifts(new: Baseline, names: list[str]) -> None:
 
 
 def keep(
-    new: Baseline,
-    path: Path,
-    reason: str,
-    metrics: list[str],
-    only_better: bool = False,
-    take_drift: bool = False,
+    new: Baseline, path: Path, reason: str, metrics: list[str], only_better=False, take_drift=False
 ) -> None:
     old = baseline.read(path) if path.exists() else None
     lines = changes(old, new)
@@ -132,7 +118,8 @@ def keep(
     new.reason = reason
     if old:
         _remember(old, new)
-    drifts = _drifts(new)
+    here = bool(new.made_by)
+    drifts = sorted(n for n, kept in new.metrics.items() if judge.drifted(kept, kept.envelope.value, here))
     if take_drift:
         _take_drifts(new, drifts)
     baseline.write(new, path)
@@ -169,20 +156,10 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--better", action="store_true", help="only metrics that are better than their envelope"
     )
-    parser.add_argument(
-        "--drift",
-        action="store_true",
-        help=(
-            "numbers that have drifted from their first baseline start anew; the baseline keeps when and why"
-        ),
-    )
-    parser.add_argument(
-        "--proposals",
-        type=Path,
-        default=calibrate.OUT,
-        metavar="DIR",
-        help="of bench gate calibrate (default: results/runs/calibration)",
-    )
+    drift = "numbers that have drifted from their first baseline start anew; the baseline keeps when and why"
+    parser.add_argument("--drift", action="store_true", help=drift)
+    made = "of bench gate calibrate (default: results/runs/calibration)"
+    parser.add_argument("--proposals", type=Path, default=calibrate.OUT, metavar="DIR", help=made)
     baseline.folder_argument(parser)
     record = {"nargs": "+", "help": "make the baseline of these records of one config"}
     baseline.other_program_arguments(parser, record, "make the baseline of these matrices")

@@ -88,14 +88,9 @@ def propose(case_name: str, runs: list[Run], reason: str = "") -> Baseline:
     if not kept:
         raise UserError(f"{case_name}: no number that all {len(runs)} records have")
     provenance, seeds = first.section("provenance"), runs[-1].section("config").get("seeds") or {}
-    at = {
-        "commit": provenance.get("git_commit", ""),
-        "dirty": provenance.get("git_dirty"),
-        "runs": len(runs),
-        "jitter_m": seeds.get("jitter_m", 0),
-        "date": datetime.date.today().isoformat(),
-        "record_version": first.version,
-    }
+    at = {"commit": provenance.get("git_commit", ""), "dirty": provenance.get("git_dirty"), "runs": len(runs)}
+    at |= {"jitter_m": seeds.get("jitter_m", 0), "date": datetime.date.today().isoformat()}
+    at["record_version"] = first.version
     config = {key: value for key, value in first.section("config").items() if key not in ("threads", "seeds")}
     return Baseline(case_name, "run", reason, at, kept, config, scene_size(first), first.made_by, unsteady)
 
@@ -115,9 +110,8 @@ def main(argv: list[str]) -> int:
     set_argument(parser)
     case_argument(parser)
     parser.add_argument("--copies", type=int, default=COPIES, help=f"perturbed copies (default: {COPIES})")
-    parser.add_argument(
-        "--out", type=Path, default=OUT, metavar="DIR", help="default: results/runs/calibration"
-    )
+    to = "default: results/runs/calibration"
+    parser.add_argument("--out", type=Path, default=OUT, metavar="DIR", help=to)
     args = parser.parse_args(argv)
     if args.copies < 1:
         raise UserError(f"--copies {args.copies}: at least 1")

@@ -83,12 +83,11 @@ def words_of(case: Case, out: Path, threads: int, more: dict) -> list[str]:
     return ["run", str(case.config), "--out", str(out), "--replace", *sets]
 
 
-def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
-    """Runs it and reads its record. A failed run has a record too. Raises UserError when there is none."""
-    settings = {"/" + name.replace("__", "/"): value for name, value in more.items()}
+def run_case(case: Case, out: Path, threads: int = 1, more: dict | None = None) -> Run:
+    """Runs it with more settings (pointer -> value) and reads its record. A failed run has a record too. Raises UserError when there is none."""
     # A record of an earlier call must not stand in for one that this program fails to write.
     (out / "run.json").unlink(missing_ok=True)
-    done = started(*words_of(case, out, threads, settings))
+    done = started(*words_of(case, out, threads, more or {}))
     if done.returncode != 0:
         raise UserError(
             f"{case.name}: the program ended with {done.returncode}:"
@@ -100,4 +99,4 @@ def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
 
 def jittered(case: Case, out: Path, seed: int, size_m: float, threads: int = 1) -> Run:
     """A copy whose start coordinates are moved by up to 1e-12 times the size of the scene."""
-    return run_case(case, out, threads, seeds__main=seed, seeds__jitter_m=1e-12 * size_m)
+    return run_case(case, out, threads, {"/seeds/main": seed, "/seeds/jitter_m": 1e-12 * size_m})

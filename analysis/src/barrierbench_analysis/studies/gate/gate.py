@@ -20,7 +20,7 @@ from . import baseline, configs, invariants, judge, matrices, meanings, report, 
 from .baseline import Baseline
 from .build_checks import judge_build
 from .calibrate import copies_of
-from .cases import Case, case_argument, is_chosen, read_set, run_case, set_argument
+from .cases import Case, case_argument, is_chosen, jittered, read_set, run_case, set_argument
 from .determinism import of_one_config
 from .finding import Finding, failures, without_subject
 from .instructions import judge_instructions
@@ -29,9 +29,8 @@ from .records import Run, read_run
 from .resume import judge_resume
 
 OUT = ROOT / "results" / "runs" / "gate"
-REPEAT_SEED = (
-    1001  # of the copy that has to confirm a number outside its envelope; no copy of a calibration has it
-)
+# Of the copy that has to confirm a number outside its envelope; no copy of a calibration has it.
+REPEAT_SEED = 1001
 CHAOS_SEED, CHAOS_COPIES = 2001, 8
 
 
@@ -78,7 +77,7 @@ def _confirmed(
     outside = {f.metric for f in failures(findings)}
     if not outside or not size_m > 0:
         return findings
-    again = run_case(case, out, 1, seeds__main=REPEAT_SEED, seeds__jitter_m=1e-12 * size_m)
+    again = jittered(case, out, REPEAT_SEED, size_m)
     second = {f.metric for f in failures(numbers(case.name, kept, again, same_build_kind))}
     for f in findings:
         if f.metric in outside & second:
