@@ -84,7 +84,9 @@ def words_of(case: Case, out: Path, threads: int, more: dict) -> list[str]:
 
 
 def run_case(case: Case, out: Path, threads: int = 1, more: dict | None = None) -> Run:
-    """Runs it with more settings (pointer -> value) and reads its record. A failed run has a record too. Raises UserError when there is none."""
+    """Runs it, with more settings (pointer -> value), and reads its record. A failed run has a record too.
+    Raises UserError when there is none.
+    """
     # A record of an earlier call must not stand in for one that this program fails to write.
     (out / "run.json").unlink(missing_ok=True)
     done = started(*words_of(case, out, threads, more or {}))
