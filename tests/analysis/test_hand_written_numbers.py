@@ -62,7 +62,7 @@ def days(parts) -> str:
 @pytest.mark.parametrize("name", ["docs/results/claims.md", "docs/guides/reproduce-a-figure.md"])
 def test_what_claims_take_is_what_their_runs_took(name):
     (claims,) = (one for one in cost.gather() if one["study"] == "claims")
-    of = days(read_object(ROOT / "results/claims.json")["sweeps"].values())
+    of = days({"about": runs.about} for runs in claims_table.read(claims_table.FILE).sweeps.values())
     assert f"{claims['core_s'] / 3600:.2f} core hours" in page(name) and f"runs of {of}" in page(name)
     if name == "docs/results/claims.md":
         assert f"The kept verdicts are of runs of {of};" in page(name)

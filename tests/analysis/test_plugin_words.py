@@ -31,7 +31,7 @@ def asked(tmp_path, monkeypatch):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", str(stand_in))
-    monkeypatch.setattr(claims, "FILE", tmp_path / "claims.json")
+    monkeypatch.setattr(claims, "FILE", tmp_path / "claims.jsonl")
 
     def call(verb, *words) -> list[list[str]]:
         log.unlink(missing_ok=True)

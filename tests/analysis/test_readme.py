@@ -51,7 +51,7 @@ def rows_of(name: str, ratios, **changed) -> Runs:
         if scene == "block" and of["theta"] < 0.1 and not of["enabled"] and case == "cubic":
             row |= {"outcome": "stall_overload"}
         rows.append(row | changed)
-    return Runs({"sha256": sweep.sha256, "inputs_sha256": inputs_of(sweep), "unknowns": "108 to 600" if name.startswith("shells") else "9 to 576"}, rows, len(rows))
+    return Runs({"sha256": sweep.sha256, "inputs_sha256": inputs_of(sweep), "unknowns": "108 to 600" if name.startswith("shells") else "9 to 576"}, rows)
 
 
 @pytest.fixture

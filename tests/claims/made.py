@@ -18,7 +18,7 @@ def row(scene, level, case, seed, **more):
 def runs(make, scenes=SCENES, levels=LEVELS, cases=("x", "y"), seeds=SEEDS) -> Runs:
     """make(scene, level, case, seed) gives what differs from a run that ended ok and is comparable."""
     rows = [row(s, lv, c, k, **make(s, lv, c, k)) for s in scenes for lv in levels for c in cases for k in seeds]
-    return Runs({"sha256": "", "seconds": 1.0, "date": "2024-01-31", "machine": "a cpu", "build": "0", "unknowns": "3 to 9", "commit": "0"}, rows, len(rows))
+    return Runs({"sha256": "", "seconds": 1.0, "date": "2024-01-31", "machine": "a cpu", "build": "0", "unknowns": "3 to 9", "commit": "0"}, rows)
 
 
 def record(root: Path, sweep, note: str, folder: str, **status) -> None:

@@ -12,6 +12,7 @@ from barrierbench_analysis.pages.claims import report
 from barrierbench_analysis.studies.claims.entry import FOLDER, ROOT, ids, read_claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import RULES, judge, missing
 from barrierbench_analysis.studies.kit.metrics import METRICS
+from barrierbench_analysis.studies.claims.plan import plan
 from barrierbench_analysis.studies.claims.parts import KEYS, THRESHOLDS, check
 from barrierbench_analysis.studies.claims.proofs import PROOFS, Eval
 from barrierbench_analysis.studies.claims.registry import confirmable, confirmed_parts
@@ -19,6 +20,7 @@ from barrierbench_analysis.studies.claims.slices import slice_of
 from barrierbench_analysis.studies.kit.success import read_for
 from barrierbench_analysis.studies.claims.table import FILE, Table, collect, read, used_metrics, write
 
+HEAD = '{"schema": "barrierbench.claims/2"}\n'
 WANTED = {*(f"K{k}" for k in range(1, 19)), *(f"H{k}" for k in range(1, 10)), "N1", "N2"}
 
 
@@ -94,11 +96,24 @@ def test_the_page_is_made_of_the_kept_numbers():
 
 def test_the_table_survives_writing(tmp_path):
     table = read(FILE)
-    write(table, tmp_path / "claims.json")
-    assert (tmp_path / "claims.json").read_bytes() == FILE.read_bytes()
-    (tmp_path / "claims.json").write_text('{"schema": "other/1"}')
-    with pytest.raises(UserError, match="'barrierbench.claims/1' is needed"):
-        read(tmp_path / "claims.json")
+    write(table, tmp_path / "claims.jsonl")
+    assert (tmp_path / "claims.jsonl").read_bytes() == FILE.read_bytes()
+    (tmp_path / "claims.jsonl").write_text('{"schema": "other/1"}')
+    with pytest.raises(UserError, match='line 1: found .*other/1.*; allowed: {"schema": "barrierbench.claims/2"}; remove it'):
+        read(tmp_path / "claims.jsonl")
+
+
+def test_a_plan_counts_what_is_missing_by_the_seconds_of_its_sweep(capsys):
+    """Rows of other inputs are none; the sweep of a confirmation counts where it is registered."""
+    claim, table = read_claim("K12"), read(FILE)
+    first, again = (len(read_sweep(name).cases) for name in ("hessian_modes", "shells_modes"))
+    assert plan([claim], table, {}) == [f"claims: {first} cells, {first} with a row in claims.jsonl, 0 to run"]
+    table.sweeps["hessian_modes"].about |= {"seconds": 2.0 * first, "inputs_sha256": "0"}
+    del table.sweeps["shells_modes"]
+    assert plan([claim], table, {"K12": {}}) == [
+        f"claims: {first + again} cells, 0 with a row in claims.jsonl, {first + again} to run", f"about {2 * first} s of one core for {first} runs of these",
+        f"{again} runs without a kept row whose labels are alike: not estimated"]
+    assert verb.main(["K12", "--plan"]) == 0 and f"{first + again} with a row in claims.jsonl, 0 to run" in capsys.readouterr().out
 
 
 def test_missing_records_name_their_command(monkeypatch, tmp_path, capsys):
@@ -158,7 +173,7 @@ def test_records_become_rows(tmp_path):
     (tmp_path / "torn").mkdir()
     (tmp_path / "torn" / "run.json").write_text('{"schema"')
     runs = collect(sweep, tmp_path, ["stretch_of_limit", "cond_max", "newton"])
-    assert len(runs.rows) == 2 and not runs.complete and runs.about["seconds"] == 4.0 and runs.about["machine"].startswith("a cpu")
+    assert len(runs.rows) == 2 and runs.about["seconds"] == 4.0 and runs.about["machine"].startswith("a cpu")
     ball, strip = runs.rows
     assert (strip["scene"], strip["level"], strip["case"], strip["seed"], strip["outcome"]) == ("strip", "1%", "log", 3, "ok")
     assert runs.about["sha256"] == ""  # nothing says which sweep file made them
@@ -176,11 +191,11 @@ def test_a_claim_without_records_is_not_decided():
     assert answer.verdict.verdict == "not decided" and "./bench sweep claims/sweeps/contact_shapes.json" in answer.verdict.missing
 
 
-@pytest.mark.parametrize("kept", ['{"schema": "barrierbench.cl', '{"schema": "barrierbench.claims/1"}', "[]", '{"schema": "barrierbench.claims/1", "sweeps": {"x": 3}, "answers": {}}'])
+@pytest.mark.parametrize("kept", ['{"schema": "barrierbench.cl', "[]", HEAD + "[1]", HEAD + '{"sweep": "x", "columns": ["a"]}\n', HEAD + '{"sweep": "x", "about": {}, "columns": ["a"]}\n[1, 2]', HEAD + '{"columns": [', HEAD + "3"])
 def test_a_torn_table_is_refused(tmp_path, monkeypatch, capsys, kept):
-    file = tmp_path / "claims.json"
+    file = tmp_path / "claims.jsonl"
     file.write_text(kept)
-    with pytest.raises(UserError, match="claims.json: .*remove it, then ./bench study claims"):
+    with pytest.raises(UserError, match="claims.jsonl: line .*remove it, then ./bench study claims"):
         read(file)
     monkeypatch.setattr(verb, "FILE", file)
-    assert verb.main(["--no-run"]) == 2 and "claims.json" in capsys.readouterr().err
+    assert verb.main(["--no-run"]) == 2 and "claims.jsonl" in capsys.readouterr().err

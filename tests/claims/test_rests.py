@@ -24,7 +24,7 @@ def runs(**failed) -> Runs:
             for case in ("mine", "other"):
                 row = {"scene": f"s{scene}", "level": level, "case": case, "seed": 0, "outcome": "ok", "run": "r", "time_asked": 1.0, "residual_max": 1.0, **dict.fromkeys(FAILURES, 0.0)}
                 rows.append(row | (failed if case == "other" else {}))
-    return Runs({}, rows, len(rows))
+    return Runs({}, rows)
 
 
 def judged(of: Runs) -> Judged:

@@ -52,8 +52,8 @@ def test_records_of_a_further_axis_become_rows(tmp_path):
         record(tmp_path / "runs", made, note, str(k), started_utc=f"2026-12-0{3 - k}T00:00:00Z", ended_utc="2026-12-04T00:00:00Z")
     found = collect(made, tmp_path / "runs", ["newton"])
     assert [(r["scene"], r["theta"], r["newton"]) for r in found.rows] == [("strip", 0.01, 6), ("strip", 0.1, 6)] and found.about["first_started_utc"] == "2026-12-02T00:00:00Z"
-    write(Table({"s": found}), tmp_path / "claims.json")
-    assert read(tmp_path / "claims.json").sweeps["s"].rows == found.rows
+    write(Table({"s": found}), tmp_path / "claims.jsonl")
+    assert read(tmp_path / "claims.jsonl").sweeps["s"].rows == found.rows
 
 
 @pytest.mark.parametrize("axes", [(THETA,), (SEEDS, SEEDS), (SEEDS, {"cases": [{"label": "a", "set": {}}]}), (SEEDS, {"pointer": "/x"})])
@@ -71,7 +71,7 @@ def test_a_name_is_of_one_folder(tmp_path):
 
 
 def rows(made):
-    return Runs({}, [row(*place) | more for place, more in zip(made.cases.values(), made.more.values())], len(made.cases))
+    return Runs({}, [row(*place) | more for place, more in zip(made.cases.values(), made.more.values())])
 
 
 def test_a_part_has_the_runs_of_its_slice(tmp_path):
@@ -91,7 +91,7 @@ def test_a_verdict_is_of_its_slice(tmp_path, monkeypatch):
     made = sweep(tmp_path, THETA, SEEDS)
     monkeypatch.setattr(judging, "read_sweep", lambda name: made)
     found = Runs({}, [row(scene, level, case, seed, newton=(30.0 if case == "log" else 10.0) if theta == 0.01 else 10.0, theta=theta)
-                      for scene in "abc" for level in "124" for case in ("log", "cubic") for theta in (0.1, 0.01) for seed in (1, 2)], 72)
+                      for scene in "abc" for level in "124" for case in ("log", "cubic") for theta in (0.1, 0.01) for seed in (1, 2)])
     for theta, verdict, value in ((0.01, "holds", 3), (0.1, "does not hold", 1)):
         judged = judging.judge_part({**PART, "theta": theta}, Table({"s": found}), Eval(None))
         assert (judged.verdict, judged.value) == (verdict, pytest.approx(value)) and judged.slice.startswith(f"theta {theta:g}; ")

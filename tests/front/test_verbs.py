@@ -263,7 +263,7 @@ def test_a_kept_text_is_shown_with_the_names_now():
     (["study", "gap-map", "plan", "--jobs", "2"], "study gap-map", ["--plan", "--jobs", "2"]), (["study", "gap-map", "page"], "study gap-map", ["--no-run"]),
     (["study", "gap-map", "run", "--part", "quick"], "study gap-map", ["--part", "quick"]),
     (["study", "step-corpus", "page"], "study step-corpus", ["--table"]), (["study", "gpu-report", "page"], "study gpu-report", []),
-    (["study", "claims", "--no-run"], "study claims", ["--no-run"]), (["study", "claims", "K3", "page"], "study claims", ["K3", "page"])])
+    (["study", "claims", "plan", "K3"], "study claims", ["--plan", "K3"]), (["study", "claims", "--no-run"], "study claims", ["--no-run"]), (["study", "claims", "K3", "page"], "study claims", ["K3", "page"])])
 def test_which_row_a_command_line_is_for(words, name, rest):
     asked = verbs.asked(words)
     assert (asked.row.name, asked.rest, asked.note) == (name, rest, "")
@@ -291,7 +291,7 @@ def test_every_mode_is_an_option_of_its_study(capfd):
 
 
 @pytest.mark.parametrize(("verb", "arguments", "needed"), [
-    ("study claims", [], True), ("study claims", ["--no-run"], False), ("gate run", [], True),
+    ("study claims", [], True), ("study claims", ["--no-run"], False), ("study claims", ["--plan"], False), ("gate run", [], True),
     ("gate run", ["--matrix", "a.mtx"], False), ("gate run", ["--record=run.json"], False), ("study claims", ["--help"], False),
     ("gate compare", ["a", "b"], False), ("study compare-toolkit", [], True)])
 def test_what_judges_kept_numbers_needs_no_built_program(verb, arguments, needed):

@@ -37,18 +37,18 @@ def test_every_case_has_a_baseline_and_every_baseline_a_case():
 
 
 @pytest.mark.parametrize("change, said", [
-    (lambda b: b["schema"].update(version="2.0.0"), "this version reads barrierbench.baseline 1.x.y"),
-    (lambda b: b.update(case="strip-log"), "a baseline of case 'strip-log', asked about 'block-log'"),
+    (lambda b: b["schema"].update(version="2.0.0"), "/schema/version: found '2.0.0'; a version 1.x.y of barrierbench.baseline is needed"),
+    (lambda b: b.update(case="strip-log"), "a baseline of case 'strip-log', requested is 'block-log'"),
     (lambda b: b.update(kind="matrix"), "a baseline of kind 'matrix'"),
-    (lambda b: b.update(metrics={}), "/metrics is empty"),
+    (lambda b: b.update(metrics={}), "/metrics: found {}; at least one metric, without which nothing is judged, is needed"),
     (lambda b: b["scene"].update({"/free_dofs": 12}), "of another scene"),
     (lambda b: b["config"]["time"].update(dt_s=0.02), "/time/dt_s: 0.02 and 0.01"),
-    (lambda b: b["metrics"]["gap_min"].update(value=float("nan")), "/metrics/gap_min/value: nan; a finite number is needed"),
-    (lambda b: b["metrics"]["gap_min"].update(upper=None), "/metrics/gap_min/upper: None"),
+    (lambda b: b["metrics"]["gap_min"].update(value=float("nan")), "/metrics/gap_min/value: found nan; a finite number is needed"),
+    (lambda b: b["metrics"]["gap_min"].update(upper=None), "/metrics/gap_min/upper: found None; a finite number is needed"),
     (lambda b: b["metrics"]["gap_min"].update(upper=-1.0), "outside its own envelope"),
     (lambda b: b["metrics"]["gap_min"].update({"class": "I"}), "classes I and II are exact"),
     (lambda b: b["metrics"]["gap_min"].update(first={"value": None}), "/metrics/gap_min/first"),
-    (lambda b: b["metrics"]["gap_min"].update(direction="up"), "/metrics/gap_min/direction: 'up'"),
+    (lambda b: b["metrics"]["gap_min"].update(direction="up"), "/metrics/gap_min/direction: found 'up'; one of two_sided, lower_better, upper_better is needed"),
 ])
 def test_a_baseline_that_cannot_judge(gate, folder, capsys, change, said):
     edit(folder, change)
@@ -56,7 +56,7 @@ def test_a_baseline_that_cannot_judge(gate, folder, capsys, change, said):
     assert said in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("text, said", [("", "empty"), ("{", "not JSON"), ("[]", "schema None")])
+@pytest.mark.parametrize("text, said", [("", "not JSON"), ("{", "not JSON"), ("[]", "not a JSON object"), ("{}", "schema: is missing")])
 def test_a_file_that_is_no_baseline(gate, folder, capsys, text, said):
     (folder / "block-log.json").write_text(text)
     assert gate("gate", "--case", "block-log", "--baselines", folder) == 2

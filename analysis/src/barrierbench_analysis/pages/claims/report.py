@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import textwrap
 
+from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.pages.stated.sources import measured_elsewhere
 from barrierbench_analysis.program.verbs import renewed
 from barrierbench_analysis.studies.claims import frontiers, verdict_code
-from barrierbench_analysis.studies.claims.entry import Claim, read_sweep
+from barrierbench_analysis.studies.claims.entry import read_sweep
 from barrierbench_analysis.studies.claims.judge import Answer
 from barrierbench_analysis.studies.claims.table import Table
 from barrierbench_analysis.studies.claims.verdict import IN_PART, ONLY_IF, OPEN, Judged
 from barrierbench_analysis.studies.claims.words import interval
 from barrierbench_analysis.studies.kit.metrics import METRICS
+from barrierbench_analysis.studies.kit.study.page import filled
 from barrierbench_analysis.tables.numbers import ratio
 
+TEMPLATE = ROOT / "configs" / "studies" / "claims.md"
 WIDTH = 140
 MANY = 4  # parts: of more a table says how many hold
-SEVERAL = "../docs/results/several-studies.md"
-BY_SMALLEST = "; compared by smallest gaps"
 
 
 def counts_of(groups: tuple[int, ...], parts: list[Judged]) -> str:
@@ -49,35 +50,6 @@ def sentence(j: Judged, brief: bool = False, parts: list[Judged] = ()) -> str:
     return f"{OPEN}: {j.missing}" if j.verdict == OPEN and j.missing else j.verdict
 
 
-def _part(j: Judged, rests: dict[str, str]) -> list[str]:
-    kind = "closed form" if j.proof else f"`{j.sweep}`"
-    verdict = f"{sentence(j)}{' (beside, decides nothing)' if j.beside else ''}"
-    verdict += f" ({rests[j.says]})" if j.says in rests else ""
-    lines = [
-        f"- {j.says}: **{verdict}**. {j.measures}{' (depends on the machine)' if j.machine else ''}:"
-        f" {interval(j)}, asked: {j.threshold or '-'};"
-        f" {j.counted or '-'}{BY_SMALLEST if j.smallest_gaps else ''}; {kind}."
-    ]
-    if j.slice:
-        lines.append(
-            f"  Slice: {j.slice}." + (f" Samples: {j.scenes} scenes; {j.starts}." if j.scenes else "")
-        )
-    if j.per_scene:
-        lines.append(
-            "  By scene (least and largest of its levels): "
-            + "; ".join(
-                f"{name} {ratio(v)} ({ratio(low)} to {ratio(high)} at {levels}, n = {n})"
-                for name, v, low, high, levels, n in j.per_scene
-            )
-            + "."
-        )
-    if j.ends:
-        lines.append(f"  Ends of steps: {j.ends}.")
-    if j.runs:
-        lines.append(f"  First {'pair' if len(j.runs) == 2 else 'run'}: run_id {', '.join(j.runs)}.")
-    return lines
-
-
 def confirmed_word(a: Answer) -> str:
     if a.proven:
         return "closed form"
@@ -94,56 +66,6 @@ def _resting(rests: dict[str, str], parts: list[Judged]) -> str:
     return f" ({'; '.join(named)})" if named else ""
 
 
-def _confirmation(a: Answer) -> list[str]:
-    """What stands of the claim over scenes that no rule was tuned on."""
-    if not a.state.why:
-        return []
-    lines = [f"Confirmed: **{confirmed_word(a)}** ({a.state.why}).", ""]
-    for j in a.confirmed_parts:
-        lines += _part(j, a.confirmed_rests)
-    return lines + [""] if a.confirmed_parts else lines
-
-
-def _elsewhere(claim: Claim) -> list[str]:
-    """Where other studies measure what a part compares: verdicts may differ with the conditions."""
-    if not any(measured_elsewhere(part) for part in claim.parts):
-        return []
-    return [
-        "Gap map and ablation measure the same under other conditions, and decide some of it otherwise: the"
-        f" numbers stand side by side in [One quantity, several studies]({SEVERAL}).",
-        "",
-    ]
-
-
-def _claim(a: Answer, table: Table) -> list[str]:
-    claim = a.claim
-    lines = [
-        f"## {claim.id}: {a.verdict.verdict}",
-        "",
-        claim.sentence,
-        "",
-        (
-            f"Source: {claim.source}. Dimension: {claim.dimension}. Kind: {claim.kind}. Keeps the guarantee:"
-            f" {claim.guarantee}. Rerun: `{claim.command}`."
-        ),
-        "",
-    ]
-    if a.verdict.verdict in (ONLY_IF, IN_PART, OPEN):
-        lines += [f"**{sentence(a.verdict)}.**", ""]
-    if a.why_exploratory:
-        lines += [f"The verdict is {a.why_exploratory}.", ""]
-    for j in a.parts:
-        lines += _part(j, a.rests)
-    if a.parts:
-        lines.append("")
-    lines += _elsewhere(claim) + _confirmation(a) + frontiers.lines(claim, table)
-    if claim.note:
-        lines += [claim.note, ""]
-    for change in claim.rule_changes:
-        lines += [f"Rule changed after numbers were seen: {change}", ""]
-    return lines
-
-
 SWEEP_COLUMNS = (
     "sweep",
     "runs",
@@ -158,56 +80,16 @@ SWEEP_COLUMNS = (
 )
 
 
-def _sweeps(table: Table) -> list[str]:
+def sweep_table(table: Table) -> list[str]:
     rows = []
     for name, runs in sorted(table.sweeps.items()):
         sweep, about = read_sweep(name), runs.about
-        ok, comparable = (
-            sum(row[key] == word for row in runs.rows)
-            for key, word in (("outcome", "ok"), ("comparability", "comparable"))
-        )
-        rows.append(
-            [
-                name,
-                f"{len(runs.rows)} of {len(sweep.cases)}",
-                about["unknowns"],
-                f"{ok}",
-                f"{comparable}",
-                f"{about['seconds']:.0f}",
-                about["date"],
-                about["machine"],
-                about["build"][:8],
-                f"`{sweep.command}`",
-            ]
-        )
-    total = sum(runs.about["seconds"] for runs in table.sweeps.values())
-    return [
-        "## Sweeps",
-        "",
-        *table_lines(SWEEP_COLUMNS, rows),
-        "",
-        (
-            f"Seconds are those of the runs, diagnosis and audit included: {total:.0f} s of one core in all,"
-            " on a machine that did other work as well."
-        ),
-        "",
-    ]
-
-
-HEAD = """# Claims
-
-Made by `./bench study claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/results/method/claims.md, has the rules. A
-number is the mean of its scenes (a ratio: of their logarithms), a scene the mean of its levels (resolution, load, limit), a level that of its starts, with a 95% interval
-over scenes by Student's t ([COVERAGE.md](COVERAGE.md)), or what its line says: levels and starts are no samples. cond is a condition number. Every part names its slice.
-Verdicts from runs are exploratory: their rules were changed after numbers were seen, or not registered before them; the confirmed ones are over scenes that no rule was
-tuned on, by a rule that was committed before their first run ("-": none was run). Interval and sign test were changed for all claims when numbers were known
-(2026-11-23): before, a bootstrap drew levels and starts as samples too, and signs were those of scenes x levels, then of levels got through with every start; now of the
-shares of starts, and thresholds are strict. A claim of which some parts hold and some do not holds in part. From a sentence to its runs: its sweep's command makes
-the records, `run_id` names them in results/claims.json and in their run.json, and `./bench run RUN.json` repeats one.
-Runs are comparable by the gaps at which each pair of bodies carries its load (docs/theory/audit.md, Comparability); where a part says "compared by smallest gaps", its numbers are
-of records before version 3.5.0, whose verdicts are by the smallest gap of the whole run: another rule, and the two are never compared with each other. An end of a step
-that is not asked to converge has a residual, in tolerances of a step that is.
-"""
+        ok = sum(row["outcome"] == "ok" for row in runs.rows)
+        comparable = sum(row["comparability"] == "comparable" for row in runs.rows)
+        made = about["unknowns"], f"{ok}", f"{comparable}", f"{about['seconds']:.0f}", about["date"]
+        by = about["machine"], about["build"][:8], f"`{sweep.command}`"
+        rows.append([name, f"{len(runs.rows)} of {len(sweep.cases)}", *made, *by])
+    return table_lines(SWEEP_COLUMNS, rows)
 
 
 def _short(a: Answer) -> str:
@@ -251,26 +133,24 @@ def in_page(page: str, answers: list[Answer]) -> str:
 
 
 def markdown(answers: list[Answer], table: Table) -> str:
-    lines = [
-        HEAD,
-        *verdict_code.lines(),
-        "![main number of every claim by kind, with its scenes, interval and threshold](../docs/claims.png)",
-        "",
-        *verdict_table(answers),
-        "",
-    ]
-    for a in answers:
-        lines += _claim(a, table)
-    lines += _sweeps(table)
-    lines += [
-        "## Metrics",
-        "",
-        *(
-            f"- `{name}`: {meaning}{' (depends on the machine)' if machine else ''}"
-            for name, (meaning, _, machine, _) in METRICS.items()
-        ),
-    ]
-    return renewed("\n".join(lines)) + "\n"  # texts of claims are kept
+    """The page. Errors: UserError for a template that asks for what is not here."""
+    about = {
+        "answers": answers,
+        "changes": verdict_code.changes(),
+        "conditional": (ONLY_IF, IN_PART, OPEN),
+        "confirmed_word": confirmed_word,
+        # Other studies measure what a part compares: verdicts may differ with the conditions.
+        "elsewhere": lambda claim: any(map(measured_elsewhere, claim.parts)),
+        "frontier": lambda claim: frontiers.lines(claim, table),
+        "interval": interval,
+        "metrics": METRICS,
+        "ratio": ratio,
+        "seconds": f"{sum(runs.about['seconds'] for runs in table.sweeps.values()):.0f}",
+        "sentence": sentence,
+        "sweeps": "\n".join(sweep_table(table)),
+        "verdicts": "\n".join(verdict_table(answers)),
+    }
+    return renewed(filled(TEMPLATE, about))  # texts of claims are kept
 
 
 def text(answers: list[Answer]) -> str:

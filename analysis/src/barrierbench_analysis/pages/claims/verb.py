@@ -1,8 +1,9 @@
 """Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every
-verdict from the records by the rule of its claim, and writes results/CLAIMS.md, results/claims.json (the
-numbers used), docs/claims.png and the table of docs/results/claims.md. With names of claims it runs the
-sweeps of these alone. Confirmation sweeps are run for claims that are registered (--register ID, then commit
-claims/confirmation/registry.json).
+verdict from the records by the rule of its claim, and writes results/CLAIMS.md, the numbers used
+(results/studies/claims.jsonl), docs/claims.png and the table of docs/results/claims.md. With names of claims
+it runs the sweeps of these alone. Confirmation sweeps are run for claims that are registered (--register ID,
+then commit claims/confirmation/registry.json). plan: counts the runs, those that are kept, and what the rest
+is expected to take. page: judges the records that are there, or the kept numbers.
 
 Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them;
 a bad entry; no program), or calls itself confirmed and is not.
@@ -25,10 +26,20 @@ from barrierbench_analysis.program.start import built_program, run_sweep
 from barrierbench_analysis.studies.claims import coverage, figure, frontiers, registry
 from barrierbench_analysis.studies.claims.entry import ROOT, Claim, ids, read_claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import judge, missing
+from barrierbench_analysis.studies.claims.plan import plan, sweeps_to_run
 from barrierbench_analysis.studies.claims.proofs import Eval
 from barrierbench_analysis.studies.claims.table import FILE, RUNS, Table, collect, read, used_metrics, write
 
 from . import report
+
+# Options with which no sweep is run -> what is done instead.
+NOTHING_IS_RUN = {
+    "--plan": "count the runs, and the seconds that the missing ones are expected to take",
+    "--no-run": "judge the records that are there, or the kept numbers",
+    "--register": f"write rule and confirmation sweeps of these claims to {registry.KEPT}; commit it before"
+    " the first run",
+    "--coverage": "simulate how often the intervals cover, and write results/COVERAGE.md",
+}
 
 
 def program(needed: bool = True) -> str | None:
@@ -46,11 +57,7 @@ def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
     for claim in claims:
         if claim.id in entries:
             registry.ready(claim, entries)
-    for name in dict.fromkeys(
-        name
-        for claim in claims
-        for name in claim.sweeps + (claim.confirmation_sweeps if claim.id in entries else [])
-    ):
+    for name in sweeps_to_run(claims, entries):
         sweep, start = read_sweep(name), time.monotonic()
         print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
         done = run_sweep(ROOT / sweep.file, runs / name, plugins=plugins, stdout=subprocess.DEVNULL)
@@ -75,42 +82,17 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of(
         "study claims",
         __doc__,
-        "./bench study claims",
-        "./bench study claims --no-run",
+        "./bench study claims run K3",
+        "./bench study claims page",
         "./bench study claims --register K3",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
-    parser.add_argument(
-        "--no-run",
-        action="store_true",
-        help="run nothing: judge the records that are there, or the numbers in results/claims.json",
-    )
-    parser.add_argument(
-        "--runs",
-        type=Path,
-        default=RUNS,
-        metavar="DIR",
-        help="folder of the sweeps (default: results/runs/claims)",
-    )
-    parser.add_argument(
-        "--register",
-        action="store_true",
-        help=(
-            "run nothing: write rule and confirmation sweeps of these claims to"
-            " claims/confirmation/registry.json; commit it before the first run"
-        ),
-    )
-    parser.add_argument(
-        "--run-before",
-        default="",
-        metavar="TEXT",
-        help="with --register, where the scenes were run before: when, and by which rule; the page says so",
-    )
-    parser.add_argument(
-        "--coverage",
-        action="store_true",
-        help="run nothing: simulate how often the intervals cover, and write results/COVERAGE.md",
-    )
+    for option, text in NOTHING_IS_RUN.items():
+        parser.add_argument(option, action="store_true", help=f"run nothing: {text}")
+    of_sweeps = "folder of the sweeps (default: results/runs/claims)"
+    parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help=of_sweeps)
+    before = "with --register, where the scenes were run before: when, and by which rule; the page says so"
+    parser.add_argument("--run-before", default="", metavar="TEXT", help=before)
     plugin_argument(parser)
     return parser.parse_args(argv)
 
@@ -123,6 +105,9 @@ def main(argv: list[str]) -> int:
     claims = [read_claim(name) for name in args.ids or ids()]
     if args.register:
         return register(claims if args.ids else [], args.runs, args.run_before)
+    if args.plan:
+        print("\n".join(plan(claims, gather(claims, args.runs, read(FILE)), registry.read())))
+        return 0
     return judge_all(claims, args)
 
 
@@ -158,9 +143,7 @@ def register(claims: list[Claim], runs: Path, run_before: str) -> int:
         entry = registry.register(claim, table, run_before=run_before)
         print(
             f"{claim.id}: registered on {entry['date']}, rule {entry['rule_sha256'][:12]}, sweeps"
-            f" {', '.join(entry['sweeps'])}. Commit claims/confirmation/registry.json before ./bench study"
-            f" claims"
-            f" {claim.id}"
+            f" {', '.join(entry['sweeps'])}. Commit {registry.KEPT} before {claim.command}"
         )
     return 0
 
@@ -172,11 +155,10 @@ def write_all(table: Table, asker: Eval) -> None:
         table.answers = {text: table.answers[text] for text in asker.asked}
     write(table, FILE)
     write_whole(ROOT / "results" / "CLAIMS.md", report.markdown(answers, table))
-    drawn = figure.draw(answers, RUNS / "figure" / "claims")
+    drawn, folder = figure.draw(answers, RUNS / "figure" / "claims"), RUNS / "figure"
     for claim in (a.claim for a in answers if frontiers.has_runs(a.claim, table)):
-        drawn += frontiers.draw(
-            claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}"
-        )
+        runs = table.sweeps[claim.frontier["sweep"]]
+        drawn += frontiers.draw(claim, runs, folder / f"policies_{claim.id}")
     copy_to_page(drawn, ROOT / "docs")
     page = ROOT / "docs/results/claims.md"
     write_whole(page, report.in_page(input_file.read_text(page), answers))

@@ -168,6 +168,7 @@ def main(argv: list[str]) -> int:
     )
     print(
         "\n".join(found)
-        or "every snippet works, and the numbers are those of results/demo.json and results/claims.json"
+        or "every snippet works, and the numbers are those of results/demo.json and"
+        " results/studies/claims.jsonl"
     )
     return 1 if found else 0

@@ -8,6 +8,7 @@ from pathlib import Path
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.studies.claims import table as claims_table
 from barrierbench_analysis.studies.kit.study.store import read_rows
 
 RESULTS = ROOT / "results"
@@ -27,13 +28,13 @@ def _of_rows(file: Path) -> tuple[int, float]:
 
 
 def _claims(file: Path) -> tuple[int, float]:
-    sweeps = read_object(file)["sweeps"].values()
-    return sum(len(one["rows"]) for one in sweeps), sum(one["about"]["seconds"] for one in sweeps)
+    sweeps = claims_table.read(file).sweeps.values()
+    return sum(len(one.rows) for one in sweeps), sum(one.about["seconds"] for one in sweeps)
 
 
 # Study -> file, command, and its runs with their core seconds. Every run has one thread.
 STUDIES: dict[str, tuple[str, str, Callable[[Path], tuple[int, float]]]] = {
-    "claims": ("claims.json", "./bench study claims", _claims),
+    "claims": ("studies/claims.jsonl", "./bench study claims", _claims),
     "gap map": ("studies/gap_map.jsonl", "./bench study gap-map", _of_rows),
     "Pareto fronts": ("studies/pareto.jsonl", "./bench study pareto", _of_rows),
     "work-precision": ("studies/work_precision.jsonl", "./bench study work-precision", _of_rows),

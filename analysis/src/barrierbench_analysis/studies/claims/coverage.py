@@ -8,7 +8,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown as table_lines
+from barrierbench_analysis.studies.kit.study.page import filled
 from barrierbench_analysis.tables.estimate import student
 
 SEED, RUNS = 20261123, 20000
@@ -73,15 +75,7 @@ def simulations(runs: int = RUNS) -> Iterator[tuple[str, int, np.ndarray]]:
             yield effects, scenes, draw(effects, scenes, runs, np.random.default_rng((SEED, k, scenes)))
 
 
-HEAD = f"""# Coverage of the intervals of claims
-
-Made by `./bench study claims --coverage`. Share of {RUNS} simulated sweeps whose 95% interval has the true mean in it: scenes with effects of variance 1, {LEVELS} levels a
-scene (standard deviation {LEVEL_SD:g}, correlation {LEVEL_CORRELATION:g} between neighbours), {STARTS} starts with an intraclass correlation of {INTRACLASS:g}. The
-interval is Student's t on one value a scene. `tests/claims/test_coverage.py` holds every number of the table above its floor (93 to 97% for normal effects), and shows
-beside it, on the same draws, the bootstrap over scenes, levels and starts that was used before. Two clusters: with probability 2^(1-n) all n scenes are of one cluster,
-and no method sees the other; a verdict from three or four scenes is one about such scenes. The standard error of a number here is 0.0023 at most.
-
-"""
+TEMPLATE = ROOT / "configs" / "studies" / "claims_coverage.md"
 
 
 def markdown() -> str:
@@ -90,5 +84,12 @@ def markdown() -> str:
         [effects, *(f"{found[effects, n]:.3f} (floor {floor(effects, n):.3f})" for n in SCENES)]
         for effects in EFFECTS
     ]
-    lines = table_lines(["effects of scenes", *(f"{n} scenes" for n in SCENES)], rows)
-    return HEAD + "\n".join(lines) + "\n"
+    table = table_lines(["effects of scenes", *(f"{n} scenes" for n in SCENES)], rows)
+    numbers = {
+        "runs": RUNS,
+        "levels": LEVELS,
+        "starts": STARTS,
+        "intraclass": INTRACLASS,
+        "level_sd": LEVEL_SD,
+    }
+    return filled(TEMPLATE, numbers | {"level_correlation": LEVEL_CORRELATION, "table": "\n".join(table)})

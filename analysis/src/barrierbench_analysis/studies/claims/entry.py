@@ -38,18 +38,13 @@ class Claim:
     waits_for: str = ""  # what has to be built before it can be decided
     note: str = ""
     rule_changes: tuple[str, ...] = ()  # of a rule after numbers were seen
-    frontier: dict = field(
-        default_factory=dict, hash=False
-    )  # sweep, cost, axes, and which runs are bad, of the table and figure of who gets how far (frontiers.py)
+    # sweep, cost, axes, and which runs are bad, of the table and figure of who gets how far (frontiers.py)
+    frontier: dict = field(default_factory=dict, hash=False)
 
     @property
     def sweeps(self) -> list[str]:
-        return list(
-            dict.fromkeys(
-                [part["sweep"] for part in self.parts if "sweep" in part]
-                + [self.frontier[k] for k in ("sweep",) if self.frontier]
-            )
-        )
+        found = [part["sweep"] for part in (*self.parts, self.frontier) if "sweep" in part]
+        return list(dict.fromkeys(found))
 
     @property
     def deciding(self) -> list[dict]:
@@ -70,17 +65,13 @@ class Sweep:
 
     name: str
     sha256: str
-    cases: dict[str, tuple[str, str, str, int]] = field(
-        hash=False, default_factory=dict
-    )  # note of a record -> its place
-    more: dict[str, dict] = field(
-        hash=False, default_factory=dict
-    )  # note -> values of further axes: theta, ...
+    # Note of a record -> its place; note -> values of further axes: theta, ...
+    cases: dict[str, tuple[str, str, str, int]] = field(hash=False, default_factory=dict)
+    more: dict[str, dict] = field(hash=False, default_factory=dict)
     axes: dict[str, list] = field(hash=False, default_factory=dict)  # of these their values
     path: Path = Path()
-    solvers: dict[str, str] = field(
-        hash=False, default_factory=dict
-    )  # case -> step solver, of those that name one
+    # Case -> step solver, of those that name one.
+    solvers: dict[str, str] = field(hash=False, default_factory=dict)
 
     @property
     def file(self) -> str:
@@ -156,11 +147,8 @@ def note_of(name: str, labels) -> str:
 
 def sweep_path(name: str, folder: Path = FOLDER) -> Path:
     """Of a sweep of claims, or of one of confirmation scenes; no name is in both."""
-    found = [
-        path
-        for path in (folder / kind / f"{name}.json" for kind in ("sweeps", "confirmation"))
-        if path.is_file()
-    ]
+    files = (folder / kind / f"{name}.json" for kind in ("sweeps", "confirmation"))
+    found = [path for path in files if path.is_file()]
     if len(found) > 1:
         raise UserError(f"{found[1]}: a sweep of this name is in claims/sweeps as well")
     return found[0] if found else folder / "sweeps" / f"{name}.json"
@@ -210,12 +198,5 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
         for case in axes[1]["cases"]
         if (solver := case["set"].get(SOLVER, method_set(case["set"].get(METHOD)).get(SOLVER)))
     }
-    return Sweep(
-        name,
-        of_file(path),
-        cases,
-        more,
-        {word(axes[k]["pointer"]): axes[k]["values"] for k in others},
-        path,
-        solvers,
-    )
+    values = {word(axes[k]["pointer"]): axes[k]["values"] for k in others}
+    return Sweep(name, of_file(path), cases, more, values, path, solvers)

@@ -25,6 +25,8 @@ PANELS = {
     "slope": ("slope of log number over log level", False),
     "closed form": ("number of a closed form, range over its arguments", True),
 }
+OF_SCENE = {"marker": "o", "alpha": 0.45, "markeredgewidth": 0, "linestyle": "none"}
+OF_PART = ("measures", "slice", "value", "lower", "upper", "threshold", "ends")
 KINDS = {"ratio": "ratio", "at_equal_gap": "ratio", "outcomes": "share", "level": "share", "slope": "slope"}
 SHOWN = (
     "The main number of every claim that has one, that of its first part, by kind of number. Light dots"
@@ -51,16 +53,7 @@ def _dots(j: Judged) -> list[float]:
 def _number(axis, j: Judged, y: float, color: str, marker: str) -> None:
     """A number with its interval at the height y, its scenes a little below."""
     dots = _dots(j)
-    axis.plot(
-        dots,
-        [y + 0.16] * len(dots),
-        marker="o",
-        markersize=2.2,
-        color=color,
-        alpha=0.45,
-        markeredgewidth=0,
-        linestyle="none",
-    )
+    axis.plot(dots, [y + 0.16] * len(dots), markersize=2.2, color=color, **OF_SCENE)
     if j.lower is not None:
         axis.plot([j.lower, j.upper], [y, y], color=color, linewidth=1.4, solid_capstyle="butt")
     axis.plot([j.value], [y], marker=marker, markersize=3.6, color=color, linestyle="none")
@@ -81,18 +74,10 @@ def _row(axis, k: int, a: Answer) -> dict:
         "panel": kind_of(j),
         "claim": a.claim.id,
         "verdict": a.verdict.verdict,
-        "measures": j.measures,
-        "slice": j.slice,
-        "value": j.value,
-        "lower": j.lower,
-        "upper": j.upper,
-        "threshold": j.threshold,
-        "ends": j.ends,
+        **{name: getattr(j, name) for name in OF_PART},
         "scenes": " ".join(f"{x:.4g}" for x in _dots(j)),
         "confirmed_verdict": a.confirmed.verdict if a.confirmed is not None else "",
-        "confirmed_value": again.value if again else None,
-        "confirmed_lower": again.lower if again else None,
-        "confirmed_upper": again.upper if again else None,
+        **{f"confirmed_{name}": getattr(again, name, None) for name in ("value", "lower", "upper")},
     }
 
 
@@ -105,57 +90,35 @@ def _panel(axis, kind: str, shown: list[Answer]) -> list[dict]:
         axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 100 else (1,), numticks=12))
         axis.xaxis.set_major_formatter("{x:g}" if high < 1e4 else axis.xaxis.get_major_formatter())
         axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.set_yticks(
-        range(len(shown)), [f"{a.claim.id}  {_wrapped(_says(a.main))}" for a in shown], fontsize=5.5
-    )
+    names = [f"{a.claim.id}  {textwrap.fill(_label(a.main), 58)}" for a in shown]
+    axis.set_yticks(range(len(shown)), names, fontsize=5.5)
     axis.set_ylim(len(shown) - 0.4, -0.6)
     axis.set_xlabel(label)
     return rows
 
 
-def _says(j: Judged) -> str:
+def _label(j: Judged) -> str:
     return f"{j.says} ({j.ends})" if j.ends else j.says
 
 
 def draw(answers: list[Answer], stem: Path) -> list[Path]:
-    by_kind = {
-        kind: [a for a in answers if a.main is not None and kind_of(a.main) == kind] for kind in PANELS
-    }
+    numbered = [a for a in answers if a.main is not None]
+    by_kind = {kind: [a for a in numbered if kind_of(a.main) == kind] for kind in PANELS}
     by_kind = {kind: shown for kind, shown in by_kind.items() if shown}
     if not by_kind:
         return []
     heights = [len(shown) + 1.6 for shown in by_kind.values()]
-    fig, axes = plt.subplots(
-        len(by_kind),
-        1,
-        figsize=(style.WIDE_IN, 0.5 + 0.34 * sum(heights)),
-        layout="constrained",
-        height_ratios=heights,
-        squeeze=False,
-    )
-    rows = [
-        row for axis, (kind, shown) in zip(axes[:, 0], by_kind.items()) for row in _panel(axis, kind, shown)
-    ]
+    size = style.WIDE_IN, 0.5 + 0.34 * sum(heights)
+    how = {"layout": "constrained", "height_ratios": heights, "squeeze": False}
+    fig, axes = plt.subplots(len(by_kind), 1, figsize=size, **how)
+    panels = zip(axes[:, 0], by_kind.items())
+    rows = [row for axis, (kind, shown) in panels for row in _panel(axis, kind, shown)]
     style.letter_panels(axes[:, 0])
     first = axes[0, 0]
     for verdict, color in COLORS.items():
         first.plot([], [], color=color, marker="o", label=verdict)
-    first.plot(
-        [],
-        [],
-        color="#888888",
-        alpha=0.45,
-        marker="o",
-        markersize=2.6,
-        markeredgewidth=0,
-        linestyle="none",
-        label="a scene",
-    )
+    first.plot([], [], color="#888888", markersize=2.6, label="a scene", **OF_SCENE)
     first.plot([], [], color="#888888", marker="s", markersize=3.6, label="confirmation")
     first.plot([], [], color="black", marker="|", linestyle="none", label="threshold")
     fig.legend(loc="outside lower center", ncols=4, frameon=False)
     return style.save(fig, stem, pd.DataFrame(rows), SHOWN)
-
-
-def _wrapped(text: str, width: int = 58) -> str:
-    return "\n".join(textwrap.wrap(text, width))

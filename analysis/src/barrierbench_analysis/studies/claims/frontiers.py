@@ -49,23 +49,15 @@ SHARES = (
 
 
 def cases(runs: Runs) -> list[str]:
-    return list(
-        dict.fromkeys(
-            row["case"]
-            for row in sorted(
-                runs.rows, key=lambda r: list(LOOKS).index(r["case"]) if r["case"] in LOOKS else len(LOOKS)
-            )
-        )
-    )
+    found, looks = dict.fromkeys(row["case"] for row in runs.rows), list(LOOKS)
+    return sorted(found, key=lambda case: looks.index(case) if case in looks else len(looks))
 
 
 def case_labels(claim: Claim, runs: Runs) -> dict[str, str]:
     """Case -> its name with the residual of its ends, where its steps are not asked to converge."""
     sweep = read_sweep(claim.frontier["sweep"])
-    return {
-        case: f"{case} ({end})" if (end := end_of_case(runs.rows, case, sweep)) else case
-        for case in cases(runs)
-    }
+    ends = {case: end_of_case(runs.rows, case, sweep) for case in cases(runs)}
+    return {case: f"{case} ({end})" if end else case for case, end in ends.items()}
 
 
 def _cost(row: dict, name: str) -> float:
@@ -79,12 +71,16 @@ def value_of(level: str, axis: str, middle: float) -> float | None:
     axis."""
     if level == MIDDLE:
         return middle
-    if not level.startswith(axis):
-        return None
     try:
-        return float(level.removeprefix(axis))
+        return float(level.removeprefix(axis)) if level.startswith(axis) else None
     except ValueError:
         return None
+
+
+def judged_rows(runs: Runs, bad: str | None) -> list[dict]:
+    """Without scenes x levels that no case gets through."""
+    left_out = hopeless(runs, bad)
+    return [row for row in runs.rows if (row["scene"], row["level"]) not in left_out]
 
 
 def _trial(row: dict, value: float, cost: float, bad: str | None) -> Trial:
@@ -92,15 +88,8 @@ def _trial(row: dict, value: float, cost: float, bad: str | None) -> Trial:
 
 
 def trials(runs: Runs, case: str, cost: str, bad: str | None = None) -> list[Trial]:
-    """Runs of a case for shares, costs and profiles: scenes x levels that no case gets through are left out.
-    bad: as of a part (outcomes.py).
-    """
-    left_out = hopeless(runs, bad)
-    return [
-        _trial(row, 0.0, _cost(row, cost), bad)
-        for row in runs.rows
-        if row["case"] == case and (row["scene"], row["level"]) not in left_out
-    ]
+    """Runs of a case for shares, costs and profiles. bad: as of a part (outcomes.py)."""
+    return [_trial(row, 0.0, _cost(row, cost), bad) for row in judged_rows(runs, bad) if row["case"] == case]
 
 
 def along(runs: Runs, case: str, axis: str, middle: float, bad: str | None = None) -> list[Trial]:
@@ -113,9 +102,9 @@ def along(runs: Runs, case: str, axis: str, middle: float, bad: str | None = Non
 
 def _share(runs: Runs, case: str, every: list[Trial], bad: str | None) -> str:
     """Share of runs, and of scenes in which every run gets through, whose interval is over scenes."""
-    left_out, through = hopeless(runs, bad), {}
-    for row in runs.rows:
-        if row["case"] == case and (row["scene"], row["level"]) not in left_out:
+    through: dict[str, bool] = {}
+    for row in judged_rows(runs, bad):
+        if row["case"] == case:
             through[row["scene"]] = through.get(row["scene"], True) and good(row, bad)
     whole, n = sum(through.values()), len(through)
     low, high = wilson(whole, n)
@@ -127,10 +116,8 @@ def _reach(f: Frontier) -> str:
     """The range that all runs get through; a square bracket outwards where the next tested value fails."""
     if f.low is None or f.high is None:
         return "not even the middle"
-    return (
-        f"{']' if f.fails_below is not None else ''}{f.low:g} to"
-        f" {f.high:g}{'[' if f.fails_above is not None else ''}"
-    )
+    below, above = "]" * (f.fails_below is not None), "[" * (f.fails_above is not None)
+    return f"{below}{f.low:g} to {f.high:g}{above}"
 
 
 def _left_out(runs: Runs, bad: str | None) -> str:
@@ -138,9 +125,8 @@ def _left_out(runs: Runs, bad: str | None) -> str:
     places = hopeless(runs, bad)
     if not places:
         return ""
-    n = sum(
-        row["case"] == runs.rows[0]["case"] and (row["scene"], row["level"]) in places for row in runs.rows
-    )
+    of_case = [row for row in runs.rows if row["case"] == runs.rows[0]["case"]]
+    n = sum((row["scene"], row["level"]) in places for row in of_case)
     every = len({(row["scene"], row["level"]) for row in runs.rows})
     return (
         f"{len(places)} of {every} scenes x levels ({n} runs of each case) are left out, since no case gets"
@@ -196,31 +182,13 @@ def _profiles(axis, runs: Runs, names: dict[str, str], cost: str, bad: str | Non
     for case, every in spent.items():
         color, marker = LOOKS.get(case, ("#444444", "x"))
         steps = profile(every)
-        x, y = (
-            [left, *(b for b, _ in steps), right],
-            [
-                0.0,
-                *(s for _, s in steps),
-                steps[-1][1] if steps else 0.0,
-            ],
-        )
-        axis.plot(
-            x,
-            y,
-            drawstyle="steps-post",
-            color=color,
-            marker=marker,
-            markevery=style.marks(len(x), 8),
-            label=_two_lines(names[case]),
-        )
+        x = [left, *(b for b, _ in steps), right]
+        y = [0.0, *(s for _, s in steps), steps[-1][1] if steps else 0.0]
+        look = {"color": color, "marker": marker, "markevery": style.marks(len(x), 8)}
+        axis.plot(x, y, drawstyle="steps-post", label=_two_lines(names[case]), **look)
         numbers += [{"panel": "profile", "case": case, "budget": b, "share": s} for b, s in steps]
-    axis.set(
-        xscale="log",
-        xlim=(left, 1.05 * right),
-        ylim=(0, 1.02),
-        xlabel=f"budget of {cost}",
-        ylabel="share of problems solved",
-    )
+    axis.set(xscale="log", xlim=(left, 1.05 * right), ylim=(0, 1.02))
+    axis.set(xlabel=f"budget of {cost}", ylabel="share of problems solved")
     axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.xaxis.set_major_formatter(ScalarFormatter())
     axis.xaxis.set_minor_formatter(NullFormatter())
@@ -235,28 +203,18 @@ def _order(level: str, axes: dict) -> tuple:
 
 
 def _shares(axis, runs: Runs, labels: dict[str, str], axes: dict, bad: str | None) -> list[dict]:
-    names, left_out = list(labels), hopeless(runs, bad)
+    names, judged = list(labels), judged_rows(runs, bad)
     levels = sorted({row["level"] for row in runs.rows}, key=lambda level: _order(level, axes))
     share, numbers = np.full((len(names), len(levels)), math.nan), []
     for i, case in enumerate(names):
         for j, level in enumerate(levels):
-            found = [
-                good(row, bad)
-                for row in runs.rows
-                if row["case"] == case and row["level"] == level and (row["scene"], level) not in left_out
-            ]
+            found = [good(row, bad) for row in judged if (row["case"], row["level"]) == (case, level)]
             if not found:
                 continue
             share[i, j] = sum(found) / len(found)
-            axis.text(
-                j,
-                i,
-                f"{sum(found)}" if all(found) else f"{sum(found)}/{len(found)}",
-                ha="center",
-                va="center",
-                fontsize=5,
-                color="white" if share[i, j] < 0.45 else "black",
-            )
+            text = f"{sum(found)}" if all(found) else f"{sum(found)}/{len(found)}"
+            color = "white" if share[i, j] < 0.45 else "black"
+            axis.text(j, i, text, ha="center", va="center", fontsize=5, color=color)
             numbers.append({"panel": "share", "case": case, "budget": level, "share": share[i, j]})
     axis.imshow(share, vmin=0, vmax=1, cmap="viridis", aspect="auto", alpha=0.85)
     axis.set_xticks(range(len(levels)), levels, rotation=90)
@@ -273,20 +231,14 @@ def _two_lines(label: str) -> str:
 
 def _rank(claim: Claim, names: dict[str, str]) -> list[str]:
     """The cases that the claim compares first, in the order of its parts."""
-    compared = [
-        case for part in claim.parts for case in (part.get("case"), part.get("over")) if case in names
-    ]
-    return list(dict.fromkeys([*compared, *names]))
+    compared = [part.get(key) for part in claim.parts for key in ("case", "over")]
+    return [case for case in dict.fromkeys([*compared, *names]) if case in names]
 
 
 def draw(claim: Claim, runs: Runs, stem: Path) -> list[Path]:
     """The figure, and the profiles that it has no room for in stem_more."""
     names, bad, cost = case_labels(claim, runs), claim.frontier.get("bad"), claim.frontier["cost"]
-    problems = {
-        (row["scene"], row["level"], row["seed"])
-        for row in runs.rows
-        if (row["scene"], row["level"]) not in hopeless(runs, bad)
-    }
+    problems = {(row["scene"], row["level"], row["seed"]) for row in judged_rows(runs, bad)}
     left_out = _left_out(runs, bad)
     shown = SHOWN.format(
         n=len(problems),

@@ -53,11 +53,8 @@ class Answer:
         changes = len(self.claim.rule_changes)
         if not changes:
             return "exploratory: its rule was not registered before its first run"
-        return (
-            "exploratory: "
-            + ("a change" if changes == 1 else f"{changes} changes")
-            + " after numbers were seen"
-        )
+        how_many = "a change" if changes == 1 else f"{changes} changes"
+        return f"exploratory: {how_many} after numbers were seen"
 
     @property
     def main(self) -> Judged | None:
@@ -75,41 +72,36 @@ class Answer:
         return same[0] if same else None
 
 
-def _stale(runs: Runs, sweep: Sweep) -> str:
+def stale(runs: Runs, sweep: Sweep) -> str:
     """Why kept numbers are none of this sweep; empty when they are."""
     if runs.about.get("sha256") != sweep.sha256:
         return f"the records of {sweep.name} are of another {sweep.file}"
     if "inputs_sha256" not in runs.about:
         return f"the numbers of {sweep.name} do not say of which base config, presets and meshes they are"
+    if runs.about["inputs_sha256"] == inputs_of(sweep):
+        return ""
     return (
-        ""
-        if runs.about["inputs_sha256"] == inputs_of(sweep)
-        else (
-            f"the records of {sweep.name} are of another base config, preset or mesh than"
-            f" {sweep.file} names now"
-        )
+        f"the records of {sweep.name} are of another base config, preset or mesh than {sweep.file} names now"
     )
 
 
 def missing(claim: Claim, table: Table) -> list[str]:
     """One line a sweep whose records are not all there, or of other inputs, with the command that makes
     them."""
-    lines, used = [], {name: set(metrics) for name, metrics in used_metrics([claim]).items()}
+    lines, used = [], used_metrics([claim])
     for name in claim.sweeps:
-        sweep, runs = read_sweep(name), table.sweeps.get(name)
-        found = len(runs.rows) if runs else 0
-        if runs and (stale := _stale(runs, sweep)):
-            lines.append(f"{claim.id}: {stale}: {sweep.command}")
-        elif runs and runs.rows and (absent := used.get(name, set()) - set(runs.rows[0])):
-            lines.append(
-                f"{claim.id}: the kept numbers of {name} have no {', '.join(sorted(absent))}, which its rule"
-                f" reads: {sweep.command}"
-            )
-        elif found < len(sweep.cases):
-            lines.append(
-                f"{claim.id}: {len(sweep.cases) - found} of {len(sweep.cases)} records of {name} are missing:"
-                f" {sweep.command}"
-            )
+        sweep, runs = read_sweep(name), table.sweeps.get(name, Runs({}, []))
+        cases, found = len(sweep.cases), len(runs.rows)
+        absent = sorted(set(used.get(name, ())) - set(runs.rows[0])) if found else []
+        if name in table.sweeps and (other := stale(runs, sweep)):
+            why = other
+        elif absent:
+            why = f"the kept numbers of {name} have no {', '.join(absent)}, which its rule reads"
+        elif found < cases:
+            why = f"{cases - found} of {cases} records of {name} are missing"
+        else:
+            continue
+        lines.append(f"{claim.id}: {why}: {sweep.command}")
     return lines
 
 
@@ -129,11 +121,8 @@ def judge_part(part: dict, table: Table, asker: Eval) -> Judged:
         runs = rows_of(part, table.sweeps[part["sweep"]], sweep)
         judged = RULES[part["rule"]](part, runs)
         judged.ends = ends_of_part(part, runs.rows, sweep)
-        judged.smallest_gaps = (
-            part["rule"] in BY_GAP
-            and part.get("counts", "comparable") == "comparable"
-            and runs.of_earlier_rule
-        )
+        by_gap = part["rule"] in BY_GAP and part.get("counts", "comparable") == "comparable"
+        judged.smallest_gaps = by_gap and runs.of_earlier_rule
         judged.rule, judged.slice = part["rule"], slice_of(part, sweep)
     judged.says, judged.beside, judged.sweep = part["says"], part.get("beside", False), part.get("sweep", "")
     judged.machine = METRICS[part["metric"]][2] if "metric" in part else False

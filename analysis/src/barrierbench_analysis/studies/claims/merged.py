@@ -12,10 +12,7 @@ from barrierbench_analysis.io.json_file import read_object
 from .entry import METHOD, ROOT, method_set
 
 PRESETS = ROOT / "configs" / "formulations"
-WITHOUT_LIMIT = (
-    "bodies",
-    "resting_block_1d",
-)  # scenes that have no strain limit of their own (experiments/scenes)
+WITHOUT_LIMIT = ("bodies", "resting_block_1d")  # scenes without a limit of their own (experiments/scenes)
 
 
 def put(config: dict, pointer: str, value) -> None:

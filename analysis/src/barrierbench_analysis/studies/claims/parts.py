@@ -12,26 +12,8 @@ MOST = "residual_at_most"  # of a part: a larger residual at a step end, in tole
 THRESHOLDS = ("above", "below", "within", "beyond")
 OF_A_PROOF = ("left", "right", "u", "shape", "argument", "loads", "mass_term", "changes")
 OF_A_RULE = (
-    "says",
-    "rule",
-    "sweep",
-    "metric",
-    "case",
-    "over",
-    "counts",
-    "scenes",
-    "equal",
-    "beside",
-    "needs",
-    "bad",
-    MOST,
-    "every",
-    "starts",
-    "reason",
-    "confirm",
-    "limit",
-    "theta",
-    *THRESHOLDS,
+    *"says rule sweep metric case over counts scenes equal beside needs bad every starts reason".split(),
+    *("confirm", "limit", "theta", MOST, *THRESHOLDS),
 )
 KEYS = ("proof", *OF_A_RULE, *OF_A_PROOF)
 

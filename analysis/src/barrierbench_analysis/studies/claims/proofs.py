@@ -44,26 +44,17 @@ class Eval:
 
 
 def _range(values: list[float], **more) -> dict:
-    return {
-        "value": min(values),
-        "lower": min(values),
-        "upper": max(values),
-        "extremes": True,
-        "proof": True,
-        **more,
-    }
+    low, high = min(values), max(values)
+    return {"value": low, "lower": low, "upper": high, "extremes": True, "proof": True, **more}
 
 
 def rho_above(part: dict, asker: Eval) -> Judged:
     """rho(u) = d_hat b''/|b'| of `left` over that of `right` at gaps u: stiffness at equal load and gap."""
-    found = [
-        (
-            u,
-            asker.ask(kind="rho", u=u, **part["left"])["rho"]
-            / asker.ask(kind="rho", u=u, **part["right"])["rho"],
-        )
-        for u in part["u"]
-    ]
+
+    def rho(u: float, side: str) -> float:
+        return asker.ask(kind="rho", u=u, **part[side])["rho"]
+
+    found = [(u, rho(u, "left") / rho(u, "right")) for u in part["u"]]
     above = [u for u, x in found if x > part["above"]]
     more = _range(
         [x for _, x in found],
@@ -76,11 +67,8 @@ def rho_above(part: dict, asker: Eval) -> Judged:
         return Judged(HOLDS, **more)
     if not above:
         return Judged(NOT, **more)
-    return Judged(
-        ONLY_IF,
-        condition=f"u in {', '.join(f'{u:g}' for u in above)} of {', '.join(f'{u:g}' for u in part['u'])}",
-        **more,
-    )
+    some, every = (", ".join(f"{u:g}" for u in of) for of in (above, part["u"]))
+    return Judged(ONLY_IF, condition=f"u in {some} of {every}", **more)
 
 
 def light_touch(part: dict, asker: Eval) -> Judged:
@@ -89,9 +77,8 @@ def light_touch(part: dict, asker: Eval) -> Judged:
     """
 
     def stiffness(shape: str, load: float) -> float:
-        kappa = asker.ask(
-            kind="match", rule="equal_force", shape=shape, d_hat=0.01, load=1.0, theta=part["theta"]
-        )["kappa"]
+        matched = {"kind": "match", "rule": "equal_force", "load": 1.0, "theta": part["theta"]}
+        kappa = asker.ask(shape=shape, d_hat=0.01, **matched)["kappa"]
         return asker.ask(kind="equilibrium", shape=shape, kappa=kappa, d_hat=0.01, load=load)["K"]
 
     loads = sorted(part["loads"], reverse=True)
@@ -116,19 +103,12 @@ def unit_change(part: dict, asker: Eval) -> Judged:
     """
 
     def kappa(length: float) -> float:
-        more = {"dt": 0.01, "c": 1.0} if part["mass_term"] in ("inertia", "scaled") else {}
-        return asker.ask(
-            kind="stiffness",
-            policy="elasticity_inclusive",
-            mass_term=part["mass_term"],
-            elastic_term=False,
-            weights=[1.0],
-            normal=[0.0, 0.0, 1.0],
-            masses=[0.001],
-            gap=0.004 * length,
-            d_hat=0.01 * length,
-            **more,
-        )["kappa"]
+        contact = {"weights": [1.0], "normal": [0.0, 0.0, 1.0], "masses": [0.001]}
+        contact |= {"gap": 0.004 * length, "d_hat": 0.01 * length}
+        terms = {"mass_term": part["mass_term"], "elastic_term": False}
+        if part["mass_term"] in ("inertia", "scaled"):
+            terms |= {"dt": 0.01, "c": 1.0}
+        return asker.ask(kind="stiffness", policy="elasticity_inclusive", **terms, **contact)["kappa"]
 
     x = kappa(1.0) / kappa(1000.0)
     changes = abs(x - 1) > 1e-9
@@ -154,10 +134,9 @@ def force_falls(part: dict, asker: Eval) -> Judged:
     peak = max(range(len(u)), key=lambda k: mine[k])
     falls = all(mine[k] < mine[k + 1] for k in range(peak)) and mine[0] < 0.1 * mine[peak]
     never = all(other[k] > other[k + 1] for k in range(len(u) - 1))
-    capacity = asker.ask(
-        kind="equilibrium", shape=part["shape"], argument=part["argument"], kappa=1.0, d_hat=1.0, load=0.01
-    )["capacity"]
-    whole = asker.ask(kind="equilibrium", shape=part["shape"], kappa=1.0, d_hat=1.0, load=0.01)["capacity"]
+    contact = {"kind": "equilibrium", "shape": part["shape"], "kappa": 1.0, "d_hat": 1.0, "load": 0.01}
+    capacity = asker.ask(argument=part["argument"], **contact)["capacity"]
+    whole = asker.ask(**contact)["capacity"]
     return Judged(
         HOLDS if peak > 0 and falls and never else NOT,
         measures=(
@@ -169,9 +148,4 @@ def force_falls(part: dict, asker: Eval) -> Judged:
     )
 
 
-PROOFS = {
-    "rho_above": rho_above,
-    "light_touch": light_touch,
-    "unit_change": unit_change,
-    "force_falls": force_falls,
-}
+PROOFS = {proof.__name__: proof for proof in (rho_above, light_touch, unit_change, force_falls)}

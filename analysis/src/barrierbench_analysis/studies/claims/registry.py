@@ -21,14 +21,15 @@ from barrierbench_analysis.studies.kit.metrics import METRICS
 from barrierbench_analysis.studies.kit.success import COMMON, read_for
 
 from . import fresh
-from .entry import FOLDER, ROOT, Claim, read_sweep
+from .entry import ROOT, Claim, read_sweep
 from .history import NoHistory, brought
 from .inputs import inputs_of
 from .outcomes import LEVEL
 from .table import Table
 from .verdict import LEVELS, SCENES, STARTS
 
-FILE = FOLDER / "confirmation" / "registry.json"
+KEPT = "claims/confirmation/registry.json"
+FILE = ROOT / KEPT
 NAME = "barrierbench.confirmation/1"
 # What a rule means beside its parts. A change of how verdicts are computed is a change here, and of every
 # hash. What takes a verdict away for want of a subject (numbers.with_subject) gives none and is not here.
@@ -183,7 +184,7 @@ def _refused(why: str) -> State:
 
 def _changed(claim: Claim, entry: dict) -> str:
     """What is no longer as registered; empty when all is."""
-    place = f"claims/confirmation/registry.json: /claims/{claim.id}"
+    place = f"{KEPT}: /claims/{claim.id}"
     if sha_of(entry.get("rule")) != entry.get("rule_sha256"):
         return f"{place}/rule: its sha256 is not the rule_sha256 beside it"
     if lines := differences(entry["rule"], rule_of(claim)):
@@ -199,11 +200,10 @@ def _changed(claim: Claim, entry: dict) -> str:
             )
         registered = entry.get("inputs", {}).get(name, "")
         if (now := inputs_of(read_sweep(name))) != registered:
-            return f"{read_sweep(name).file}: base config, presets and meshes have sha256 {now[:12]}, " + (
-                f"registered {registered[:12]} on {entry['date']}"
-                if registered
-                else "the entry has none: register it before another first run"
-            )
+            then = "the entry has none: register it before another first run"
+            if registered:
+                then = f"registered {registered[:12]} on {entry['date']}"
+            return f"{read_sweep(name).file}: base config, presets and meshes have sha256 {now[:12]}, {then}"
         try:
             fresh.check(read_sweep(name), own=map(read_sweep, claim.sweeps))
         except UserError as error:
@@ -236,9 +236,9 @@ def _records(claim: Claim, table: Table, entry: dict) -> State | None:
 
 def _committed(claim: Claim, table: Table, entry: dict, root: Path) -> State:
     """The commit that brought the entry is an ancestor of HEAD and older than the first run."""
-    place = f"claims/confirmation/registry.json: /claims/{claim.id}"
+    place = f"{KEPT}: /claims/{claim.id}"
     try:
-        commit = brought(root, "claims/confirmation/registry.json", ("claims", claim.id), entry)
+        commit = brought(root, KEPT, ("claims", claim.id), entry)
     except NoHistory as error:
         return State(UNVERIFIED, f"{place}: no git history here ({error})")
     if commit is None:
@@ -252,10 +252,7 @@ def _committed(claim: Claim, table: Table, entry: dict, root: Path) -> State:
             why = (
                 "the history here is shallow"
                 if started
-                else (
-                    f"the records of {name} keep no time of their start: ./bench study claims {claim.id}"
-                    " collects them again"
-                )
+                else f"the records of {name} keep no time of their start: {claim.command} collects them again"
             )
             return State(UNVERIFIED, f"{place}: {why}")
         if started <= commit.at:
@@ -277,14 +274,8 @@ def state(claim: Claim, table: Table, entries: dict, root: Path = ROOT) -> State
     entry = entries.get(claim.id)
     if entry is None:
         run = [name for name in claim.confirmation_sweeps if name in table.sweeps and table.sweeps[name].rows]
-        return State(
-            NONE,
-            (
-                f"not registered before {', '.join(run)} was run"
-                if run
-                else f"not registered: ./bench study claims --register {claim.id}"
-            ),
-        )
+        before = f"not registered before {', '.join(run)} was run"
+        return State(NONE, before if run else f"not registered: ./bench study claims --register {claim.id}")
     if changed := _changed(claim, entry):
         return _refused(changed)
     return _records(claim, table, entry) or _committed(claim, table, entry, root)
@@ -298,16 +289,12 @@ def ready(claim: Claim, entries: dict, root: Path = ROOT) -> None:
     if now.refused:
         raise UserError(f"{claim.id}: no confirmation is run: {now.why}")
     try:
-        if (
-            brought(root, "claims/confirmation/registry.json", ("claims", claim.id), entries[claim.id])
-            is None
-        ):
-            raise UserError(
-                f"{claim.id}: commit claims/confirmation/registry.json before the first run of"
-                f" {', '.join(claim.confirmation_sweeps)}"
-            )
+        commit = brought(root, KEPT, ("claims", claim.id), entries[claim.id])
     except NoHistory:
-        pass  # it will not be verifiable here, which is said then
+        return  # it will not be verifiable here, which is said then
+    if commit is None:
+        runs = ", ".join(claim.confirmation_sweeps)
+        raise UserError(f"{claim.id}: commit {KEPT} before the first run of {runs}")
 
 
 def as_confirmation(claim: Claim) -> Claim:

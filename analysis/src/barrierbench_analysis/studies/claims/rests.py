@@ -22,7 +22,7 @@ def rests_on(part: dict, runs: Runs, judged: Judged) -> str:
         return ""
     alone = []
     for name in FAILURES:
-        without = Runs(runs.about, [{**row, name: 0.0} for row in runs.rows], runs.expected)
+        without = Runs(runs.about, [{**row, name: 0.0} for row in runs.rows])
         verdict = outcomes.outcomes(part, without).verdict
         if verdict != judged.verdict:
             alone.append(f"{WORDS.get(name, f'`{name}`')} alone: without it `{verdict}`")

@@ -38,7 +38,7 @@ def rows_of(part: dict, runs: Runs, sweep: Sweep) -> Runs:
         return runs
     wanted = {name: _wanted(part, sweep, name) for name in sweep.axes}
     rows = [row for row in runs.rows if all(_equal(value, row[name]) for name, value in wanted.items())]
-    return Runs(runs.about, rows, runs.expected)
+    return Runs(runs.about, rows)
 
 
 @cache
@@ -61,19 +61,13 @@ def _of_case(part: dict, sweep: Sweep, case: str) -> dict[str, set[tuple[float |
 def _check(part: dict, sweep: Sweep, case: str, found: dict[str, set[tuple]]) -> None:
     """Errors: UserError where a scene that counts has another theta or limit than the part names."""
     for k, name in enumerate(("theta", "limit")):
-        unlike = {
-            scene: {words[k] for words in of}
-            for scene, of in found.items()
-            if name in part and {words[k] for words in of} != {part[name]}
-        }
+        values = {scene: {words[k] for words in of} for scene, of in sorted(found.items())}
+        unlike = {scene: of for scene, of in values.items() if name in part and of != {part[name]}}
         if unlike:
-            has = "; ".join(
-                f"{scene}: {', '.join(map(repr, sorted(values, key=str)))}"
-                for scene, values in sorted(unlike.items())
-            )
+            has = (f"{scene}: {', '.join(map(repr, sorted(of, key=str)))}" for scene, of in unlike.items())
             raise UserError(
                 f"{part.get('says', part)}: {name}: found {part[name]!r}; the runs of {case} in"
-                f" {sweep.file} have {has} (`scenes` names those that count)"
+                f" {sweep.file} have {'; '.join(has)} (`scenes` names those that count)"
             )
 
 
@@ -87,14 +81,13 @@ def _pooled(words: dict[str, set[str]], name: str) -> str:
     return f"{name}{most}" + (f" ({rest})" if rest else "")
 
 
-def _said(found: dict[str, set[tuple]]) -> tuple[str, str]:
-    thetas = {
-        scene: {"stiffness as given" if theta is None else f"theta {theta:g}" for theta, _ in of}
-        for scene, of in found.items()
-    }
-    return _pooled(thetas, ""), _pooled(
-        {scene: {limit for _, limit in of} for scene, of in found.items()}, "limit "
-    )
+def _in_words(found: dict[str, set[tuple]]) -> tuple[str, str]:
+    def word(theta: float | None) -> str:
+        return "stiffness as given" if theta is None else f"theta {theta:g}"
+
+    thetas = {scene: {word(theta) for theta, _ in of} for scene, of in found.items()}
+    limits = {scene: {limit for _, limit in of} for scene, of in found.items()}
+    return _pooled(thetas, ""), _pooled(limits, "limit ")
 
 
 def slice_of(part: dict, sweep: Sweep) -> str:
@@ -108,15 +101,14 @@ def slice_of(part: dict, sweep: Sweep) -> str:
     for case in cases:
         if of := _of_case(part, sweep, case):
             _check(part, sweep, case, of)
-            found[case] = _said(of)
+            found[case] = _in_words(of)
     if not found:
         return ""
     if len(set(found.values())) == 1:
         return ", ".join(next(iter(found.values())))
-    shared = {limit for _, limit in found.values()}
-    thetas = {theta for theta, _ in found.values()}
+    thetas, limits = map(set, zip(*found.values()))
     if len(thetas) == 1:
-        return f"{thetas.pop()}; " + "; ".join(f"{case}: {limit}" for case, (_, limit) in found.items())
-    if len(shared) == 1:
-        return "; ".join(f"{case}: {theta}" for case, (theta, _) in found.items()) + f"; {shared.pop()}"
+        return "; ".join([*thetas, *(f"{case}: {limit}" for case, (_, limit) in found.items())])
+    if len(limits) == 1:
+        return "; ".join([*(f"{case}: {theta}" for case, (theta, _) in found.items()), *limits])
     return "; ".join(f"{case}: {theta}, {limit}" for case, (theta, limit) in found.items())

@@ -1,10 +1,9 @@
-"""What the verdicts are computed from: the numbers of all runs and the answers of `eval`, in
-results/claims.json.
+"""What the verdicts are computed from, results/studies/claims.jsonl: the numbers of all runs, and the answers
+of `eval`. Rows share (io/shared_rows.py) their sweep, what made them and their columns.
 """
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -15,8 +14,7 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.origin import origin, run_of, seconds_of_run
 from barrierbench_analysis.io.record_file import RecordError, other_meanings, read_record
-from barrierbench_analysis.io.store import a_line_each, in_columns, read_store
-from barrierbench_analysis.io.whole_file import write_whole
+from barrierbench_analysis.io.shared_rows import read_shared, write_shared
 from barrierbench_analysis.studies.kit.metrics import FOLDER, METRICS
 from barrierbench_analysis.studies.kit.success import RESIDUAL, read_for
 from barrierbench_analysis.tables.gap_rule import gaps_of
@@ -29,10 +27,11 @@ from .inputs import asked, contradiction, inputs_of
 from .merged import base_path
 from .parts import MOST
 
-FILE = ROOT / "results" / "claims.json"
+FILE = ROOT / "results" / "studies" / "claims.jsonl"
 RUNS = ROOT / "results" / "runs" / "claims"
-NAME = "barrierbench.claims/1"
-AGAIN = "; remove it, then ./bench study claims"
+NAME = "barrierbench.claims/2"
+SHARED, ANSWER = ("sweep", "about", "columns"), ("query", "answer")
+AGAIN = "; remove it, then ./bench study claims run"
 PLACE = ("scene", "level", "case", "seed")
 # run: the first 16 digits of run_id. pair: that is not comparable. Numbers of records before 3.5.0 have no
 # pair, gaps and ends
@@ -48,7 +47,6 @@ class Runs:
         dict  # sha256 of the sweep file, inputs_sha256 of all that it names, date, machine, program, seconds
     )
     rows: list[dict]
-    expected: int
 
     @property
     def of_earlier_rule(self) -> bool:
@@ -69,10 +67,6 @@ class Runs:
                 f" earlier ones, then {sweep.command}"
             )
 
-    @property
-    def complete(self) -> bool:
-        return len(self.rows) == self.expected
-
 
 @dataclass
 class Table:
@@ -84,12 +78,8 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     """Sweep -> metrics that some part reads."""
     used: dict[str, set] = {}
     for part in (part for claim in claims for part in claim.parts if "sweep" in part):
-        names = {
-            part.get("metric"),
-            *read_for(part.get("bad")),
-            (part.get("equal") or {}).get("metric"),
-            RESIDUAL if MOST in part else None,
-        } - {None}
+        equal, residual = (part.get("equal") or {}).get("metric"), RESIDUAL if MOST in part else None
+        names = {part.get("metric"), *read_for(part.get("bad")), equal, residual} - {None}
         if unknown := names - set(METRICS):
             raise UserError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
         for sweep in (part["sweep"], *((part["confirm"]["sweep"],) if "confirm" in part else ())):
@@ -101,16 +91,11 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
 
 def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
     comparability = record["comparability"]
-    row = dict(zip(PLACE, place))
-    row |= {
-        "outcome": outcome_of(record),
-        "comparability": comparability["verdict"],
-        "gap_rel": rounded(comparability.get("gap_rel")),
-        "run": run_of(record),
-        "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "",
-        "gaps": rounded(gaps_of(record)),
-        **rounded(end_of_run(record)),
-    }
+    verdict = comparability["verdict"]
+    pair = comparability.get("pair", "") if verdict == "not_comparable" else ""
+    state = outcome_of(record), verdict, rounded(comparability.get("gap_rel")), run_of(record), pair
+    row = dict(zip(PLACE, place)) | dict(zip(STATE, (*state, rounded(gaps_of(record)))))
+    row |= rounded(end_of_run(record))
     return row | {name: rounded(METRICS[name][3](record), DIGITS) for name in metrics}
 
 
@@ -137,9 +122,8 @@ def _one_version(sweep: Sweep, folder: Path, records: list[dict]) -> str:
     """The versions of the records in words. Errors: UserError where a field means one thing in some of them
     and another in others.
     """
-    versions = sorted(
-        {r["schema"]["version"] for r in records}, key=lambda v: [int(part) for part in v.split(".")]
-    )
+    found = {record["schema"]["version"] for record in records}
+    versions = sorted(found, key=lambda version: [int(part) for part in version.split(".")])
     if records and (fields := other_meanings(versions[0], versions[-1])):
         raise UserError(
             f"{folder}: records of version {versions[0]} beside those of {versions[-1]}, in which"
@@ -172,32 +156,36 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
     about |= origin(records)
     sizes = [r["scene"]["free_dofs"] for r in records]
     about["unknowns"] = f"{min(sizes)} to {max(sizes)}" if sizes else ""
-    return Runs(about, rows, len(sweep.cases))
+    return Runs(about, rows)
 
 
 def write(table: Table, path: Path) -> None:
-    blocks = []
-    for name, runs in sorted(table.sweeps.items()):
-        columns = list(runs.rows[0]) if runs.rows else list(PLACE + STATE)
-        blocks.append(
-            f'"{name}": {{"about": {json.dumps(runs.about)}, "expected": {runs.expected},\n   "columns":'
-            f' {json.dumps(columns)}, "rows": {a_line_each(in_columns(runs.rows, columns), 3)}}}'
-        )
-    answers = [
-        f"{json.dumps(query)}: {json.dumps(answer)}" for query, answer in sorted(table.answers.items())
+    """Answers of `eval` stand below the name of no sweep."""
+    answers = [dict(zip(ANSWER, one)) for one in sorted(table.answers.items())]
+    blocks = [
+        *((name, runs.about, runs.rows) for name, runs in sorted(table.sweeps.items())),
+        ("", {}, answers),
     ]
-    sweeps, answers = (a_line_each(texts, 2, ("{", "\n }")) for texts in (blocks, answers))
-    write_whole(path, f'{{\n "schema": "{NAME}",\n "sweeps": {sweeps},\n "answers": {answers}\n}}\n')
+    rows = (
+        (dict(zip(SHARED, (name, about, list(rows[0])))), list(row.values()))
+        for name, about, rows in blocks
+        for row in rows
+    )
+    write_shared(path, NAME, rows)
+
+
+def _kept(row: list, shared: dict) -> tuple[str, dict, dict]:
+    """Sweep, what made it, and the row. Errors: ValueError for another number of values, KeyError."""
+    return shared["sweep"], shared["about"], dict(zip(shared["columns"], row, strict=True))
 
 
 def read(path: Path) -> Table:
-    """The kept table; empty when there is none."""
-
-    def of(data: dict) -> Table:
-        sweeps = {
-            name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"])
-            for name, s in data["sweeps"].items()
-        }
-        return Table(sweeps, data["answers"])
-
-    return read_store(path, NAME, of, AGAIN, Table())
+    """The kept table; empty when there is none. Errors: UserError."""
+    table = Table()
+    rows = read_shared(path, NAME, SHARED, _kept, "a row of ./bench study claims", AGAIN)
+    for _, (sweep, about, row) in rows if path.is_file() else ():
+        if sweep:
+            table.sweeps.setdefault(sweep, Runs(about, [])).rows.append(row)
+        else:
+            table.answers[row["query"]] = row["answer"]
+    return table

@@ -34,12 +34,3 @@ def code_now() -> str:
 
 def changes() -> list[Change]:
     return [Change(**one) for one in read_object(FILE)["changes"]]
-
-
-def lines() -> list[str]:
-    """For the page."""
-    return [
-        "The code that computes verdicts is listed with its changes (verdict_code.json, package claims):",
-        *(f"- {change.date}, {change.code}: {change.what}" for change in changes()),
-        "",
-    ]

@@ -22,25 +22,12 @@ from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
 
 SCHEMA = "barrierbench.gpu_evidence/1"
-SCENES = (
-    "drape_20k",
-    "drape_20k.cpu",
-    "drape_82k",
-    "drape_82k.cpu",
-    "drape_1m",
-    "dense_500k",
-    "dense_8m",
-)
+SCENES = ("drape_20k", "drape_20k.cpu", "drape_82k", "drape_82k.cpu", "drape_1m", "dense_500k", "dense_8m")
 RECORDS = ROOT / "results/gpu"
 RUN_SCHEMA = ROOT / "configs/schema/run.schema.json"
 # Kernels of the graph of iterations, which return at once when the solve is over.
-OF_SOLVE = (
-    "MultiplyDot",
-    "UpdateBlockJacobi",
-    "StepDirection",
-    "SolveClusters",
-    "UpdateResidual",
-    "AddLevels",
+OF_SOLVE = frozenset(
+    "MultiplyDot UpdateBlockJacobi StepDirection SolveClusters UpdateResidual AddLevels".split()
 )
 IDLE_SHARE = 0.1  # of the bytes of a kernel's largest launch: what moves less did nothing
 
@@ -48,16 +35,9 @@ IDLE_SHARE = 0.1  # of the bytes of a kernel's largest launch: what moves less d
 def parts_of(folder: Path) -> dict[str, dict]:
     """name -> status (passed, failed, timed_out, left_out), seconds, why."""
     parts = {}
-    for line in input_file.read_text(folder / "parts.tsv").splitlines():
-        try:
-            name, status, more, seconds = line.split("\t")
-            parts[name] = {
-                "status": status,
-                "seconds": int(seconds),
-                "why": more if status == "left_out" else "",
-            }
-        except ValueError:
-            raise UserError(f"{folder}/parts.tsv: not a part: {line!r}") from None
+    for name, status, more, seconds in _fields(folder / "parts.tsv", (str, str, str, int), "part"):
+        why = more if status == "left_out" else ""
+        parts[name] = {"status": status, "seconds": seconds, "why": why}
         if status in ("failed", "timed_out"):
             said = _lines(folder / "logs" / f"{name}.err")
             parts[name]["why"] = said[-1] if said else f"exit code {more}"
@@ -67,6 +47,17 @@ def parts_of(folder: Path) -> dict[str, dict]:
     return parts
 
 
+def _fields(path: Path, types: tuple, what: str) -> list[list]:
+    """Lines of fields between tabs, each of its type. Errors: UserError."""
+    found = []
+    for line in input_file.read_text(path).splitlines():
+        try:
+            found.append([of(text) for of, text in zip(types, line.split("\t"), strict=True)])
+        except ValueError:
+            raise UserError(f"{path}: not a {what}: {line!r}") from None
+    return found
+
+
 def _lines(log: Path) -> list[str]:
     return input_file.read_text(log).strip().splitlines() if log.exists() else []
 
@@ -74,12 +65,8 @@ def _lines(log: Path) -> list[str]:
 def card_state(folder: Path) -> dict:
     """Driver, clocks (MHz), power (W), as nvidia-smi says; empty where it was not there."""
     path = folder / "card.csv"
-    rows = (
-        list(csv.DictReader(input_file.read_text(path).splitlines(), skipinitialspace=True))
-        if path.exists()
-        else []
-    )
-    return {key.split(" [")[0]: value for key, value in rows[0].items()} if rows else {}
+    rows = csv.DictReader(_lines(path), skipinitialspace=True)
+    return {key.split(" [")[0]: value for key, value in next(rows, {}).items()}
 
 
 def scene_numbers(folder: Path) -> dict | None:
@@ -90,10 +77,8 @@ def scene_numbers(folder: Path) -> dict | None:
     run = read_record(path)
     summary, steps = run["summary"], max(run["summary"]["steps"], 1)
     newton, pcg = summary["newton_iterations"], summary["linear_iterations"]
-    wall, solve = (
-        summary["wall_s"],
-        (summary["time"]["linear_solve_s"] if summary["wall_s"] is not None else None),
-    )
+    wall = summary["wall_s"]
+    time = summary["time"] if wall is not None else {}
 
     def per(seconds, n):
         return 1000.0 * seconds / n if seconds is not None and n > 0 else None
@@ -109,8 +94,8 @@ def scene_numbers(folder: Path) -> dict | None:
         "wall_s": wall,
         "step_s": wall / steps if wall is not None else None,
         "newton_ms": per(wall, newton),
-        "pcg_ms": per(solve, pcg),
-        "end_check_s": summary["time"].get("end_check_s") if wall is not None else None,
+        "pcg_ms": per(time.get("linear_solve_s"), pcg),
+        "end_check_s": time.get("end_check_s"),
         **_phases(run["steps"]),
         "linear_solver": run["labels"]["linear_solver"],
         "run_id": run["ids"]["run_id"],
@@ -126,27 +111,16 @@ def _phases(steps: list[dict]) -> dict:
     counted = timed[1:] or timed
     newton = sum(step["newton_iterations"] for step in counted)
     names = read_object(RUN_SCHEMA)["$defs"]["PhaseTimes"]["properties"] if newton > 0 else ()
-    return {
-        "first_step_s": timed[0]["wall_s"] if timed else None,
-        "phases_ms": {
-            name: 1000.0 * sum(step["time"].get(name, 0.0) for step in counted) / newton for name in names
-        },
-    }
+    seconds = {name: sum(step["time"].get(name, 0.0) for step in counted) for name in names}
+    phases = {name: 1000.0 * of / newton for name, of in seconds.items()}
+    return {"first_step_s": timed[0]["wall_s"] if timed else None, "phases_ms": phases}
 
 
 def stages_of(folder: Path) -> list[dict]:
     """The stages of a lease in their order; empty where there was none."""
-    path = folder / "stages.tsv"
-    stages = []
-    for line in input_file.read_text(path).splitlines() if path.exists() else []:
-        try:
-            name, code, seconds, limit = line.split("\t")
-            stages.append(
-                {"name": name, "exit_code": int(code), "seconds": int(seconds), "limit_s": int(limit)}
-            )
-        except ValueError:
-            raise UserError(f"{path}: not a stage: {line!r}") from None
-    return stages
+    path, names = folder / "stages.tsv", ("name", "exit_code", "seconds", "limit_s")
+    lines = _fields(path, (str, int, int, int), "stage") if path.exists() else []
+    return [dict(zip(names, line)) for line in lines]
 
 
 def same_runs(folder: Path) -> list[dict]:
@@ -158,16 +132,10 @@ def same_runs(folder: Path) -> list[dict]:
         if card is None or host is None:
             continue
         keys = ("outcome", "newton_iterations", "pcg_iterations", "contacts", "wall_s", "state_hash")
-        rows.append(
-            {
-                "name": name,
-                "vertices": card["vertices"],
-                "steps": card["steps"],
-                "same_bits": card["state_hash"] == host["state_hash"] if card["state_hash"] else None,
-                "card": {key: card[key] for key in keys},
-                "host": {key: host[key] for key in keys},
-            }
-        )
+        row = {"name": name, "vertices": card["vertices"], "steps": card["steps"]}
+        row["same_bits"] = card["state_hash"] == host["state_hash"] if card["state_hash"] else None
+        both = (("card", card), ("host", host))
+        rows.append(row | {side: {key: of[key] for key in keys} for side, of in both})
     return rows
 
 
@@ -183,7 +151,7 @@ def launches_of(path: Path) -> dict[str, dict[str, dict[str, float]]]:
     """functor -> number of a launch -> metrics, of Nsight Compute's table; empty where it was not there or
     had no rights.
     """
-    lines = input_file.read_text(path).splitlines() if path.exists() else []
+    lines = _lines(path)
     start = next((i for i, line in enumerate(lines) if line.startswith('"ID"')), None)
     launches: dict[str, dict[str, dict[str, float]]] = {}
     for row in csv.DictReader(lines[start:]) if start is not None else []:
@@ -225,6 +193,10 @@ def _of_launches(name: str, launches: list[dict[str, float]]) -> dict:
     }
 
 
+def _rate(bytes: float | None, seconds: float, **_) -> float | None:
+    return bytes / seconds if bytes and seconds else None
+
+
 def kernels_of(folder: Path) -> list[dict]:
     """Kernels with their time, longest first; bytes and rate are null without Nsight Compute."""
     kernels = measured_kernels(folder)
@@ -234,14 +206,7 @@ def kernels_of(folder: Path) -> list[dict]:
             name: {"idle": None, **times, "bytes": None}
             for name, times in read_object(path)["kernels"].items()
         }
-    rows = [
-        {
-            "name": name,
-            **entry,
-            "Bps": entry["bytes"] / entry["seconds"] if entry["bytes"] and entry["seconds"] else None,
-        }
-        for name, entry in kernels.items()
-    ]
+    rows = [{"name": name, **entry, "Bps": _rate(**entry)} for name, entry in kernels.items()]
     return sorted(rows, key=lambda row: (-row["seconds"], row["name"]))
 
 

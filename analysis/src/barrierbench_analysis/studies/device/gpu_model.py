@@ -92,16 +92,10 @@ def assembly_bytes(size: Size, m: Measured) -> float:
     triangle.
     """
     candidates = m.candidates_a_contact * 8 * (2 + 12)
-    rows = 2 * 138 * 4
-    contributions = 10 * 64
-    bound = 3 * 200
+    rows, contributions, bound = 2 * 138 * 4, 10 * 64, 3 * 200
+    of_contacts = (candidates + rows + contributions + bound) * contacts(size, m)
     trees = 43 * 8 * (size.vertices + 2.5 * size.triangles)
-    return (
-        (candidates + rows + contributions + bound) * contacts(size, m)
-        + 144 * blocks(size, m)
-        + trees
-        + 1024 * size.triangles
-    )
+    return of_contacts + 144 * blocks(size, m) + trees + 1024 * size.triangles
 
 
 def pattern_bytes(size: Size, m: Measured) -> float:
@@ -128,14 +122,12 @@ def rows_of(size: Size, known: dict[str, Measured]) -> list[list[str]]:
         return [[size.name, NO_RECORD, "", "", "", "", ""]]
     out = []
     for card, rate in COPY_RATES.items():
-        iteration = solver_bytes(size, m) / (PART_OF_COPY * rate)
-        times = [iteration]
-        times += [(assembly_bytes(size, m) + pattern_bytes(size, m)) / (PART_OF_COPY * rate)]
-        texts = [seconds_text(value) for value in times]
+        moved = solver_bytes(size, m), assembly_bytes(size, m) + pattern_bytes(size, m)
+        texts = [seconds_text(of / (PART_OF_COPY * rate)) for of in moved]
         for name in PRECONDITIONERS.values():
             known_one = name in m.pcg_a_newton
             texts.append(seconds_text(sum(newton_seconds(size, m, rate, name))) if known_one else NO_RECORD)
-        out.append([size.name, f"{solver_bytes(size, m) / 1e9:.3g} GB", card, *texts])
+        out.append([size.name, f"{moved[0] / 1e9:.3g} GB", card, *texts])
     return out
 
 
@@ -143,11 +135,8 @@ def inputs_text(size: Size, known: dict[str, Measured]) -> str:
     m = size.inputs(known)
     if m is None:
         return f"- {size.name}: no record of its contacts and iterations, so nothing is predicted"
-    solves = ", ".join(
-        f"{m.pcg_a_newton[key]:.3g} ({name})"
-        for name, key in PRECONDITIONERS.items()
-        if key in m.pcg_a_newton
-    )
+    there = {name: m.pcg_a_newton[key] for name, key in PRECONDITIONERS.items() if key in m.pcg_a_newton}
+    solves = ", ".join(f"{iterations:.3g} ({name})" for name, iterations in there.items())
     parts = [
         f"{m.contacts_a_vertex:.3g} contacts a vertex ({contacts(size, m) / 1e6:.3g} million)",
         f"{m.candidates_a_contact:.3g} candidates and {m.blocks_a_contact:.3g} stored blocks a contact",
@@ -162,10 +151,8 @@ def table() -> str:
     head = ["scene", "bytes an iteration of PCG", "card", "PCG iteration", "all but the solve"]
     head += [f"Newton iteration, {name}" for name in PRECONDITIONERS]
     rows = [row for size in SIZES for row in rows_of(size, known)]
-    return (
-        "\n".join(["Inputs:", *(inputs_text(size, known) for size in SIZES), "", *markdown(head, rows)])
-        + "\n"
-    )
+    inputs = ["Inputs:", *(inputs_text(size, known) for size in SIZES), ""]
+    return "\n".join([*inputs, *markdown(head, rows)]) + "\n"
 
 
 def costs_of(text: str) -> tuple[float, float]:
@@ -173,11 +160,8 @@ def costs_of(text: str) -> tuple[float, float]:
     candidates = blocks_a_row = 0.0
     for part in text.split("{")[1:]:
         line = json.loads("{" + part[: part.index("}") + 1])
-        blocks_both = [
-            float(row.split()[1]) / float(row.split()[0])
-            for row in part.splitlines()
-            if row.endswith("GatherStreamed")
-        ]
+        streamed = (row.split() for row in part.splitlines() if row.endswith("GatherStreamed"))
+        blocks_both = [float(second) / float(first) for first, second, *_ in streamed]
         if blocks_both and line["rows"]:
             blocks_a_row = blocks_both[0] / 2 / line["rows"]
             candidates = line["candidates"] / line["rows"]
@@ -192,11 +176,10 @@ def measure(source: str, records: list[dict], costs: str) -> dict:
     for r in records:
         name = r["config"]["linear_solver"]["resident_preconditioner"]
         solves[RENAMED.get(name, name)] = r["summary"]["linear_per_solve"]
+    contacts_of = first["summary"]["contacts"]
     return {
         "source": source,
-        "contacts_a_vertex": first["summary"]["contacts"]["sum"]
-        / first["summary"]["contacts"]["n"]
-        / first["scene"]["vertices"],
+        "contacts_a_vertex": contacts_of["sum"] / contacts_of["n"] / first["scene"]["vertices"],
         "candidates_a_contact": candidates,
         "blocks_a_contact": blocks_a_contact,
         "newton_a_step": first["summary"]["newton_iterations"] / first["summary"]["steps"],

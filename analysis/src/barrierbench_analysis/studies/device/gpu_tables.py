@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 from barrierbench_analysis.tables.numbers import whole
 
 from .gpu_evidence import OF_SOLVE
@@ -49,40 +51,24 @@ def copy_rate(record: dict, records: list[dict]) -> float:
 def card_rows(records: list[dict]) -> list[list[str]]:
     rows = []
     for record in records:
-        device, card = record["device"], record["card"]
-        rows.append(
-            [
-                device["card"],
-                record["date_utc"][:10],
-                card.get("driver_version") or device["driver"],
-                card.get("clocks.max.sm", "not known"),
-                record["git_commit"][:10] or "not known",
-                number(1e-9 * copy_rate(record, records)),
-                check_text(record),
-                *(
-                    number(_scene(record, scene, key))
-                    for scene in ("drape_82k", LARGE)
-                    for key in ("pcg_ms", "newton_ms")
-                ),
-                _memory_run(record),
-            ]
-        )
+        device, card, commit = record["device"], record["card"], record["git_commit"][:10]
+        driver, clock = card.get("driver_version") or device["driver"], card.get("clocks.max.sm", "not known")
+        rate = number(1e-9 * copy_rate(record, records))
+        timed = product(("drape_82k", LARGE), ("pcg_ms", "newton_ms"))
+        times = [number(_scene(record, scene, key)) for scene, key in timed]
+        row = [device["card"], record["date_utc"][:10], driver, clock, commit or "not known", rate]
+        rows.append([*row, check_text(record), *times, _memory_run(record)])
     return rows
 
 
 def fallen(record: dict) -> list[str]:
     """Parts that failed, with what they said last, and runs that have to have the host's bits and do not."""
     parts = [
-        f"- {name}: {WORDS[part['status']]}: {part['why']}"
-        for name, part in record["parts"].items()
-        if part["status"] in ("failed", "timed_out")
+        (name, part) for name, part in record["parts"].items() if part["status"] in ("failed", "timed_out")
     ]
-    judged_runs = plain_runs(record) or record.get("same", [])
-    return parts + [
-        f"- {run['name']}: **{DIFFERENT[run['same_bits']]}**"
-        for run in judged_runs
-        if run["same_bits"] is not True
-    ]
+    runs = [run for run in plain_runs(record) or record.get("same", []) if run["same_bits"] is not True]
+    lines = [f"- {name}: {WORDS[part['status']]}: {part['why']}" for name, part in parts]
+    return lines + [f"- {run['name']}: **{DIFFERENT[run['same_bits']]}**" for run in runs]
 
 
 def plain_runs(record: dict) -> list[dict]:
@@ -113,20 +99,12 @@ def scene_rows(record: dict) -> list[list[str]]:
     for name, scene in record["scenes"].items():
         if scene is None:
             continue
-        rows.append(
-            [
-                name.removesuffix(".cpu"),
-                f"processor, {scene['linear_solver']}" if name.endswith(".cpu") else "card",
-                scene["outcome"],
-                f"{scene['vertices']:,}",
-                number(scene["contacts"]),
-                str(scene["steps"]),
-                str(scene["newton_iterations"]),
-                str(scene["pcg_iterations"]),
-                *(number(scene[key]) for key in ("step_s", "newton_ms", "pcg_ms")),
-                _share(scene.get("end_check_s"), scene["wall_s"]),
-            ]
-        )
+        where = f"processor, {scene['linear_solver']}" if name.endswith(".cpu") else "card"
+        sizes = scene["outcome"], f"{scene['vertices']:,}", number(scene["contacts"])
+        counts = (str(scene[key]) for key in ("steps", "newton_iterations", "pcg_iterations"))
+        times = (number(scene[key]) for key in ("step_s", "newton_ms", "pcg_ms"))
+        proof = _share(scene.get("end_check_s"), scene["wall_s"])
+        rows.append([name.removesuffix(".cpu"), where, *sizes, *counts, *times, proof])
     return rows
 
 
@@ -134,21 +112,15 @@ def phase_rows(record: dict) -> tuple[list[str], list[list[str]]]:
     """Head and rows: every phase of the scenes that have them, ms a Newton iteration after the first step.
     Where phases are not synchronised, one may have what an earlier one launched.
     """
-    scenes = {
-        name: scene
-        for name, scene in record["scenes"].items()
-        if scene is not None and scene.get("phases_ms")
+    timed = {
+        name: scene["phases_ms"] for name, scene in record["scenes"].items() if (scene or {}).get("phases_ms")
     }
-    phases = {phase: None for scene in scenes.values() for phase in scene["phases_ms"]}
     rows = [
-        [
-            phase.removesuffix("_s").replace("_", " "),
-            *(number(scene["phases_ms"].get(phase)) for scene in scenes.values()),
-        ]
-        for phase in phases
+        [phase.removesuffix("_s").replace("_", " "), *(number(of.get(phase)) for of in timed.values())]
+        for phase in dict.fromkeys(phase for of in timed.values() for phase in of)
     ]
     waiting = record.get("synchronized", [])
-    return ["phase", *(f"{name}, synchronised" if name in waiting else name for name in scenes)], rows
+    return ["phase", *(f"{name}, synchronised" if name in waiting else name for name in timed)], rows
 
 
 def counter_rows(record: dict) -> tuple[list[str], list[list[str]]]:
@@ -158,25 +130,17 @@ def counter_rows(record: dict) -> tuple[list[str], list[list[str]]]:
     for kernel in record.get("counters", []):
         requests, sectors = kernel.get(load.format("requests")), kernel.get(load.format("sectors"))
         spilled = [kernel[name] for name in map(local.format, ("ld", "st")) if name in kernel]
-        rows.append(
-            [
-                f"`{kernel['name']}`",
-                *(
-                    number(kernel[name] * factor if name in kernel else None)
-                    for name, (_, factor) in COUNTERS.items()
-                ),
-                number(sectors / requests if requests and sectors is not None else None),
-                number(1e-6 * sum(spilled) if spilled else None),
-            ]
-        )
+        row = [f"`{kernel['name']}`"]
+        for name, (_, factor) in COUNTERS.items():
+            row.append(number(kernel[name] * factor if name in kernel else None))
+        row.append(number(sectors / requests if requests and sectors is not None else None))
+        rows.append([*row, number(1e-6 * sum(spilled) if spilled else None)])
     return ["kernel", *(head for head, _ in COUNTERS.values()), "sectors a load", "local, MB"], rows
 
 
 def stage_rows(record: dict) -> list[list[str]]:
-    return [
-        [stage["name"], str(stage["exit_code"]), str(stage["seconds"]), str(stage["limit_s"])]
-        for stage in record.get("stages", [])
-    ]
+    names = ("name", "exit_code", "seconds", "limit_s")
+    return [[str(stage[name]) for name in names] for stage in record.get("stages", [])]
 
 
 def _share(part: float | None, whole: float | None) -> str:
@@ -184,10 +148,8 @@ def _share(part: float | None, whole: float | None) -> str:
 
 
 def _both(run: dict, key: str) -> str:
-    card, host = (
-        f"{value:,.0f}" if isinstance(value, (int, float)) else str(value)
-        for value in (run["card"][key], run["host"][key])
-    )
+    values = run["card"][key], run["host"][key]
+    card, host = (f"{one:,.0f}" if isinstance(one, (int, float)) else str(one) for one in values)
     return card if card == host else f"{card}, host {host}"
 
 
@@ -195,15 +157,9 @@ def same_rows(record: dict) -> list[list[str]]:
     """Runs of a card beside the host executor's."""
     rows = []
     for run in record.get("same", []):
-        rows.append(
-            [
-                run["name"],
-                f"{run['vertices']:,}",
-                str(run["steps"]),
-                *(_both(run, key) for key in ("outcome", "newton_iterations", "pcg_iterations", "contacts")),
-                {True: "yes", False: "no", None: "not known"}[run["same_bits"]],
-            ]
-        )
+        both = [_both(run, key) for key in ("outcome", "newton_iterations", "pcg_iterations", "contacts")]
+        same = {True: "yes", False: "no", None: "not known"}[run["same_bits"]]
+        rows.append([run["name"], f"{run['vertices']:,}", str(run["steps"]), *both, same])
     return rows
 
 
@@ -219,15 +175,11 @@ def kernel_rows(record: dict, copy: float) -> list[list[str]]:
         rate = kernel["Bps"]
         row = [f"`{kernel['name']}`", str(kernel["launches"])]
         if mixes_idle(kernel):
-            row += ["not known"] * 4
-        else:
-            row += [
-                str(kernel.get("idle", 0)),
-                number(1e6 * kernel["seconds"] / max(kernel["launches"], 1)),
-                number(None if rate is None else 1e-9 * rate),
-                "not measured" if rate is None else f"{100 * rate / copy:.0f} %",
-            ]
-        rows.append(row)
+            rows.append([*row, *["not known"] * 4])
+            continue
+        a_launch = number(1e6 * kernel["seconds"] / max(kernel["launches"], 1))
+        giga = number(None if rate is None else 1e-9 * rate)
+        rows.append([*row, str(kernel.get("idle", 0)), a_launch, giga, _share(rate, copy)])
     return rows
 
 
@@ -235,29 +187,17 @@ def cost_rows(records: list[dict], prices: dict) -> list[list[str]]:
     """One row a kind of card; the newest record of it that ran the scene."""
     rows = []
     for card in prices["cards"]:
-        of_card = [
-            record
-            for record in records
-            if any(word in record["device"]["card"] for word in card["match"])
-            and _scene(record, LARGE, "step_s")
-        ]
-        step_s = (
-            _scene(max(of_card, key=lambda record: record["date_utc"]), LARGE, "step_s") if of_card else None
-        )
-        dt = _scene(max(of_card, key=lambda record: record["date_utc"]), LARGE, "dt_s") if of_card else None
-        price = card["price_per_hour"]
+        timed = [record for record in records if _scene(record, LARGE, "step_s")]
+        of_card = [r for r in timed if any(word in r["device"]["card"] for word in card["match"])]
+        newest = max(of_card, key=lambda record: record["date_utc"], default=None)
+        step_s, dt = (_scene(newest, LARGE, key) if newest else None for key in ("step_s", "dt_s"))
+        price, currency = card["price_per_hour"], prices["currency"]
         known = price is not None and card["as_of"] and card["source"]
-        said = (
-            f"{price:g} {prices['currency']} ({card['as_of']}, {card['source']})"
-            if known
-            else "enter yours, with date and source, in results/gpu/prices.json"
-        )
-        a_second = (
-            number(step_s / dt / 3600 * price) + f" {prices['currency']}"
-            if step_s and known
-            else "not measured"
-            if step_s is None
-            else "no price"
-        )
-        rows.append([card["name"], said, number(None if step_s is None else 3600 / step_s), a_second])
+        text = "enter yours, with date and source, in results/gpu/prices.json"
+        if known:
+            text = f"{price:g} {currency} ({card['as_of']}, {card['source']})"
+        a_second = "not measured" if step_s is None else "no price"
+        if step_s and known:
+            a_second = f"{number(step_s / dt / 3600 * price)} {currency}"
+        rows.append([card["name"], text, number(None if step_s is None else 3600 / step_s), a_second])
     return rows

@@ -19,27 +19,23 @@ from barrierbench_analysis.program.arguments import parser_of
 
 from . import baseline, calibrate, judge, matrices
 from .baseline import Baseline, Kept
-from .cases import case_argument
+from .cases import case_argument, is_chosen
 from .drift import First, digest
 from .finding import moved
-from .meanings import FAMILIES, PRESENT, shared
+from .meanings import FAMILIES, shared
 from .metrics import NEVER_RECORDED
 from .records import read_run
 from .report import number
 
 
 def _envelope(kept) -> str:
-    return (
-        f"{number(kept.envelope.value)} [{number(kept.envelope.lower)}, {number(kept.envelope.upper)}]"
-        if kept
-        else "-"
-    )
+    e = kept.envelope if kept else None
+    return f"{number(e.value)} [{number(e.lower)}, {number(e.upper)}]" if e else "-"
 
 
 def changes(old: Baseline | None, new: Baseline) -> dict[str, str]:
     """A line for every metric whose envelope changes: old, new, direction."""
-    lines = {}
-    before = old.metrics if old else {}
+    lines, before = {}, old.metrics if old else {}
     for name in sorted(before.keys() | new.metrics.keys()):
         a, b = before.get(name), new.metrics.get(name)
         if a and b and a.envelope == b.envelope:
@@ -55,16 +51,12 @@ def better(old: Baseline, new: Baseline) -> list[str]:
     """
 
     def beyond(b: Kept, a: Kept) -> bool:
-        lower = (
-            min(a.envelope.lower, a.envelope.value / judge.COST_EACH)
-            if b.gate_class == "IV"
-            else a.envelope.lower
-        )
-        return judge.outside(b.direction, b.envelope.value, lower, a.envelope.upper) == "better"
+        e = a.envelope
+        lower = min(e.lower, e.value / judge.COST_EACH) if b.gate_class == "IV" else e.lower
+        return judge.outside(b.direction, b.envelope.value, lower, e.upper) == "better"
 
-    return sorted(
-        name for name, kept in new.metrics.items() if name in old.metrics and beyond(kept, old.metrics[name])
-    )
+    both = sorted(new.metrics.keys() & old.metrics.keys())
+    return [name for name in both if beyond(new.metrics[name], old.metrics[name])]
 
 
 def _only(old: Baseline | None, new: Baseline, metrics: list[str], path: Path) -> Baseline:
@@ -75,11 +67,7 @@ def _only(old: Baseline | None, new: Baseline, metrics: list[str], path: Path) -
         )
     if old is None:
         raise UserError(f"{path}: --metric and --better change a baseline, and there is none yet")
-    if fields := [
-        field
-        for field in other_meanings(old.record_version or PRESENT, new.record_version or PRESENT)
-        if FAMILIES[field]
-    ]:
+    if fields := [name for name in other_meanings(old.version, new.version) if name in FAMILIES]:
         raise UserError(
             f"{path}: of record version {old.record_version}, in which {', '.join(fields)} mean something"
             " else: --metric and --better would mix two versions; accept all of it"
@@ -95,26 +83,15 @@ def _remember(old: Baseline, new: Baseline) -> None:
     """
     new.drifts = list(old.drifts)
     at = old.calibrated_at
-    comparable, _, _ = shared(
-        new.case, old.metrics, {}, old.record_version or PRESENT, new.record_version or PRESENT
-    )
+    comparable, _, _ = shared(new.case, old.metrics, {}, old.version, new.version)
     for name, was in old.metrics.items():
         if (now := new.metrics.get(name)) and now is not was:
             now.xfail = was.xfail or now.xfail
             if name not in comparable:
                 continue
-            first = was.first or First(
-                was.envelope.value, at.get("date", ""), at.get("commit", ""), old.reason, digest(old.made_by)
-            )
+            words = at.get("date", ""), at.get("commit", ""), old.reason, digest(old.made_by)
+            first = was.first or First(was.envelope.value, *words)
             now.first = replace(first, here=bool(new.made_by) and first.made_by == digest(new.made_by))
-
-
-def _drifts(new: Baseline) -> list[str]:
-    return sorted(
-        name
-        for name, kept in new.metrics.items()
-        if judge.drifted(kept, kept.envelope.value, bool(new.made_by))
-    )
 
 
 def _take_drifts(new: Baseline, names: list[str]) -> None:
@@ -122,25 +99,14 @@ def _take_drifts(new: Baseline, names: list[str]) -> None:
     if not names:
         return
     moves = {name: [new.metrics[name].first.value, new.metrics[name].envelope.value] for name in names}
-    new.drifts.append(
-        {
-            "date": datetime.date.today().isoformat(),
-            "commit": new.calibrated_at.get("commit", ""),
-            "reason": new.reason,
-            "metrics": moves,
-        }
-    )
+    at = {"date": datetime.date.today().isoformat(), "commit": new.calibrated_at.get("commit", "")}
+    new.drifts.append({**at, "reason": new.reason, "metrics": moves})
     for name in names:
         new.metrics[name].first = None
 
 
 def keep(
-    new: Baseline,
-    path: Path,
-    reason: str,
-    metrics: list[str],
-    only_better: bool = False,
-    take_drift: bool = False,
+    new: Baseline, path: Path, reason: str, metrics: list[str], only_better=False, take_drift=False
 ) -> None:
     old = baseline.read(path) if path.exists() else None
     lines = changes(old, new)
@@ -152,7 +118,8 @@ def keep(
     new.reason = reason
     if old:
         _remember(old, new)
-    drifts = _drifts(new)
+    here = bool(new.made_by)
+    drifts = sorted(n for n, kept in new.metrics.items() if judge.drifted(kept, kept.envelope.value, here))
     if take_drift:
         _take_drifts(new, drifts)
     baseline.write(new, path)
@@ -170,27 +137,11 @@ def keep(
 
 def _check(args: argparse.Namespace) -> None:
     """Errors: UserError for options that do not go together, and for a reason that is none."""
-    if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
-        raise UserError("--record or --matrix goes with --baseline FILE.json")
+    baseline.check_other_program(args)
     if not args.reason.strip():
         raise UserError("--reason: say why in a sentence")
     if args.better and args.metric:
         raise UserError("--better chooses the metrics itself; leave --metric out")
-
-
-def other_program_arguments(parser: argparse.ArgumentParser) -> None:
-    """A baseline of what another program has written."""
-    parser.add_argument(
-        "--record",
-        type=Path,
-        nargs="+",
-        metavar="RUN.json",
-        help="make the baseline of these records of one config",
-    )
-    parser.add_argument(
-        "--matrix", type=Path, nargs="+", metavar="FILE.mtx", help="make the baseline of these matrices"
-    )
-    parser.add_argument("--baseline", type=Path, metavar="FILE.json", help="of --record and --matrix")
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
@@ -205,24 +156,13 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--better", action="store_true", help="only metrics that are better than their envelope"
     )
-    parser.add_argument(
-        "--drift",
-        action="store_true",
-        help=(
-            "numbers that have drifted from their first baseline start anew; the baseline keeps when and why"
-        ),
-    )
-    parser.add_argument(
-        "--proposals",
-        type=Path,
-        default=calibrate.OUT,
-        metavar="DIR",
-        help="of bench gate calibrate (default: results/runs/calibration)",
-    )
-    parser.add_argument(
-        "--baselines", type=Path, default=baseline.FOLDER, metavar="DIR", help="default: results/baselines"
-    )
-    other_program_arguments(parser)
+    drift = "numbers that have drifted from their first baseline start anew; the baseline keeps when and why"
+    parser.add_argument("--drift", action="store_true", help=drift)
+    made = "of bench gate calibrate (default: results/runs/calibration)"
+    parser.add_argument("--proposals", type=Path, default=calibrate.OUT, metavar="DIR", help=made)
+    baseline.folder_argument(parser)
+    record = {"nargs": "+", "help": "make the baseline of these records of one config"}
+    baseline.other_program_arguments(parser, record, "make the baseline of these matrices")
     args = parser.parse_args(argv)
     _check(args)
     return args
@@ -233,21 +173,15 @@ def main(argv: list[str]) -> int:
     args = arguments(argv)
     how = args.reason, args.metric, args.better, args.drift
     if args.record:
-        keep(
-            calibrate.propose(args.baseline.stem, [read_run(path) for path in args.record]),
-            args.baseline,
-            *how,
-        )
-    elif args.matrix:
+        runs = [read_run(path) for path in args.record]
+        keep(calibrate.propose(args.baseline.stem, runs), args.baseline, *how)
+        return 0
+    if args.matrix:
         keep(matrices.propose(args.matrix, args.baseline.stem), args.baseline, *how)
-    else:
-        proposals = [
-            p
-            for p in sorted(args.proposals.glob("*.json"))
-            if not args.case or any(word in p.stem for word in args.case)
-        ]
-        if not proposals:
-            raise UserError(f"{args.proposals}: no proposal; `bench gate calibrate` makes them")
-        for path in proposals:
-            keep(baseline.read(path, path.stem, "run"), args.baselines / path.name, *how)
+        return 0
+    proposals = [p for p in sorted(args.proposals.glob("*.json")) if is_chosen(p.stem, args.case)]
+    if not proposals:
+        raise UserError(f"{args.proposals}: no proposal; `bench gate calibrate` makes them")
+    for path in proposals:
+        keep(baseline.read(path, path.stem, "run"), args.baselines / path.name, *how)
     return 0

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import argparse
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.json_file import is_number
+from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.record_file import OURS
 from barrierbench_analysis.io.spec_file import checked
 from barrierbench_analysis.io.whole_file import write_whole
 
 from .drift import First, digest
 from .envelope import Envelope
-from .metrics import DIRECTIONS, Metric
+from .metrics import Metric
 
-NAME, MAJOR, VERSION = "barrierbench.baseline", "1", "1.2.0"
+PRESENT = ".".join(map(str, OURS))  # version of the records of this program
+NAME, VERSION = "barrierbench.baseline", "1.2.0"
+# Parts of a file in their order; those that are not needed are left out where they are empty.
+NEEDED = ("case", "kind", "reason", "calibrated_at", "made_by", "scene", "config")
+BEFORE_METRICS = (*NEEDED, "unsteady", "drifts")
 FOLDER = ROOT / "results" / "baselines"
 
 
@@ -35,31 +40,20 @@ class Kept:
 
     def json(self) -> dict:
         e = self.envelope
-        line = {
-            "class": self.gate_class,
-            "value": e.value,
-            "lower": e.lower,
-            "upper": e.upper,
-            "unit": self.unit,
-            "direction": self.direction,
-            "n": e.n,
-        }
-        return (
-            line
-            | ({"sample": list(e.sample)} if e.sample else {})
-            | ({"xfail": self.xfail} if self.xfail else {})
-            | ({"scatter": self.scatter} if self.scatter else {})
-            | ({"first": self.first.json()} if self.first else {})
-        )
+        line = {"class": self.gate_class, "value": e.value, "lower": e.lower, "upper": e.upper}
+        line |= {"unit": self.unit, "direction": self.direction, "n": e.n}
+        first = self.first.json() if self.first else None
+        more = {"sample": list(e.sample), "xfail": self.xfail, "scatter": self.scatter, "first": first}
+        return line | {name: value for name, value in more.items() if value}
 
 
 @dataclass
 class Baseline:
-    case: str
-    kind: str  # run or matrix
-    reason: str
-    calibrated_at: dict
-    metrics: dict[str, Kept]
+    case: str = ""
+    kind: str = ""  # run or matrix
+    reason: str = ""
+    calibrated_at: dict = field(default_factory=dict)
+    metrics: dict[str, Kept] = field(default_factory=dict)
     config: dict = field(default_factory=dict)
     scene: dict = field(default_factory=dict)
     made_by: dict = field(default_factory=dict)
@@ -73,20 +67,17 @@ class Baseline:
         """Schema version of the records that it was made of; None where it does not say, as before 1.2.0."""
         return self.calibrated_at.get("record_version")
 
+    @property
+    def version(self) -> str:
+        """record_version, or that of this program."""
+        return self.record_version or PRESENT
+
     def json(self) -> dict:
-        return {
-            "schema": {"name": NAME, "version": VERSION},
-            "case": self.case,
-            "kind": self.kind,
-            "reason": self.reason,
-            "calibrated_at": self.calibrated_at,
-            "made_by": self.made_by,
-            "scene": self.scene,
-            "config": self.config,
-            **({"unsteady": self.unsteady} if self.unsteady else {}),
-            **({"drifts": self.drifts} if self.drifts else {}),
-            "metrics": {name: kept.json() for name, kept in sorted(self.metrics.items())},
+        found = {"schema": {"name": NAME, "version": VERSION}}
+        found |= {
+            name: getattr(self, name) for name in BEFORE_METRICS if getattr(self, name) or name in NEEDED
         }
+        return found | {"metrics": {name: kept.json() for name, kept in sorted(self.metrics.items())}}
 
 
 def keep(metric: Metric, envelope: Envelope) -> Kept:
@@ -97,51 +88,43 @@ def write(baseline: Baseline, path: Path) -> None:
     write_whole(path, json.dumps(baseline.json(), indent=1) + "\n")
 
 
-def _first(place: str, line: dict, made_by: str) -> First | None:
+def _kept(path: Path, name: str, line: dict, made_by: str) -> Kept:
+    value, lower, upper = (line[key] for key in ("value", "lower", "upper"))
+    if not lower <= value <= upper:
+        raise UserError(f"{path}#/metrics/{name}: value {value} outside its own envelope [{lower}, {upper}]")
     first = line.get("first")
-    if first is None:
-        return None
-    if not isinstance(first, dict) or not is_number(first.get("value")):
-        raise UserError(f"{place}/first: {first!r}; an object with a finite value is needed")
-    words = {key: str(first.get(key, "")) for key in ("date", "commit", "reason", "made_by")}
-    return First(first["value"], **words, here=bool(made_by) and words["made_by"] == made_by)
-
-
-def _line(path: Path, name: str, line, made_by: str) -> Kept:
-    place = f"{path}: /metrics/{name}"
-    if not isinstance(line, dict):
-        raise UserError(f"{place}: no object")
-    for key in ("value", "lower", "upper"):
-        if not is_number(line.get(key)):
-            raise UserError(f"{place}/{key}: {line.get(key)!r}; a finite number is needed")
-    if not line["lower"] <= line["value"] <= line["upper"]:
-        raise UserError(
-            f"{place}: value {line['value']} outside its own envelope [{line['lower']}, {line['upper']}]"
-        )
-    if line.get("class") not in ("III", "IV", "V"):
-        raise UserError(
-            f"{place}/class: {line.get('class')!r}; III, IV or V (classes I and II are exact and have no"
-            " baseline)"
-        )
-    if line.get("direction") not in DIRECTIONS:
-        raise UserError(f"{place}/direction: {line.get('direction')!r}; one of {', '.join(DIRECTIONS)}")
-    envelope = Envelope(
-        line["value"], line["lower"], line["upper"], int(line.get("n", 1)), tuple(line.get("sample", ()))
-    )
-    return Kept(
-        line["class"],
-        line.get("unit", ""),
-        line["direction"],
-        envelope,
-        line.get("xfail", ""),
-        float(line.get("scatter") or 0),
-        _first(place, line, made_by),
-    )
+    if first is not None:
+        words = {key: str(first.get(key, "")) for key in ("date", "commit", "reason", "made_by")}
+        first = First(first["value"], **words, here=bool(made_by) and words["made_by"] == made_by)
+    envelope = Envelope(value, lower, upper, line.get("n", 1), tuple(line.get("sample", ())))
+    xfail, scatter = line.get("xfail", ""), float(line.get("scatter") or 0)
+    return Kept(line["class"], line.get("unit", ""), line["direction"], envelope, xfail, scatter, first)
 
 
 def how_to_accept(option: str, path: Path, *more: str) -> str:
     """The command that makes a baseline of what another program has written (--record or --matrix)."""
     return " ".join(["bench gate accept", option, "...", "--baseline", str(path), *more, '--reason "..."'])
+
+
+def other_program_arguments(parser: argparse.ArgumentParser, record: dict, matrix: str) -> None:
+    """What another program has written, and its baseline. record: how --record is read; matrix: the help of
+    --matrix.
+    """
+    parser.add_argument("--record", type=Path, metavar="RUN.json", **record)
+    parser.add_argument("--matrix", type=Path, nargs="+", metavar="FILE.mtx", help=matrix)
+    parser.add_argument("--baseline", type=Path, metavar="FILE.json", help="of --record and --matrix")
+
+
+def check_other_program(args: argparse.Namespace) -> None:
+    """Errors: UserError for options that do not go together."""
+    if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
+        raise UserError("--record or --matrix goes with --baseline FILE.json")
+
+
+def folder_argument(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--baselines", type=Path, default=FOLDER, metavar="DIR", help="default: results/baselines"
+    )
 
 
 def _remedy(path: Path, case: str | None, kind: str | None) -> str:
@@ -152,28 +135,16 @@ def _remedy(path: Path, case: str | None, kind: str | None) -> str:
 
 
 def _content(path: Path, case: str | None, kind: str | None) -> dict:
-    """Raises UserError with the file: not there, empty, another version, of another case or kind."""
+    """Raises UserError with the file: not there, no JSON, another schema, of another case or kind."""
     if not path.is_file():
         raise UserError(
             f"{path}: {'a folder' if path.is_dir() else 'no such baseline'}; {_remedy(path, case, kind)}"
         )
-    text = input_file.read_text(path)
-    if not text.strip():
-        raise UserError(f"{path}: empty")
-    try:
-        data = json.loads(text)
-    except ValueError as error:
-        raise UserError(f"{path}: not JSON: {error}") from None
-    schema = data.get("schema") if isinstance(data, dict) else None
-    if (
-        not isinstance(schema, dict)
-        or schema.get("name") != NAME
-        or str(schema.get("version", "")).split(".")[0] != MAJOR
-    ):
-        raise UserError(f"{path}: schema {schema}; this version reads {NAME} {MAJOR}.x.y")
+    data = {key: value for key, value in read_object(path).items() if value is not None}
+    checked(data, path, "baseline")
     for key, wanted in (("case", case), ("kind", kind)):
         if wanted is not None and data.get(key) != wanted:
-            raise UserError(f"{path}: a baseline of {key} {data.get(key)!r}, asked about {wanted!r}")
+            raise UserError(f"{path}: a baseline of {key} {data.get(key)!r}, requested is {wanted!r}")
     return data
 
 
@@ -183,21 +154,6 @@ def read(path: str | Path, case: str | None = None, kind: str | None = None) -> 
     """
     path = Path(path)
     data = _content(path, case, kind)
-    checked({key: value for key, value in data.items() if value is not None}, path, "baseline")
-    metrics = data.get("metrics")
-    if not isinstance(metrics, dict) or not metrics:
-        raise UserError(f"{path}: /metrics is empty: it would judge nothing")
-    made_by = data.get("made_by") or {}
-    lines = {name: _line(path, name, line, digest(made_by)) for name, line in metrics.items()}
-    return Baseline(
-        data.get("case", ""),
-        data.get("kind", ""),
-        data.get("reason", ""),
-        data.get("calibrated_at") or {},
-        lines,
-        data.get("config") or {},
-        data.get("scene") or {},
-        made_by,
-        data.get("unsteady") or [],
-        data.get("drifts") or [],
-    )
+    made_by = digest(data.get("made_by", {}))
+    data["metrics"] = {name: _kept(path, name, line, made_by) for name, line in data["metrics"].items()}
+    return Baseline(**{part.name: data[part.name] for part in fields(Baseline) if part.name in data})

@@ -7,26 +7,20 @@ import json
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.program.start import built_program, started
 
-from .finding import Finding
+from .finding import Finding, exact
 
 CASE = "build"
 
 
 def findings_of(report: dict) -> list[Finding]:
     """A line for every check of a report; none that judged nothing passes."""
-    return [
-        Finding(
-            CASE,
-            "I",
-            check["name"],
-            "pass" if check["pass"] and check["subjects"] > 0 else "FAIL",
-            value=check["value"],
-            reference=check["bound"],
-            judged=check["subjects"],
-            note=check["detail"] or f"of {check['subjects']}",
-        )
-        for check in report["checks"]
-    ]
+    found = []
+    for check in report["checks"]:
+        n = check["subjects"]
+        line = exact(CASE, "I", check["name"], not check["pass"], n, check["detail"] or f"of {n}", "")
+        line.value, line.reference = check["value"], check["bound"]
+        found.append(line)
+    return found
 
 
 def judge_build() -> list[Finding]:

@@ -1,9 +1,8 @@
 """Measures what `bench gate accept` may keep: each case of a set as it is, and 20 copies whose start is
 perturbed by 1e-12 of its size.
 
-Nothing of results/baselines/ is changed: the proposals stand in results/runs/calibration/ until `bench gate
-accept
---reason "..."`.
+Nothing of results/baselines/ is changed: the proposals stand in results/runs/calibration/ until
+`bench gate accept --reason "..."`.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from barrierbench_analysis.program.arguments import parser_of
 
 from . import baseline, invariants, shares
 from .baseline import Baseline, Kept, keep
-from .cases import Case, case_argument, jittered, read_set, run_case, set_argument
+from .cases import Case, case_argument, is_chosen, jittered, read_set, run_case, set_argument
 from .configs import scene_size
 from .envelope import Envelope, calibrate, scatter_above
 from .finding import failures
@@ -75,18 +74,10 @@ def propose(case_name: str, runs: list[Run], reason: str = "") -> Baseline:
     """What a baseline of these runs would be. Raises UserError when one of them breaks an invariant: that is
     never accepted.
     """
-    red = [
-        f for run in runs for f in failures(invariants.judge(f"{case_name}: {run.path}", run, foreign=True))
-    ]
-    if red:
-        raise UserError(
-            "\n".join(
-                [
-                    "a run that breaks an invariant (class I) makes no baseline:",
-                    *(f"  {f.case}: {f.metric}: {f.note}" for f in red),
-                ]
-            )
-        )
+    lines = [f for run in runs for f in invariants.judge(f"{case_name}: {run.path}", run, foreign=True)]
+    if red := failures(lines):
+        head = "a run that breaks an invariant (class I) makes no baseline:"
+        raise UserError("\n  ".join([head, *(f"{f.case}: {f.metric}: {f.note}" for f in red)]))
     versions = sorted({run.version for run in runs})
     if len(versions) > 1:
         raise UserError(
@@ -97,14 +88,9 @@ def propose(case_name: str, runs: list[Run], reason: str = "") -> Baseline:
     if not kept:
         raise UserError(f"{case_name}: no number that all {len(runs)} records have")
     provenance, seeds = first.section("provenance"), runs[-1].section("config").get("seeds") or {}
-    at = {
-        "commit": provenance.get("git_commit", ""),
-        "dirty": provenance.get("git_dirty"),
-        "runs": len(runs),
-        "jitter_m": seeds.get("jitter_m", 0),
-        "date": datetime.date.today().isoformat(),
-        "record_version": first.version,
-    }
+    at = {"commit": provenance.get("git_commit", ""), "dirty": provenance.get("git_dirty"), "runs": len(runs)}
+    at |= {"jitter_m": seeds.get("jitter_m", 0), "date": datetime.date.today().isoformat()}
+    at["record_version"] = first.version
     config = {key: value for key, value in first.section("config").items() if key not in ("threads", "seeds")}
     return Baseline(case_name, "run", reason, at, kept, config, scene_size(first), first.made_by, unsteady)
 
@@ -124,15 +110,12 @@ def main(argv: list[str]) -> int:
     set_argument(parser)
     case_argument(parser)
     parser.add_argument("--copies", type=int, default=COPIES, help=f"perturbed copies (default: {COPIES})")
-    parser.add_argument(
-        "--out", type=Path, default=OUT, metavar="DIR", help="default: results/runs/calibration"
-    )
+    to = "default: results/runs/calibration"
+    parser.add_argument("--out", type=Path, default=OUT, metavar="DIR", help=to)
     args = parser.parse_args(argv)
     if args.copies < 1:
         raise UserError(f"--copies {args.copies}: at least 1")
-    for case in read_set(args.set):
-        if args.case and not any(word in case.name for word in args.case):
-            continue
+    for case in (case for case in read_set(args.set) if is_chosen(case.name, args.case)):
         proposal = calibrate_case(case, args.out / case.name, args.copies)
         path = args.out / f"{case.name}.json"
         baseline.write(proposal, path)
@@ -143,8 +126,6 @@ def main(argv: list[str]) -> int:
         if proposal.unsteady:
             words.append(f"not in all runs, so not judged: {', '.join(proposal.unsteady)}")
         print("; ".join(words))
-    print(
-        'bench gate calibrate: ./bench gate accept --reason "..." makes these the' " baselines",
-        file=sys.stderr,
-    )
+    said = './bench gate accept --reason "..." makes these the baselines'
+    print(f"bench gate calibrate: {said}", file=sys.stderr)
     return 0

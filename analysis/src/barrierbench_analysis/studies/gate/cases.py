@@ -44,6 +44,11 @@ def case_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def is_chosen(name: str, words: list[str]) -> bool:
+    """Whether a name has one of the words of --case in it, or there is none."""
+    return not words or any(word in name for word in words)
+
+
 def read_set(name: str) -> list[Case]:
     """Every scene with every formulation of the set, then with those of its own, of which one with the same
     name takes the place of that of the set. Raises UserError with file and place.
@@ -71,28 +76,20 @@ def read_set(name: str) -> list[Case]:
 
 
 def words_of(case: Case, out: Path, threads: int, more: dict) -> list[str]:
-    """What the program is asked for a run of a case."""
+    """The words of the program for a run of a case."""
     settings = {**case.set, "/threads": threads, **more}
-    return [
-        "run",
-        str(case.config),
-        "--out",
-        str(out),
-        "--replace",  # the folder is the gate's, whatever an earlier call left there
-        *(
-            word
-            for pointer, value in settings.items()
-            for word in ("--set", f"{pointer}={json.dumps(value)}")
-        ),
-    ]
+    sets = [word for at, value in settings.items() for word in ("--set", f"{at}={json.dumps(value)}")]
+    # --replace: the folder is the gate's, whatever an earlier call left there.
+    return ["run", str(case.config), "--out", str(out), "--replace", *sets]
 
 
-def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
-    """Runs it and reads its record. A failed run has a record too. Raises UserError when there is none."""
-    settings = {"/" + name.replace("__", "/"): value for name, value in more.items()}
+def run_case(case: Case, out: Path, threads: int = 1, more: dict | None = None) -> Run:
+    """Runs it, with more settings (pointer -> value), and reads its record. A failed run has a record too.
+    Raises UserError when there is none.
+    """
     # A record of an earlier call must not stand in for one that this program fails to write.
     (out / "run.json").unlink(missing_ok=True)
-    done = started(*words_of(case, out, threads, settings))
+    done = started(*words_of(case, out, threads, more or {}))
     if done.returncode != 0:
         raise UserError(
             f"{case.name}: the program ended with {done.returncode}:"
@@ -104,4 +101,4 @@ def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
 
 def jittered(case: Case, out: Path, seed: int, size_m: float, threads: int = 1) -> Run:
     """A copy whose start coordinates are moved by up to 1e-12 times the size of the scene."""
-    return run_case(case, out, threads, seeds__main=seed, seeds__jitter_m=1e-12 * size_m)
+    return run_case(case, out, threads, {"/seeds/main": seed, "/seeds/jitter_m": 1e-12 * size_m})

@@ -37,51 +37,20 @@ def _pairs(a: Path, b: Path, common: bool) -> list[tuple[str, Path, Path]]:
     return [(place, old[place], new[place]) for place in sorted(old.keys() & new.keys())]
 
 
-def _torn(case: str, run: Run) -> list[Finding]:
-    return (
-        [
-            Finding(
-                case,
-                "I",
-                "trace lines dropped",
-                "report",
-                run.torn,
-                0,
-                judged=0,
-                note=f"{run.path.parent}: torn last line",
-            )
-        ]
-        if run.torn
-        else []
-    )
-
-
 def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> list[Finding]:
     """Raises UserError when the configs differ and that was not asked for."""
     differ = configs.differences(old.section("config"), new.section("config"))
     bare = [run.path for run in (old, new) if not run.section("config")]
+    all_the_same = "(--different-configs: compare all the same)"
     if bare and not different_configs:
         raise UserError(
             f"{case}: {' and '.join(map(str, bare))}: no config, so that nothing says whether the two are"
-            " runs of one configuration (--different-configs: compare all the same)"
+            f" runs of one configuration {all_the_same}"
         )
     if differ and not different_configs:
-        raise UserError(
-            "\n".join(
-                [
-                    (
-                        f"{case}: the configs differ in {len(differ)} settings (--different-configs: compare"
-                        " all the same)"
-                    ),
-                    *(f"  {line}" for line in differ),
-                ]
-            )
-        )
-    findings = (
-        _torn(case, old)
-        + _torn(case, new)
-        + [f for f in invariants.judge(case, new, foreign=True) if not (f.metric == "trace" and new.torn)]
-    )
+        head = f"{case}: the configs differ in {len(differ)} settings {all_the_same}"
+        raise UserError("\n  ".join([head, *differ]))
+    findings = invariants.torn(case, old) + invariants.judge_stored(case, new)
     findings += meanings.of_other_version(case, [old, new], old.version, new.version)
     findings += same_state(case, old, new, bool(differ))
     same_kind = bool(old.made_by["compiler"]) and old.made_by == new.made_by
@@ -110,23 +79,19 @@ def main(argv: list[str]) -> int:
     parser.add_argument(
         "--common", action="store_true", help="of two folders compare the records that both have"
     )
-    parser.add_argument("--verbose", action="store_true", help="lines that pass as well")
+    report.verbose_argument(parser)
     parser.add_argument("--json", type=Path, metavar="FILE", help="the answer as JSON")
     args = parser.parse_args(argv)
     findings: list[Finding] = []
     with study(args.a, args.b) as (first, second):
         for case, a, b in _pairs(first, second, args.common):
             old, new = read_run(a), read_run(b)
-            for line in (
-                configs.differences(old.section("config"), new.section("config"))
-                if args.different_configs
-                else []
-            ):
+            differ = configs.differences(old.section("config"), new.section("config"))
+            for line in differ if args.different_configs else ():
                 print(f"{case}: differs in {line}")
             findings += compare(case, old, new, args.different_configs)
     findings += without_subject(findings, ("I", "III"))
-    print(report.table(report.shown(findings, args.verbose)))
-    print(report.closing(findings))
+    report.say(findings, args.verbose)
     if args.json:
         report.write_json(args.json, "barrierbench.compare", findings, a=str(args.a), b=str(args.b))
     return 1 if failures(findings) else 0

@@ -4,24 +4,25 @@ machine, and kept in no baseline.
 
 from __future__ import annotations
 
-from .finding import Finding
+from .finding import Finding, exact, not_judged
 from .measure import measure
 from .records import Run
 
 
-def _hash_finding(case: str, metric: str, a: Run, b: Run, note: str) -> Finding:
-    known = bool(a.state_hash) and bool(b.state_hash)
-    same = known and a.state_hash == b.state_hash
+def _equal(
+    case: str, gate_class: str, metric: str, a: str, b: str, note: str = "", absent: str = ""
+) -> Finding:
+    """Two hashes; `absent` is the note where one of them is empty, which judges nothing and fails."""
+    known = bool(a) and bool(b)
+    same = known and a == b
+    note = note if known else absent
     return Finding(
-        case,
-        "II",
-        metric,
-        "pass" if same else "FAIL",
-        b.state_hash,
-        a.state_hash,
-        judged=2 if known else 0,
-        note=note if known else "a record has no state hash",
+        case, gate_class, metric, "pass" if same else "FAIL", b, a, judged=2 if known else 0, note=note
     )
+
+
+def _state(case: str, a: Run, b: Run, threads: str) -> Finding:
+    return _equal(case, "II", "state_hash", a.state_hash, b.state_hash, threads, "a record has no state hash")
 
 
 def same_state(case: str, a: Run, b: Run, configs_differ: bool) -> list[Finding]:
@@ -32,47 +33,30 @@ def same_state(case: str, a: Run, b: Run, configs_differ: bool) -> list[Finding]
     if not reason and (not a.made_by_same_build[0] or a.made_by_same_build != b.made_by_same_build):
         reason = "another build or machine"
     if reason:
-        return [
-            Finding(case, "II", "state_hash", "not_judged", b.state_hash, a.state_hash, judged=0, note=reason)
-        ]
-    return [_hash_finding(case, "state_hash", a, b, f"{a.threads} and {b.threads} threads")]
+        return [not_judged(case, "II", "state_hash", reason, value=b.state_hash, reference=a.state_hash)]
+    return [_state(case, a, b, f"{a.threads} and {b.threads} threads")]
 
 
 def of_one_config(case: str, runs: list[Run]) -> list[Finding]:
     """Of runs that a gate made just now, one after the other, with 1 and 2 threads: state, config and every
     number but times.
     """
+
+    def numbers_of(run: Run) -> dict[str, float]:
+        return {m.name: v for m, v in measure(run).items() if m.gate_class != "V"}
+
     first, findings = runs[0], []
-    numbers = {m.name: v for m, v in measure(first).items() if m.gate_class != "V"}
+    numbers = numbers_of(first)
     for run in runs[1:]:
-        threads = f"{first.threads} and {run.threads} threads"
-        findings.append(_hash_finding(case, "state_hash", first, run, threads))
-        ids = [r.section("ids").get("config_id", "") for r in (first, run)]
-        findings.append(
-            Finding(
-                case,
-                "I",
-                "config_id",
-                "pass" if ids[0] and ids[0] == ids[1] else "FAIL",
-                ids[1],
-                ids[0],
-                judged=2 if all(ids) else 0,
-            )
-        )
-        other = {m.name: v for m, v in measure(run).items() if m.gate_class != "V"}
+        threads, other = f"{first.threads} and {run.threads} threads", numbers_of(run)
+        ids = (r.section("ids").get("config_id", "") for r in (first, run))
         unlike = sorted(
             name for name in numbers.keys() | other.keys() if numbers.get(name) != other.get(name)
         )
-        findings.append(
-            Finding(
-                case,
-                "II",
-                "numbers",
-                "FAIL" if unlike or not numbers else "pass",
-                len(unlike),
-                0,
-                judged=len(numbers),
-                note=", ".join(unlike) or f"{len(numbers)} equal, {threads}",
-            )
-        )
+        note = ", ".join(unlike) or f"{len(numbers)} equal, {threads}"
+        findings += [
+            _state(case, first, run, threads),
+            _equal(case, "I", "config_id", *ids),
+            exact(case, "II", "numbers", len(unlike), len(numbers), note, ""),
+        ]
     return findings

@@ -9,7 +9,7 @@ width of its envelope, on the side that is no better. `bench gate accept --drift
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from barrierbench_analysis.io.digests import of_text
 
@@ -29,13 +29,7 @@ class First:
     here: bool = False  # made by what made the last baseline
 
     def json(self) -> dict:
-        return {
-            "value": self.value,
-            "date": self.date,
-            "commit": self.commit,
-            "reason": self.reason,
-            "made_by": self.made_by,
-        }
+        return {name: value for name, value in asdict(self).items() if name != "here"}
 
 
 def digest(made_by: dict) -> str:

@@ -28,15 +28,9 @@ def is_chaotic(metric: Metric, values: np.ndarray) -> bool:
     spread = float(values.max() - values.min())
     if metric.unit == "log10":
         return spread > np.log10(1 + CHAOTIC_SPREAD)
-    if (
-        metric.unit == "share"
-    ):  # a word that turns up in a few copies: its envelope is wide enough, and never wider than all of them
-        return False
+    if metric.unit == "share":
+        return False  # a word of a few copies: its envelope is wide enough, and no wider than all of them
     return spread > CHAOTIC_SPREAD * abs(float(np.median(values)))
-
-
-def _in_logarithm(metric: Metric, values: np.ndarray) -> bool:
-    return bool(metric.tolerance.logarithmic) and bool((values > 0).all())
 
 
 def calibrate(metric: Metric, values) -> Envelope:
@@ -51,7 +45,7 @@ def calibrate(metric: Metric, values) -> Envelope:
     lower, upper = metric.tolerance.around(middle)
     if len(values) < ENOUGH_COPIES:
         return Envelope(middle, min(lower, float(values[0])), max(upper, float(values[-1])), len(values))
-    logarithmic = _in_logarithm(metric, values)
+    logarithmic = metric.tolerance.logarithmic and (values > 0).all()
     q05, q25, q75, q95 = np.quantile(np.log(values) if logarithmic else values, [0.05, 0.25, 0.75, 0.95])
     reach = 1.5 * (q75 - q25)
     ends = q05 - reach, q95 + reach

@@ -6,13 +6,7 @@ from collections import Counter
 from dataclasses import asdict, dataclass
 
 RED = ("FAIL", "drift")  # drift: further from the first baseline than the last one shows (drift.py)
-JUDGED = (
-    "pass",
-    *RED,
-    "better",
-    "xfail",
-    "xpass",
-)  # the others are said and judge nothing: report, not_judged
+JUDGED = ("pass", *RED, "better", "xfail", "xpass")  # others are shown alone: report, not_judged
 SAME = 1e-6  # relative: a smaller change is not worth a word
 ALL_CLASSES = ("I", "II", "III", "IV")
 
@@ -37,6 +31,18 @@ class Finding:
         return line
 
 
+def exact(
+    case: str, gate_class: str, metric: str, faults: int, judged: int, note: str = "", unit: str = "1"
+) -> Finding:
+    """Of a check without tolerance, by the number of its faults; judging nothing is a failure."""
+    verdict = "pass" if faults == 0 and judged > 0 else "FAIL"
+    return Finding(case, gate_class, metric, verdict, faults, 0, unit=unit, judged=judged, note=note)
+
+
+def not_judged(case: str, gate_class: str, metric: str, note: str, **more) -> Finding:
+    return Finding(case, gate_class, metric, "not_judged", judged=0, note=note, **more)
+
+
 def failures(findings: list[Finding]) -> list[Finding]:
     return [f for f in findings if f.verdict in RED]
 
@@ -49,27 +55,17 @@ def judged(findings: list[Finding]) -> Counter:
 def without_subject(findings: list[Finding], required: tuple[str, ...] = ALL_CLASSES) -> list[Finding]:
     """A failure for each class that has judged nothing: such a gate is no green one."""
     count = judged(findings)
+    absent = [c for c in required if count[c] == 0]
+    note = "no line of class {} judged anything"
     return [
-        Finding(
-            "all cases",
-            c,
-            "judged",
-            "FAIL",
-            value=0,
-            lower=1,
-            judged=0,
-            note=f"no line of class {c} judged anything",
-        )
-        for c in required
-        if count[c] == 0
+        Finding("all cases", c, "judged", "FAIL", 0, lower=1, judged=0, note=note.format(c)) for c in absent
     ]
 
 
 def moved(value: float, reference: float, unit: str) -> str:
     """Direction and size of a change."""
-    if value == reference or abs(value - reference) < SAME * max(
-        abs(reference), 1.0 if unit == "log10" else 0.0
-    ):
+    size = max(abs(reference), 1.0 if unit == "log10" else 0.0)
+    if value == reference or abs(value - reference) < SAME * size:
         return "same"
     word = "higher" if value > reference else "lower"
     if unit == "log10":

@@ -20,36 +20,32 @@ from . import baseline, configs, invariants, judge, matrices, meanings, report, 
 from .baseline import Baseline
 from .build_checks import judge_build
 from .calibrate import copies_of
-from .cases import Case, case_argument, read_set, run_case, set_argument
+from .cases import Case, case_argument, is_chosen, jittered, read_set, run_case, set_argument
 from .determinism import of_one_config
-from .finding import RED, Finding, failures, without_subject
+from .finding import Finding, failures, without_subject
 from .instructions import judge_instructions
 from .measure import measure
 from .records import Run, read_run
 from .resume import judge_resume
 
 OUT = ROOT / "results" / "runs" / "gate"
-REPEAT_SEED = (
-    1001  # of the copy that has to confirm a number outside its envelope; no copy of a calibration has it
-)
+# Of the copy that has to confirm a number outside its envelope; no copy of a calibration has it.
+REPEAT_SEED = 1001
 CHAOS_SEED, CHAOS_COPIES = 2001, 8
 
 
 def same_subject(kept: Baseline, run: Run, path: Path) -> None:
     """Raises UserError when the baseline is of another scene or of other settings."""
-    if lines := configs.contradictions(kept.config, run.section("config")):
-        raise UserError(
-            "\n".join(
-                [f"{path}: a baseline of other settings than {run.path}:", *(f"  {line}" for line in lines)]
-            )
-        )
     size = configs.scene_size(run)
-    if unlike := [
-        f"  {place}: {value!r} and {size.get(place)!r}"
+    settings = configs.contradictions(kept.config, run.section("config"))
+    scene = [
+        f"{place}: {value!r} and {size.get(place)!r}"
         for place, value in sorted(kept.scene.items())
         if value != size.get(place)
-    ]:
-        raise UserError("\n".join([f"{path}: a baseline of another scene than {run.path}:", *unlike]))
+    ]
+    for lines, what in ((settings, "other settings"), (scene, "another scene")):
+        if lines:
+            raise UserError("\n  ".join([f"{path}: a baseline of {what} than {run.path}:", *lines]))
 
 
 def numbers(
@@ -63,7 +59,7 @@ def numbers(
     something else in the baseline's version, is shown and not judged. new: of what the baseline lacks.
     """
     metrics, values, not_compared = meanings.shared(
-        case, kept.metrics, measure(run), kept.record_version or meanings.PRESENT, run.version
+        case, kept.metrics, measure(run), kept.version, run.version
     )
     lines = not_compared + judge.numbers(case, metrics, values, same_build_kind, new=new)
     for f in lines:
@@ -78,16 +74,16 @@ def _confirmed(
     """A number outside its envelope, or a cost that is too dear, is red when a copy with another seed is
     outside as well.
     """
-    outside = {f.metric for f in findings if f.verdict in RED}
+    outside = {f.metric for f in failures(findings)}
     if not outside or not size_m > 0:
         return findings
-    again = run_case(case, out, 1, seeds__main=REPEAT_SEED, seeds__jitter_m=1e-12 * size_m)
-    second = {f.metric: f.verdict for f in numbers(case.name, kept, again, same_build_kind)}
+    again = jittered(case, out, REPEAT_SEED, size_m)
+    second = {f.metric for f in failures(numbers(case.name, kept, again, same_build_kind))}
     for f in findings:
-        if f.metric in outside:
-            confirmed = second.get(f.metric) in RED
-            f.verdict = f.verdict if confirmed else "pass"
-            f.note += "; confirmed by a copy" if confirmed else "; a copy with another seed is inside"
+        if f.metric in outside & second:
+            f.note += "; confirmed by a copy"
+        elif f.metric in outside:
+            f.verdict, f.note = "pass", f"{f.note}; a copy with another seed is inside"
     return findings
 
 
@@ -95,11 +91,8 @@ def judge_case(case: Case, kept: Baseline, path: Path, out: Path) -> tuple[list[
     """The lines of one case, and the samples of its chaotic metrics (judged with those of all cases)."""
     runs = [run_case(case, out / case.name / f"threads-{threads}", threads) for threads in (1, 2)]
     first = runs[0]
-    findings = [
-        f
-        for run in runs
-        for f in invariants.judge(case.name if run is first else f"{case.name}, {run.threads} threads", run)
-    ]
+    findings = invariants.judge(case.name, first)
+    findings += invariants.judge(f"{case.name}, {runs[1].threads} threads", runs[1])
     findings += of_one_config(case.name, runs)
     if case.resumed:
         findings.append(judge_resume(case, out / case.name / "resumed", first))
@@ -109,25 +102,20 @@ def judge_case(case: Case, kept: Baseline, path: Path, out: Path) -> tuple[list[
     lines = numbers(case.name, kept, first, same_kind)
     findings += meanings.without_version(case.name, kept.record_version)
     findings += _confirmed(lines, case, kept, out / case.name / "repeat", size_m, same_kind)
-    samples = []
-    metrics, _, _ = meanings.shared(
-        case.name, kept.metrics, {}, kept.record_version or meanings.PRESENT, first.version
-    )
-    if chaotic := judge.chaotic(metrics):
-        values = [
-            measure(run)
-            for run in copies_of(case, out / case.name / "copies", CHAOS_COPIES, size_m, CHAOS_SEED)
-        ]
-        samples = [
-            (case.name, name, k, [v for numbers in values for m, v in numbers.items() if m.name == name])
-            for name, k in chaotic.items()
-        ]
-    return findings, samples
+    metrics, _, _ = meanings.shared(case.name, kept.metrics, {}, kept.version, first.version)
+    chaotic = judge.chaotic(metrics)
+    folder = out / case.name / "copies"
+    copies = copies_of(case, folder, CHAOS_COPIES, size_m, CHAOS_SEED) if chaotic else ()
+    values = [(metric.name, value) for run in copies for metric, value in measure(run).items()]
+    return findings, [
+        (case.name, name, k, [value for other, value in values if other == name])
+        for name, k in chaotic.items()
+    ]
 
 
 def run_set(name: str, baselines: Path, out: Path, only: list[str]) -> list[Finding]:
     """Raises UserError, RecordError. Every baseline is read before the first run."""
-    cases = [case for case in read_set(name) if not only or any(word in case.name for word in only)]
+    cases = [case for case in read_set(name) if is_chosen(case.name, only)]
     if not cases:
         raise UserError(f"set {name}: no case whose name contains {' or '.join(only)}")
     kept = {case.name: baseline.read(baselines / f"{case.name}.json", case.name, "run") for case in cases}
@@ -150,18 +138,12 @@ def judge_record(record: Path, path: Path) -> list[Finding]:
     kept, run = baseline.read(path, kind="run"), read_run(record)
     same_subject(kept, run, path)
     case = kept.case or str(record)
-    dropped = (
-        [Finding(case, "I", "trace lines dropped", "report", run.torn, 0, judged=0, note="torn last line")]
-        if run.torn
-        else []
-    )
-    lines = [f for f in invariants.judge(case, run, foreign=True) if not (f.metric == "trace" and run.torn)]
-    lines += meanings.of_other_version(
-        case, [run], kept.record_version or meanings.PRESENT, run.version
-    ) + meanings.without_version(case, kept.record_version)
+    lines = invariants.judge_stored(case, run)
+    lines += meanings.of_other_version(case, [run], kept.version, run.version)
+    lines += meanings.without_version(case, kept.record_version)
     same_kind = bool(kept.made_by) and kept.made_by == run.made_by
     new = judge.not_in_the_baseline("bench gate accept --record")
-    return dropped + lines + numbers(case, kept, run, same_kind, new)
+    return lines + numbers(case, kept, run, same_kind, new)
 
 
 def findings_case(findings: list[Finding]) -> str:
@@ -181,16 +163,9 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("gate run", __doc__, "./bench gate")
     set_argument(parser)
     case_argument(parser)
-    parser.add_argument(
-        "--baselines", type=Path, default=baseline.FOLDER, metavar="DIR", help="default: results/baselines"
-    )
-    parser.add_argument(
-        "--record", type=Path, metavar="RUN.json", help="judge this record instead of running anything"
-    )
-    parser.add_argument(
-        "--matrix", type=Path, nargs="+", metavar="FILE.mtx", help="judge these Matrix Market files instead"
-    )
-    parser.add_argument("--baseline", type=Path, metavar="FILE.json", help="of --record and --matrix")
+    baseline.folder_argument(parser)
+    record = {"help": "judge this record instead of running anything"}
+    baseline.other_program_arguments(parser, record, "judge these Matrix Market files instead")
     parser.add_argument(
         "--out", type=Path, default=OUT, metavar="DIR", help="runs and gate.json (default: results/runs/gate)"
     )
@@ -202,10 +177,9 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--history", type=Path, metavar="FILE", help="append the numbers to this file, for ./bench gate trend"
     )
-    parser.add_argument("--verbose", action="store_true", help="lines that pass as well")
+    report.verbose_argument(parser)
     args = parser.parse_args(argv)
-    if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
-        raise UserError("--record or --matrix goes with --baseline FILE.json")
+    baseline.check_other_program(args)
     return args
 
 
@@ -221,22 +195,14 @@ def main(argv: list[str]) -> int:
         if args.instructions:
             findings += judge_instructions(args.set, args.baselines, args.case)
     findings += without_subject(findings, required)
-    lines = report.shown(findings, args.verbose)
-    if lines:
-        print(report.table(lines))
-    print(report.closing(findings))
+    report.say(findings, args.verbose)
     if any(f.verdict == "better" for f in findings):
         print(f"bench gate run: to hold the better numbers from now on: {_to_hold(args)}", file=sys.stderr)
     if args.history and not args.baseline:
         made = read_run(args.out / findings_case(findings) / "threads-1", allow_not_finite=True)
-        trend.append(
-            args.history,
-            trend.line_of(
-                findings,
-                made.section("provenance").get("git_commit", ""),
-                made.section("status").get("started_utc", ""),
-            ),
-        )
+        commit = made.section("provenance").get("git_commit", "")
+        line = trend.line_of(findings, commit, made.section("status").get("started_utc", ""))
+        trend.append(args.history, line)
     report.write_json(
         args.out / "gate.json", "barrierbench.gate", findings, set=None if args.baseline else args.set
     )

@@ -14,10 +14,10 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.program.start import started
 
 from . import baseline
-from .baseline import Kept, keep
-from .cases import Case, read_set, words_of
+from .baseline import Baseline, Kept, keep
+from .cases import Case, is_chosen, read_set, words_of
 from .envelope import Envelope
-from .finding import Finding
+from .finding import Finding, not_judged
 from .judge import COST_EACH, drifted
 from .metrics import COST, LOWER_BETTER, Metric
 from .records import read_run
@@ -58,39 +58,21 @@ def instructions_of(case: Case) -> Kept | None:
     )
 
 
+def _judged(case: Case, kept: Baseline) -> Finding:
+    was = kept.metrics.get("instructions")
+    if not was:
+        return not_judged(case.name, "IV", "instructions", "the baseline has none")
+    counted = count(case)
+    if counted is None or kept.made_by != counted[1]:
+        other = "the baseline is of another processor or compiler"
+        return not_judged(case.name, "IV", "instructions", other if counted else "no valgrind")
+    value, e = counted[0], was.envelope
+    note = "" if value > e.upper else drifted(was, value, True)
+    verdict = "FAIL" if value > e.upper else "drift" if note else "pass"
+    return Finding(case.name, "IV", "instructions", verdict, value, e.value, None, e.upper, "1", note=note)
+
+
 def judge_instructions(set_name: str, folder: Path, only: list[str]) -> list[Finding]:
     """A line for every case that asks for them."""
-    findings = []
-    for case in read_set(set_name):
-        if not case.instructions or (only and not any(word in case.name for word in only)):
-            continue
-        kept = baseline.read(folder / f"{case.name}.json", case.name)
-        was = kept.metrics.get("instructions")
-        counted = count(case) if was else None
-        if counted is None or kept.made_by != counted[1]:
-            why = (
-                "the baseline has none"
-                if not was
-                else "no valgrind"
-                if counted is None
-                else "the baseline is of another processor or compiler"
-            )
-            findings.append(Finding(case.name, "IV", "instructions", "not_judged", judged=0, note=why))
-            continue
-        note = "" if counted[0] > was.envelope.upper else drifted(was, counted[0], True)
-        verdict = "FAIL" if counted[0] > was.envelope.upper else "drift" if note else "pass"
-        findings.append(
-            Finding(
-                case.name,
-                "IV",
-                "instructions",
-                verdict,
-                counted[0],
-                was.envelope.value,
-                None,
-                was.envelope.upper,
-                "1",
-                note=note,
-            )
-        )
-    return findings
+    cases = [case for case in read_set(set_name) if case.instructions and is_chosen(case.name, only)]
+    return [_judged(case, baseline.read(folder / f"{case.name}.json", case.name)) for case in cases]

@@ -11,15 +11,11 @@ import jsonschema
 
 from barrierbench_analysis.io import fields
 
-from .finding import Finding
+from .finding import Finding, exact, not_judged
 from .records import Run, leaves, not_finite
 
-NOT_A_SPECTRUM = (
-    "not_pd",
-    "singular",
-    "not_converged",
-    "non_finite",
-)  # statuses that no clamped matrix may have
+# Statuses that no clamped matrix may have.
+NOT_A_SPECTRUM = ("not_pd", "singular", "not_converged", "non_finite")
 
 
 @dataclass(frozen=True)
@@ -53,12 +49,11 @@ def _audit(run: Run) -> Checked:
 def _audit_count(name: str):
     def check(run: Run) -> Checked:
         audit = run.section("audit")
-        judged, found = audit.get("judged"), audit.get(name)
+        found, n = audit.get(name), audit.get("judged")
+        judged = n if isinstance(n, int) else 0
         if not isinstance(found, int):  # absent, null, a word
-            return Checked(
-                judged if isinstance(judged, int) else 0, 1, f"audit/{name} is {json.dumps(found)}, no count"
-            )
-        return Checked(judged if isinstance(judged, int) else 0, found)
+            return Checked(judged, 1, f"audit/{name} is {json.dumps(found)}, no count")
+        return Checked(judged, found)
 
     return check
 
@@ -100,25 +95,18 @@ def _schema(run: Run) -> Checked:
     return Checked(len(run.record), len(errors), errors[0] if errors else "")
 
 
+AUDIT_COUNTS = ("crossings", "violations", "unproven")
 CHECKS = {
     "schema": _schema,
     "outcome": _outcome,
     "numbers": _numbers,
     "audit": _audit,
-    "crossings": _audit_count("crossings"),
-    "violations": _audit_count("violations"),
-    "unproven": _audit_count("unproven"),
+    **{name: _audit_count(name) for name in AUDIT_COUNTS},
     "matrices": _matrices,
     "trace": _trace,
 }
 # What a record of another program cannot be blamed for when the section is not there at all.
-SECTION_OF = {
-    "audit": "audit",
-    "crossings": "audit",
-    "violations": "audit",
-    "unproven": "audit",
-    "matrices": "summary",
-}
+SECTION_OF = {"matrices": "summary"} | dict.fromkeys(("audit", *AUDIT_COUNTS), "audit")
 
 
 def judge(case: str, run: Run, foreign: bool = False) -> list[Finding]:
@@ -135,23 +123,22 @@ def judge(case: str, run: Run, foreign: bool = False) -> list[Finding]:
             or (SECTION_OF.get(name) == "audit" and not run.section("audit").get("enabled"))
         )
         if absent:
-            findings.append(
-                Finding(case, "I", name, "not_judged", judged=0, note="the record has no such part")
-            )
+            findings.append(not_judged(case, "I", name, "the record has no such part"))
             continue
         result = check(run)
         note = result.note or ("judged nothing" if result.judged == 0 else f"of {result.judged}")
-        findings.append(
-            Finding(
-                case,
-                "I",
-                name,
-                "pass" if result.faults == 0 and result.judged > 0 else "FAIL",
-                value=result.faults,
-                reference=0,
-                unit="1",
-                judged=result.judged,
-                note=note,
-            )
-        )
+        findings.append(exact(case, "I", name, result.faults, result.judged, note))
     return findings
+
+
+def torn(case: str, run: Run) -> list[Finding]:
+    """A line where the last line of the trace was cut off."""
+    note = f"{run.path.parent}: torn last line"
+    line = Finding(case, "I", "trace lines dropped", "report", run.torn, 0, judged=0, note=note)
+    return [line] if run.torn else []
+
+
+def judge_stored(case: str, run: Run) -> list[Finding]:
+    """Of a record that is there: a torn line of its trace is reported and no failure."""
+    lines = judge(case, run, foreign=True)
+    return torn(case, run) + [f for f in lines if not (f.metric == "trace" and run.torn)]

@@ -31,30 +31,15 @@ def around(values: dict[Metric, float]) -> dict[str, Kept]:
 
 
 def _finding(
-    case: str,
-    name: str,
-    kept: Kept,
-    value: float,
-    verdict: str,
-    lower: float | None,
-    upper: float,
-    note: str = "",
+    case: str, name: str, kept: Kept, value: float, verdict: str, ends: tuple, note: str = ""
 ) -> Finding:
+    """ends: lower, which may be None, and upper."""
     if kept.xfail:
         verdict, note = ("xfail" if verdict in RED else "xpass"), f"expected to fail: {kept.xfail}"
-    change = moved(value, kept.envelope.value, kept.unit)
-    return Finding(
-        case,
-        kept.gate_class,
-        name,
-        verdict,
-        value,
-        kept.envelope.value,
-        lower,
-        upper,
-        kept.unit,
-        note="; ".join(text for text in (change if change != "same" else "", note) if text),
-    )
+    before = kept.envelope.value
+    change = moved(value, before, kept.unit)
+    note = "; ".join(text for text in (change if change != "same" else "", note) if text)
+    return Finding(case, kept.gate_class, name, verdict, value, before, *ends, kept.unit, note=note)
 
 
 def outside(direction: str, value: float, lower: float, upper: float) -> str:
@@ -96,7 +81,7 @@ def _held(kept: Kept, value: float, verdict: str, same_build_kind: bool = False)
 def _numeric(case: str, name: str, kept: Kept, value: float) -> Finding:
     e = kept.envelope
     verdict, note = _held(kept, value, outside(kept.direction, value, e.lower, e.upper))
-    return _finding(case, name, kept, value, verdict, e.lower, e.upper, note)
+    return _finding(case, name, kept, value, verdict, (e.lower, e.upper), note)
 
 
 def _cost(case: str, name: str, kept: Kept, value: float, same_build_kind: bool) -> Finding:
@@ -105,30 +90,19 @@ def _cost(case: str, name: str, kept: Kept, value: float, same_build_kind: bool)
     """
     e = kept.envelope
     upper = dearer(kept) * e.value if same_build_kind else max(COST_EACH * e.value, e.upper)
-    verdict = (
-        "FAIL" if value > upper else "better" if value < e.value / COST_EACH and same_build_kind else "pass"
-    )
+    is_better = same_build_kind and value < e.value / COST_EACH
+    verdict = "FAIL" if value > upper else "better" if is_better else "pass"
     verdict, note = _held(kept, value, verdict, same_build_kind)
-    return _finding(case, name, kept, value, verdict, None, upper, note)
+    return _finding(case, name, kept, value, verdict, (None, upper), note)
 
 
 def _together(case: str, ratios: list[float], scatter: list[float]) -> Finding:
     """scatter: what copies of each cost reach, over its value."""
     mean, copies = geometric(ratios), geometric(scatter)
     upper = max(COST_TOGETHER, copies)
-    return Finding(
-        case,
-        "IV",
-        "geometric mean",
-        "FAIL" if mean > upper else "pass",
-        mean,
-        1.0,
-        None,
-        upper,
-        "ratio",
-        judged=len(ratios),
-        note=f"of {len(ratios)} costs",
-    )
+    verdict, n = "FAIL" if mean > upper else "pass", len(ratios)
+    ends = (None, upper)
+    return Finding(case, "IV", "geometric mean", verdict, mean, 1.0, *ends, "ratio", n, f"of {n} costs")
 
 
 def _new(case: str, metric: Metric, value: float, new: tuple[str, str]) -> Finding:
@@ -138,9 +112,8 @@ def _new(case: str, metric: Metric, value: float, new: tuple[str, str]) -> Findi
         verdict = "report"
     elif metric.gate_class == "IV" and value == 0:
         verdict = "not_judged"
-    return Finding(
-        case, metric.gate_class, metric.name, verdict, value, unit=metric.unit, judged=0, note=note
-    )
+    of = case, metric.gate_class, metric.name
+    return Finding(*of, verdict, value, unit=metric.unit, judged=0, note=note)
 
 
 def _absent(case: str, name: str, k: Kept, seen: set[str]) -> Finding:
@@ -151,19 +124,8 @@ def _absent(case: str, name: str, k: Kept, seen: set[str]) -> Finding:
     counted = k.unit == shares.UNIT and shares.family_of(name) in seen
     if k.gate_class == "III" and (counted or (k.unit == "1" and e.lower <= 0)):
         return _numeric(case, name, k, 0.0)
-    return Finding(
-        case,
-        k.gate_class,
-        name,
-        "not_judged" if k.gate_class == "V" else "FAIL",
-        None,
-        e.value,
-        e.lower,
-        e.upper,
-        k.unit,
-        judged=0,
-        note="the run has no such number any more",
-    )
+    verdict, note = "not_judged" if k.gate_class == "V" else "FAIL", "the run has no such number any more"
+    return Finding(case, k.gate_class, name, verdict, None, e.value, e.lower, e.upper, k.unit, 0, note)
 
 
 def _unseen(case: str, metric: Metric, value: float, new: tuple[str, str], seen: set[str]) -> Finding:
@@ -190,10 +152,8 @@ def numbers(
     of what only the run has.
     """
     findings, ratios, scatter, found = [], [], [], {metric.name: value for metric, value in values.items()}
-    here, there = (
-        _families((m.name, m.unit) for m in values),
-        _families((name, k.unit) for name, k in kept.items()),
-    )
+    here = _families((metric.name, metric.unit) for metric in values)
+    there = _families((name, k.unit) for name, k in kept.items())
     for name, k in kept.items():
         if name in NOT_OF_A_RECORD:
             continue
@@ -203,7 +163,7 @@ def numbers(
         if value is None:
             findings.append(_absent(case, name, k, here))
         elif k.gate_class == "V":
-            findings.append(_finding(case, name, k, value, "report", None, k.envelope.value))
+            findings.append(_finding(case, name, k, value, "report", (None, k.envelope.value)))
         elif k.gate_class == "IV":
             findings.append(_cost(case, name, k, value, same_build_kind))
             if k.envelope.value > 0 and value > 0:
@@ -213,11 +173,8 @@ def numbers(
             findings.append(_numeric(case, name, k, value))
     if ratios and same_build_kind:
         findings.append(_together(case, ratios, scatter))
-    return findings + [
-        _unseen(case, metric, value, new, there)
-        for metric, value in values.items()
-        if metric.name not in kept
-    ]
+    only_here = [(metric, value) for metric, value in values.items() if metric.name not in kept]
+    return findings + [_unseen(case, metric, value, new, there) for metric, value in only_here]
 
 
 def distributions(samples: list[tuple[str, str, Kept, list[float]]]) -> list[Finding]:
@@ -228,18 +185,8 @@ def distributions(samples: list[tuple[str, str, Kept, list[float]]]) -> list[Fin
         note = f"chaotic: {len(values)} copies against {len(kept.envelope.sample)}, KS p = {p:.2g}"
         e, middle = kept.envelope, float(np.median(values))
         verdict, more = _held(kept, middle, "FAIL" if red else "pass")
-        findings.append(
-            _finding(
-                case,
-                name,
-                kept,
-                middle,
-                verdict,
-                e.lower,
-                e.upper,
-                "; ".join(text for text in (note, more) if text),
-            )
-        )
+        note = "; ".join(text for text in (note, more) if text)
+        findings.append(_finding(case, name, kept, middle, verdict, (e.lower, e.upper), note))
     return findings
 
 

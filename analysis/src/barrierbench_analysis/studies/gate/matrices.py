@@ -18,9 +18,8 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.matrix_market import read_matrix
 
 from . import baseline, judge
-from .baseline import Baseline, keep
-from .envelope import calibrate
-from .finding import Finding
+from .baseline import Baseline
+from .finding import Finding, exact
 from .metrics import COND, LOWER_BETTER, PCG, Metric
 
 LARGEST_DENSE = 1500  # rows up to which all eigenvalues are computed, half a second
@@ -32,16 +31,10 @@ def block_jacobi(matrix: sparse.csc_matrix, size: int = 3) -> sparse.csc_matrix:
     """L^-1 A L^-T with the Cholesky factors of the blocks on the diagonal; the last one is smaller where the
     rows do not divide. Raises LinAlgError when a block is not positive definite.
     """
-    n = matrix.shape[0]
-    inverses = [
-        scipy.linalg.solve_triangular(
-            np.linalg.cholesky(matrix[k : k + size, k : k + size].toarray()),
-            np.eye(min(size, n - k)),
-            lower=True,
-        )
-        for k in range(0, n, size)
-    ]
-    inverse = sparse.block_diag(inverses, format="csc")
+    starts = range(0, matrix.shape[0], size)
+    factors = [np.linalg.cholesky(matrix[k : k + size, k : k + size].toarray()) for k in starts]
+    solve = scipy.linalg.solve_triangular
+    inverse = sparse.block_diag([solve(f, np.eye(len(f)), lower=True) for f in factors], format="csc")
     return sparse.csc_matrix(inverse @ matrix @ inverse.T)
 
 
@@ -51,22 +44,18 @@ def log10_cond(matrix: sparse.csc_matrix) -> float | None:
         values = np.linalg.eigvalsh(matrix.toarray())
         low, high = float(values[0]), float(values[-1])
     else:
+        mode = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
         try:
-            factor = sparse_linalg.splu(
-                matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-            )
+            factor = sparse_linalg.splu(matrix, **mode)
         except RuntimeError:  # exactly singular
             return None
         if not (np.array_equal(factor.perm_r, factor.perm_c) and (factor.U.diagonal() > 0).all()):
             return None  # Sylvester: as many negative pivots as eigenvalues
         inverse = sparse_linalg.LinearOperator(matrix.shape, factor.solve)
         start = np.random.default_rng(1).standard_normal(matrix.shape[0])
-        high = float(
-            sparse_linalg.eigsh(matrix, k=1, which="LA", tol=1e-4, v0=start, return_eigenvectors=False)[0]
-        )
-        low = 1 / float(
-            sparse_linalg.eigsh(inverse, k=1, which="LA", tol=1e-4, v0=start, return_eigenvectors=False)[0]
-        )
+        how = {"k": 1, "which": "LA", "tol": 1e-4, "v0": start, "return_eigenvectors": False}
+        high, of_inverse = (float(sparse_linalg.eigsh(of, **how)[0]) for of in (matrix, inverse))
+        low = 1 / of_inverse
     if low <= 0 and -low > 1e-14 * high:
         return None
     return float(np.log10(min(LARGEST_COND, high / low))) if low > 0 else 14.0
@@ -132,20 +121,12 @@ def measure(spectra: dict[str, Spectrum]) -> dict[Metric, float]:
     """Of each matrix by its name, and medians and largest values over all of them."""
     out = {}
     for name, unit, tolerance, attribute in NUMBERS:
-        values = {
-            matrix: getattr(s, attribute)
-            for matrix, s in spectra.items()
-            if getattr(s, attribute) is not None
-        }
-        lines = (
-            {"median": float(np.median(list(values.values()))), "max": float(max(values.values())), **values}
-            if values
-            else {}
-        )
-        out |= {
-            Metric(f"{name} {which}", "III", unit, LOWER_BETTER, tolerance): float(value)
-            for which, value in lines.items()
-        }
+        found = {matrix: getattr(s, attribute) for matrix, s in spectra.items()}
+        values = {matrix: float(value) for matrix, value in found.items() if value is not None}
+        if every := list(values.values()):
+            values = {"median": float(np.median(every)), "max": max(every), **values}
+        for which, value in values.items():
+            out[Metric(f"{name} {which}", "III", unit, LOWER_BETTER, tolerance)] = value
     return out
 
 
@@ -163,51 +144,33 @@ def _same_matrices(kept: Baseline, spectra: dict[str, Spectrum], path: Path) -> 
     """Raises UserError when a matrix has another size than in the baseline, or when they have none in
     common."""
     rows = _rows(spectra)
-    unlike = [
-        f"  {place}: {value} and {rows[place]}"
-        for place, value in kept.scene.items()
-        if rows.get(place, value) != value
-    ]
-    if not unlike and not any(place in rows for place in kept.scene):
-        unlike = [f"  {', '.join(place for place in kept.scene) or 'no names'} and {', '.join(rows)}"]
+    both = [(place, value, rows[place]) for place, value in kept.scene.items() if place in rows]
+    unlike = [f"{place}: {value} and {now}" for place, value, now in both if value != now]
+    if not both:
+        unlike = [f"{', '.join(kept.scene) or 'no names'} and {', '.join(rows)}"]
     if unlike:
-        raise UserError("\n".join([f"{path}: a baseline of other matrices:", *unlike]))
+        raise UserError("\n  ".join([f"{path}: a baseline of other matrices:", *unlike]))
 
 
 def _lonely(case: str, old: set[str], new: set[str]) -> list[Finding]:
     """A line for every matrix that only one side has, instead of one for each of its numbers."""
-    said = [(name, "missing: the baseline has it") for name in sorted(old - new)] + [
-        (name, judge.not_in_the_baseline("bench gate accept --matrix")[1]) for name in sorted(new - old)
+    _, unknown = judge.not_in_the_baseline("bench gate accept --matrix")
+    notes = dict.fromkeys(sorted(old - new), "missing: the baseline has it")
+    notes |= dict.fromkeys(sorted(new - old), unknown)
+    return [
+        Finding(case, "III", f"matrix {name}", "FAIL", judged=0, note=note) for name, note in notes.items()
     ]
-    return [Finding(case, "III", f"matrix {name}", "FAIL", judged=0, note=note) for name, note in said]
 
 
 def _invariants(case: str, spectra: list[Spectrum]) -> list[Finding]:
     bad = [s for s in spectra if s.raw is None or s.scaled is None]
     stuck = [s for s in spectra if s not in bad and s.pcg is None]
+    n = len(spectra)
+    of_bad = f"{bad[0].path}" if bad else f"of {n}"
+    of_stuck = f"{stuck[0].path}: more than {PCG_CAP}" if stuck else f"of {n}"
     return [
-        Finding(
-            case,
-            "I",
-            "positive definite",
-            "FAIL" if bad else "pass",
-            len(bad),
-            0,
-            unit="1",
-            judged=len(spectra),
-            note=f"{bad[0].path}" if bad else f"of {len(spectra)}",
-        ),
-        Finding(
-            case,
-            "I",
-            "pcg converges",
-            "FAIL" if stuck else "pass",
-            len(stuck),
-            0,
-            unit="1",
-            judged=len(spectra),
-            note=f"{stuck[0].path}: more than {PCG_CAP}" if stuck else f"of {len(spectra)}",
-        ),
+        exact(case, "I", "positive definite", len(bad), n, of_bad),
+        exact(case, "I", "pcg converges", len(stuck), n, of_stuck),
     ]
 
 
@@ -215,18 +178,10 @@ def propose(paths: list[Path], case: str) -> Baseline:
     """Raises UserError, also for a matrix that is not positive definite: that is never accepted."""
     spectra = dict(zip(names(paths), map(spectrum, paths)))
     if red := [f for f in _invariants(case, list(spectra.values())) if f.verdict == "FAIL"]:
-        raise UserError(
-            "\n".join(
-                f"{f.metric}: {f.value} of {len(spectra)} matrices are not, {f.note}: makes no baseline"
-                for f in red
-            )
-        )
-    kept = {
-        metric.name: keep(metric, calibrate(metric, [value])) for metric, value in measure(spectra).items()
-    }
-    return Baseline(
-        case, "matrix", "", {"date": datetime.date.today().isoformat(), "runs": 1}, kept, scene=_rows(spectra)
-    )
+        of = f"of {len(spectra)} matrices are not"
+        raise UserError("\n".join(f"{f.metric}: {f.value} {of}, {f.note}: makes no baseline" for f in red))
+    kept, at = judge.around(measure(spectra)), {"date": datetime.date.today().isoformat(), "runs": 1}
+    return Baseline(case, "matrix", "", at, kept, scene=_rows(spectra))
 
 
 def judge_matrices(paths: list[Path], path: Path) -> list[Finding]:
@@ -235,19 +190,8 @@ def judge_matrices(paths: list[Path], path: Path) -> list[Finding]:
     spectra = dict(zip(names(paths), map(spectrum, paths)))
     _same_matrices(kept, spectra, path)
     old = {matrix for name in kept.metrics if (matrix := _of_matrix(name))}
-    common = old & spectra.keys()
-    of_common = {
-        name: k
-        for name, k in kept.metrics.items()
-        if (matrix := _of_matrix(name)) is None or matrix in common
-    }
-    values = {
-        metric: value
-        for metric, value in measure(spectra).items()
-        if (matrix := _of_matrix(metric.name)) is None or matrix in common
-    }
-    return (
-        _invariants(kept.case, list(spectra.values()))
-        + _lonely(kept.case, old, set(spectra))
-        + judge.numbers(kept.case, of_common, values, False)
-    )
+    judged = {None, *(old & spectra.keys())}
+    of_common = {name: k for name, k in kept.metrics.items() if _of_matrix(name) in judged}
+    values = {metric: v for metric, v in measure(spectra).items() if _of_matrix(metric.name) in judged}
+    lines = _invariants(kept.case, list(spectra.values())) + _lonely(kept.case, old, set(spectra))
+    return lines + judge.numbers(kept.case, of_common, values, False)

@@ -4,43 +4,30 @@ nothing.
 
 from __future__ import annotations
 
-from barrierbench_analysis.io.record_file import OURS, other_meanings
+from barrierbench_analysis.io.record_file import other_meanings
 
 from . import shares
-from .baseline import Kept
-from .finding import Finding
+from .baseline import PRESENT, Kept
+from .finding import Finding, not_judged
 from .metrics import Metric
 from .records import Run
 
-# Field that has changed its meaning -> families of numbers that are made of it (measure.py, shares.py);
-# class I and II look at one record alone.
+# Field that has changed its meaning -> families of numbers that are made of it (measure.py, shares.py). Class
+# I and II look at one record alone.
 FAMILIES: dict[str, tuple[str, ...]] = {
-    "comparability.verdict": (),
-    "comparability.max_ratio": (),
-    "audit.obstacle_queries": (),
-    "audit.crossings": (),
-    "audit.touches": (),
-    "summary.end_error_tolerances": (),
-    "steps[].end_error_m": (),
-    "steps[].end_error_tolerances": (),
     "summary.contacts": ("contacts_median",),
     "summary.stiffness.kappa_start_N_per_m": ("kappa_start",),
     "summary.stiffness.kappa_end_N_per_m": ("kappa_end",),
-    "steps[].contacts": (),
-    "steps[].kappa_min_N_per_m": (),
-    "steps[].kappa_max_N_per_m": (),
-    "matching.contacts_considered": (),
-    "matching.contacts_left_out": (),
-    "trace contraction": (),
     "trace error_estimate_m": ("error_estimate",),
-    "trace energy_change_J": (),
-    "trace cond[].tier": (),
-    "trace contacts": (),
-    "trace kappa_min_N_per_m": (),
-    "trace kappa_max_N_per_m": (),
-    "trace contact_curvature_max_N_per_m": (),
 }
-PRESENT = ".".join(map(str, OURS))
+OF_NO_NUMBER = frozenset(
+    "comparability.verdict, comparability.max_ratio, audit.obstacle_queries, audit.crossings, audit.touches,"
+    " summary.end_error_tolerances, steps[].end_error_m, steps[].end_error_tolerances, steps[].contacts,"
+    " steps[].kappa_min_N_per_m, steps[].kappa_max_N_per_m, matching.contacts_considered,"
+    " matching.contacts_left_out, trace contraction, trace energy_change_J, trace cond[].tier,"
+    " trace contacts, trace kappa_min_N_per_m, trace kappa_max_N_per_m,"
+    " trace contact_curvature_max_N_per_m".split(", ")
+)
 
 
 def _has(run: Run, field: str) -> bool:
@@ -61,16 +48,8 @@ def of_other_version(case: str, runs: list[Run], *versions: str) -> list[Finding
     if not fields:
         return []
     between = " and ".join(versions) if len(versions) > 1 else f"{versions[0]} and now"
-    return [
-        Finding(
-            case,
-            "I",
-            "meanings",
-            "not_judged",
-            judged=0,
-            note=f"of {between}, in which {', '.join(fields)} mean different things: not compared",
-        )
-    ]
+    note = f"of {between}, in which {', '.join(fields)} mean different things: not compared"
+    return [not_judged(case, "I", "meanings", note)]
 
 
 def shared(
@@ -79,24 +58,15 @@ def shared(
     """Both sides without the families that are made of fields with another meaning in the one version than in
     the other, and a line for each of these.
     """
-    changed = {family: field for field in other_meanings(old, new) for family in FAMILIES[field]}
+    changed = {family: field for field in other_meanings(old, new) for family in FAMILIES.get(field, ())}
 
     def unlike(name: str) -> bool:
         return shares.family_of(name) in changed
 
     names = dict.fromkeys([*kept, *(metric.name for metric in values)])
     there = dict.fromkeys(shares.family_of(name) for name in names if unlike(name))
-    lines = [
-        Finding(
-            case,
-            "III",
-            family,
-            "not_judged",
-            judged=0,
-            note=f"made of {changed[family]}, which means different things in {old} and {new}",
-        )
-        for family in there
-    ]
+    note = f"which means different things in {old} and {new}"
+    lines = [not_judged(case, "III", family, f"made of {changed[family]}, {note}") for family in there]
     return (
         {name: k for name, k in kept.items() if not unlike(name)},
         {metric: v for metric, v in values.items() if not unlike(metric.name)},
@@ -109,16 +79,5 @@ def without_version(case: str, version: str | None) -> list[Finding]:
     one's."""
     if version is not None:
         return []
-    return [
-        Finding(
-            case,
-            "III",
-            "meanings",
-            "not_judged",
-            judged=0,
-            note=(
-                f"the baseline does not say of which record version it is: taken as {PRESENT} (bench"
-                " calibrate, bench gate accept)"
-            ),
-        )
-    ]
+    said = f"the baseline does not say of which record version it is: taken as {PRESENT}"
+    return [not_judged(case, "III", "meanings", f"{said} (bench gate calibrate, bench gate accept)")]

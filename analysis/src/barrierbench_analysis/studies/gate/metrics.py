@@ -7,6 +7,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from barrierbench_analysis.io.json_file import number_at
+
 TWO_SIDED, LOWER_BETTER, UPPER_BETTER = "two_sided", "lower_better", "upper_better"
 DIRECTIONS = (TWO_SIDED, LOWER_BETTER, UPPER_BETTER)
 
@@ -26,10 +28,8 @@ class Tolerance:
     def around(self, value: float) -> tuple[float, float]:
         """Lower and upper end. A gap that is 0 or below has no logarithm and keeps the absolute distance."""
         size = abs(value)
-        half = max(
-            self.absolute if math.isinf(self.share) else min(self.absolute, self.share * size),
-            self.relative * size,
-        )
+        absolute = self.absolute if math.isinf(self.share) else min(self.absolute, self.share * size)
+        half = max(absolute, self.relative * size)
         if self.logarithmic and value > 0:
             factor = 10**self.logarithmic
             return max(value / factor, value - half), min(value * factor, value + half)
@@ -85,30 +85,16 @@ LAST_STEP = [
     (Metric("elastic_end", "III", "J", TWO_SIDED, PHYSICS), ("elastic_J",)),
     (Metric("gravity_end", "III", "J", TWO_SIDED, PHYSICS), ("gravity_J",)),
 ]
-NEVER_RECORDED = (
-    "crossings",
-    "violations",
-    "unproven",
-    "audit",
-    "numbers",
-    "state_hash",
-    "matrices",
-    "outcome",
-    "trace",
-    "schema",
-    "config_id",
-    "judged",
-)  # class I and II: exact, so there is nothing to accept
-
-
-def _number(value) -> float | None:
-    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
+# Class I and II: exact, so there is nothing to accept.
+NEVER_RECORDED = frozenset(
+    "crossings violations unproven audit numbers state_hash matrices outcome trace schema config_id"
+    " judged".split()
+)
 
 
 def at(record, place: tuple[str, ...]) -> float | None:
-    for name in place:
-        record = record.get(name) if isinstance(record, dict) else None
-    return _number(record)
+    found = number_at(record, place)
+    return None if found is None else float(found)
 
 
 def cond_metric(matrix: str, which: str) -> Metric:

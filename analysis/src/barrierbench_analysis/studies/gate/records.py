@@ -18,10 +18,7 @@ from barrierbench_analysis.io.record_file import (
 )
 
 NOT_FINITE = ("nan", "infinite", "minus_infinite")  # the words of Number in core/base/record/number.hpp
-MAY_BE_INFINITE = (
-    "error_estimate_m_status",
-    "contraction_status",
-)  # directions that do not shrink bound no error
+MAY_BE_INFINITE = ("error_estimate_m_status", "contraction_status")  # no bound where nothing shrinks
 
 
 @dataclass
@@ -71,16 +68,14 @@ class Run:
 def not_finite(value) -> list[str]:
     """Places of numbers that are none: written as NaN or Infinity, or absent with a `_status` that says
     so."""
-    return [
-        f"{place}: {found}"
-        for place, found in leaves(value)
-        if (isinstance(found, float) and not math.isfinite(found))
-        or (
-            place.endswith("_status")
-            and found in NOT_FINITE
-            and not (found == "infinite" and place.endswith(MAY_BE_INFINITE))
-        )
-    ]
+
+    def is_none(place: str, found) -> bool:
+        if isinstance(found, float):
+            return not math.isfinite(found)
+        allowed = found == "infinite" and place.endswith(MAY_BE_INFINITE)
+        return place.endswith("_status") and found in NOT_FINITE and not allowed
+
+    return [f"{place}: {found}" for place, found in leaves(value) if is_none(place, found)]
 
 
 def read_run(path: str | Path, allow_not_finite: bool = False) -> Run:
@@ -96,14 +91,11 @@ def read_run(path: str | Path, allow_not_finite: bool = False) -> Run:
     if own_trace(run.record, path.parent):  # the invariants count its lines
         run.trace, run.torn = trace_lines(trace)
     run.has_trace = trace.is_file()
-    if not allow_not_finite:
-        for file, value in ((path, run.record), (trace, run.trace)):
-            if bad := not_finite(value):
-                more = f" (and {len(bad) - 1} more)" if len(bad) > 1 else ""
-                raise RecordError(
-                    f"{file}: {bad[0]}{more}; a record holds finite numbers, or null and the word that"
-                    " says why"
-                )
+    for file, value in () if allow_not_finite else ((path, run.record), (trace, run.trace)):
+        if bad := not_finite(value):
+            more = f" (and {len(bad) - 1} more)" if len(bad) > 1 else ""
+            rule = "a record holds finite numbers, or null and the word that says why"
+            raise RecordError(f"{file}: {bad[0]}{more}; {rule}")
     return run
 
 

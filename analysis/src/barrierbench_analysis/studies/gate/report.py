@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from collections import Counter
 from pathlib import Path
@@ -52,13 +53,24 @@ def closing(findings: list[Finding]) -> str:
     )
 
 
+def verbose_argument(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--verbose", action="store_true", help="lines that pass as well")
+
+
+def say(findings: list[Finding], verbose: bool) -> None:
+    """Prints the table, where it has a line, and the closing sentence."""
+    if lines := shown(findings, verbose):
+        print(table(lines))
+    print(closing(findings))
+
+
 def write_json(path: Path, name: str, findings: list[Finding], **more) -> None:
-    red = bool(failures(findings))
+    red = len(failures(findings))
     body = {
         "schema": {"name": name, "version": "1.0.0"},
         "green": not red,
         "judged": {c: judged(findings)[c] for c in ALL_CLASSES},
-        "failed": len(failures(findings)),
+        "failed": red,
         "lines": len(findings),
         "verdicts": list(JUDGED) + ["report", "not_judged"],
         **more,

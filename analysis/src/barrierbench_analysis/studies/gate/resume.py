@@ -12,7 +12,7 @@ from barrierbench_analysis.io.errors import UserError, passed_on
 from barrierbench_analysis.program.start import begun, started
 
 from .cases import Case, run_case, words_of
-from .finding import Finding
+from .finding import Finding, exact
 from .records import Run, read_run
 
 NEVER_EQUAL = ("wall_s", "unaccounted_s", "time")
@@ -45,10 +45,11 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     same state. Every other number is compared with a run that writes the same checkpoints and is left alone.
     Raises UserError when the program cannot resume.
     """
-    alone = run_case(case, out.with_name(out.name + "-not-killed"), 1, output__checkpoint_every=1)
+    every_step = {"/output/checkpoint_every": 1}
+    alone = run_case(case, out.with_name(out.name + "-not-killed"), 1, every_step)
     for name in ("run.json", CHECKPOINT[0]):
         (out / name).unlink(missing_ok=True)
-    words = [*words_of(case, out, 1, {"/output/checkpoint_every": 1}), "--progress", "none"]
+    words = [*words_of(case, out, 1, every_step), "--progress", "none"]
     killed = kill_after_checkpoint(words, out)
     done = started(*words, "--resume")
     if done.returncode != 0:
@@ -69,13 +70,4 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
         if judged
         else "the run was over before it could be killed"
     )
-    return Finding(
-        case.name,
-        "I",
-        "resumed run",
-        "pass" if judged and not unlike else "FAIL",
-        value=unlike,
-        reference=0,
-        judged=judged,
-        note=note,
-    )
+    return exact(case.name, "I", "resumed run", unlike, judged, note, "")

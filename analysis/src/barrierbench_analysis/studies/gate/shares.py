@@ -17,27 +17,10 @@ UNIT = "share"
 SHARE = Tolerance(absolute=0.05)
 SEPARATOR = ": "  # between family and word in the name of a metric
 GOOD = ("ok", "converged", "number")
-BAD = (
-    "bound",
-    "lower_bound",
-    "upper_bound",
-    "failed",
-    "not_converged",
-    "not_estimated",
-    "not_pd",
-    "singular",
-    "non_finite",
-    "nan",
-    "infinite",
-    "unproven",
-    "not_checked",
-    "saddle",
-    "cusp",
-    "none",
-    "not_measured",
-    "matrix_indefinite",
-    "iteration_cap",
-    "linear_failed",
+BAD = frozenset(
+    "bound lower_bound upper_bound failed not_converged not_estimated not_pd singular non_finite nan"
+    " infinite unproven not_checked saddle cusp none not_measured matrix_indefinite iteration_cap"
+    " linear_failed".split()
 )
 
 

@@ -72,8 +72,7 @@ def last_step(values: list[float]) -> tuple[int, float, float] | None:
         return None
     (a, b), (c, d) = found[-2:]
     before, after = median(values[a:b]), median(values[c:d])
-    scale = abs(before) if before else 1.0
-    return (c, before, after) if abs(after - before) > THRESHOLD * scale else None
+    return (c, before, after) if abs(after - before) > THRESHOLD * (abs(before) or 1.0) else None
 
 
 def line_of(findings: list[Finding], commit: str, utc: str) -> dict:
@@ -102,11 +101,8 @@ def read(path: Path) -> list[dict]:
                 print(f"{path}:{number}: torn last line left out", file=sys.stderr)
                 continue
             raise UserError(f"{path}:{number}: not JSON") from None
-        if (
-            not isinstance(row, dict)
-            or row.get("schema") != SCHEMA
-            or not isinstance(row.get("values"), dict)
-        ):
+        values = row.get("values") if isinstance(row, dict) else None
+        if not isinstance(values, dict) or row.get("schema") != SCHEMA:
             raise UserError(f"{path}:{number}: no line of {SCHEMA}")
         rows.append(row)
     if not rows:
@@ -139,21 +135,12 @@ def main(argv: list[str]) -> int:
     args = parser.parse_args(argv)
     rows = read(args.history)
     found, looked = steps(rows)
-    if found:
-        print(
-            "\n".join(
-                aligned(
-                    ["case", "metric", "before", "after", "since", "runs"],
-                    [
-                        [s.case, s.metric, f"{s.before:.6g}", f"{s.after:.6g}", s.commit[:12], str(s.runs)]
-                        for s in found
-                    ],
-                    {2, 3, 5},
-                )
-            )
-        )
-    print(
-        f"{len(found)} steps in {looked} histories of {FEWEST} or more runs ({len(rows)} runs)"
-        + ("; nothing to look at yet" if looked == 0 else "")
-    )
+    head = ["case", "metric", "before", "after", "since", "runs"]
+    lines = [
+        [s.case, s.metric, f"{s.before:.6g}", f"{s.after:.6g}", s.commit[:12], str(s.runs)] for s in found
+    ]
+    if lines:
+        print("\n".join(aligned(head, lines, {2, 3, 5})))
+    end = "" if looked else "; nothing to look at yet"
+    print(f"{len(found)} steps in {looked} histories of {FEWEST} or more runs ({len(rows)} runs){end}")
     return 0
