@@ -1,6 +1,6 @@
 """The log beside the cubic over theta, without a strain limit and with one: the first results of
-docs/results/which-barrier.md, from results/studies/claims.jsonl and results/studies/gap_map.jsonl. Each is the
-number of the strongest evidence there is.
+docs/results/which-barrier.md, from claims.jsonl and gap_map.jsonl of results/studies. Each is the number of
+the strongest evidence there is.
 """
 
 from __future__ import annotations
