@@ -10,7 +10,7 @@
 //     vertex by itself, dx of each is cut to what it may go, as long as that descends
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
 //     with a curvature correction for them; where steps crawl, first along a longer dx
-//   6 accept; what converged goes on where terms renew their lagged contact state. A step that was shortened asks for the secant of terms
+//   6 accept; what converged goes on where terms renew their lagged contact state. A step that was shortened requests the secant of terms
 //     that have one (secant_rule.hpp), and so does one along which E falls nowhere, before the step fails
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ namespace {
 
 constexpr double collapsed_step = 1e-8;  // a step below it counts as no progress
 constexpr int collapse_iterations = 10;  // that many in a row end the step
-constexpr int most_escapes = 10;         // in a step; a saddle after that many is said to be one
+constexpr int most_escapes = 10;         // in a step; a saddle after that many is reported as one
 
 class LineSearch final : public StepSolver {
  public:
@@ -145,7 +145,7 @@ class LineSearch final : public StepSolver {
     return search_.truncated() ? report.dx_beyond_m : std::abs(1 - search_.taken()) * report.dx_beyond_m;
   }
 
-  // m. In float no step is asked for less than the rounding of the coordinates that are free to move.
+  // m. In float no step has a tolerance below the rounding of the coordinates that are free to move.
   double tolerance_of(const StepSystem& system, double dt) const {
     const double asked = options_.tol_velocity * dt;
     if (!values_in_float(system.view().precision())) return asked;

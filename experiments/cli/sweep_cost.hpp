@@ -20,7 +20,7 @@ struct RunSize {
   int passes = 1;  // with the calibration run of a matching rule
 };
 
-/// What the config tells without its scene being built. scene: SHA-256 of the section `scene`.
+/// What the config shows without its scene being built. scene: SHA-256 of the section `scene`.
 RunSize size_of(const RunConfig& config, const std::string& scene);
 
 /// Where an expectation is from: a record of this very config; of the same scene, the nearer the better; the model.

@@ -1,4 +1,4 @@
-// What steps of chosen length ask of the rest of a config.
+// What steps of chosen length require of the rest of a config.
 #include <fmt/format.h>
 
 #include "core/model/integrators/registry.hpp"

@@ -74,7 +74,7 @@ std::vector<std::string> formula_caveats(const RunConfig& config);
 /// run in it stays as it is until this one is over, and then goes with its trace, frames and matrices. A run that time or
 /// memory ends leaves its record and its checkpoint; the record of more steps of the same run stays in its place.
 /// With options.resume a run whose record is in the folder already is not run: the record is returned.
-/// Errors: ConfigError for what config and files can tell, as build_scene and require_replaceable (nothing of this run is written; what a
+/// Errors: ConfigError for what config and files show, as build_scene and require_replaceable (nothing of this run is written; what a
 ///   run that was killed had finished has its names by then);
 ///   RecordError (output, or another process has the folder); Interrupted.
 RunRecord run_config(const RunConfig& config, const RunOptions& options);

@@ -137,7 +137,7 @@ std::string kernel_in(const std::string& ptx) {
   return begin < end ? ptx.substr(begin, end - begin) : "no kernel in " + ptx;
 }
 
-/// From the text on: the program asks analysis/src/barrierbench_analysis/program/formula for the library and for the kernel, which is that of the sample.
+/// From the text on: the program gets from analysis/src/barrierbench_analysis/program/formula the library and the kernel, which is that of the sample.
 using KernelOfAText = FormulaKernel;
 TEST_P(KernelOfAText, IsMadeWhenItIsAskedFor) {
   try {

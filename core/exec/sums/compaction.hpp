@@ -17,7 +17,7 @@ class Compaction {
         rank_(executor, name + " ranks"),
         block_(executor, name + " places"),
         sum_(executor) {}
-  /// Room for the counts of n items; a kernel fills them, at most 255 each.
+  /// Memory for the counts of n items; a kernel fills them, at most 255 each.
   std::uint8_t* counts(Index n) {
     count_.fit(n);
     return count_.data();
@@ -35,7 +35,7 @@ class Compaction {
     executor_->blocks(blocks_of(n), RankItems<Counts>{counts, room(n)});
     finish(n);
   }
-  /// For kernels that rank themselves: room for n items; then finish().
+  /// For kernels that rank themselves: memory for n items; then finish().
   RankPlaces room(Index n) {
     rank_.fit(n);
     block_.fit(blocks_of(n) + 1);
