@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def configure(folder, bb_cuda, **environment):
-    """Exit code and output of one configuration; a second one of the same folder asks again."""
+    """Exit code and output of one configuration; a second one of the same folder looks again."""
     command = ["cmake", "--preset", "release", "-B", str(folder), f"-DBB_CUDA={bb_cuda}", "-DBB_TESTS=OFF", "-DBB_BENCHMARKS=OFF"]
     done = subprocess.run(command, cwd=ROOT, env={**os.environ, **environment}, capture_output=True, text=True, timeout=300)
     return done.returncode, " ".join((done.stdout + done.stderr).split())

@@ -45,7 +45,7 @@ def sweep_spec(tmp_path: Path, steps) -> Path:
 
 
 def refused(done: subprocess.CompletedProcess, *parts: str, code: int = 2) -> None:
-    """Ended with the code, said why on stderr and nothing on stdout."""
+    """Ended with the code, with the reason on stderr and nothing on stdout."""
     assert done.returncode == code, (done.returncode, done.stdout, done.stderr)
     for part in parts:
         assert part in done.stderr

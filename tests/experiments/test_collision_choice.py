@@ -1,4 +1,4 @@
-"""Choices of collision in whole runs: what is chosen is said, and no choice hides a crossing."""
+"""Choices of collision in whole runs: what is chosen is reported, and no choice hides a crossing."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What somebody who meets the program asks it first: help of one place, the version, a config through a pipe, how large a scene is, which
+"""What somebody who meets the program tries first: help of one place, the version, a config through a pipe, how large a scene is, which
 row is which run, and lines that fit the terminal."""
 
 import json

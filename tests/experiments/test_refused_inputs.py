@@ -1,4 +1,4 @@
-"""What would be wrong from its first step on is refused with its place, and what is asked for is done or refused, never passed over."""
+"""What would be wrong from its first step on is refused with its place, and what is requested is done or refused, never passed over."""
 
 import json
 
@@ -90,7 +90,7 @@ def test_a_record_is_no_config_and_says_what_takes_it(program, tmp_path):
 
 
 def test_a_run_that_was_cut_off_goes_on_though_its_audit_has_found_something(program, tmp_path):
-    """A crossing is told, and is no end: the steps that are missing are made, and then the outcome is that of the whole run."""
+    """A crossing is reported, and is no end: the steps that are missing are made, and then the outcome is that of the whole run."""
     falling = SHEET | {"transform": {"translate_m": [0, 0, 0.05]}, "velocity_m_per_s": [0, 0, -20]}
     soft = {"shape": "quadratic", "d_hat_m": 0.01, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 50}}
     file = config(tmp_path, (falling, PLATE), formulation=soft, time={"dt_s": 0.01, "steps": 20}, output={"checkpoint_every": 5}, step_solver={"name": "penalty"},

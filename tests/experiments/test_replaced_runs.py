@@ -1,4 +1,4 @@
-"""What is there stays: a run replaces the record of its own config alone, and no file of another program, unless it is told to."""
+"""What is there stays: a run replaces the record of its own config alone, and no file of another program, unless --replace is given."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Every case of a sweep is a run of its own: what would undo itself, or be told apart by nothing, is refused before the first run."""
+"""Every case of a sweep is a run of its own: what would undo itself, or differ in nothing, is refused before the first run."""
 
 import json
 

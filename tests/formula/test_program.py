@@ -144,7 +144,7 @@ def test_eval_says_what_is_wrong(program):
 
 
 def test_a_card_takes_a_formula_where_nvcc_makes_a_kernel_of_it(program):
-    """What is asked before a card is looked for, so that it is known on any machine."""
+    """What is checked before a card is looked for, so that it is known on any machine."""
     on_a_card = ("check", BLOCK, "--set", '/device="cuda"', "--set")
     done = bench(program, *on_a_card, setting({"formula": "(d - d_hat)^2"}))
     if device.find_nvcc():

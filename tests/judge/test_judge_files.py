@@ -1,4 +1,4 @@
-"""`bench judge` on what programs write: every habit has the verdict of what the file shows, and what is left out is said."""
+"""`bench judge` on what programs write: every habit has the verdict of what the file shows, and what is left out is reported."""
 
 import struct
 

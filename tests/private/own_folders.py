@@ -19,7 +19,7 @@ PLACE = "BARRIERBENCH_TESTS_PLACE"  # the variable with the folder of this run o
 
 
 def begin() -> None:
-    """In this process, a run of pytest or a worker of one, before anything asks the environment."""
+    """In this process, a run of pytest or a worker of one, before anything reads the environment."""
     if PLACE not in os.environ:
         os.environ[PLACE] = os.path.realpath(tempfile.mkdtemp(prefix="barrierbench-tests-"))
         atexit.register(shutil.rmtree, os.environ[PLACE], ignore_errors=True)

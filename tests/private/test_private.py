@@ -42,7 +42,7 @@ GOOD = ("from pathlib import Path\nimport json, os, subprocess, sys, tempfile\nR
 
 @pytest.fixture(scope="module")
 def verdicts(tmp_path_factory) -> dict:
-    """Name of a planted test -> what is said of it; one run of pytest in a folder of its own, as on a machine where much lies about."""
+    """Name of a planted test -> what is reported of it; one run of pytest in a folder of its own, as on a machine where much lies about."""
     there = tmp_path_factory.mktemp("machine")
     (ROOT / "build").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(dir=ROOT / "build", prefix="planted-") as place:

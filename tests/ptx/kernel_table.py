@@ -5,7 +5,7 @@ instructions of its PTX, cache lines and sectors that a request of a warp touche
     kernel_table.py --check              compares what is built with results/KERNELS.json; nothing is compiled or run
     kernel_table.py [--profile FILE]...  writes results/KERNELS.json and results/KERNELS.md
 
-The kernels are those of the lists kernels.inc of rooms, their numbers those of the object files bb_device_ROOM. A check fails
+The kernels are those of the lists kernels.inc of modules (`room` in the table), their numbers those of the object files bb_device_ROOM. A check fails
 (exit code 1) when registers, stack, accesses to local memory or FP64 instructions have grown, a kernel is new, gone or without its numbers, a kernel of PCG or of sums uses local
 memory, or a buffer is read in more sectors than 1.2 times the least without a reason in gathers.toml. Where another
 version of nvcc made the objects, only names are compared. Exit code 2: an object file is missing or not understood.
@@ -31,7 +31,7 @@ from machine_code import MachineCodeError, machine_code  # noqa: E402
 ROOT = Path(__file__).resolve().parents[2]
 RESULT = ROOT / "results" / "KERNELS"
 CODE = ("registers", "stack", "local", "fp64")  # of every row
-WITHOUT_LOCAL = ("linear", "sums")  # rooms
+WITHOUT_LOCAL = ("linear", "sums")  # modules
 MOST = 1.2  # sectors of a request over the least
 FP64 = re.compile(r"^\s*(?:@!?%p\d+\s+)?(?:add|sub|mul|fma|div|sqrt|rcp|neg|abs|min|max|setp|selp|cvt)\.[\w.]*f64\b", re.M)
 

@@ -1,4 +1,4 @@
-"""Sweeps that are killed, interrupted, short of room, or not alone in their folder: nothing is lost and nothing is made twice."""
+"""Sweeps that are killed, interrupted, short of disk space, or not alone in their folder: nothing is lost and nothing is made twice."""
 
 import os
 import resource
