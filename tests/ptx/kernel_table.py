@@ -114,18 +114,18 @@ def add_spills(now: dict, before: dict, build: Path, ptxas: str) -> None:
         same = "spills" in old and all(old.get(key) == row[key] for key in CODE)
         row["spills"] = 0 if not row["local"] else old["spills"] if same else None
     for room in sorted({row["room"] for row in kernels.values()}):
-        asked = [row for row in kernels.values() if row["room"] == room and row["spills"] is None]
-        if not asked:
+        requested = [row for row in kernels.values() if row["room"] == room and row["spills"] is None]
+        if not requested:
             continue
         with tempfile.TemporaryDirectory() as folder:
             ptx = Path(folder) / "room.ptx"
             ptx.write_text(embedded_ptx(object_file(build, room).read_bytes()))
-            entries = [word for row in asked for word in ("-e", row["mangled"])]
+            entries = [word for row in requested for word in ("-e", row["mangled"])]
             done = subprocess.run([ptxas, "-v", "-arch=sm_90", *entries, "-o", f"{folder}/out.cubin", str(ptx)], capture_output=True, text=True)
         if done.returncode:
             raise TableError(f"ptxas, kernels of {room}: {done.stderr.strip()[-400:]}")
         spills = ptxas_spills(done.stderr)
-        for row in asked:
+        for row in requested:
             row["spills"] = spills[row["mangled"]]
 
 
