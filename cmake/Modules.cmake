@@ -124,7 +124,7 @@ function(bb_module name)
 endfunction()
 
 # Where CMAKE_UNITY_BUILD is on, the tests of a module are compiled many files at once: each has a namespace of its own. That a local of
-# one file hides a helper of another says nothing; where files are read one by one (preset dev) it is judged. So are array bounds: joined,
+# one file hides a helper of another shows nothing; where files are read one by one (preset dev) it is judged. So are array bounds: joined,
 # g++ 12 takes the padding of Eigen's three integers for foreign memory.
 add_library(bb_joined INTERFACE)
 target_compile_options(bb_joined INTERFACE -Wno-shadow -Wshadow=local -Wno-array-bounds)

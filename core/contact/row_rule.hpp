@@ -32,7 +32,7 @@ BB_HD inline bool acts(T gap, double d_hat) {
 }
 
 /// Activation distance of a pair, m: that of its two sides, or two thirds of the gap at rest for a pair of one body that is
-/// closer than 1.5 d_hat there. A pair that touches or overlaps at rest keeps d_hat: its rest shape says nothing about a
+/// closer than 1.5 d_hat there. A pair that touches or overlaps at rest keeps d_hat: its rest shape shows nothing about a
 /// gap. Constant over a run, so B stays continuous.
 template <PairKind K, class S>
 BB_HD inline double activation_distance(const S& s, const int* vertex, const Side& law) {

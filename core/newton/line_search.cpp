@@ -92,7 +92,7 @@ class LineSearch final : public StepSolver {
     collapsed_ = escapes_ = 0;
   }
 
-  // Of 3: a step out of a saddle along negative curvature, or away from a cusp, which says nothing about the rate. False where
+  // Of 3: a step out of a saddle along negative curvature, or away from a cusp, which shows nothing about the rate. False where
   // the rule has none, after most_escapes of them, and where E is level; dx is what is left then.
   bool escape_saddle(StepSystem& system, const EndCheck& end, IterationReport& report, double tolerance) {
     if (options_.saddle != SaddleRule::escape || escapes_ >= most_escapes) return false;
@@ -109,7 +109,7 @@ class LineSearch final : public StepSolver {
   bool follow_direction(StepSystem& system, IterationReport& report, bool at_pose, bool small) {
     const bool moved = search_.along_direction(system, report, at_pose, small, crawl_.length());
     const bool truncated = search_.truncated();
-    // another direction than dx, or another length of it, says nothing about the rate
+    // another direction than dx, or another length of it, shows nothing about the rate
     error_.took(report.detours > 0 || truncated || search_.taken() > 1 ? 0 : report.alpha);
     crawl_.took(moved && !truncated && !search_.noise() ? search_.taken() : 0, report);
     return moved;
@@ -177,7 +177,7 @@ class LineSearch final : public StepSolver {
   }
 
   // Whether E has changed along the step as its quadratic model says, or by noise. Where the rate of convergence
-  // is not known a short direction says nothing without it: a gap far below its equilibrium under an unbounded
+  // is not known a short direction shows nothing without it: a gap far below its equilibrium under an unbounded
   // barrier doubles with every iteration, by directions as short as the gap. Requires that energies were compared.
   bool as_modelled(const IterationReport& report) const {
     constexpr double tolerance = 0.25;

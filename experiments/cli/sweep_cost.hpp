@@ -31,7 +31,7 @@ struct ExpectedCost {
   CostSource source = CostSource::model;
 };
 
-/// Records of earlier runs, and a model where they say nothing: seconds = 0.03 + passes x steps x 8 iterations a step x 4.5e-6 s an
+/// Records of earlier runs, and a model where they show nothing: seconds = 0.03 + passes x steps x 8 iterations a step x 4.5e-6 s an
 /// unknown. Both numbers are medians over the runs of results/work_precision.json and results/baselines; the
 /// seconds of an iteration are within a factor of 6 there. Large scenes take more: `drape` with 15,360 unknowns and pcg has taken
 /// 1.4e-5 s an unknown and 20 to 30 iterations a step. Condition estimates and audits are not in it.

@@ -67,7 +67,7 @@ struct EarlierStays : Interrupted {
 /// What is known before the run: config with its files named from options.folder, provenance, machine, ids.
 RunRecord identified(const RunConfig& config, const RunOptions& options);
 
-/// What a run that uses a formula should say of it: signs of its derivatives that are only sampled. One text a formula.
+/// What a run that uses a formula should report of it: signs of its derivatives that are only sampled. One text a formula.
 std::vector<std::string> formula_caveats(const RunConfig& config);
 
 /// Runs and writes. The outcome is in the record, whatever it is. The folder is locked meanwhile; an earlier

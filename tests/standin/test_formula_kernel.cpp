@@ -131,7 +131,7 @@ std::string refusal(cuda::DeviceExecutor& device, const DeviceCode& code) {
   return "";
 }
 
-/// PTX without what it says of the card and the compiler.
+/// PTX without what it reports of the card and the compiler.
 std::string kernel_in(const std::string& ptx) {
   const std::size_t begin = ptx.find(".visible .entry"), end = ptx.rfind('}');
   return begin < end ? ptx.substr(begin, end - begin) : "no kernel in " + ptx;

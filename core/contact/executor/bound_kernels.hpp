@@ -239,7 +239,7 @@ struct KeepPairs {
   }
 };
 
-// --- parts of SumParts: what the items of a batch say of the bound
+// --- parts of SumParts: what the items of a batch report of the bound
 /// Queries the pairs of a batch that are not proven to be later than what is known. Where n_asked is there: the first batch
 /// of a chunk, whose pairs are not sorted; nothing where one batch does not hold all of them.
 struct AskPairs {

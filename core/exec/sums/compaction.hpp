@@ -29,7 +29,7 @@ class Compaction {
     rank_by(count_.size(), StoredCounts{count_.data()});
     return executor_->counts_only() ? expected : sum();
   }
-  /// Ranks n items by what counts says of them (RankItems), in one launch and a scan.
+  /// Ranks n items by what counts reports of them (RankItems), in one launch and a scan.
   template <class Counts>
   void rank_by(Index n, const Counts& counts) {
     executor_->blocks(blocks_of(n), RankItems<Counts>{counts, room(n)});
