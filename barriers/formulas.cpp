@@ -84,7 +84,7 @@ Answer ask(const std::string& kind, const std::string& text) {
           answer.value("slope_error_rel", 0.0)};
 }
 
-/// Asked once for every text of this process. Errors: ConfigError at `where`.
+/// The library of a text, which Python compiles once in this process. Errors: ConfigError at `where`.
 const Answer& known(const std::string& kind, std::string_view text, std::string_view where) {
   static std::mutex mutex;
   static std::map<std::pair<std::string, std::string>, Answer> answers;
@@ -118,7 +118,7 @@ KernelAnswer ask_for_kernel(const std::string& formula, std::uint64_t layout) {
           ""};
 }
 
-/// The kernel of a formula's shape, asked for once. Errors: ConfigError without nvcc.
+/// The kernel of a formula's shape, requested once. Errors: ConfigError without nvcc.
 const DeviceCode& device_code_of(const Shape& shape, std::uint64_t layout) {
   static std::mutex mutex;
   static std::map<std::string, KernelAnswer> answers;

@@ -1,5 +1,5 @@
 // Shapes and stiffnesses that a config gives as formulas (docs/reference/formulas.md). The Python of analysis/src/barrierbench_analysis/program/formula reads, checks and
-// compiles them into plugins; this file asks it, loads what it made and keeps it for the process.
+// compiles them into plugins; this file calls it, loads what it made and keeps it for the process.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 # CUDA as an optional language: BB_CUDA AUTO compiles device code where nvcc is found, CARD where a card is too, ON demands
-# it, OFF never looks. CUDA 12 and 13. Nothing else in the tree may ask for the language.
+# it, OFF never looks. CUDA 12 and 13. Nothing else in the tree may enable the language.
 set(BB_CUDA_FOUND OFF)
 if(NOT BB_CUDA MATCHES "^(AUTO|CARD|ON|OFF)$")
   message(FATAL_ERROR "BB_CUDA is '${BB_CUDA}'; allowed: AUTO, CARD, ON, OFF")
@@ -15,7 +15,7 @@ function(bb_card_architecture out)
   endif()
 endfunction()
 
-# bb_find_nvcc(OUT): CMAKE_CUDA_COMPILER, CUDACXX, PATH, then the usual folders; asked at every configuration, so that a CUDA that is installed
+# bb_find_nvcc(OUT): CMAKE_CUDA_COMPILER, CUDACXX, PATH, then the usual folders; searched at every configuration, so that a CUDA that is installed
 # later is found. Empty for none.
 function(bb_find_nvcc out)
   if(CMAKE_CUDA_COMPILER)
@@ -126,7 +126,7 @@ else()
     set(BB_CUDA_FOUND ON)
   endif()
 endif()
-set(BB_CUDA_BUILT "${BB_CUDA_FOUND}" CACHE INTERNAL "device code is part of this build; ./bench asks again where it is not")
+set(BB_CUDA_BUILT "${BB_CUDA_FOUND}" CACHE INTERNAL "device code is part of this build; ./bench looks again where it is not")
 if(BB_CUDA_FOUND)
   message(STATUS "CUDA: ${CMAKE_CUDA_COMPILER_VERSION} for ${CMAKE_CUDA_ARCHITECTURES} (BB_CUDA=${BB_CUDA})")
 else()

@@ -70,7 +70,7 @@ function(bb_linked_modules name out)
   set(${out} "${linked}" PARENT_SCOPE)
 endfunction()
 
-# bb_check_modules(): a build refuses an #include of a module that is not named (RoomCheck.cmake). Called last.
+# bb_check_modules(): a build refuses an #include of a module that is not named (ModuleCheck.cmake). Called last.
 function(bb_check_modules)
   get_property(modules GLOBAL PROPERTY BB_MODULES)
   set(text "")
@@ -79,7 +79,7 @@ function(bb_check_modules)
     bb_linked_modules("${name}" linked)
     string(APPEND text "${module}|${linked}\n")
   endforeach()
-  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/rooms.txt" CONTENT "${text}" @ONLY)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/modules.txt" CONTENT "${text}" @ONLY)
   set(files "")
   foreach(top core barriers experiments python)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${top}/*.[hc]pp" "${PROJECT_SOURCE_DIR}/${top}/*.[hc]"
@@ -89,9 +89,9 @@ function(bb_check_modules)
   endforeach()
   set(stamp "${PROJECT_BINARY_DIR}/modules.stamp")
   add_custom_command(OUTPUT "${stamp}"
-    COMMAND "${CMAKE_COMMAND}" "-DROOMS=${PROJECT_BINARY_DIR}/rooms.txt" "-DSOURCE_DIR=${PROJECT_SOURCE_DIR}"
-      "-DSTAMP=${stamp}" -P "${PROJECT_SOURCE_DIR}/cmake/RoomCheck.cmake"
-    DEPENDS ${files} "${PROJECT_BINARY_DIR}/rooms.txt" "${PROJECT_SOURCE_DIR}/cmake/RoomCheck.cmake"
+    COMMAND "${CMAKE_COMMAND}" "-DMODULES=${PROJECT_BINARY_DIR}/modules.txt" "-DSOURCE_DIR=${PROJECT_SOURCE_DIR}"
+      "-DSTAMP=${stamp}" -P "${PROJECT_SOURCE_DIR}/cmake/ModuleCheck.cmake"
+    DEPENDS ${files} "${PROJECT_BINARY_DIR}/modules.txt" "${PROJECT_SOURCE_DIR}/cmake/ModuleCheck.cmake"
     COMMENT "Checking that modules include only modules that they name" VERBATIM)
   add_custom_target(bb_modules ALL DEPENDS "${stamp}")
   get_property(targets GLOBAL PROPERTY BB_MODULE_TARGETS)
@@ -124,7 +124,7 @@ function(bb_module name)
 endfunction()
 
 # Where CMAKE_UNITY_BUILD is on, the tests of a module are compiled many files at once: each has a namespace of its own. That a local of
-# one file hides a helper of another says nothing; where files are read one by one (preset dev) it is judged. So are array bounds: joined,
+# one file hides a helper of another shows nothing; where files are read one by one (preset dev) it is judged. So are array bounds: joined,
 # g++ 12 takes the padding of Eigen's three integers for foreign memory.
 add_library(bb_joined INTERFACE)
 target_compile_options(bb_joined INTERFACE -Wno-shadow -Wshadow=local -Wno-array-bounds)

@@ -23,7 +23,7 @@ from barrierbench_analysis.io.errors import UserError
 
 
 def _status(code: object) -> int:
-    """As Python ends a process: nothing is 0, and what is no number is said and 1."""
+    """As Python ends a process: nothing is 0, and what is not a number is printed and 1."""
     if code is None or isinstance(code, int):
         return code or 0
     print(code, file=sys.stderr)
@@ -59,7 +59,7 @@ def forked(words: list[str], cwd: Path, environment: dict[str, str], timeout: fl
             importlib.import_module(f"barrierbench_analysis.{found.row.module}")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, open(os.devnull) as nothing:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)  # threads of numpy wait for work, and are not asked in the child
+            warnings.simplefilter("ignore", DeprecationWarning)  # threads of numpy wait for work, and are not queried in the child
             child = os.fork()
         if child == 0:
             code = 1

@@ -74,7 +74,7 @@ void exponent_batch(void* self, std::size_t n, const T* d, const T* d_hat, T* b,
   }
 }
 
-/// The shape of another exponent, under the name it was asked by.
+/// The shape of another exponent, under the name it was requested by.
 template <class S>
 Shape member_of(Shape shape, std::string_view name, double exponent) {
   static_assert(sizeof(void*) == sizeof(double));

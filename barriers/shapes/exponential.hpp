@@ -17,7 +17,7 @@ struct Exponential {
   static constexpr int smoothness_at_d_hat = 2;
   static constexpr bool infinite_at_zero = false;
   /// Exponents that are allowed, and the one of the plain name. Below, it is the cubic but for its scale; above, no gap
-  /// can be told from the exponential itself, and a float has no room for it.
+  /// differs from the exponential itself, and a float cannot represent it.
   static constexpr double least_exponent = 0.5, most_exponent = 40, default_exponent = 6;
 
   /// Requires d_hat > 0 (m) and an allowed exponent a; total.

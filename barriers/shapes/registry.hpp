@@ -14,7 +14,7 @@ namespace bb {
 /// All shapes, built-ins first, in the order of registry.inc. Host only.
 Registry<Shape>& all_shapes();
 
-/// Every name that a shape can be asked by, for messages and help: those of all_shapes(), then formula:TEXT, then NAME:A
+/// Every name that a shape can be requested by, for messages and help: those of all_shapes(), then formula:TEXT, then NAME:A
 /// for each that has an exponent.
 std::vector<std::string> shape_names();
 

@@ -10,7 +10,7 @@ namespace bb {
 struct ShapeFamily {
   std::string_view name;
   double least, most, usual;  // exponents that are allowed, and that of the plain name
-  /// The shape with another exponent, under the name it was asked by.
+  /// The shape with another exponent, under the name it was requested by.
   Shape (*member)(Shape plain, std::string_view name, double exponent);
 };
 

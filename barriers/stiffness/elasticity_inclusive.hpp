@@ -25,7 +25,7 @@ struct ElasticityInclusive {
   KappaDerivative derivative = KappaDerivative::dropped;
 
   static constexpr const char* limit_doc = "kappa_e from the element's Hessian and mass";
-  /// Each parameter once; what of it differs for a strain limit is asked of the list.
+  /// Each parameter once; what of it differs for a strain limit is read from the list.
   template <class List>
   static void describe(List& list) {
     using P = ElasticityInclusive;

@@ -21,7 +21,7 @@ struct Formula {
   FormulaPotential potential = FormulaPotential::none;
 
   static constexpr double largest_slope_error =
-      1e-6;  // as analysis/src/barrierbench_analysis/program/formula/accuracy.py asks of a barrier's terms
+      1e-6;  // as analysis/src/barrierbench_analysis/program/formula/accuracy.py requires of a barrier's terms
 
   template <class List>
   static void describe(List& list) {

@@ -35,7 +35,7 @@ class Audit {
   /// of steps.
   void judge_all_motions(bool all) { all_motions_ = all; }
 
-  /// Tells of a state that the run reached and that is not the end of the last judged motion: an audit with
+  /// Reports a state that the run reached and that is not the end of the last judged motion: an audit with
   /// such a hole is never ok.
   void note_unjudged(int step) { ledger_.add_unjudged(step); }
 

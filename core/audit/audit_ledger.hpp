@@ -10,10 +10,10 @@
 
 namespace bb::audit {
 
-/// What there is to judge: sizes of the surface, and what has to be asked at the obstacles.
+/// What there is to judge: sizes of the surface, and what has to be checked at the obstacles.
 struct AuditSubjects {
   long edges = 0, triangles = 0, vertices = 0, obstacles = 0;
-  ObstacleCounts at_obstacles;  // that one state asks, over all obstacles
+  ObstacleCounts at_obstacles;  // checks of one state, over all obstacles
 };
 
 struct AuditLedger {
@@ -44,8 +44,8 @@ struct AuditLedger {
   std::optional<PairName> first_fault;  // the first fault of the scene
 
   /// Number of primitives that were compared with all that they may meet, over all states and motions; boxes
-  /// decide most of them. 0 when no pair of the surface was, or when a kind of primitive that the obstacles ask
-  /// for was never asked: such a run was not audited. Only loose particles, which have neither edges nor
+  /// decide most of them. 0 when no pair of the surface was, or when a kind of primitive that the obstacles require
+  /// was never checked: such a run was not audited. Only loose particles, which have neither edges nor
   /// triangles, have no pairs: they can pass through obstacles and nothing else.
   long judged() const {
     const ObstacleCounts &need = subjects.at_obstacles, &done = obstacle_judged;

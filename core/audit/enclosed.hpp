@@ -27,7 +27,7 @@ std::vector<Enclosed::Pair> changed_sides(const Enclosed& a, const Enclosed& b);
 class ClosedBodies {
  public:
   /// @param first_vertex [n_bodies] ascending, the first 0: a body has the vertices up to the next one
-  /// @param vertices     those that are asked, ascending
+  /// @param vertices     those that are checked, ascending
   ClosedBodies(const AuditMesh& mesh, std::vector<int> first_vertex, std::vector<int> vertices);
 
   /// Numbers of the closed bodies, ascending.

@@ -1,5 +1,5 @@
 // The moving polygon of a pair in integers: proofs of separation and of passage without any rounding. Slow,
-// and asked only about spans that floating point could not settle.
+// and used only for spans that floating point could not settle.
 #pragma once
 
 #include <gmpxx.h>

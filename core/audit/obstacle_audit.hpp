@@ -18,7 +18,7 @@ struct ObstacleCounts {
   }
 };
 
-/// What has to be asked so that no point of the surface is left out.
+/// What has to be checked so that no point of the surface is left out.
 struct PrimitiveLists {
   std::vector<int>
       vertices;  // against planes and `inside`: the allowed set is convex; and where points alone are judged
@@ -34,7 +34,7 @@ struct ObstaclePrimitives {
   const PrimitiveLists& of(const AuditObstacle& obstacle) const {
     return obstacle.moves() ? of_moving : of_still;
   }
-  /// That one check of a state asks, over all obstacles of the mesh.
+  /// Primitives that one check of a state needs, over all obstacles of the mesh.
   ObstacleCounts needed(const AuditMesh& mesh) const;
 };
 ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh);

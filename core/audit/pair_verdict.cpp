@@ -14,8 +14,8 @@ namespace {
 constexpr int max_pair_spans = 20000;
 // The same for spans tried by integers, which cost some tens of microseconds each.
 constexpr int max_exact_spans = 2000;
-// A pair may be in contact all the time, which integers can tell. They are asked when a pair has cost this many spans, and
-// again whenever the cost has doubled, so that asking stays a small part of it. A span by integers counts as several.
+// A pair may be in contact all the time, which integers can decide. They are used when a pair has cost this many spans, and
+// again whenever the cost has doubled, so that their cost stays a small part of it. A span by integers counts as several.
 constexpr int first_look = 64, spans_per_exact_span = 16;
 // A span in which nothing moves by more than this part of the pair's size is left to the integers: the
 // allowance of the floating certificate is a few 2^-50 of it.

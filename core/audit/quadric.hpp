@@ -12,7 +12,7 @@ namespace bb::audit {
 
 using Rational3 = std::array<mpq_class, 3>;
 
-// Fewer than 30 relative roundings of 2^-53 enter any sum of terms that the filter is asked about; underflow is
+// Fewer than 30 relative roundings of 2^-53 enter any sum of terms that the filter is applied to; underflow is
 // covered as in predicates.cpp.
 inline constexpr double quadric_filter = 0x1p-47;
 inline constexpr double quadric_underflow = 0x1p-500;

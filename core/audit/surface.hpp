@@ -19,7 +19,7 @@ struct AuditObstacle {
   Vec3d axis = Vec3d::UnitZ();  // plane: normal towards the allowed side; cylinder: direction; sphere: unused
   double radius = 0.0;          // m; plane: unused
   bool inside = false;          // sphere, cylinder: the surface must stay inside instead of outside
-  int vertex = -1;  // given, whose position is `point`: the obstacle moves with it; -1: it stands still
+  int vertex = -1;  // prescribed, whose position is `point`: the obstacle moves with it; -1: it stands still
 
   /// The allowed set is convex: a surface is in it when its vertices are.
   bool allows_a_convex_set() const { return kind == ObstacleKind::plane || inside; }
@@ -41,8 +41,8 @@ struct AuditMesh {
   std::vector<int> opposite;   // [n_edges] or empty, planar: third vertex of the edge's triangle, -1: a rod
   std::vector<int> points;     // vertices of no edge (3D: nor triangle): particles, planar interior vertices
   std::vector<std::uint8_t>
-      fixed;  // [n_vertices] or empty: given and never moving. Driven vertices are not fixed
-  std::vector<std::uint8_t> prescribed;  // [n_vertices] or empty: given, still or driven
+      fixed;  // [n_vertices] or empty: prescribed and never moving. Driven vertices are not fixed
+  std::vector<std::uint8_t> prescribed;  // [n_vertices] or empty: prescribed, still or driven
   std::vector<int>
       motion;  // [n_vertices] or empty: prescribed vertices with one number >= 0 move as one rigid
                // body, -1: any other. Empty: fixed vertices are such a body

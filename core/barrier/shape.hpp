@@ -42,7 +42,7 @@ struct Shape {
   void* self = nullptr;
   const ShapeLaunches* launches = nullptr;  // of a shape that is a kernel of the program
   /// Of a shape that is no kernel of the program: its kernel (core/contact/executor/given_shape.hpp), made when it is
-  /// asked for and there as long as the process. layout: given_shape_layout of the program. Null: there is none.
+  /// requested and kept as long as the process. layout: given_shape_layout of the program. Null: there is none.
   /// Errors: ConfigError.
   const DeviceCode& (*device_code)(const Shape&, std::uint64_t layout) = nullptr;
 };

@@ -18,7 +18,7 @@ struct StiffnessTime {
   }
 };
 
-/// The smallest gap at which a policy is asked: floor in units of the width of the barrier.
+/// The smallest gap at which a policy is evaluated: floor in units of the width of the barrier.
 template <class T>
 BB_HD T floored_gap(T gap, double floor, T width) {
   const T least = T(floor) * width;

@@ -10,7 +10,7 @@
 
 namespace bb {
 
-/// One box in all lanes: what a block is asked with.
+/// One box in all lanes: what a block is queried with.
 struct AskingBox {
   EightFloats lo[3], hi[3];
 };

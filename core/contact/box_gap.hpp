@@ -1,4 +1,4 @@
-// What two boxes say of the distance of what is in them, beyond whether they overlap: one arithmetic for the CPU's eight
+// What two boxes report of the distance of what is in them, beyond whether they overlap: one arithmetic for the CPU's eight
 // lanes and for kernels, so that the lists of candidates of both are equal.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Bounding volume hierarchy over boxes: built once, refitted between iterations, rebuilt by a deterministic
-// rule; a tree asked with every box of another gives the overlapping pairs. Knows boxes and no physics.
+// rule; a tree queried with every box of another gives the overlapping pairs. Knows boxes and no physics.
 #pragma once
 
 #include <array>
@@ -19,13 +19,13 @@ struct IndexPair {
   friend auto operator<=>(const IndexPair&, const IndexPair&) = default;
 };
 
-/// A list that only grows by whole vectors: as long as what was written to it, and some room beyond.
+/// A list that only grows by whole vectors: as long as what was written to it, with some spare capacity.
 class LaneList {
  public:
   void clear() { n_ = 0; }
   std::size_t size() const { return n_; }
   std::span<const int> all() const { return {numbers_.data(), n_}; }
-  /// Where the next numbers go, with room for `room` and a vector; `added` tells how many there were.
+  /// Where the next numbers go, with capacity for `room` and a vector; `added` sets how many there were.
   int* end(std::size_t room) {
     if (numbers_.size() < n_ + room + BoxBlock::width) numbers_.resize(2 * (n_ + room + BoxBlock::width));
     return numbers_.data() + n_;
@@ -49,7 +49,7 @@ struct TreeSearch {
 class Bvh {
  public:
   /// Takes the boxes of all n primitives; `free` says which of them a solver can move; `reach` what each box was grown
-  /// by on every side, m, or empty: boxes that meet are all that is asked. The first call, and a
+  /// by on every side, m, or empty: boxes that meet are all that is requested. The first call, and a
   /// call with another n, builds: O(n log n). Later calls refit, O(n), and rebuild when the boxes of the
   /// nodes, relative to those of the primitives, have grown by more than a half since the last build.
   void update(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free,

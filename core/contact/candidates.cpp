@@ -158,7 +158,7 @@ void BroadPhase::find(const Bvh& a, const Bvh& b, const PositionsView& x0, const
       out);
 }
 
-/// Of any distance on the motion, m; 0 in double, where nothing is asked of the states.
+/// Of any distance on the motion, m; 0 in double, where the states are not read.
 double BroadPhase::state_rounding(const PositionsView& x0, const PositionsView& x1) const {
   if (!values_in_float(precision_) || x0.size() == 0) return 0;
   return distance_rounding(precision_, std::max(x0.cwiseAbs().maxCoeff(), x1.cwiseAbs().maxCoeff()));

@@ -9,7 +9,7 @@
 
 namespace bb {
 
-/// Sorted ids of all vertices of a contact, given ones included, -1 padded in front; an obstacle o appears as -2 - o.
+/// Sorted ids of all vertices of a contact, prescribed ones included, -1 padded in front; an obstacle o appears as -2 - o.
 /// Pairs with the same closest feature have the same.
 using ContactKey = std::array<int, 4>;
 constexpr int id_of_obstacle(int obstacle) { return -2 - obstacle; }

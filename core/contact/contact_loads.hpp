@@ -10,7 +10,7 @@ namespace bb {
 
 /// Rows of surfaces and of obstacles alike.
 struct ContactLoads {
-  std::vector<int> stencil;    // [4 n] all vertices, given ones too, first primitive first, -1 padded
+  std::vector<int> stencil;    // [4 n] all vertices, prescribed ones too, first primitive first, -1 padded
   std::vector<double> weight;  // [4 n] w_i, 0 padded: a motion dx opens the gap by sum w_i n . dx_i
   std::vector<double> normal;  // [3 n] unit
   std::vector<PairId> pair;    // [n]

@@ -39,7 +39,7 @@ inline ContactKey key_of(PairId pair, const int* stencil, const double* weight, 
 }
 
 /// One row a candidate pair that is closer than its activation distance (row_rule.hpp), in the order of the pairs; what
-/// contact weights and models add and leave out is said there (pair_corrections.hpp, offset_blocks.hpp).
+/// contact weights and models add and leave out is described there (pair_corrections.hpp, offset_blocks.hpp).
 struct ContactTable {
   std::vector<ContactKind> kind;
   std::vector<PairId> pair;  // [n] ascending
@@ -83,7 +83,7 @@ struct MollifiedTable {
   /// [4 n] ea0 ea1 eb0 eb1; of an edge and an axis e0 e1, that of an obstacle that moves or -1, -1
   std::vector<int> stencil;
   std::vector<double> stencil_weight;    // [4 n] w_i in the same order, 0 padded
-  std::vector<int> vertex;               // [4 n] = stencil, -1 where the vertex is given
+  std::vector<int> vertex;               // [4 n] = stencil, -1 where the vertex is prescribed
   std::vector<double> eps;               // [n] threshold on |ea x eb|^2, m^4; on |e x axis|^2, m^2
   std::vector<double> axis, axis_point;  // [3 n] unit, and a point of it, m; 0 in rows of two edges
   std::vector<PairId> pair;              // [n] ascending

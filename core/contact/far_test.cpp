@@ -77,7 +77,7 @@ LaneSet FarTest::far(const IndexPair* pairs, std::size_t n) const {
     }
     reach[lane] = a.reach + b.reach;
   }
-  if (values_in_float(precision_)) {  // the distance is rounded by as much as its largest coordinate asks for
+  if (values_in_float(precision_)) {  // the distance is rounded by as much as its largest coordinate requires
     for (std::size_t lane = 0; lane < width; ++lane) {
       double blur = 0;
       for (int k = 0; k < N; ++k) blur = std::max(blur, (*corner[k][lane])[3]);

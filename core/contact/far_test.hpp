@@ -13,7 +13,7 @@
 
 namespace bb {
 
-/// Not thread-safe while a state is set; any number of threads may ask.
+/// Not thread-safe while a state is set; any number of threads may call far().
 class FarTest {
  public:
   static constexpr std::size_t width = 8;
@@ -26,7 +26,7 @@ class FarTest {
   /// however their distance is rounded.
   template <PairKind K>
   LaneSet far(const IndexPair* pairs, std::size_t n) const;
-  /// Asks the memory for what far() will need of a pair: the second primitive of a candidate jumps about.
+  /// Prefetches what far() will need of a pair: the second primitive of a candidate jumps about.
   template <PairKind K>
   void fetch(IndexPair pair) const {
     __builtin_prefetch(&second<K>()[static_cast<std::size_t>(pair.second)]);

@@ -9,7 +9,7 @@ namespace bb {
 
 /// How far a distance that is evaluated in the precision's scalar can be from that of the points before they were
 /// rounded, m, for coordinates up to `largest`: two states rounded, differences, and the closest points of them, with
-/// room to spare. 0 in double, where whoever rejects a pair has room of its own.
+/// a margin to spare. 0 in double, where whoever rejects a pair has a margin of its own.
 inline double distance_rounding(Precision precision, double largest) {
   return values_in_float(precision) ? 64 * value_epsilon(precision) * largest : 0;
 }

@@ -15,7 +15,7 @@ constexpr int most_stretches = 8;
 constexpr int most_sampled = 128;
 
 /// By how much the places of a coordinate that moves from x0 to x1, of which `moved` is shared by all, can be off by
-/// rounding, with room to spare, m; 0 where a number is NaN or infinite, as its box is then, too.
+/// rounding, with a margin to spare, m; 0 where a number is NaN or infinite, as its box is then, too.
 BB_HD inline double place_rounding(double x0, double x1, double moved) {
   const double room = 4 * 0x1p-52 * (std::abs(x0) + std::abs(x1) + std::abs(moved));
   return room - room == 0 ? room : 0;

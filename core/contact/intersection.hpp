@@ -9,7 +9,7 @@
 namespace bb {
 
 /// Whether a segment p q has a point in the triangle a b c, its border included. In floating point: what only touches may be
-/// answered either way, and a segment in the plane of the triangle is answered with no, since its distance to the sides tells that
+/// answered either way, and a segment in the plane of the triangle is answered with no, since its distance to the sides shows that
 /// it is there.
 bool pierces(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 

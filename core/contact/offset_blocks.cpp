@@ -29,7 +29,7 @@ Vec3d separation(const FoundRow& row, int vertex) {
 }
 
 /// Whether `at` is beyond the plane through the edge across each of its triangles, or less than an angle with the sine
-/// `slack` in front of it. That it lies between the ends of the edge is not asked: its closest point is inside.
+/// `slack` in front of it. That it lies between the ends of the edge is not tested: its closest point is inside.
 bool beyond_triangles(const SurfaceTopology& topology, const PositionsView& x, const Vec3d& at,
                       const std::array<int, 2>& edge, double slack) {
   const Vec3d a = x.col(edge[0]), along = x.col(edge[1]) - a;

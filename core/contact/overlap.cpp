@@ -42,7 +42,7 @@ std::optional<Overlap> obstacle_overlap(const Primitives<N>& primitives, const A
 /// Twice the signed area of 0, a, b as they are seen along the axis, m^2.
 double turn(const Vec3d& axis, const Vec3d& a, const Vec3d& b) { return axis.dot(a.cross(b)); }
 
-/// Whether a triangle is on both sides of the axis of an obstacle: its sides, far away, say nothing of that.
+/// Whether a triangle is on both sides of the axis of an obstacle: its sides, far away, show nothing of that.
 bool holds_axis(const AnalyticSurface<double>& obstacle, const Vec3d& axis, const Mat3d& corners) {
   const Mat3d p = corners.colwise() - obstacle.point;
   const double turns[] = {turn(axis, p.col(0), p.col(1)), turn(axis, p.col(1), p.col(2)),

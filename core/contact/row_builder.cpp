@@ -81,7 +81,7 @@ template <PairKind K, class T>
 void RowBuilder::add_pair(const PositionsView& x, IndexPair index, const ContactPair<K>& pair,
                           RowPart& part) const {
   FoundRow row;
-  const bool mollified = mollified_ && !blocks_;  // blocks ask for the closest feature first
+  const bool mollified = mollified_ && !blocks_;  // blocks need the closest feature first
   if (surface_row<K, T>(surface_, pair.vertex.data(), pair.law, gather_in<T>(x, pair.vertex), mollified, row))
     part.add(row, pair_id(static_cast<int>(K), index));
 }

@@ -1,9 +1,9 @@
 // Which candidate pairs have a row, and which row: the rule of surfaces and obstacles, on the host and in kernels.
 // Host-device, no allocation.
 //
-// S is Surface or the view of it that kernels read. Both say
+// S is Surface or the view of it that kernels read. Both have
 //   is_free(v)                        whether vertex v moves,
-//   ruled_at_rest(v, w)               whether two vertices are of one body, and its rest shape is asked,
+//   ruled_at_rest(v, w)               whether two vertices are of one body whose rest shape counts,
 //   rest_points<N>(vertex)            their positions at rest, m,
 //   planar                            whether the scene is.
 #pragma once
@@ -32,7 +32,7 @@ BB_HD inline bool acts(T gap, double d_hat) {
 }
 
 /// Activation distance of a pair, m: that of its two sides, or two thirds of the gap at rest for a pair of one body that is
-/// closer than 1.5 d_hat there. A pair that touches or overlaps at rest keeps d_hat: its rest shape says nothing about a
+/// closer than 1.5 d_hat there. A pair that touches or overlaps at rest keeps d_hat: its rest shape shows nothing about a
 /// gap. Constant over a run, so B stays continuous.
 template <PairKind K, class S>
 BB_HD inline double activation_distance(const S& s, const int* vertex, const Side& law) {
@@ -79,7 +79,7 @@ BB_HD inline bool surface_row(const S& s, const int* vertex, const Side& law,
                               const Mat<T, 3, pair_points(K)>& points, bool mollifier, FoundRow& row) {
   const Closest<T, pair_points(K)> closest = closest_points<K, T>(points);
   const T gap = closest.d - static_cast<T>(law.offset);
-  if (!acts(gap, law.d_hat)) return false;  // most are: what is asked at rest only makes d_hat smaller
+  if (!acts(gap, law.d_hat)) return false;  // most are: what is tested at rest only makes d_hat smaller
   row.d_hat = activation_distance<K>(s, vertex, law);
   if (!acts(gap, row.d_hat)) return false;
   Region region = closest.region;

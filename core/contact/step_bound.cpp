@@ -11,7 +11,7 @@
 namespace bb {
 namespace {
 
-/// Pairs are asked in the order of these intervals of their proven time, and not at all beyond the bound.
+/// Pairs are queried in the order of these intervals of their proven time, and not at all beyond the bound.
 constexpr float intervals[] = {-1, 0, 0x1p-12f, 0x1p-6f, 0x1p-3f, 1};
 /// Chunks of a batch: the first ones are short, since they know little; all are fixed, so that no counter
 /// depends on threads.
@@ -28,7 +28,7 @@ void StepBoundFinder::take(const Part& part) {
   all_.zero += part.zero;
 }
 
-/// Twice the least stop level that each vertex asks of its pairs, by its own coordinates, in the scalar of the queries.
+/// Twice the least stop level that each vertex requires of its pairs, by its own coordinates, in the scalar of the queries.
 void StepBoundFinder::find_floors(const Motion& motion) {
   floors_.resize(static_cast<std::size_t>(motion.x0.cols()));
   with_value_scalar(precision_, [&]<class T>() {
@@ -47,7 +47,7 @@ void StepBoundFinder::find_floors(const Motion& motion) {
   for (const double of_vertex : floors_) largest_floor_ = std::max(largest_floor_, of_vertex);
 }
 
-/// No less than the least stop level of a pair of these vertices, m, with room for its rounding; 0 where twice the
+/// No less than the least stop level of a pair of these vertices, m, with a margin for its rounding; 0 where twice the
 /// largest of all is no more than `park`.
 template <std::size_t N>
 double StepBoundFinder::floor(const std::array<int, N>& vertices, double offset, double park) const {

@@ -19,7 +19,7 @@ struct StepBound {
   double alpha = 1;
   ContactKind kind = ContactKind::obstacle;  // of the limiting pair; key below
   ContactKey key{-1, -1, -1, -1};
-  long long queries = 0, probes = 0, capped = 0, zero = 0;  // ACCD pairs asked, probes, cap hits, toi == 0
+  long long queries = 0, probes = 0, capped = 0, zero = 0;  // ACCD pairs queried, probes, cap hits, toi == 0
 };
 
 /// Where ACCD stops.
@@ -41,10 +41,10 @@ struct FirstContact {
   }
 };
 
-/// Finds the bound of a motion. Only the smallest time counts, so few pairs are asked for theirs: boxes of
+/// Finds the bound of a motion. Only the smallest time counts, so few pairs are queried for theirs: boxes of
 /// motions (motion_box.hpp), then planes (pair_lanes.hpp), prove of most of them that they come later than the
 /// smallest time known. Pairs of which little is proven go first. Alpha and the pair that limits are those of
-/// asking every candidate, bit for bit, unless a query runs out of probes. Batches of pairs come in a fixed
+/// querying every candidate, bit for bit, unless a query runs out of probes. Batches of pairs come in a fixed
 /// order and know the times of the batches before: counters too are the same for any number of threads. Keeps
 /// its buffers; not thread-safe, parallel inside.
 class StepBoundFinder {

@@ -76,7 +76,7 @@ class StiffnessUpdate {
   exec::Executor& executor_;
   const StiffnessPolicy& policy_;
   exec::Compaction missing_;
-  KnownColumns known_, merged_;  // merged_: room for what known_ becomes
+  KnownColumns known_, merged_;  // merged_: memory for what known_ becomes
   Index n_known_ = 0;
   exec::Reading<exec::Key> change_;
   bool compares_ = false;  // change_ is that of the last refresh()

@@ -91,7 +91,7 @@ struct Surface {
   /// argument list) and an edge: the edge's own, or the third vertex of a triangle that has the edge.
   bool connected(int vertex, int other) const;
   bool adjacent(int vertex, const std::array<int, 2>& edge) const;
-  /// No common vertex; all that pairs in space ask for.
+  /// No common vertex; all that pairs in space require.
   static bool disjoint(int vertex, const std::array<int, 2>& edge) {
     return (vertex != edge[0]) & (vertex != edge[1]);
   }

@@ -7,7 +7,7 @@ namespace bb {
 
 constexpr int hinge_lanes = 4;
 
-/// What hinge_terms_of() asks of each of them. Host only.
+/// What hinge_terms_of() needs of each of them. Host only.
 template <class T>
 struct HingesAbreast {
   T x[12][hinge_lanes];  // m, point-major

@@ -13,7 +13,7 @@ struct LocalTerms {
   std::vector<double>
       hess;  // [9w(w + 1)/2 n] N/m, lower blocks (lower_blocks.hpp); empty: there is no Hessian
 
-  /// Makes room for n elements of w vertices, and for their Hessians where they have some; allocates only when it must grow.
+  /// Allocates n elements of w vertices, and for their Hessians where they have some; allocates only when it must grow.
   void resize(std::size_t n, int width, bool has_hessian = true);
 };
 

@@ -8,7 +8,7 @@ namespace bb {
 
 constexpr int membrane_lanes = 4;
 
-/// What membrane_terms() asks of each of them. Host only. Without Lame parameters: what deformation_gradient() asks.
+/// What membrane_terms() needs of each of them. Host only. Without Lame parameters: what deformation_gradient() needs.
 template <class T>
 struct TrianglesAbreast {
   T x[9][membrane_lanes];                                  // m, point-major

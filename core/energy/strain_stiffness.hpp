@@ -8,7 +8,7 @@ namespace bb {
 
 /// w^T M w and w^T H w with w_i = x_i - centroid.
 /// @param x            points of a triangle or tetrahedron at the start of the step, m
-/// @param hessian      hessian() is the 3 P x 3 P sub-matrix of the assembled PSD elastic Hessian, N/m; asked when with_hessian
+/// @param hessian      hessian() is the 3 P x 3 P sub-matrix of the assembled PSD elastic Hessian, N/m; read when with_hessian
 /// @param vertex_mass  kg    @param element_mass kg    @param measure m^2 or m^3, at rest
 /// Host-device: yes. Total. Source: Ando 2024; ppf-contact-solver, strain limiting.
 template <class T, int P, class Hessian>

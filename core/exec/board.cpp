@@ -15,7 +15,7 @@ std::size_t Board::take(std::size_t bytes) {
     return at;
   }
   const std::size_t at = used_;
-  if (at + bytes > capacity) throw std::logic_error("more numbers are read than there is room for");
+  if (at + bytes > capacity) throw std::logic_error("more numbers are read than the board can hold");
   used_ = (at + bytes + 15) / 16 * 16;
   written();
   return at;

@@ -29,7 +29,7 @@ class Buffer {
   Buffer& operator=(const Buffer&) = delete;
   ~Buffer() { free(); }
 
-  /// Values are lost where it grows. Room is kept when it shrinks. Errors: OutOfMemory.
+  /// Values are lost where it grows. Memory is kept when it shrinks. Errors: OutOfMemory.
   void resize(Index n) {
     if (n > room_) {
       free();
@@ -38,7 +38,7 @@ class Buffer {
     }
     size_ = n;
   }
-  /// resize() with a quarter more room when it has to grow: for columns that grow from iterate to iterate.
+  /// resize() with a quarter more memory when it has to grow: for columns that grow from iterate to iterate.
   void grow(Index n) {
     if (n > room_) resize(n + n / 4);
     size_ = n;
@@ -62,7 +62,7 @@ class Buffer {
   T* data() { return data_; }
   const T* data() const { return data_; }
   Index size() const { return size_; }
-  /// In use, room that is kept included.
+  /// In use, memory that is kept included.
   std::size_t bytes() const { return static_cast<std::size_t>(room_) * sizeof(T); }
 
   /// Resizes to the values.

@@ -78,7 +78,7 @@ class Executor {
   virtual void fill_bytes(void* to, unsigned char byte, std::size_t bytes) = 0;
   /// Gives back what sorts and scans keep for the next one.
   virtual void trim() {}
-  /// What is free of the memory that the executor works in, in words; empty where it is not asked.
+  /// What is free of the memory that the executor works in, in words; empty where it is not queried.
   virtual std::string memory_state() const { return ""; }
   /// True when nothing is computed and nothing may be read: buffers are counted only.
   virtual bool counts_only() const { return false; }
@@ -89,7 +89,7 @@ class Executor {
   virtual void launch(const KernelInfo& kernel, Index n, const void* f) = 0;
   /// Memory that is taken and no buffer: from now on of `name`. Errors: OutOfMemory when the limit is passed.
   void count_memory(const std::string& name, std::size_t bytes) { ledger_.add(name, bytes); }
-  /// Null when there is no room.
+  /// Null when memory runs out.
   virtual void* allocate_bytes(std::size_t bytes) = 0;
   virtual void release_bytes(void* memory) = 0;
 

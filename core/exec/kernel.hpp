@@ -73,7 +73,7 @@ struct HostBlock {
       if (t < n) f(t);
     }
   }
-  /// How many threads to ask where those from n on have nothing to do, and add +0 to a sum when they are asked: here n; on a
+  /// How many threads to run where those from n on have nothing to do, and add +0 to a sum when they run: here n; on a
   /// device all, since there they cost nothing and a constant saves registers.
   int busy(int n) const { return n; }
   /// f() in one thread.

@@ -8,7 +8,7 @@
 
 namespace bb::exec {
 
-/// No room for a buffer. what() names it, the bytes requested, those in use and the limit.
+/// Too little memory for a buffer. what() names it, the bytes requested, those in use and the limit.
 struct OutOfMemory : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -67,7 +67,7 @@ BB_HD inline T relative_speed(const Mat<T, 3, pair_points(K)>& dx) {
   return sqrt(speed_sq);
 }
 
-/// First t > 0 with a + b t + c t^2 = 0, for a > 0; infinite when there is none, and 0 where the numbers do not tell:
+/// First t > 0 with a + b t + c t^2 = 0, for a > 0; infinite when there is none, and 0 where the numbers do not show it:
 /// one of them is NaN, or their squares are beyond the largest.
 template <class T>
 BB_HD inline T first_root(T a, T b, T c) {

@@ -29,7 +29,7 @@ bool is_openblas(const std::string& file) { return file.find("openblas") != std:
 
 void set_one_blas_thread() {
   openblas_set_num_threads(1);
-  // CHOLMOD asks OpenMP for four threads by name, which only the nesting limit overrules. Looked up at run
+  // CHOLMOD requests four threads of OpenMP explicitly, which only the nesting limit overrules. Looked up at run
   // time: a CHOLMOD without OpenMP needs none of it.
   using SetLevels = void (*)(int);
   static const auto set_levels =

@@ -10,7 +10,7 @@
 namespace bb {
 namespace {
 
-/// Operations on blocks a vertex from which METIS is asked too. METIS takes some 10 us a vertex and saves a tenth to
+/// Operations on blocks a vertex from which METIS orders too. METIS takes some 10 us a vertex and saves a tenth to
 /// a fifth of the operations on large graphs; 27 operations on numbers make one on blocks of 3, at some 6e9 a second.
 constexpr double asks_nested_dissection = 2e4;
 
@@ -26,7 +26,7 @@ std::vector<int> permuted_starts(const int* order, const std::vector<int>& first
   return start;
 }
 
-/// Room for the rows of a supernode below it, and for the largest product of them that is subtracted from another
+/// Sizes of the rows of a supernode below it, and of the largest product of them that is subtracted from another
 /// supernode: what CHOLMOD's numeric factorisation allocates once.
 void set_workspace(cholmod_factor& f) {
   const int *super = ints(f.super), *pi = ints(f.pi), *rows = ints(f.s);
@@ -50,7 +50,7 @@ int* allocate_ints(std::size_t n, cholmod_common& owner) {
   return static_cast<int*>(cholmod_malloc(n, sizeof(int), &owner));
 }
 
-/// A factor of n columns in n_super supernodes, with room for where those begin. Null when memory runs out.
+/// A factor of n columns in n_super supernodes, with memory for where those begin. Null when memory runs out.
 cholmod_factor* empty_factor(std::size_t n, std::size_t n_super, cholmod_common& owner) {
   cholmod_factor* f = cholmod_allocate_factor(n, &owner);
   if (f == nullptr) return nullptr;

@@ -14,7 +14,7 @@ namespace bb {
 struct BlockAnalysis {
   cholmod_factor* factor =
       nullptr;        // owned by the caller; null when CHOLMOD failed, and its status reports why
-  int orderings = 0;  // that were tried: 1, or 2 where METIS was queried
+  int orderings = 0;  // that were tried: 1, or 2 where METIS ordered too
   bool nested_dissection = false;  // the ordering is that of METIS
   // Without the zeros of relaxed supernodes. Where vertices differ in size, every block but the diagonal one counts
   // with their mean size.

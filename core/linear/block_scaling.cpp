@@ -95,7 +95,7 @@ LinearStatus BlockScaling::factorize_block(std::size_t block) {
       double sum = d(r, c);
       for (int k = 0; k < c; ++k) sum -= l(r, k) * l(c, k);
       if (r == c) {
-        // A pivot below the rounding of its own subtraction says nothing.
+        // A pivot below the rounding of its own subtraction shows nothing.
         positive = sum > 4 * std::numeric_limits<double>::epsilon() * d(c, c) && sum > 0;
         if (!positive) break;
         l(c, c) = std::sqrt(sum);

@@ -37,7 +37,7 @@ struct ReducedSystem {
   std::vector<int> block_vertex;  // [n_blocks] vertex of each, for messages; empty: the number of the block
   std::uint64_t pattern_id =
       0;  // a hash of the pattern of lower: changes exactly with it; 0 = unknown, never reused
-  std::shared_ptr<const BlockMesh> mesh;  // null where no solver asked for it (LinearSolver::wants_mesh)
+  std::shared_ptr<const BlockMesh> mesh;  // null where no solver wants it (LinearSolver::wants_mesh)
 };
 
 class BlockSystem {

@@ -74,7 +74,7 @@ BB_HD inline CgState cg_go_on(CgState now, double rz, int max_iterations) {
 BB_HD inline CgState cg_begin(double rz, double rr, int iteration, int max_iterations,
                               bool has_preconditioner) {
   CgState out{rz, rr, iteration, CgEnd::running};
-  // NOLINTNEXTLINE(bugprone-branch-clone): what is asked first decides
+  // NOLINTNEXTLINE(bugprone-branch-clone): what is tested first decides
   if (!is_finite(rr)) {
     out.end = CgEnd::non_finite;
   } else if (rr == 0) {

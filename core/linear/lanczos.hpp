@@ -19,7 +19,7 @@ struct LanczosEnd {
   VecXd vector;         // the Ritz vector v
   int steps = 0;        // products used
   /// The residual alone, relative to |value|. The gap to the second Ritz value would allow a larger one, but
-  /// it says nothing about an eigenvalue that the start vector has next to nothing of.
+  /// it shows nothing about an eigenvalue that the start vector has next to nothing of.
   bool converged(double tol) const;
 };
 

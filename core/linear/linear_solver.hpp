@@ -63,7 +63,7 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
-  /// A step begins: what earlier right-hand sides say of the tolerance no longer holds.
+  /// A step begins: what earlier right-hand sides report of the tolerance no longer holds.
   virtual void begin_step() {}
   /// Whether it reads ReducedSystem::mesh where there is one.
   virtual bool wants_mesh() const { return false; }

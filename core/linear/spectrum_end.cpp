@@ -39,7 +39,7 @@ bool provable(const SpectrumEndPair& end, double largest) {
 
 void resolve_by_shift(ScaledMatrix& b, double sign, double largest, SpectrumEndPair& end) {
   end.shifted = true;
-  // Where eigenvalues lie dense the error is about a third of the residual; a failed factorisation tells if
+  // Where eigenvalues lie dense the error is about a third of the residual; a failed factorisation shows if
   // not: the start vector had next to nothing of the last eigenvector.
   double width = std::clamp(end.uncertainty, 5e-4, 0.3);
   const double start = end.lambda;

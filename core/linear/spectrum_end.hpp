@@ -17,7 +17,7 @@ struct SpectrumEndPair {
   double lambda = not_known;
   VecXd vector;
   bool resolved = false;
-  bool by_lanczos = false;           // our own, where Spectra was asked first and did not converge
+  bool by_lanczos = false;           // our own, where Spectra ran first and did not converge
   bool shifted = false;              // found round a factorisation of its own
   bool proven = false;               // a factor shows that nothing lies further than 8e-4 beyond it
   double uncertainty = 0;            // residual relative to the eigenvalue of the operator in use
@@ -31,7 +31,7 @@ struct SpectrumEndPair {
 void resolve_by_shift(ScaledMatrix& b, double sign, double largest, SpectrumEndPair& end);
 
 /// A small residual may belong to a neighbour of the end. A factor of the matrix shifted by 8e-4 beyond it exists only
-/// when nothing lies there (Sylvester's law of inertia); without one the end is looked for again. Not asked where the
+/// when nothing lies there (Sylvester's law of inertia); without one the end is looked for again. Not tested where the
 /// shift is within the rounding of the factorisation: then `proven` stays false.
 void prove_end(ScaledMatrix& b, double sign, double largest, SpectrumEndPair& end);
 

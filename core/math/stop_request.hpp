@@ -1,5 +1,5 @@
-// Whether somebody asked the program to stop while long work that has no limits of its own is under way: the scene is built, a
-// system is set up. The program that hears signals says how; where nobody has, work goes on to its end.
+// Whether a stop of the program was requested while long work that has no limits of its own is under way: the scene is built, a
+// system is set up. The program that handles signals defines how; where none does, work goes on to its end.
 #pragma once
 
 namespace bb {

@@ -1,4 +1,4 @@
-// How far the end of a step is from the solution when its step solver was not asked to converge: one more Newton
+// How far the end of a step is from the solution when its step solver does not have to converge: one more Newton
 // direction from there, in a system of its own, so that the run is, bit for bit, what it is without.
 #pragma once
 

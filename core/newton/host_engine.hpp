@@ -104,7 +104,7 @@ class HostEngine final : public IncrementalPotential {
   const BlockSystem::Values* filled_ = nullptr;  // the matrix that was filled last
   bool full_is_exact_ = false,
        exact_is_solved_ = false;  // nothing in it is clamped or shifted; it was solved last
-  ReducedSystem examined_;        // the matrix that examine() asks about
+  ReducedSystem examined_;        // the matrix that examine() tests
   EnergySums sums_;
   std::size_t nnz_ = 0;
   std::vector<double> hess_buffer_;

@@ -63,7 +63,7 @@ bool IncrementalPotential::bounds_each_vertex() const {
                      [this](const Term* term) { return bounds_each_vertex_of(*term); });
 }
 
-// truncated: what terms said of each vertex the motion keeps to already.
+// truncated: bounds that terms gave for each vertex the motion respects already.
 double IncrementalPotential::smallest_bound(const Motion& motion, IterationReport& report, bool truncated) {
   const auto asks = [&](const Term* term) { return !truncated || !bounds_each_vertex_of(*term); };
   double smallest = 1;
@@ -136,7 +136,7 @@ void IncrementalPotential::accept() {
   trial_evaluated_ = announced_ = false;
 }
 
-// A step that compares no energies ends with a state that has none, which the record asks for.
+// A step that compares no energies ends with a state that has none, which the record needs.
 void IncrementalPotential::know_energies(const Column& x) {
   if (energies_known_) return;
   const WholePhase timer(clock_, Phase::output);

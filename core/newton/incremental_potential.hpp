@@ -57,7 +57,7 @@ class IncrementalPotential {
   /// Every term at x; g (N) becomes the gradient of E.
   void linearise(const Column& x, Column& g);
   virtual bool pattern_changed() const = 0;
-  /// The matrix of all terms at x, at a level. force: [n_vertices] N, what a level that asks vertices compares.
+  /// The matrix of all terms at x, at a level. force: [n_vertices] N, what a level that selects vertices compares.
   virtual void fill_matrix(const Column& x, const HessianRegularisation& level, const Column& force) = 0;
   /// The matrix with the Hessian that every term begins with: the exact one where its choice has it.
   virtual void fill_exact(const Column& x, const Column& force) = 0;
@@ -87,7 +87,7 @@ class IncrementalPotential {
   /// and prescribed vertices go the smallest of theirs, which is returned.
   bool bounds_each_vertex() const;
   virtual double truncate(Column& /*dx*/) { return 1; }
-  /// bound() of the terms that said nothing about each vertex, of a motion that was truncated.
+  /// bound() of the terms that do not bound each vertex by itself, of a motion that was truncated.
   double bound_truncated(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
     return smallest_bound({x0, x1, dx}, report, true);
   }

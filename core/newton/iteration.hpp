@@ -37,16 +37,16 @@ void find_direction(StepSystem& system, IterationReport& report, StepObserver& o
 void report_direction(StepSystem& system, IterationReport& report, StepObserver& observer);
 /// The status that ends the step when the direction is of no use. must_descend: E has to decrease along it.
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend);
-/// Asks the system whether its iterate is a minimum as far as second derivatives go, unless the rule is ignore, and
+/// Tests whether the iterate of the system is a minimum as far as second derivatives go, unless the rule is ignore, and
 /// counts what that cost.
 EndCheck check_end(StepSystem& system, SaddleRule rule, StepReport& step, IterationReport& report);
 /// The step is over as it should be: what its end is known to be, and how far it is from the solution, m. asked: the
-/// tolerance of a step solver that is asked to converge, m.
+/// tolerance of a step solver that has to converge, m.
 void end_converged(StepReport& step, const EndCheck& end, const Number& error, double asked);
-/// Ends the lap of the clock, adds an iteration to its step and tells the observer.
+/// Ends the lap of the clock, adds an iteration to its step and notifies the observer.
 void finish_iteration(StepSystem& system, StepReport& step, IterationReport& report, StepObserver& observer);
 
-/// Tells the observer of the motion that was accepted.
+/// Notifies the observer of the motion that was accepted.
 void show_motion(const StepSystem& system, int step, StepObserver& observer);
 /// What held the bound of the step taken last.
 std::string describe_bound(const StepSystem& system);

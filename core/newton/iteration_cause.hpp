@@ -9,7 +9,7 @@ namespace bb {
 
 /// full: the whole direction of the first matrix that the Hessian rule made. indefinite: the whole direction of a regularised matrix,
 /// since the first one was not positive definite, or a move along negative curvature. contact, limit: the smaller bound, of ACCD or
-/// of the strain limit, held the step, or a curved gap asked for a correction. armijo: less was taken than the bound allows, since E
+/// of the strain limit, held the step, or a curved gap needed a correction. armijo: less was taken than the bound allows, since E
 /// or feasibility refused more. noise: taken because the change of E was below rounding. failed: no usable direction.
 enum class IterationCause { full, indefinite, contact, limit, armijo, noise, failed };
 constexpr IterationCause all_iteration_causes[] = {

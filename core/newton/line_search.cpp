@@ -10,7 +10,7 @@
 //     vertex by itself, dx of each is cut to what it may go, as long as that descends
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
 //     with a curvature correction for them; where steps crawl, first along a longer dx
-//   6 accept; what converged goes on where terms renew their lagged contact state. A step that was shortened asks for the secant of terms
+//   6 accept; what converged goes on where terms renew their lagged contact state. A step that was shortened requests the secant of terms
 //     that have one (secant_rule.hpp), and so does one along which E falls nowhere, before the step fails
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ namespace {
 
 constexpr double collapsed_step = 1e-8;  // a step below it counts as no progress
 constexpr int collapse_iterations = 10;  // that many in a row end the step
-constexpr int most_escapes = 10;         // in a step; a saddle after that many is said to be one
+constexpr int most_escapes = 10;         // in a step; a saddle after that many is reported as one
 
 class LineSearch final : public StepSolver {
  public:
@@ -92,7 +92,7 @@ class LineSearch final : public StepSolver {
     collapsed_ = escapes_ = 0;
   }
 
-  // Of 3: a step out of a saddle along negative curvature, or away from a cusp, which says nothing about the rate. False where
+  // Of 3: a step out of a saddle along negative curvature, or away from a cusp, which shows nothing about the rate. False where
   // the rule has none, after most_escapes of them, and where E is level; dx is what is left then.
   bool escape_saddle(StepSystem& system, const EndCheck& end, IterationReport& report, double tolerance) {
     if (options_.saddle != SaddleRule::escape || escapes_ >= most_escapes) return false;
@@ -109,7 +109,7 @@ class LineSearch final : public StepSolver {
   bool follow_direction(StepSystem& system, IterationReport& report, bool at_pose, bool small) {
     const bool moved = search_.along_direction(system, report, at_pose, small, crawl_.length());
     const bool truncated = search_.truncated();
-    // another direction than dx, or another length of it, says nothing about the rate
+    // another direction than dx, or another length of it, shows nothing about the rate
     error_.took(report.detours > 0 || truncated || search_.taken() > 1 ? 0 : report.alpha);
     crawl_.took(moved && !truncated && !search_.noise() ? search_.taken() : 0, report);
     return moved;
@@ -145,7 +145,7 @@ class LineSearch final : public StepSolver {
     return search_.truncated() ? report.dx_beyond_m : std::abs(1 - search_.taken()) * report.dx_beyond_m;
   }
 
-  // m. In float no step is asked for less than the rounding of the coordinates that are free to move.
+  // m. In float no step has a tolerance below the rounding of the coordinates that are free to move.
   double tolerance_of(const StepSystem& system, double dt) const {
     const double asked = options_.tol_velocity * dt;
     if (!values_in_float(system.view().precision())) return asked;
@@ -177,7 +177,7 @@ class LineSearch final : public StepSolver {
   }
 
   // Whether E has changed along the step as its quadratic model says, or by noise. Where the rate of convergence
-  // is not known a short direction says nothing without it: a gap far below its equilibrium under an unbounded
+  // is not known a short direction shows nothing without it: a gap far below its equilibrium under an unbounded
   // barrier doubles with every iteration, by directions as short as the gap. Requires that energies were compared.
   bool as_modelled(const IterationReport& report) const {
     constexpr double tolerance = 0.25;

@@ -202,7 +202,7 @@ void NewtonSystem::aim_at_escape(double length) {
 }
 
 // With d_i(x + s) = d_i + slope_i - loss_i + grad d_i . s, s with A s = sum of kappa b'' (what is missing) grad d_i makes
-// up for the loss where the barrier is stiff, at the least cost to the other terms. A state that is asked for its end
+// up for the loss where the barrier is stiff, at the least cost to the other terms. A state that is tested as an end
 // makes no curvature correction, so the column of escapes is free.
 bool NewtonSystem::correct_curvature(double bound, SolveReport& report) {
   const ScopedPhase timer(clock(), Phase::assembly);

@@ -39,7 +39,7 @@ struct NewtonState {
   Column aside;  // a direction of negative curvature at the iterate, or dx before its curvature correction
   Column body_size;  // [n] m
   double shift = 0;  // N/m, what add_tikhonov added
-  // A share of the secant of terms is asked of the next iterate; is in the matrices of this one.
+  // A share of the secant of terms is requested of the next iterate; is in the matrices of this one.
   bool secant_asked = false, secant = false;
   // What vectors found last is of x, of the trial.
   bool pins_seen = false, trial_pins_seen = false;

@@ -71,7 +71,7 @@ class NewtonSystem : public StepSystem {
   /// Moves the iterate to x [3 x n] m along a straight motion. Errors: std::logic_error where x is not feasible.
   void go_to(const Positions& x);
   /// The iterate of another system on the host, made from the same scene and method, in a step that began as `frame` says,
-  /// assembled; prescribed vertices stay. Policies are asked and not told: none starts here. Cost: two assemblies.
+  /// assembled; prescribed vertices stay. Policies are evaluated and not updated: none starts here. Cost: two assemblies.
   void adopt(const StepFrame& frame, NewtonSystem& other);
   /// Terms and matrices of the iterate. Errors: std::logic_error elsewhere than on the host.
   Diagnosis& diagnosis();

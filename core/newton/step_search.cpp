@@ -52,7 +52,7 @@ bool StepSearch::leave(StepSystem& system, IterationReport& report, double slope
   return false;
 }
 
-// Along a longer dx, halved as long as that is longer than dx itself. Bounds are said of dx, which nothing ends.
+// Along a longer dx, halved as long as that is longer than dx itself. Bounds are fractions of dx, which nothing ends.
 bool StepSearch::go_far(StepSystem& system, IterationReport& report, double length) {
   const double ccd = report.alpha_ccd, strain = report.alpha_strain;
   system.scale_direction(length);
@@ -108,8 +108,8 @@ bool StepSearch::go_round(StepSystem& system, IterationReport& report) {
 
 // Each vertex as far as contact lets it, where that wins more of the fall that dx promises to first order than all of them
 // would that go as far as the one that may go least: a motion cut unevenly deforms what dx leaves in shape, and where E or
-// the strain limit stops it at once, ever shorter parts of it follow while the way for all is open. What is taken is said
-// as the part of that fall; of a motion that is asked for no energies, as that of prescribed vertices.
+// the strain limit stops it at once, ever shorter parts of it follow while the way for all is open. What is taken is reported
+// as the part of that fall; of a motion that compares no energies, as that of prescribed vertices.
 bool StepSearch::go_truncated(StepSystem& system, IterationReport& report, const TruncatedMotion& motion,
                               bool energy_test) {
   const double slope = system.direction_size().slope_J, whole = -2 * report.decrement_J;

@@ -24,8 +24,8 @@ double embedded_error(const PositionsView& x0, const PositionsView& v0, const Po
                       const PositionsView& v, double h);
 
 /// The length of the next step, dt / 2^halvings(). Half as long after a step with more than 3/2 of the iterations that are
-/// asked for, or a larger error; twice as long after one with at most 3/4 of them, so that one of twice the length, whose
-/// iterations are twice as many where cloth folds, is no more than asked for, and an error of at most a quarter, since it
+/// requested, or a larger error; twice as long after one with at most 3/4 of them, so that one of twice the length, whose
+/// iterations are twice as many where cloth folds, is no more than requested, and an error of at most a quarter, since it
 /// grows with the square. The same steps follow from the same numbers on every machine.
 class StepSize {
  public:

@@ -18,7 +18,7 @@
 
 namespace bb {
 
-/// What a step is asked to do.
+/// What a step has to do.
 struct StepTask {
   int step = 0;
   double dt = 0;                     // s

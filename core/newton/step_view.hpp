@@ -43,7 +43,7 @@ class StepView {
   virtual std::size_t nnz() const = 0;
 
   // --- reports
-  /// energy(), grad_inf() and report() will be asked of the assembled iterate: what they need is launched, so that all of
+  /// energy(), grad_inf() and report() will be called on the assembled iterate: what they need is launched, so that all of
   /// it is read at once. Results do not depend on it.
   virtual void announce() const {}
   /// What the terms report of the iterate, and of the end of a step.

@@ -1,5 +1,5 @@
 // One time step after Ando 2024 (A Cubic Barrier with Elasticity-Inclusive Dynamic Stiffness): no energy of a trial is
-// asked for, feasibility alone limits the step. Newton iterations on the same x_tilde accumulate the fraction
+// requested, feasibility alone limits the step. Newton iterations on the same x_tilde accumulate the fraction
 // of the motion that was feasible, beta; once beta >= target the step is shortened to beta dt and one more
 // iteration with the shortened prediction reduces the error. Only with implicit Euler, whose prediction
 // scales with dt.

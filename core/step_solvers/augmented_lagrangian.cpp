@@ -1,7 +1,7 @@
 // One time step with contact as inequalities that multipliers hold, as the cloth example of jaxls has it ("Cloth draping" of its
 // documentation): E with an augmented Lagrangian in the place of the barrier is minimised, multipliers and penalties are
 // updated, and so on until contacts are neither violated nor push where they are open (core/terms/contact_multipliers.hpp).
-// Nothing bounds a motion, and no test of a state asks for gaps. Otherwise than there, each minimum is found by the Newton of
+// Nothing bounds a motion, and no test of a state requires gaps. Otherwise than there, each minimum is found by the Newton of
 // line_search, to its tolerance or to the gradient al_inner_tolerance_N, and theirs by Levenberg and Marquardt with conjugate
 // gradients in float. max_iterations is that of all Newton iterations of a step together.
 #include <algorithm>

@@ -78,7 +78,7 @@ class Simulation {
   const StepSolverEntry entry_;  // a copy: the registry may get others while it runs
   const bool proves_steps_;      // of pairs that collide as `audited`
   std::unique_ptr<StepSolver> solver_;
-  std::unique_ptr<EndResidual> end_residual_;  // of a step solver that is not asked to converge
+  std::unique_ptr<EndResidual> end_residual_;  // of a step solver that does not have to converge
   History history_;
   Prediction prediction_;
   Positions v_next_, a_next_;

@@ -8,7 +8,7 @@
 
 namespace bb {
 
-/// sup |b'| for kappa = 1, m, at each d_hat that comes up; infinite when unbounded. Asked of the shape at
+/// sup |b'| for kappa = 1, m, at each d_hat that comes up; infinite when unbounded. Evaluated by the shape at
 /// every d_hat: how it depends on it is the shape's own business.
 class LargestSlope {
  public:

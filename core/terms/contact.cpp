@@ -1,4 +1,4 @@
-// The contact term from iterate to iterate. Its stiffness policy is in contact_policy.cpp, what it says of
+// The contact term from iterate to iterate. Its stiffness policy is in contact_policy.cpp, what it reports of
 // itself in contact_report.cpp.
 #include "core/terms/contact.hpp"
 

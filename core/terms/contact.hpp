@@ -125,7 +125,7 @@ class ContactTerm final : public ContactSteps<HostTerm> {
   bool first_iterate_ = true;
 };
 
-/// What is said at the end of a step of rows that have kappa, b and its derivatives.
+/// What is reported at the end of a step of rows that have kappa, b and its derivatives.
 void report_end_of(const ContactState& state, Precision precision, const PositionsView& x, StepNumbers& out);
 
 /// The rows among these terms; empty tables where the plan has no contact.

@@ -1,4 +1,4 @@
-// What the contact term tells its stiffness policy at its start and between steps
+// What the contact term passes to its stiffness policy at its start and between steps
 // (docs/theory/barriers.md, Stiffness policies).
 #include <algorithm>
 

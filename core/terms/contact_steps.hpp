@@ -30,7 +30,7 @@ class ContactSteps : public Base {
     time_ = {step.dt, step.c};
     policy().set_time(time_);
   }
-  /// Tells a policy that adapts which pairs had a row at two step ends in a row.
+  /// Passes to a policy that adapts which pairs had a row at two step ends in a row.
   void end_step(const PositionsView& x, PhaseClock& clock) override {
     if (!policy().adapts()) return;
     const ScopedPhase timer(clock, Phase::stiffness);

@@ -89,7 +89,7 @@ struct KineticParts {
   }
 };
 
-/// What a step says of friction.
+/// What a step reports of friction.
 struct FrictionNumbers {
   exec::Compensated work;  // J
   exec::Key sticking, sliding;

@@ -82,7 +82,7 @@ class LaggedFamily {
   virtual void hessians(const double* x, double* hess) = 0;
   /// force [3, n] (N): how gradients change, to first order, along a motion of prescribed vertices (m, 0 at free ones).
   virtual void changes(const double* x, const double* motion, double* force) = 0;
-  /// In the host's memory alone: terms of elements of four vertices. out has room for them.
+  /// In the host's memory alone: terms of elements of four vertices. out is large enough for them.
   virtual void derivatives(const double* x, LocalTerms& out) = 0;
   /// What a step that ends at x says. Requires known loads.
   virtual void report_end(const double* x, StepNumbers& out) = 0;

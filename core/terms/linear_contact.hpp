@@ -82,7 +82,7 @@ class LinearContact final : public HostTerm {
     double force = 0;  // lambda, N
     int quiet = 0;     // n
     LinearGap at;      // the anchor
-    double most = 0;   // m, asked for in the step: d(x_n) plus what comes back in the step
+    double most = 0;   // m, required in the step: d(x_n) plus what comes back in the step
     double slack = 0;  // s, m
     void keep(Archive& archive);
   };

@@ -19,9 +19,9 @@ namespace bb {
 /// What the options outside the terms decide.
 struct PlanOptions {
   StepNeeds step;         // of the step solver
-  bool end_check = true;  // the end of a step is asked whether it is a minimum
+  bool end_check = true;  // the end of a step is tested for a minimum
   LinearOptions linear;   // a registered solver
-  std::string linear_reason = "as asked for";
+  std::string linear_reason = "as requested";
   bool diagnose = false, audit = false, trace = false, frames = false, matrices = false;
 };
 

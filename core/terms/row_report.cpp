@@ -22,7 +22,7 @@ ContactCounts counts_of(const RowTotals& rows) {
   return out;
 }
 
-/// Whether there are rows, and what an iterate and the end of a step both say of them.
+/// Whether there are rows, and what an iterate and the end of a step both report of them.
 template <class Numbers>
 bool fill(const RowTotals& rows, Numbers& out) {
   out.contacts = counts_of(rows);

@@ -1,4 +1,4 @@
-// What an iterate and the end of a step say of contact rows: counts, gaps, kappa, loads. Where there are none nothing is said.
+// What an iterate and the end of a step report of contact rows: counts, gaps, kappa, loads. Without rows nothing is reported.
 #pragma once
 
 #include "core/contact/row_totals.hpp"
@@ -24,7 +24,7 @@ struct EndRow {
 /// Its load, where it has one and no mollifier. In the order of the pairs.
 void add_load(const EndRow& row, StepNumbers& out);
 
-/// The end of a step whose rows have these totals. largest(), as above, and visit(f), which calls f(each EndRow), are asked where there
+/// The end of a step whose rows have these totals. largest(), as above, and visit(f), which calls f(each EndRow), are called where there
 /// are rows; those without mollifier come in the order of their pairs.
 template <class Largest, class Visit>
 void report_rows_of_end(const RowTotals& rows, double gap_min, Precision precision, const Largest& largest,

@@ -24,7 +24,7 @@ std::string_view to_string(StepHessian hessian);
 /// Requires a word of to_string().
 StepHessian step_hessian_of(std::string_view word);
 
-/// How a term is linearised: those that begin with the exact Hessian are asked to clamp() when it is due.
+/// How a term is linearised: those that begin with the exact Hessian clamp() when it is due.
 constexpr Projection first_projection(StepHessian hessian) {
   if (hessian == StepHessian::clamped) return Projection::psd;
   return hessian == StepHessian::absolute ? Projection::absolute : Projection::none;
@@ -34,7 +34,7 @@ constexpr Projection first_projection(StepHessian hessian) {
 enum class ExactHessians { none, some, all };
 
 struct TermOptions;
-/// Whether a term of that name has an exact Hessian when it is asked for one: rows of contact leave the Hessian of the
+/// Whether a term of that name has an exact Hessian when one is requested: rows of contact leave the Hessian of the
 /// gap out as gauss_newton.
 bool knows_exact_hessian(std::string_view term, const TermOptions& options);
 

@@ -15,7 +15,7 @@ std::unique_ptr<LimitFamily> limited(const FamilyPlace& place, const Scene& scen
   return limited_triangles(place, scene.limit, scene.rest, scene.planar);
 }
 
-// Stretch and load of a state; those of triangles stay where they are said before.
+// Stretch and load of a state; those of triangles stay where they were reported before.
 template <class Numbers>
 void say_state(const StrainLimitState& of, const LimitReport& found, Numbers& out) {
   if (of.adds()) {
@@ -101,7 +101,7 @@ void StrainLimitState::look_at(const double* trial, double* energy) {
 bool StrainLimitState::is_feasible() const { return options_.limit.literal || beyond_.first() < 0; }
 
 void StrainLimitState::evaluate(const double* trial, double* energy) {
-  // the iterate may have been asked for since
+  // the iterate may have been requested since
   if (!looked_at_ || measured_ != State::trial) measure(trial, energy, State::trial);
   looked_at_ = false;
 }

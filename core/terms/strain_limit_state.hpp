@@ -1,5 +1,5 @@
 // What the strain limit of triangles, or of tetrahedra, is at an iterate and at a trial, on any executor: which state is measured, when
-// the stiffness is made anew, how far a motion may go, what is reported of it. The host's term and an executor's ask it for all of that.
+// the stiffness is made anew, how far a motion may go, what is reported of it. The host's term and an executor's share it.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ class StrainLimitState {
   const StiffnessPolicy& policy() const {
     return of_solids_ ? *options_.solid_limit_stiffness : *options_.limit_stiffness;
   }
-  /// Whether triangles have said their part of what is reported before.
+  /// Whether triangles have reported their part before.
   bool adds() const { return adds_; }
 
   /// x_n is valid for the step.

@@ -46,7 +46,7 @@ inline double kinetic_slide(const FrictionOptions& of, double dt) {
 
 /// Contact without a barrier (core/terms/linear_contact.hpp).
 struct LinearContactRules {
-  double standoff = 0.1;         // d_hat of the pair, gap that constraints ask for
+  double standoff = 0.1;         // d_hat of the pair, gap that constraints require
   double penalty = 0;            // N/m; 0: set_penalty()
   double recovery_speed = 0.01;  // m/s, at which a gap comes back to its standoff
   double decay = 0.9;            // of the weight of a constraint that is not active, an update

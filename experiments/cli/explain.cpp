@@ -103,7 +103,7 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
   }
 }
 
-/// Whether the card of this machine has room, or that there is none to ask.
+/// Whether the card of this machine has enough memory, or that there is none to query.
 void print_card(std::size_t total) {
   const cuda::DeviceProbe probe = cuda::probe_device();
   if (!probe.usable) {

@@ -96,7 +96,7 @@ int help(const std::string& format, const std::string& pointer, bool schema) {
   const Format* known = find_named(formats, format);
   if (known == nullptr) {
     std::vector<std::string> names = names_of(formats);
-    for (const Verb& verb : verbs()) names.emplace_back(verb.typed);
+    for (const std::string& name : typed_names()) names.push_back(name);
     throw unknown_name("help", format, names);
   }
   if (!pointer.empty()) {

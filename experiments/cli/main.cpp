@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <sstream>
 #include <utility>
 
@@ -24,7 +23,7 @@ namespace {
 
 using namespace bb::cli;
 
-/// Nobody can read what was answered; an error that happened before stays what it is. Said once, and not of a reader that has had
+/// Nobody can read what was answered; an error that happened before stays what it is. Reported once, and not for a reader that has had
 /// enough (head).
 int unwritable_output(int code) {
   static bool said = errno == EPIPE;
@@ -96,18 +95,13 @@ std::string first_word(const std::vector<std::string>& argv) {
 }
 
 /// Errors: ConfigError with the nearest verb when the command line starts with a word that is none.
-/// BENCH_VERBS: verbs of the front door ./bench, which it handles itself.
 void require_verb(const std::vector<std::string>& argv) {
   const std::string word = first_word(argv);
-  std::vector<std::string> names;
-  for (const Verb& verb : verbs()) names.emplace_back(verb.name);
-  if (word.empty() || std::find(names.begin(), names.end(), word) != names.end()) return;
-  std::istringstream of_front_door(std::getenv("BENCH_VERBS") ? std::getenv("BENCH_VERBS") : "");
-  for (std::string name; of_front_door >> name;) names.push_back(name);
-  throw bb::unknown_name("bench", word, names);
+  if (word.empty() || bb::find_named(verbs(), word) != nullptr) return;
+  throw bb::unknown_name("bench", word, typed_names());
 }
 
-/// A verb under its name before this one, which is said: of the program alone, the front door has such names of its own.
+/// A verb under its former name, which a note reports: of the program alone, the front door has such names of its own.
 void settle_old_name(std::vector<std::string>& argv) {
   const auto old = std::find(argv.begin() + 1, argv.end(), "neutral");
   if (old == argv.end() || first_word(argv) != "neutral") return;

@@ -3,7 +3,7 @@
 
 namespace bb::cli {
 
-/// Keeps freed memory in the process: every iteration asks for the same large buffers again (a factor and its
+/// Keeps freed memory in the process: every iteration requests the same large buffers again (a factor and its
 /// analysis, contact rows), and pages that the kernel hands out anew cost a fault and a clearing each. Does
 /// nothing with another C library than glibc.
 void keep_freed_memory();

@@ -20,7 +20,7 @@ std::atomic<bool> stop{false};
 
 void on_signal(int signal) {
   stop.store(true);
-  std::signal(signal, SIG_DFL);  // asked twice: at once
+  std::signal(signal, SIG_DFL);  // a second signal: at once
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ class ProgressLine {
 };
 
 /// What the system sends a run whose sweep has died: once for every thread that the sweep had, so that, unlike the others, it
-/// asks for nothing more when it comes again.
+/// has no further effect when it comes again.
 constexpr int sweep_died = SIGUSR1;
 
 /// Set by SIGINT, SIGTERM, SIGHUP and sweep_died once install_interrupt() was called.

@@ -52,7 +52,7 @@ const SummaryColumn summary_columns[] = {
     {"time s", 8, true, [](const RunRecord& r) { return number_text(r.summary.wall_s, "{:.2f}"); }},
 };
 
-/// A line of the table: what stands in each of the columns that the terminal has room for.
+/// A line of the table: what stands in each of the columns that fit on the terminal.
 std::string summary_line(const std::string& label,
                          const std::function<std::string(const SummaryColumn&)>& cell) {
   const std::size_t columns = terminal_columns(STDOUT_FILENO);

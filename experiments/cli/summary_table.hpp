@@ -20,7 +20,7 @@ struct ComparedRow {
   std::string run, outcome, verdict, why;  // why: empty of a comparable run
 };
 /// The runs with their verdicts, a heading above them; the reason stands in lines of its own below its run, and a run whose name
-/// leaves no room for the other columns in a line of its own above them. No line is longer than so many characters but for a word
+/// leaves no space for the other columns in a line of its own above them. No line is longer than so many characters but for a word
 /// or a verdict that is, and every word is there; 0: lines of any length.
 std::string comparability_table(std::vector<ComparedRow> rows, std::size_t columns);
 

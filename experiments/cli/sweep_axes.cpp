@@ -23,7 +23,7 @@ std::string value_label(const std::string& pointer, const json& value) {
   return pointer.substr(pointer.rfind('/') + 1) + "=" + text;
 }
 
-/// A whole number as an integer, which settings that count ask for.
+/// A whole number as an integer, which settings that count require.
 json as_json(double value) {
   if (value == std::floor(value) && std::abs(value) < 0x1p53) return static_cast<std::int64_t>(value);
   return value;

@@ -94,7 +94,7 @@ void check_seed(const json& spec, const AxisOf& axis_of, const std::string& path
   }
 }
 
-/// Everything that the file alone can tell, counted before anything is expanded. The axes.
+/// Everything that the file alone determines, counted before anything is expanded. The axes.
 Axes checked_axes(json spec, const std::string& path) {
   require_format(spec, "barrierbench.sweep/1", path);
   std::vector<Violation> violations;

@@ -20,7 +20,7 @@ struct RunSize {
   int passes = 1;  // with the calibration run of a matching rule
 };
 
-/// What the config tells without its scene being built. scene: SHA-256 of the section `scene`.
+/// What the config shows without its scene being built. scene: SHA-256 of the section `scene`.
 RunSize size_of(const RunConfig& config, const std::string& scene);
 
 /// Where an expectation is from: a record of this very config; of the same scene, the nearer the better; the model.
@@ -31,7 +31,7 @@ struct ExpectedCost {
   CostSource source = CostSource::model;
 };
 
-/// Records of earlier runs, and a model where they say nothing: seconds = 0.03 + passes x steps x 8 iterations a step x 4.5e-6 s an
+/// Records of earlier runs, and a model where they show nothing: seconds = 0.03 + passes x steps x 8 iterations a step x 4.5e-6 s an
 /// unknown. Both numbers are medians over the runs of results/studies/work_precision.jsonl and
 /// results/baselines; the seconds of an iteration are within a factor of 6 there. Large scenes take more: `drape` with 15,360 unknowns and pcg has taken
 /// 1.4e-5 s an unknown and 20 to 30 iterations a step. Condition estimates and audits are not in it.

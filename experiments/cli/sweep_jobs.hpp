@@ -9,7 +9,7 @@
 
 namespace bb::cli {
 
-/// How a process of a case ended, with what it said.
+/// How a process of a case ended, with its output.
 struct JobEnd {
   std::size_t index = 0;
   int code = 0;  // exit code; -N where signal N killed it
@@ -17,7 +17,7 @@ struct JobEnd {
 };
 
 /// Processes of this program. Each is in a group of its own, so that a key that interrupts the terminal reaches it only through
-/// stop(), and is asked to stop when this process dies. What they print is kept until they end.
+/// stop(), and gets a signal to stop when this process dies. What they print is kept until they end.
 class Jobs {
  public:
   /// words: what stands behind the name of the program. Errors: RecordError that does not last, where the system starts no more.

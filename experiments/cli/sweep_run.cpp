@@ -197,7 +197,7 @@ class SweepRun {
       print(row);
       return;
     }
-    if (interrupted().load()) return;  // it was asked to stop
+    if (interrupted().load()) return;  // a stop was requested
     if (end.code == exit_bad_input) {
       refused_row(i);
       tally_.complaints += end.err;

@@ -71,7 +71,7 @@ Resolved resolve(const SweepSpec& spec, std::size_t i, Families& families, const
   return out;
 }
 
-/// One case after the other: the choice of `auto` asks for the scene of a case.
+/// One case after the other: the choice of `auto` needs the scene of a case.
 void decide(Resolved& found, std::size_t i, const SeenCase& seen) {
   if (!found.undecided) return;
   decide_linear_solver(*found.undecided);

@@ -47,7 +47,7 @@ std::string shortened_to(std::string_view text, std::size_t columns) {
 }
 
 std::string wrapped(std::string_view text, std::size_t columns, std::size_t indent) {
-  if (columns <= indent + 20) return std::string(text);  // no room to break anything
+  if (columns <= indent + 20) return std::string(text);  // too narrow to break anything
   std::string out;
   for (bool first = true; !text.empty(); first = false) {
     const std::size_t room = first ? columns : columns - indent;

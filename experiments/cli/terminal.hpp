@@ -8,7 +8,7 @@
 namespace bb::cli {
 
 /// Columns of the terminal that a stream (STDOUT_FILENO, STDERR_FILENO) is; 0: it is none, and lines may be of any length.
-/// BENCH_COLUMNS stands for that of the standard output: a sweep tells it to the processes of its runs.
+/// BENCH_COLUMNS stands for that of the standard output: a sweep passes it to the processes of its runs.
 std::size_t terminal_columns(int descriptor);
 
 /// How many characters of UTF-8 a text has.

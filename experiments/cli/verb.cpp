@@ -1,6 +1,8 @@
 #include "experiments/cli/verb.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <sstream>
 
 namespace bb::cli {
 namespace {
@@ -19,6 +21,17 @@ const std::vector<Verb>& verbs() {
   };
 #undef BB_VERB
   return all;
+}
+
+std::vector<std::string> typed_names() {
+  std::vector<std::string> names;
+  if (const char* of_front_door = std::getenv("BENCH_VERBS")) {
+    std::istringstream words(of_front_door);
+    for (std::string name; words >> name;) names.push_back(name);
+  } else {
+    for (const Verb& verb : verbs()) names.push_back(verb.name);
+  }
+  return names;
 }
 
 }  // namespace bb::cli

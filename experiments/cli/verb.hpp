@@ -35,4 +35,8 @@ struct Verb {
 /// In the order of verbs.inc.
 const std::vector<Verb>& verbs();
 
+/// What a user may type as the first word, for messages: the verbs of ./bench where it has started this program
+/// (BENCH_VERBS), else those of this program.
+std::vector<std::string> typed_names();
+
 }  // namespace bb::cli

@@ -77,7 +77,7 @@ struct SweepVerb {
 /// Errors: ConfigError after the last case, of all cases that were refused.
 int sweep(const SweepVerb& verb, const CommonOptions& common);
 
-/// The validity block of this build: read, or computed and kept; what fails is said on stderr.
+/// The validity block of this build: read, or computed and kept; what fails is reported on stderr.
 BuildValidity build_validity(const CommonOptions& common);
 
 /// Sees to the kernel of BLAS before anything is computed: may replace the process by itself with

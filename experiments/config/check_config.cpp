@@ -49,8 +49,8 @@ void check_policy(const std::string& section, const PolicyConfig& policy, Policy
   }
 }
 
-/// kappa as any function of the gap, for pairs of some masses and stiffnesses: what of it cannot be told before a run is not
-/// asked here.
+/// kappa as any function of the gap, for pairs of some masses and stiffnesses: what of it is unknown before a run is not
+/// checked here.
 void check_gap_potential(const std::string& section, const std::string& shape, Argument argument,
                          const PolicyConfig& policy, const RunConfig& config, const Complain& complain) {
   const auto barrier = barrier_of(shape, argument);
@@ -66,7 +66,7 @@ void check_gap_potential(const std::string& section, const std::string& shape, A
   try {
     made = make_policy(policy_request(policy, PolicyUse::contact, 1), PolicyUse::contact);
   } catch (const ConfigError&) {
-    return;  // check_policy has said so
+    return;  // check_policy has reported it
   }
   const GapStiffness* of = made->gap_stiffness();
   if (!of) return;
@@ -79,7 +79,7 @@ void check_gap_potential(const std::string& section, const std::string& shape, A
   }
 }
 
-/// A policy whose kappa has a potential asks for a shape that has one too.
+/// A policy whose kappa has a potential requires a shape that has one too.
 void check_potential(const std::string& section, const std::string& shape, Argument argument,
                      const PolicyConfig& policy, const RunConfig& config, const Complain& complain) {
   const auto derivative = policy.parameters.find("derivative");

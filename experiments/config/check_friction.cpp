@@ -1,4 +1,4 @@
-// What coefficients, laws and the lagging of friction ask of each other and of the step solver.
+// What coefficients, laws and the lagging of friction require of each other and of the step solver.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

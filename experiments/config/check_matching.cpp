@@ -19,7 +19,7 @@ struct MatchedBarrier {
   const char* load_pointer;
   std::optional<double> load;
   const PolicyConfig& policy;
-  bool by_number;  // the rule supplies the policy's stiffness, and asks nothing of it
+  bool by_number;  // the rule supplies the policy's stiffness, and requires nothing of it
 };
 
 bool usable(double value) { return std::isfinite(value) && value > 0; }
@@ -46,7 +46,7 @@ void check_matched_barrier(const MatchingConfig& matching, const MatchedBarrier&
 }
 
 /// Without weight no calibration run can start: loads have to be given, and a policy that makes its own stiffness has
-/// nobody to ask about the contact that carried them.
+/// no record of the contact that carried them.
 void check_calibration_run(const RunConfig& config, const MatchedBarrier& m, const Complain& complain) {
   if (largest_gravity(config.scene.gravity, config.scene.gravity_keys) > 0) return;
   if (!m.load) complain(m.load_pointer, "nothing", "a load: without gravity no calibration run can start");

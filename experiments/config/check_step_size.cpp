@@ -1,4 +1,4 @@
-// What steps of chosen length ask of the rest of a config.
+// What steps of chosen length require of the rest of a config.
 #include <fmt/format.h>
 
 #include "core/model/integrators/registry.hpp"
@@ -8,7 +8,7 @@
 namespace bb {
 namespace {
 
-/// A key that is given and says nothing of steps of fixed length.
+/// A key that is given and has no effect on steps of fixed length.
 template <class T>
 void check_unused(const char* place, const std::optional<T>& value, const Complain& complain) {
   if (value) complain(place, fmt::format("{}", *value), "nothing: /time/step_size is fixed");

@@ -40,7 +40,7 @@ std::string solvers_where(bool (*has)(const StepSolverEntry&)) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Settings that ask for a matrix at the end of a step, or for a minimum of E there.
+/// Settings that require a matrix at the end of a step, or for a minimum of E there.
 void check_minimum(const RunConfig& config, const StepNeeds& needs, const Complain& complain) {
   const StepSolverConfig& solver = config.step_solver;
   if (solver.saddle == SaddleRule::report && !needs.matrix) {
@@ -67,7 +67,7 @@ void check_velocity(const RunConfig& config, const Complain& complain) {
                        fmt::join(right, ", "), config.step_solver.name, chosen));
 }
 
-/// A solver with a term of its own in the matrix asks for one that is positive semi-definite without it.
+/// A solver with a term of its own in the matrix requires one that is positive semi-definite without it.
 void check_hessians(const RunConfig& config, const Complain& complain) {
   for (const HessianChoice& choice : hessian_choices()) {
     const std::string& value = text(config.hessian.parameters, choice.name);

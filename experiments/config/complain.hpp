@@ -29,11 +29,11 @@ void refuse_restitution(const RunConfig& config, const std::string& allowed, con
 bool has_friction(const RunConfig& config);
 /// Says of every coefficient of friction above 0 what is allowed.
 void refuse_friction(const RunConfig& config, const std::string& allowed, const Complain& complain);
-/// What coefficients, laws and the lagging of friction ask of each other and of the step solver (check_friction.cpp).
+/// What coefficients, laws and the lagging of friction require of each other and of the step solver (check_friction.cpp).
 void check_friction(const RunConfig& config, const Complain& complain);
 /// Names of the step solvers whose steps end in a minimum of E.
 std::string solvers_with_minimum();
-/// What steps of chosen length ask of the other sections (check_step_size.cpp).
+/// What steps of chosen length require of the other sections (check_step_size.cpp).
 void check_step_size(const RunConfig& config, const Complain& complain);
 /// What a step solver requires of the other sections (check_step_solver.cpp).
 void check_step_solver(const RunConfig& config, const Complain& complain);

@@ -136,7 +136,7 @@ void keep_duration(json& document) {
                                      ? procedural_scenes().find(document[name].get<std::string>())
                                      : nullptr;
   const json dt = length.contains("dt_s") ? length["dt_s"] : scene ? json(scene->defaults.dt) : json();
-  if (!dt.is_number()) return;  // said when the config is checked
+  if (!dt.is_number()) return;  // reported when the config is checked
   length["duration_s"] = dt.get<double>() * length["steps"].get<double>();
   length.erase("steps");
 }
@@ -271,7 +271,7 @@ bool set_value(json& document, const json::json_pointer& pointer, json value) {
 }
 
 /// The method that overrides name; nothing where they name none, or where the value cannot be read, which apply_override
-/// tells.
+/// reports.
 std::optional<json> named_method(std::span<const std::string> overrides) {
   const std::string key = "/method=";
   std::optional<json> out;

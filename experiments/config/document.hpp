@@ -1,5 +1,5 @@
 // A config as a JSON document: text to value, `extends`, overrides, shorthands. Nothing is checked against
-// the schema here. Outside this folder only `explain` reads it, to tell what a config gives from what it
+// the schema here. Outside this folder only `explain` reads it, to separate what a config gives from what it
 // leaves to defaults.
 #pragma once
 

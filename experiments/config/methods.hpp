@@ -1,5 +1,5 @@
 // Published methods in one piece, configs/methods/NAME.json: settings by pointer, why each is as it is, and what this program
-// does otherwise than the publication. What it says of friction is a file of its own, configs/methods/friction/NAME.json, of the same
+// does otherwise than the publication. Its friction is a file of its own, configs/methods/friction/NAME.json, of the same
 // form: settings of /friction that count where a coefficient is above 0.
 #pragma once
 

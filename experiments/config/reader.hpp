@@ -48,7 +48,7 @@ void finish_config(const nlohmann::json& document, const ProceduralScene* scene,
 /// `hessian` from the scene too.
 nlohmann::json resolved_section(const std::string& name, const RunConfig& config);
 
-/// What the rows of these sections alone cannot tell: defaults that other settings decide, and settings that
+/// What the rows of these sections alone do not express: defaults that other settings decide, and settings that
 /// exclude each other. The sections have been read.
 void settle_time(const nlohmann::json& object, const Reader& reader, TimeConfig& time);
 void settle_formulation(const nlohmann::json& object, const Reader& reader, FormulationConfig& formulation);
@@ -62,7 +62,7 @@ void settle_matching(const nlohmann::json& object, const Reader& reader, bool li
 /// What the step solver of a config needs; all of an unknown one, which has a violation already.
 StepNeeds needs_of(const RunConfig& config);
 
-/// The step solver that a scene's protocol asks for; empty: any.
+/// The step solver that a scene's protocol requires; empty: any.
 std::string solver_of_protocol(const SceneConfig& scene);
 
 /// Contradictions between sections (check_config.cpp); no JSON.

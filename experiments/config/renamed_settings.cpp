@@ -32,7 +32,7 @@ const std::array<RenamedSetting, 2>& renamed_settings() {
   return all;
 }
 
-/// A value that is no number of a word stays: the check of the config names it.
+/// A value that is not the number of a word stays: the check of the config names it.
 json to_present(const RenamedSetting& one, json value) {
   if (!value.is_number_unsigned() || value.get<std::size_t>() >= one.words.size()) return value;
   return one.words[value.get<std::size_t>()];

@@ -115,7 +115,7 @@ inline double end_time(const TimeConfig& time) { return time.duration.value_or(t
 struct RunConfig {
   std::string source;  // file it came from, for messages; not part of config_id
   std::string name;    // free label, for tables; not part of config_id
-  std::string linear_solver_reason = "as asked for";  // or why auto chose it; no setting
+  std::string linear_solver_reason = "as requested";  // or why auto chose it; no setting
   std::string method;                                 // published method that was requested; empty: none
   SceneConfig scene;
   FormulationConfig formulation;

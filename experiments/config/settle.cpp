@@ -164,7 +164,7 @@ void settle_matching(const json& object, const Reader& reader, bool literal, Run
   const bool solid_given = !of_solids || config.strain_limit.solid_k_s;
   const bool as_given = literal || (contact_given && limit_given && solid_given);
   MatchingConfig& out = config.matching;
-  // A preset has a stiffness of its own: who gives what only matching reads asks for it.
+  // A preset has a stiffness of its own: a key that only matching reads requests matching.
   const bool asked = !literal && std::any_of(loads.begin(), loads.end(),
                                              [&object](const char* key) { return object.contains(key); });
   if (!object.contains("rule"))

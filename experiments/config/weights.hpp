@@ -10,7 +10,7 @@
 
 namespace bb {
 
-/// What the rows of the groups cannot tell: each has one source. body: the object that has them, which the rules have checked. Hashes the
+/// What the rows of the groups do not express: each has one source. body: the object that has them, which the rules have checked. Hashes the
 /// files.
 void read_weights(const nlohmann::json& body, const std::string& pointer, const Reader& reader,
                   std::vector<WeightGroupConfig>& groups);

@@ -47,7 +47,7 @@ ScaledClosest<T, pair_points(K)> closest_at_any_scale(const Mat<T, 3, pair_point
   return {scale, closest_points<K, T>(scale.of(x))};
 }
 
-/// accd of the scaled motion. Where the motion is longer than the start by more than T can tell, the start alone says whether it
+/// accd of the scaled motion. Where the motion is longer than the start by more than T resolves, the start alone decides whether it
 /// overlaps.
 template <PairKind K, class T>
 AccdResult<T> accd_at_any_scale(const Mat<T, 3, pair_points(K)>& x0, const Mat<T, 3, pair_points(K)>& x1,

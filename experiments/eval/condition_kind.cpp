@@ -10,7 +10,7 @@
 namespace bb::eval {
 namespace {
 
-constexpr int kLargestIndex = 999'999;  // keeps a mistyped index from asking for all memory
+constexpr int kLargestIndex = 999'999;  // keeps a mistyped index from requesting all memory
 constexpr int kLargestDense = 3000;     // the estimator dense is for tests
 
 ReducedSystem system_field(Query& q) {

@@ -23,9 +23,9 @@ struct Subject {
 ///   schema, n_vertices, reach_m
 ///   bodies [{name, first_vertex}] ascending, the first at 0; absent: one body "surface"
 ///   triangles [[3]], segments [[2]] of rods: vertex numbers from 0
-///   given [] vertices that the scene moves; half_thickness_m [n_vertices]; tolerance_m; planar
+///   given [] prescribed vertices, which the scene moves; half_thickness_m [n_vertices]; tolerance_m; planar
 ///   obstacles [{name, kind, point_m, axis, radius_m, inside, vertex}]: kind plane, sphere or cylinder; one with a
-///   vertex is where that is in each frame, and the vertex is given and on no surface
+///   vertex is where that is in each frame, and the vertex is prescribed and on no surface
 /// Edges are made of the triangles and segments (planar: of boundary edges); vertices of neither are particles.
 /// Errors: ConfigError with file and pointer for every key that is wrong or unknown, and for a subject without any
 /// triangle, segment or obstacle: nothing of it could be judged.

@@ -1,5 +1,5 @@
-// The broad phase on a stack of cloths, per primitive: one tree built, refitted and asked; then everything
-// that one Newton iteration asks.
+// The broad phase on a stack of cloths, per primitive: one tree built, refitted and queried; then everything
+// that one Newton iteration needs.
 #include <vector>
 
 #include "core/contact/bvh.hpp"

@@ -1,6 +1,6 @@
 // contact_stages PROBLEM THREADS: runs one stage of the contact pipeline for each line that it reads and
 // answers it with one line of JSON, {"stage", "s", "items", "value"}: wall time, what was handled, a number
-// that the toolkit's answer is compared with. ./bench study compare-toolkit asks it and the IPC Toolkit in turn.
+// that the toolkit's answer is compared with. ./bench study compare-toolkit runs it and the IPC Toolkit in turn.
 // The formulation is ipc2020: log on the squared gap, kappa = 1 N/m.
 #include <oneapi/tbb/global_control.h>
 

@@ -1,4 +1,4 @@
-// The Google Benchmark suite. All subjects of registry.inc; seeds are fixed, so two runs ask
+// The Google Benchmark suite. All subjects of registry.inc; seeds are fixed, so two runs have
 // the same questions.
 #include <oneapi/tbb/info.h>
 

@@ -50,7 +50,7 @@ class ArtifactWriter {
   /// that name.
   void matrix(const StoredSystem& stored);
   const std::vector<Artifact>& written() const { return written_; }
-  /// The names of what was written so far. Reading asks that the files are there. Errors: ConfigError naming one
+  /// The names of what was written so far. Reading requires that the files are there. Errors: ConfigError naming one
   /// that is not, or has another size.
   void keep(Archive& archive);
   /// From now on the files stay, also those of a run that never finishes: a checkpoint or a record names them.

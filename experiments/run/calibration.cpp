@@ -70,7 +70,7 @@ void note_left_out(MatchingRecord& record, const Demand& demand, const char* wha
                            demand.left_out_step));
 }
 
-/// Why a policy that makes its own stiffness was not scaled: nobody could be asked.
+/// Why a policy that makes its own stiffness was not scaled: no contact gave its stiffness.
 std::string why_as_given(const char* policy, const Demand& demand, const char* never) {
   return fmt::format("{} policy stays as given: {}", policy,
                      demand.left_out > 0 ? "no force of the calibration run is a load" : never);
@@ -231,7 +231,7 @@ void match_solid_limit(const Matching& m, Calibration& out) {
   if (out.solid_k_s) m.record.solid_limit_stiffness_Pa = *out.solid_k_s;
 }
 
-/// Whether a load is missing, or a policy has to be asked about the contacts or elements that carried it.
+/// Whether a load is missing, or a policy has to be evaluated at the contacts or elements that carried it.
 bool needs_calibration_run(const RunConfig& config, bool limited) {
   const bool contact = !config.matching.load || !needs_kappa(config.formulation.stiffness_policy);
   const bool limit = !config.matching.limit_load || !needs_k_s(config.strain_limit.stiffness_policy);

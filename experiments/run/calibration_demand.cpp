@@ -94,7 +94,7 @@ std::vector<double> own_limit_kappa(const StiffnessPolicy& policy, const Scene& 
                         {{dt, replay.c(step)}, replay.start(step).data(), scene.mass.data(), elastic});
 }
 
-/// The pseudo-gaps at which it is asked: a frozen number may be that of the step's start.
+/// The pseudo-gaps at which it is evaluated: a frozen number may be that of the step's start.
 std::vector<double> softest_gaps(const StiffnessPolicy& policy, const StrainLimitPart& part,
                                  std::span<const double> at_start) {
   std::vector<double> out = part.width;

@@ -1,4 +1,4 @@
-// What the contacts and limited elements of a calibration run ask of a stiffness: the largest demand over all of them,
+// What the contacts and limited elements of a calibration run require of a stiffness: the largest demand over all of them,
 // at all converged step ends (docs/theory/barriers.md, Matching).
 #pragma once
 
@@ -28,7 +28,7 @@ struct Demand {
   std::string left_out_where;
 };
 
-/// The largest demand over the contacts that carry a load; those whose force answers to kappa are left out. `own`: the policy that is to be scaled, or null. It is asked for the
+/// The largest demand over the contacts that carry a load; those whose force answers to kappa are left out. `own`: the policy that is to be scaled, or null. It is evaluated for the
 /// contact with the H that it reads: of the step's end when it is refreshed in every iteration, else of the
 /// step's start; and at d_hat, where a new pair gets its kappa, or at u d_hat if that gives less. Rows with a
 /// mollifier are left out: their load is e(x) times that of a row.
@@ -38,7 +38,7 @@ Demand contact_demand(const CalibrationRun& calibration_run, const Scene& scene,
                       const MatchedStiffness& matched, const StiffnessPolicy* own, double u,
                       const RunLimits& limits = {});
 
-/// The same over the limited elements. `own` is asked at the width of the limit; where kappa_e is frozen for a
+/// The same over the limited elements. `own` is evaluated at the width of the limit; where kappa_e is frozen for a
 /// step as a number, at the gap of the step's start if that is wider. Requires a scene with limited elements.
 Demand limit_demand(const CalibrationRun& calibration_run, const Scene& scene,
                     const MatchedStiffness& matched, const StiffnessPolicy* own,

@@ -50,12 +50,12 @@ class CalibrationRunCache {
   explicit CalibrationRunCache(std::size_t bytes) : bytes_(bytes) {}
   /// Null when it is not known, or not any more.
   std::shared_ptr<const CalibrationRun> find(const std::string& config_id);
-  /// Keeps it and drops those that were not asked for longest.
+  /// Keeps it and drops those that were requested longest ago.
   std::shared_ptr<const CalibrationRun> keep(CalibrationRun calibration_run);
 
  private:
   std::size_t bytes_;
-  std::vector<std::shared_ptr<const CalibrationRun>> known_;  // asked for last: at the end
+  std::vector<std::shared_ptr<const CalibrationRun>> known_;  // requested last: at the end
 };
 
 /// Runs the calibration run of this config, or returns the one that is known: 256 MiB of them are kept.

@@ -48,7 +48,7 @@ class FailingExecutor final : public exec::HostExecutor {
  private:
   void run(const exec::KernelInfo& kernel, exec::Index n, const void* f) override {
     if (kernel.name().find(kernel_) != std::string::npos && --left_ == 0) {
-      throw exec::ExecutionError(kernel.name() + ": " + failure_variable + " asked for this failure");
+      throw exec::ExecutionError(kernel.name() + ": " + failure_variable + " requested this failure");
     }
     HostExecutor::run(kernel, n, f);
   }

@@ -27,7 +27,7 @@ struct AskedRun {
 };
 
 /// A run may replace record and checkpoint in its folder when they are of the same config, as this program resolves it; `tell`,
-/// which may be empty, is told what else made the record: another build, plugin, library or machine.
+/// which may be empty, receives what else made the record: another build, plugin, library or machine.
 /// Errors: ConfigError naming run.json or checkpoint.bin, and the first setting that differs: that of another config, or a file
 ///   that is no record or checkpoint of this version. Nothing is written.
 void require_replaceable(const AskedRun& asked, const std::function<void(const std::string&)>& tell);

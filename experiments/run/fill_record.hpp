@@ -20,7 +20,7 @@ void fill_method(const RunConfig& config, RunRecord& record);
 void fill_scene(const Scene& scene, RunRecord& record);
 void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record);
 
-/// The stiffness of this run by its matching rule, or why there is no first step: only the scene or its calibration run can tell that it
+/// The stiffness of this run by its matching rule, or why there is no first step: only the scene or its calibration run shows that it
 /// cannot be matched, and the time limit may come before the answer. Errors: Interrupted.
 std::optional<Verdict> find_stiffness(const RunConfig& config, const Scene& scene, const RunOptions& options,
                                       MatchingRecord& record, Calibration& out);

@@ -9,7 +9,7 @@
 
 namespace bb {
 
-/// What the conditioning comes from, as far as the samples of an iteration tell: "contact" or "strain_limit"
+/// What the conditioning comes from, as far as the samples of an iteration show: "contact" or "strain_limit"
 /// when the (clamped, unscaled) matrix without those terms has a cond less than a tenth of that with them
 /// ("contact_or_strain_limit" where only the matrix without both was requested), "elasticity_and_inertia" when
 /// neither counts that much. Empty when no stage was requested. A matrix without a cond counts with 1e14.

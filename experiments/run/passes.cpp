@@ -149,7 +149,7 @@ class PassSequence {
     fill_times(timed_, config_.passes.time, record_);
     record_.summary.state_hash = main.state_hash;
     fill_stiffness(main, record_);
-    // a pass that was cut off ends in another state: that says nothing about the other one
+    // a pass that was cut off ends in another state: that shows nothing about the other one
     const std::string seen_hash = in_second_ && seen_.whole ? seen_.state_hash : "";
     fill_validity(scene_, ledger_ ? &*ledger_ : nullptr, timed_.state_hash, seen_hash, record_);
   }

@@ -8,7 +8,7 @@ namespace bb {
 
 /// Thrown when the run was stopped: no run.json is written, an earlier one stays.
 struct Interrupted {
-  std::string kept;  // what a sweep says of the records that it has; empty: nothing was kept
+  std::string kept;  // what a sweep reports of the records that it has; empty: nothing was kept
 };
 
 /// Thrown when the time limit was reached before the first step of a run.

@@ -257,7 +257,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   if (options.time_limit_s > 0) options.deadline_s = now_s() + options.time_limit_s;
   const auto threads = threads_of(config);
   set_one_blas_thread();  // before the record reports how many there are, and before anything computes
-  // before anything is written: what config and files can tell is refused here
+  // before anything is written: a fault that config and files show is refused here
   const Scene scene = build_scene(config);
   require_device(config, scene);
   check_step_solver_forms(config, scene);

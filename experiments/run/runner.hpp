@@ -67,14 +67,14 @@ struct EarlierStays : Interrupted {
 /// What is known before the run: config with its files named from options.folder, provenance, machine, ids.
 RunRecord identified(const RunConfig& config, const RunOptions& options);
 
-/// What a run that uses a formula should say of it: signs of its derivatives that are only sampled. One text a formula.
+/// What a run that uses a formula should report of it: signs of its derivatives that are only sampled. One text a formula.
 std::vector<std::string> formula_caveats(const RunConfig& config);
 
 /// Runs and writes. The outcome is in the record, whatever it is. The folder is locked meanwhile; an earlier
 /// run in it stays as it is until this one is over, and then goes with its trace, frames and matrices. A run that time or
 /// memory ends leaves its record and its checkpoint; the record of more steps of the same run stays in its place.
 /// With options.resume a run whose record is in the folder already is not run: the record is returned.
-/// Errors: ConfigError for what config and files can tell, as build_scene and require_replaceable (nothing of this run is written; what a
+/// Errors: ConfigError for what config and files show, as build_scene and require_replaceable (nothing of this run is written; what a
 ///   run that was killed had finished has its names by then);
 ///   RecordError (output, or another process has the folder); Interrupted.
 RunRecord run_config(const RunConfig& config, const RunOptions& options);

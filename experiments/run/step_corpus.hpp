@@ -50,7 +50,7 @@ struct CorpusState {
 std::string minimum_name(std::size_t place);
 
 /// All trials of a state: line_search with each of all_step_hessians and with the exact Hessian of friction, then every other step solver of the registry with its own
-/// Hessian. `tell` hears of each before it begins. Errors: Interrupted.
+/// Hessian. `tell` receives the name of each before it begins. Errors: Interrupted.
 CorpusState take_state(const StepState& state, const RunOptions& options,
                        const std::function<void(const std::string&)>& tell);
 

@@ -44,7 +44,7 @@ struct TakenStep {
   bool has_memory =
       true;  // false: what terms and policies remember of the run is no memory of this step solver
   std::vector<IterationReport> iterations;
-  std::vector<Positions> states;  // after each of them, where asked for
+  std::vector<Positions> states;  // after each of them, where requested
   Positions end;
 };
 

@@ -28,7 +28,7 @@ class SteppedRun {
 
   /// Of the two passes of a config it is the observed one, where there is one, and then leaves out the timed one: the config
   /// of its record reports it. options.folder: of record, trace, frames and matrices; empty: nothing is written, and
-  /// the config may ask for no frames or matrices. options.resume and limits are not read.
+  /// the config may request no frames or matrices. options.resume and limits are not read.
   /// While it lives the process computes with at most the threads of the config: to limit them anew in each step costs
   /// milliseconds. A scene that cannot start is an outcome: the run is over before its first step.
   /// Errors: those of run_config; ConfigError for a run on a card, or a folder with a checkpoint;

@@ -1,5 +1,5 @@
 // A record on the disk as the program needs it again: to repeat the run, and to see whether a run that is
-// asked for was made by the same program from the same things.
+// requested was made by the same program from the same things.
 #pragma once
 
 #include <filesystem>

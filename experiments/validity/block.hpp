@@ -22,7 +22,7 @@ struct BlockCheck {
   void judge(double found, const std::string& subject);
 };
 
-/// All checks, in the order of block.cpp. A check that throws fails with what it said.
+/// All checks, in the order of block.cpp. A check that throws fails with its message.
 /// Errors: none.   Cost: about a second.
 std::vector<BlockCheck> compute_block();
 /// Their names.

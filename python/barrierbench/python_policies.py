@@ -20,7 +20,7 @@ Doubles = NDArray[np.float64]
 
 @dataclass
 class ContactRows:
-    """The n contacts that a policy is asked for. Of the four places of a contact the first n_free are free vertices;
+    """The n contacts at which a policy is evaluated. Of the four places of a contact the first n_free are free vertices;
     what the others hold has no meaning. Arrays belong to the run and are gone when the call is over.
     """
 
@@ -53,7 +53,7 @@ class ContactRows:
 
     @cached_property
     def k(self) -> Doubles:
-        """[n] w^T H w/(w^T w), N/m. Errors: ConfigError where the policy has not said needs_hessian."""
+        """[n] w^T H w/(w^T w), N/m. Errors: ConfigError where the policy has not set needs_hessian."""
         if self.hessian is None:
             raise _error("", "k without needs_hessian", "a policy with needs_hessian = True")
         w = self.w.reshape(-1, 12)
@@ -67,7 +67,7 @@ def _error(name: str, found: str, allowed: str) -> _core.ConfigError:
 
 
 def _kappa(name: str, policy: Any, rows: ContactRows) -> Doubles:
-    """Errors: what the policy raises; ConfigError with the contact where kappa is no number >= 0."""
+    """Errors: what the policy raises; ConfigError with the contact where kappa is not a number >= 0."""
     found = policy.kappa(rows)
     numbers = reals(found, f"stiffness policy {name}: kappa")
     try:
@@ -104,8 +104,8 @@ def register_policy(policy: Any) -> str:
     """Makes a Python object a stiffness policy that configs name, until the process ends; returns the name.
 
     policy: has `name` (snake_case) and `kappa(rows)`, which gets ContactRows and returns kappa in N/m, [n] or one
-    number; and `needs_hessian` = True where it reads `rows.k` or `rows.hessian`. When it is asked (every iteration, or
-    once a step) is the config's `refresh`. What it raises ends the step that asked, and the run is where it was before
+    number; and `needs_hessian` = True where it reads `rows.k` or `rows.hessian`. When it is evaluated (every iteration, or
+    once a step) is the config's `refresh`. What it raises ends the step that called it, and the run is where it was before
     that step. The same name again replaces the object. Errors: ConfigError that names what does not hold; what `kappa`
     raises for a first contact of one vertex that it is tried with.
 

@@ -15,7 +15,7 @@ from .python_sources import is_name, remember
 from .shape import Shape
 
 Terms3 = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
-# Gaps over d_hat, 10^-k, at which b is asked whether it is infinite at 0: from each to the next log(d) doubles.
+# Gaps over d_hat, 10^-k, at which b shows whether it is infinite at 0: from each to the next log(d) doubles.
 _DECADES = (9, 18, 36, 72, 144, 288)
 # Of b from one of them to the next, against that before: 2 for -log(d), 1.41 for its root, 1 for log(-log(d)), 0.5 for
 # 2 - 1/(1 - log(d)), and next to 0 for 2 - d^0.05. What ends more slowly passes for infinite: 2 - d^p with p of at
@@ -169,7 +169,7 @@ def register_shape(shape: Any) -> Shape:
     `infinite_at_zero`; and `value(d, d_hat)` in m^2, `d1` in m, `d2` without unit, or `terms(d, d_hat)` which returns
     the three. They get float64 arrays of gaps 0 < d < d_hat (0 too, where it is finite) and return arrays. What is
     declared is tested at a few gaps. It is called from several threads, one at a time; what it raises ends the step
-    that asked, and the run is where it was before that step. The same name again replaces the object.
+    that called it, and the run is where it was before that step. The same name again replaces the object.
     Errors: ConfigError that names what does not hold, and where.
 
     >>> class Quartic:

@@ -32,7 +32,7 @@ class Simulation:
     record of the same config there is replaced; a record or checkpoint of another config, or a file of their names,
     only with `replace`.
 
-    It is one pass. A config that asks for times and for the audit (the default does) is run by the program twice, once
+    It is one pass. A config that requests times and the audit (the default does) is run by the program twice, once
     for each; here the observed pass alone is made, and the config of the record says so (/passes/time false). The
     record is then, number for number, that of `bench run --set /passes/time=false`.
 

@@ -34,7 +34,7 @@ class Step:
 
     A step is a loop over `iterations()`. Each has E, its gradient and its matrix at `x`, then one direction, which is
     `solve()` or set by hand, and then one motion along it: `bound()`, `trial(alpha)` or `feasible(alpha)`, `accept()`.
-    What is called in another order is a RuntimeError. Arrays are read-only views or copies, as said; views move with
+    What is called in another order is a RuntimeError. Arrays are read-only views or copies, as stated; views move with
     the iterates. After `advance` nothing of a step may be called; an error of the run inside of it ends it.
     """
 
@@ -63,7 +63,7 @@ class Step:
 
     @property
     def tolerance(self) -> float:
-        """h times /step_solver/tol_velocity_m_per_s, m: how near to the solution a step is asked to end."""
+        """h times /step_solver/tol_velocity_m_per_s, m: how near to the solution a step has to end."""
         return self._core.tolerance
 
     @property
@@ -177,7 +177,7 @@ class Step:
     def trial(self, alpha: float) -> Trial | None:
         """E at x + alpha direction against E at x; None where that state is not feasible.
 
-        alpha: in (0, 1], up to `bound()` where that was asked for. A motion whose bound was not asked for is judged by
+        alpha: in (0, 1], up to `bound()` where that was called. A motion whose bound was not computed is judged by
         its end alone and may pass through a surface. Errors: ValueError for another alpha (ConfigError is one).
         """
         found = self._core.trial(real(alpha, "alpha"))

@@ -156,7 +156,7 @@ void PythonStep::set_direction(const double* free, std::size_t n) {
   });
 }
 
-// What is estimated of x + dx. Where that is within the tolerance the iterate is looked at, as the config asks.
+// What is estimated of x + dx. Where that is within the tolerance the iterate is looked at, as the config requires.
 void PythonStep::take_direction() {
   IterationReport& report = *iteration_;
   directed_ = true;
@@ -196,7 +196,7 @@ double PythonStep::bound() {
   });
 }
 
-// A motion whose bound was asked for is looked at up to there alone.
+// A motion whose bound was requested is looked at up to there alone.
 void PythonStep::prepare(double alpha) {
   require_motion();
   if (!(alpha > 0 && alpha <= bound_.value_or(1))) {

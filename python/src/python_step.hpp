@@ -91,7 +91,7 @@ class PythonStep {
   const double h_, tolerance_;
   Positions x_, x_start_, x_tilde_, target_, gradient_;
   const std::vector<std::uint8_t> fixed_;
-  std::string fault_;  // what an error inside the step said
+  std::string fault_;  // message of an error inside the step
 
   ErrorEstimate error_;
   EndCheck end_;

@@ -110,7 +110,7 @@ class PythonRun {
   bool busy_ = false;
 };
 
-/// What Python says during a whole run. The first exception stops the run between two steps, as a signal does.
+/// What Python reports during a whole run. The first exception stops the run between two steps, as a signal does.
 class Listener {
  public:
   explicit Listener(const nb::object& on_step) : on_step_(on_step) {}

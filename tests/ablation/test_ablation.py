@@ -95,7 +95,7 @@ def test_scenes_are_the_samples(small):
 
 
 def test_a_scene_that_is_far_out_does_not_hide_what_all_scenes_have(small):
-    """Its interval reaches over nothing, the sign-flip test does not ask for one spread."""
+    """Its interval reaches over nothing, the sign-flip test does not require one spread."""
     found = effects.effects_of(small, made(small, lambda k, v: 10 * (50.0 if k == 0 else 1.02 + 0.01 * k) ** v[1])).main["newton"]
     y = effect(found, small, "y")
     assert y.low < 0 < y.high and y.decided and y.p == pytest.approx(2 / 1024)

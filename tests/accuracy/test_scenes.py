@@ -80,7 +80,7 @@ def test_refined_reference_is_the_middle_and_its_band_the_distance(program, tmp_
 
 
 def test_the_last_frame_is_the_end_whatever_the_frames_between(program, tmp_path):
-    """The last state of a run has a frame of its own; a motion that lacks it is told and measured by nothing."""
+    """The last state of a run has a frame of its own; a motion that lacks it is reported and measured by nothing."""
     motion = scene(program, tmp_path, "stack", 25)
     last = motion.record["steps"][-1]
     assert last["step"] % 25 != 0 and motion.times[-1] == last["t_s"] and len(motion.times) == 2 + last["step"] // 25 + 1

@@ -1,4 +1,4 @@
-"""The share of the strain limit in the climb of a condition number: it must not depend on which of limit and contact is added first."""
+"""The share of the strain limit in the growth of a condition number: it must not depend on which of limit and contact is added first."""
 
 import pytest
 from barrierbench_analysis.studies.kit.metrics import METRICS

@@ -1,4 +1,4 @@
-"""What every figure keeps: caption, letters, words on lines, axes that magnify nothing, looks that are told apart, matrices that are not mixed."""
+"""What every figure keeps: caption, letters, words on lines, axes that magnify nothing, looks that differ, matrices that are not mixed."""
 
 import json
 

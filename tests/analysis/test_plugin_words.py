@@ -24,7 +24,7 @@ CONFIG = str(ROOT / "configs/scenes/resting_block_1d.json")
 
 @pytest.fixture
 def asked(tmp_path, monkeypatch):
-    """asked(verb, *words) -> what a program that runs nothing was asked by this verb, from a folder with two plugins."""
+    """asked(verb, *words) -> what this verb requested of a program that runs nothing, from a folder with two plugins."""
     stand_in, log = tmp_path / "program", tmp_path / "log"
     stand_in.write_text(STAND_IN.format(python=sys.executable, log=str(log)))
     stand_in.chmod(0o755)

@@ -41,7 +41,7 @@ def kept(**changed):
 
 
 def rows_of(name: str, ratios, **changed) -> Runs:
-    """A run of every case of a sweep of slices. ratios: theta, whether there is a limit -> the log's condition number over the cubic's."""
+    """A run of every case of a sweep over theta and the limit. ratios: theta, whether there is a limit -> the log's condition number over the cubic's."""
     sweep, rows = read_sweep(name), []
     for note, (scene, level, case, seed) in sweep.cases.items():
         of = sweep.more[note]
@@ -56,7 +56,7 @@ def rows_of(name: str, ratios, **changed) -> Runs:
 
 @pytest.fixture
 def alone(monkeypatch):
-    """The slices of the claim without its other parts, whose sweeps would be needed too."""
+    """The parts of the claim over theta and the limit without its other parts, whose sweeps would be needed too."""
     whole = read_claim(slices.CLAIM)
     part = replace(whole, parts=tuple(p for p in whole.parts if p.get("sweep") == "contact_slices"))
     monkeypatch.setattr(slices, "read_claim", lambda _: part)

@@ -145,7 +145,7 @@ def test_a_trace_of_another_run_and_one_that_is_named_and_gone_are_refused(tmp_p
 
 @pytest.mark.parametrize("version, bound", [("3.3.9", False), ("3.4.0", True), ("3.4.1", True), ("3.99.0", True)])
 def test_from_version_3_4_on_a_trace_is_read_only_where_its_record_names_it(folder, version, bound):
-    """A blank more in a line: the same iterations, so only the hash can tell."""
+    """A blank more in a line: the same iterations, so only the hash shows it."""
     edit(folder, lambda record: record["schema"].update(version=version))
     path = folder / "trace.jsonl"
     path.write_text(path.read_text().replace("{", "{ ", 1))

@@ -1,4 +1,4 @@
-"""The table of surface gaps: what is counted, and that a run that is called ok with a surface in an obstacle is told."""
+"""The table of surface gaps: what is counted, and that a run that is called ok with a surface in an obstacle is reported."""
 
 import json
 

@@ -1,4 +1,4 @@
-// The audit at obstacles, on scenes of a few triangles: what is asked, what is named, and whose fault it is.
+// The audit at obstacles, on scenes of a few triangles: what is checked, what is named, and whose fault it is.
 #include <gtest/gtest.h>
 
 #include "core/audit/audit.hpp"

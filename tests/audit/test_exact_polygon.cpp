@@ -1,4 +1,4 @@
-// The proofs in integers against the same questions asked of polynomials: motions between small integer points, where
+// The proofs in integers against the same decisions by polynomials: motions between small integer points, where
 // everything can be multiplied out.
 #include "core/audit/exact_polygon.hpp"
 

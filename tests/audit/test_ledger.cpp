@@ -1,5 +1,5 @@
 // The verdict over a whole run: every count that is bad makes it bad, those that are reported apart do not, and a run in
-// which a kind of primitive was never asked is not audited.
+// which a kind of primitive was never checked is not audited.
 #include "core/audit/audit_ledger.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace bb::audit::ledger_test {
 namespace {
 
-/// A ledger of a scene in which everything was asked once.
+/// A ledger of a scene in which everything was checked once.
 AuditLedger judged_ledger() {
   AuditLedger ledger;
   ledger.subjects = {6, 4, 4, 1, {4, 6, 4}};
@@ -127,7 +127,7 @@ TEST(Ledger, AHoleInTheRunAndAFailedSelfTestAreBad) {
   EXPECT_FALSE(broken.penetrated());
 }
 
-/// Pairs of the surface, and each kind that the obstacles ask for, have to be asked at least once.
+/// Pairs of the surface, and each kind that the obstacles require, have to be checked at least once.
 TEST(Ledger, AKindThatWasNeverAskedLeavesNothingJudged) {
   EXPECT_EQ(judged_ledger().judged(), 10 + 4 + 6 + 4);
   for (long ObstacleCounts::*kind :

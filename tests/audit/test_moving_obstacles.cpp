@@ -1,4 +1,4 @@
-// Obstacles that move: a motion past one is the same motion relative to it, judged as exactly; what is fixed is asked too.
+// Obstacles that move: a motion past one is the same motion relative to it, judged as exactly; what is fixed is judged too.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -117,7 +117,7 @@ TEST(PrescribedBodies, WhatPassesThemIsFoundWhateverElseIsNear) {
   }
 }
 
-/// Prescribed bodies that meet each other are the scene's fault, one against itself is not asked after the first state.
+/// Prescribed bodies that meet each other are the scene's fault, one against itself is not checked after the first state.
 TEST(PrescribedBodies, ThatMeetEachOtherAreAFaultAndOneAloneIsNot) {
   int faults = 0;
   for (const bool planar : {false, true}) {

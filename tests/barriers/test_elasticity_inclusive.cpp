@@ -224,7 +224,7 @@ TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
     EXPECT_EQ(kappa[r], 3 * one);
   }
 
-  // asked at the floor where the gap is below it
+  // evaluated at the floor where the gap is below it
   config.parameters["mass_term"] = "paper";
   config.parameters["gap_floor"] = 0.5;
   for (std::size_t r = 0; r < 4; ++r) d[r] = (r % 2 == 0 ? 1e-12 : 0.7) * d_hat[r];

@@ -112,7 +112,7 @@ TEST(Exponential, RestsAtThetaUnderTheLoadThatItIsMatchedTo) {
   }
 }
 
-/// Of a shape whose force falls towards contact: what equal force asks for at a theta beyond the peak rests elsewhere.
+/// Of a shape whose force falls towards contact: what equal force requires at a theta beyond the peak rests elsewhere.
 TEST(Exponential, OnTheSquaredGapAThetaBeyondItsPeakIsNotWhereItRests) {
   const BarrierFunction fn = with_exponent(6, Argument::squared_gap);
   EXPECT_LT(rho(fn, 0.01), 0);

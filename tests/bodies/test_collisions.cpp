@@ -66,7 +66,7 @@ TEST(Collisions, AutoFollowsOpenAndClosedSurfaces) {
   EXPECT_EQ(of.kind(4, 2), CollisionKind::audited);
   EXPECT_EQ(of.find(0, 1)->reason, "auto: both surfaces are closed");
   EXPECT_EQ(of.find(0, 2)->reason, "auto: the surface of cloth is open");
-  EXPECT_EQ(of.kind(1, 2), CollisionKind::ccd) << "nothing is said of it";
+  EXPECT_EQ(of.kind(1, 2), CollisionKind::ccd) << "nothing is reported of it";
   EXPECT_EQ(of.find(1, 2), nullptr);
 }
 

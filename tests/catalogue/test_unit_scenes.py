@@ -73,6 +73,6 @@ def test_a_funnel_carries_the_weight_over_the_sine_of_its_half_angle(tmp_path, l
     load = record["steps"][-1]["contact_load_sum_N"]
     print("load", load, "N, closed form", exact, "weight", weight)
     assert stated == pytest.approx(exact, rel=1e-3) and load == pytest.approx(exact, rel=1e-3) and exact > 1.5 * weight
-    center = x[-1][:ours].mean(axis=0)  # in the axis, as high as the radius asks for, less what the ball gives way and its corners lack
+    center = x[-1][:ours].mean(axis=0)  # in the axis, as high as the radius requires, less what the ball gives way and its corners lack
     radius = ball["mesh"]["radius_m"]
     assert np.abs(center[:2]).max() < 1e-6 and 0.97 * radius < center[2] * np.sin(half_angle) < radius + 0.004

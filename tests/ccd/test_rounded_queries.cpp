@@ -1,5 +1,5 @@
-// Which queries get an offset for their rounding: those that were rounded to the scalar that they are asked in, and no
-// others. A pair that stands still just above the rounding of its coordinates tells.
+// Which queries get an offset for their rounding: those that were rounded to the scalar that they are evaluated in, and no
+// others. A pair that stands still just above the rounding of its coordinates shows which.
 #include <gtest/gtest.h>
 
 #include "experiments/ccd/score.hpp"
@@ -60,13 +60,13 @@ TEST(CcdRounding, OnlyWhatWasRoundedToAScalarIsAskedWithAnOffsetInIt) {
   EXPECT_EQ(none, 8);
 }
 
-/// The exact test has nothing to say of what was rounded to double, and is asked of all else.
+/// The exact test decides nothing of what was rounded to double, and is applied to all else.
 TEST(CcdRounding, TheExactTestLeavesOutWhatIsNoDouble) {
   int judged = 0;
   for (const PairKind kind : {PairKind::point_triangle, PairKind::edge_edge}) {
     for (const bool in_double : {false, true}) {
       for (const bool in_float : {false, true}) {
-        Query query = still(kind, 0.25, true);  // a truth that is wrong: counted as a miss where it is asked
+        Query query = still(kind, 0.25, true);  // a truth that is wrong: counted as a miss where it is tested
         query.rounded_double = in_double, query.rounded_float = in_float;
         const std::vector<Score> scores = scores_of(kind, query);
         const Score& audit = find(scores, "double", "audit");

@@ -16,7 +16,7 @@ CLAIM = read_claim("K12")
 
 
 class Repository:
-    """A checkout with the confirmation sweep of K12, its own git, and time as commits are told."""
+    """A checkout with the confirmation sweep of K12, its own git, and the times of commits."""
 
     def __init__(self, root):
         self.root = root

@@ -1,4 +1,4 @@
-"""What tables and figures of claims say of steps that are not asked to converge: the residual of their ends, in the words of every other table."""
+"""What tables and figures of claims state of steps that do not have to converge: the residual of their ends, in the words of every other table."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""claims/ as committed, the kept numbers, and what is said when something is missing."""
+"""claims/ as committed, the kept numbers, and what is reported when something is missing."""
 
 import json
 

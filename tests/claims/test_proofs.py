@@ -1,4 +1,4 @@
-"""Proofs ask the program, or kept answers."""
+"""Proofs evaluate by the program, or by kept answers."""
 
 import pytest
 
@@ -31,7 +31,7 @@ def test_kept_answers_stand_in_for_the_program(asker):
     with pytest.raises(UserError, match="./bench study claims asks it"):
         rho_above({**RHO, "u": [0.3]}, Eval(None, asker.answers))
     broken = {query: {"rho": 1.0} for query in asker.answers}
-    assert rho_above(RHO, Eval(asker.program, broken, fresh=True)).verdict == HOLDS  # asked again
+    assert rho_above(RHO, Eval(asker.program, broken, fresh=True)).verdict == HOLDS  # evaluated again
 
 
 def test_a_light_touch(asker):

@@ -40,7 +40,7 @@ def test_a_verdict_that_one_demand_makes_says_so():
 def test_a_verdict_that_holds_without_each_demand_rests_on_none():
     of = runs(close_gap=1.0, short_of_time=1.0)
     assert judged(of).verdict == HOLDS and rests_on(PART, of, judged(of)) == ""
-    assert rests_on({**PART, "bad": "close_gap"}, of, judged(of)) == ""  # asked for one thing alone, which the part names
+    assert rests_on({**PART, "bad": "close_gap"}, of, judged(of)) == ""  # judged by one condition alone, which the part names
     assert rests_on(PART, of, replace(judged(of), verdict="not decided")) == ""
 
 

@@ -1,4 +1,4 @@
-"""Further axes of a sweep, and the slice that a part names."""
+"""Further axes of a sweep, and the conditions that a part names."""
 
 import json
 import re

@@ -56,7 +56,7 @@ def test_what_falls_short_is_named(made, name):
 
 def test_the_sides_of_the_thresholds():
     assert failed(record([step(0.01, gap_min_rel=0.05), step(0.02 * (1 - 1e-10))])) == []
-    assert failed(record([step(0.01), step(0.0295)], duration_s=0.0295)) == []  # a duration is what is asked for, not steps of dt
+    assert failed(record([step(0.01), step(0.0295)], duration_s=0.0295)) == []  # a duration is requested, not steps of dt
     assert failed(record([step(0.01), step(0.0295)], duration_s=0.03)) == ["short_of_time"]
     assert success.residual_max(record([step(0.01, end_error_tolerances=3.0), step(0.02, end_error_tolerances=None)])) == 3 and success.residual_max({}) is None
     assert success.time_asked({"config": {"time": {"steps": 3}}}) is None and success.time_asked({}) is None
@@ -104,7 +104,7 @@ def published() -> list:
 
 
 def test_what_is_called_published_is_a_whole_method():
-    """No setting of the sweep, and none of its scenes, is one of the method's; all cases of a place are asked for one simulated time."""
+    """No setting of the sweep, and none of its scenes, is one of the method's; all cases of a place have one simulated time."""
     assert {sweep.name for sweep in published()} == {"tight_limits", "policies", "shells_tight", "shells_policies"}
     for sweep in published():
         data = json.loads(sweep.path.read_text())

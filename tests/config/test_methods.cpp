@@ -62,7 +62,7 @@ TEST(Methods, TheCubicPapersIsWhatItsAuthorsRun) {
 
 TEST(Methods, WhatStandsBesideTheNameWins) {
   const std::vector<std::string> formulation = overridden_in(asked_for("ando2024"));
-  EXPECT_EQ(formulation.front(), "/formulation/name");  // hang_config() asks for log
+  EXPECT_EQ(formulation.front(), "/formulation/name");  // hang_config() requests log
   EXPECT_EQ(method_use(parsed(asked_for("ando2024"))).title(), "ando2024, changed");
   const json config = pure_with("ando2024", "/precision", "double");
   EXPECT_EQ(parsed(config).precision, Precision::full);

@@ -1,4 +1,4 @@
-// What a config may not say: keys, types, ranges, names, syntax; where it is told, and all of it at once.
+// What a config may not contain: keys, types, ranges, names, syntax; where it is reported, and all of it at once.
 #include <set>
 
 #include "tests/config/config_text.hpp"
@@ -9,7 +9,7 @@ namespace {
 struct Wrong {
   std::string pointer;
   json value;
-  std::string allowed;  // part of what is said to be allowed
+  std::string allowed;  // part of what the message allows
 };
 
 TEST(Parse, TheConfigsOfTheTestsAreAccepted) {

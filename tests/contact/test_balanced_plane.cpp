@@ -1,6 +1,6 @@
 // What planar_balanced promises beside the gap: of all planes that divide a pair's gap, its own lets the vertex that may go least go
 // farthest. The best plane is found here by bisection in long double. The closest point is a corner or a side, so that other vertices
-// lie farther back and have more room than the gap.
+// lie farther back and have more way than the gap.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -10,7 +10,7 @@ struct Tally {
   int by_near_pairs = 0, free = 0, with_queries = 0;
 };
 
-/// Candidates and bound of one motion, as an iteration asks for them.
+/// Candidates and bound of one motion, as an iteration computes them.
 StepBound bound_of(ContactSystem& contacts, const Positions& x0, const Positions& x1, bool to_bound) {
   if (to_bound) {
     contacts.update_candidates_to_bound(x0, x1);

@@ -233,7 +233,7 @@ TEST(TreeBox, RoundsOutward) {
   }
 }
 
-/// What no float holds reaches to infinity on its side; two of them overlap, as far as anybody can tell.
+/// What no float holds reaches to infinity on its side; two of them overlap, as far as floats decide.
 TEST(TreeBox, BeyondFloatIsStillABox) {
   TreeBox far, farther, near;
   far.add(Vec3d(1e300, 0, 0));

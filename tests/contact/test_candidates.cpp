@@ -198,7 +198,7 @@ TEST(Surface, HasNoMorePrimitivesThanPairsCanName) {
   check_primitive_count("edges", 7, 7);
   try {
     check_primitive_count("edges", 8, 7);
-    FAIL() << "there is no room for 8";
+    FAIL() << "8 were accepted";
   } catch (const std::length_error& error) {
     EXPECT_STREQ(error.what(), "contact: 8 edges in the surface; at most 7");
   }
@@ -240,7 +240,7 @@ Scene planar_scene(PlanarPairs pairs) {
 
 TEST(Candidates, PlanarVertexPairsAreThoseWithoutAMeshEdge) {
   const Scene scene = planar_scene(PlanarPairs::vertex_vertex);
-  const Positions x = 0.3 * scene.rest;  // nearer than the rest rule asks for
+  const Positions x = 0.3 * scene.rest;  // nearer than the rest rule requires
   const Candidates c = candidates_of(scene, x, x);
   // 9 vertices have 36 pairs; the grid has 12 straight edges and 4 diagonals
   EXPECT_EQ(c.point_point.size(), 20U);

@@ -29,7 +29,7 @@ Positions dart_moved(const Scene& scene, double dz) {
   return x;
 }
 
-/// What contact says of a motion of the dart by dz and of the state at its end.
+/// What contact reports of a motion of the dart by dz and of the state at its end.
 struct Answer {
   std::size_t rows_at_start;
   double bound;

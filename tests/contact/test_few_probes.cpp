@@ -20,7 +20,7 @@ struct Asked {
   bool capped = false;
 };
 
-/// Of every pair of two loose triangles by its vertices, ascending: asked alone.
+/// Of every pair of two loose triangles by its vertices, ascending: queried alone.
 template <PairKind K>
 void ask(const Positions& x0, const Positions& x1, const std::array<int, 4>& v, int probes, ContactKey key,
          std::map<ContactKey, Asked>& out) {

@@ -88,7 +88,7 @@ def our_rows(answer):
     stencils, first, counts = np.unique(answer["stencil"], axis=0, return_index=True, return_counts=True)
     for stencil, d, m in zip(stencils, answer["d"][first], counts):  # pairs of one feature are one collision there
         ids = stencil[stencil >= 0]
-        if kinds[len(ids)] is None:  # point-triangle or edge-edge: the toolkit's keys tell
+        if kinds[len(ids)] is None:  # point-triangle or edge-edge: the toolkit's keys decide
             plain[sides(ids, False)] = plain[sides(ids, True)] = (d, m)
         else:
             plain[sides(ids, False)] = (d, m)

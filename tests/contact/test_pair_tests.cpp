@@ -176,7 +176,7 @@ TEST(ProvenTimes, OfBoxesThatAreNotFiniteAreNothing) {
   EXPECT_EQ(time(), 0);
 }
 
-/// Given up, a query tells what it had proven; not given up, it is the query that goes to the end.
+/// Given up, a query returns what it had proven; not given up, it is the query that goes to the end.
 template <PairKind K>
 void expect_give_up() {
   Pairs pairs;

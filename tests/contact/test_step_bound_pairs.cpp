@@ -1,4 +1,4 @@
-// The step bound asks few pairs for their time, and is that of asking every one; candidates up to it suffice.
+// The step bound queries few pairs for their time, and is that of querying every one; candidates up to it suffice.
 #include <gtest/gtest.h>
 
 #include "core/contact/candidates.hpp"
@@ -10,7 +10,7 @@
 namespace bb::test::step_bound_pairs_test {
 namespace {
 
-/// The bound that asks every candidate for its time, in their order.
+/// The bound that queries every candidate for its time, in their order.
 StepBound every_candidate(const Scene& scene, const Positions& x1) {
   const Surface surface(scene);
   std::vector<AnalyticSurface<double>> obstacles;

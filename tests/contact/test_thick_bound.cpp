@@ -1,5 +1,5 @@
 // Thickness in every bound on a time: bodies that come towards each other along an axis and end within their thickness,
-// where boxes, planes and the order in which pairs are queried decide before the pair itself is asked.
+// where boxes, planes and the order in which pairs are queried decide before the pair itself is queried.
 #include <gtest/gtest.h>
 
 #include "tests/contact/close_bodies.hpp"
@@ -126,7 +126,7 @@ TEST(ThickBound, StopsWhatEndsWithinTheThickness) {
   EXPECT_GT(tally.in_thickness, 100);
 }
 
-/// The pair that stops the motion is asked even where boxes prove others to come a little later.
+/// The pair that stops the motion is queried even where boxes prove others to come a little later.
 TEST(ThickBound, IsThatOfTheFirstOfManyThickPairs) {
   int of_several = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {

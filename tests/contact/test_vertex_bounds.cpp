@@ -210,7 +210,7 @@ Scene sheets_between_obstacles(unsigned seed) {
 }
 
 /// The vertices take any parts up to their bounds, together or one after the other: ACCD, which knows nothing of planes,
-/// finds none of these straight motions to touch anything. Asked without the bounds it stops them early.
+/// finds none of these straight motions to touch anything. Without the bounds it stops them early.
 TEST(VertexBounds, NothingPassesWhateverPartsAreTaken) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     const Scene still = sheets_between_obstacles(seed);

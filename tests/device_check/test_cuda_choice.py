@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def configure(folder, bb_cuda, **environment):
-    """Exit code and output of one configuration; a second one of the same folder asks again."""
+    """Exit code and output of one configuration; a second one of the same folder looks again."""
     command = ["cmake", "--preset", "release", "-B", str(folder), f"-DBB_CUDA={bb_cuda}", "-DBB_TESTS=OFF", "-DBB_BENCHMARKS=OFF"]
     done = subprocess.run(command, cwd=ROOT, env={**os.environ, **environment}, capture_output=True, text=True, timeout=300)
     return done.returncode, " ".join((done.stdout + done.stderr).split())
@@ -27,23 +27,23 @@ def nvcc_11(tmp_path):
 
 
 def test_an_old_nvcc_is_no_error_of_a_cpu_build_and_is_said(tmp_path, nvcc_11):
-    code, said = configure(tmp_path / "build", "AUTO", CUDACXX=nvcc_11)
-    assert code == 0, said
-    assert f"CUDA: none ({nvcc_11} is of CUDA '11.8' and 12.0 is the oldest" in said
+    code, message = configure(tmp_path / "build", "AUTO", CUDACXX=nvcc_11)
+    assert code == 0, message
+    assert f"CUDA: none ({nvcc_11} is of CUDA '11.8' and 12.0 is the oldest" in message
     defined = (tmp_path / "build" / "build.ninja").read_text()
     assert "BB_CUDA_WHY" in defined and "11.8" in defined
 
 
 def test_an_old_nvcc_is_an_error_where_device_code_is_demanded(tmp_path, nvcc_11):
-    code, said = configure(tmp_path / "build", "ON", CUDACXX=nvcc_11)
+    code, message = configure(tmp_path / "build", "ON", CUDACXX=nvcc_11)
     assert code != 0
-    assert "BB_CUDA is ON" in said and "'11.8'" in said
+    assert "BB_CUDA is ON" in message and "'11.8'" in message
 
 
 def test_a_wrong_value_is_refused_with_what_is_allowed(tmp_path):
-    code, said = configure(tmp_path / "build", "MAYBE")
+    code, message = configure(tmp_path / "build", "MAYBE")
     assert code != 0
-    assert "BB_CUDA is 'MAYBE'; allowed: AUTO, CARD, ON, OFF" in said
+    assert "BB_CUDA is 'MAYBE'; allowed: AUTO, CARD, ON, OFF" in message
 
 
 def test_without_a_card_card_builds_no_kernel(tmp_path):
@@ -51,7 +51,7 @@ def test_without_a_card_card_builds_no_kernel(tmp_path):
     smi = tmp_path / "bin" / "nvidia-smi"
     smi.write_text("#!/bin/sh\nexit 9\n")
     smi.chmod(0o755)
-    code, said = configure(tmp_path / "build", "CARD", PATH=f"{smi.parent}:{os.environ['PATH']}")
-    assert code == 0, said
-    assert "CUDA: none" in said
+    code, message = configure(tmp_path / "build", "CARD", PATH=f"{smi.parent}:{os.environ['PATH']}")
+    assert code == 0, message
+    assert "CUDA: none" in message
     assert "BB_CUDA_BUILT:INTERNAL=OFF" in (tmp_path / "build" / "CMakeCache.txt").read_text()

@@ -1,5 +1,5 @@
 // Cusps of elements: where an element says it is at one its energy falls, to first order, along a direction and along its opposite,
-// though its gradient may be 0; a hair away it says nothing of the kind.
+// though its gradient may be 0; a hair away it shows nothing of the kind.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -63,7 +63,7 @@ TEST(LimitFamily, EnergiesAreThoseOfTheStretchesInLongDouble) {
   }
 }
 
-/// All that a family says of a state and a motion.
+/// All that a family reports of a state and a motion.
 struct Said {
   std::vector<double> gaps, energy, alpha, columns;
   LocalTerms terms;

@@ -122,7 +122,7 @@ TEST(LimitStiffness, IsThatOfTheClosedForm) {
   }
 }
 
-/// Asked at given pseudo-gaps, a number also where kappa has a potential, and nothing of the measured ones.
+/// Evaluated at given pseudo-gaps, kappa is a number also where the policy has a potential, and uses none of the measured gaps.
 TEST(LimitStiffness, IsToldAtGivenGaps) {
   for (const LimitCase& of : limit_cases(0.1, 0.9)) {
     SCOPED_TRACE(of.name);

@@ -222,7 +222,7 @@ def test_the_verb_runs_judges_and_says_the_promise(program, here, tmp_path, caps
 
 
 def test_the_fit_finds_the_stiffness_that_ours_has(program, here, tmp_path):
-    """Springs cannot be a sheet: the mean of three tensile tests is met, their differences are left and said."""
+    """Springs cannot be a sheet: the mean of three tensile tests is met, their differences are left and reported."""
     tests = matching.Tests(matching.Material(254.4, 0.243, 0.15, 0.0), tmp_path)
     assert set(tests.scenes) == set(matching.TENSILE)
     card = cards.read_card("template")

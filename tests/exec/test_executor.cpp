@@ -41,7 +41,7 @@ struct MissingBarrier {
   }
 };
 
-/// Tells which of its forms an item came from.
+/// Records which of its forms an item came from.
 struct OneOrFour {
   static constexpr int lanes = 4;
   double* out;

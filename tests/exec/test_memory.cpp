@@ -18,7 +18,7 @@ TEST(Buffer, IsCountedUnderItsName) {
     Buffer<int> b(executor, "b", 3);
     EXPECT_EQ(executor.memory().bytes(), 92u);
     EXPECT_EQ(executor.memory().by_name().at("a"), 80u);
-    a.resize(4);  // room stays
+    a.resize(4);  // the capacity stays
     EXPECT_EQ(executor.memory().by_name().at("a"), 80u);
     EXPECT_EQ(a.bytes(), 80u);
     a.grow(20);

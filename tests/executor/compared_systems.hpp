@@ -188,7 +188,7 @@ class Compared : public Both {
     EXPECT_LE(std::abs(found - expected), (rounding_ + more) * std::abs(expected))
         << found << " " << expected;
   }
-  /// What an iterate and the end of a step both say of contacts.
+  /// What an iterate and the end of a step both report of contacts.
   template <class Numbers>
   void expect_same_contacts(const Numbers& found, const Numbers& expected) const {
     for (const auto kind :

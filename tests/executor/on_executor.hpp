@@ -1,4 +1,4 @@
-// The terms of a scene with stencils that stay on an executor, with their vectors, as tests ask them.
+// The terms of a scene with stencils that stay on an executor, with their vectors, as tests evaluate them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -139,7 +139,7 @@ struct OnExecutor {
     x.swap(trial);
   }
   /// options.contact_options.min_gap_fraction is read.
-  /// said: what the terms report of it, where asked.
+  /// said: the report of the terms, where requested.
   double bound(const Positions& direction, IterateNumbers* said = nullptr) {
     dx.upload(numbers_of(direction));
     IterateNumbers nobody;

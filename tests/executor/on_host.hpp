@@ -1,4 +1,4 @@
-// The terms of a scene with stencils that stay in the engine of the host, asked as OnExecutor is.
+// The terms of a scene with stencils that stay in the engine of the host, evaluated as OnExecutor is.
 #pragma once
 
 #include "core/newton/host_engine.hpp"

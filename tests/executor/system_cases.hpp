@@ -19,7 +19,7 @@ inline void use_executor_solver(Method& method, double tolerance = 1e-11) {
   method.linear.parameters["tol_rel"] = tolerance;
 }
 
-/// E on an executor of its own; prepare: before anything is asked of it.
+/// E on an executor of its own; prepare: before anything is evaluated.
 inline MakePotential on_executor(
     const std::function<std::unique_ptr<exec::Executor>()>& make,
     const std::function<void(exec::ExecutorEngine&)>& prepare = [](exec::ExecutorEngine&) {}) {

@@ -328,7 +328,7 @@ TEST(ExecutorBroadPhase, CountsBeforeAnyListIsThere) {
   executor.limit_memory(executor.memory().bytes() + counts.bytes() / 2);
   try {
     motion.broad_phase.fill(motion.candidates);
-    FAIL() << "there was no room";
+    FAIL() << "there was enough memory";
   } catch (const exec::OutOfMemory& error) {
     EXPECT_NE(std::string(error.what()).find("candidates "), std::string::npos) << error.what();
   }

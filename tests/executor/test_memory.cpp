@@ -55,7 +55,7 @@ Peak counted(const Scene& scene, const exec::ExpectedContacts& contacts) {
 // 184.1 million contacts, 8.2 million vertices, 16.4 million triangles, 0.49 stored upper blocks a contact. Contacts are
 // counted as they are on a small cloth; what a vertex needs is the difference of two cloths. The peaks of both are added,
 // though they need not be at one time.
-// 70 GiB are kept; of the 380 B a contact that were wanted 400 are asked: the added peaks come to 398, explain of the
+// 70 GiB are kept; the test requires 400 B a contact, where 380 were wanted: the added peaks come to 398, explain of the
 // scene itself to 384.
 TEST(ExecutorMemory, OfTheDensestSceneFitsSeventyGibibytes) {
   constexpr double contacts = 184.1e6, vertices = 8.2e6, bytes_a_piece = 8 * 90.0 * (1 << 18);
@@ -141,7 +141,7 @@ Index trials(const exec::ExecutionCounts& counts) {
   return out;
 }
 
-/// A cloth with pins and a strain limit that lies still on a plate and a floor, after it fell and found what room it needs.
+/// A cloth with pins and a strain limit that lies still on a plate and a floor, after it fell and found what memory it needs.
 void measure_steady_iterations(Meter& meter) {
   const Scene scene = test::cloth_on_plate();
   Method method = executor_method(Index{1} << 40);
@@ -168,7 +168,7 @@ TEST(ExecutorMemory, ASteadyIterationAllocatesNothing) {
   }
 }
 
-// A card waits for its host at every launch and read: what an iteration within a step asks for besides conjugate
+// A card waits for its host at every launch and read: what an iteration within a step does besides conjugate
 // gradients, whose launches and reads of their residual are as many as they need.
 TEST(ExecutorMemory, ASteadyIterationLaunchesAndWaitsLittle) {
   Meter meter;

@@ -125,7 +125,7 @@ TEST(ExecutorRowFinder, TellsStencilsApart) {
 }
 
 TEST(ExecutorRows, TakeAtMost140BytesEach) {
-  constexpr Index n = Index{1} << 27;  // where no column has room to grow
+  constexpr Index n = Index{1} << 27;  // where no column can grow
   for (const KappaColumns columns :
        {KappaColumns::uniform, KappaColumns::kept, KappaColumns::compared, KappaColumns::potential}) {
     exec::CountingExecutor executor;

@@ -1,5 +1,5 @@
 // The search in rounds: where a leaf meets more than it has places for, its walk goes on in the next round, and no part of a
-// tree is walked twice once the lists have room.
+// tree is walked twice once the lists are large enough.
 #include <gtest/gtest.h>
 
 #include "core/exec/metered_executor.hpp"
@@ -36,7 +36,7 @@ std::size_t expect_lists_of_the_host(exec::Executor& executor, const Scene& scen
   ExecutorMotion motion(executor, scene, scene.x0, scene.x0);
   motion.broad_phase.hold(places);
   const Candidates expected = cpu_candidates(scene, scene.x0, scene.x0);
-  for (int time = 0; time < 2; ++time) {  // the second time the lists have room
+  for (int time = 0; time < 2; ++time) {  // the second time the lists are large enough
     motion.update();
     const Candidates found = lists_of(motion.candidates);
     EXPECT_EQ(found.point_triangle, expected.point_triangle);
@@ -109,7 +109,7 @@ TEST(SearchRounds, WalkNoPartOfATreeTwice) {
   exec::MeteredExecutor executor;
   const Scene few = stack_of(3), many = stack_of(20);
   ExecutorMotion once(executor, few, few.x0, few.x0);
-  EXPECT_EQ(walks(executor, once), 1);  // also where the lists had no room
+  EXPECT_EQ(walks(executor, once), 1);  // also where the lists were too short
   EXPECT_EQ(walks(executor, once), 1);
   ExecutorMotion rounds(executor, many, many.x0, many.x0);
   rounds.broad_phase.hold(places);

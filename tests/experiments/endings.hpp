@@ -1,4 +1,4 @@
-// How runs and small simulations end: what test_every_outcome.cpp asks for every word.
+// How runs and small simulations end: what test_every_outcome.cpp requires for every word.
 #pragma once
 
 #include <set>

@@ -1,4 +1,4 @@
-// How the tests of `eval` ask: lines in, parsed answers out.
+// How the tests call `eval`: lines in, parsed answers out.
 #pragma once
 
 #include <gtest/gtest.h>

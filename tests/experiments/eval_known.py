@@ -27,7 +27,7 @@ SHAPES = {
 }
 
 
-def asked(program, queries):
+def requested(program, queries):
     done = subprocess.run([program, "eval"], input="".join(json.dumps(q) + "\n" for q in queries), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
     return list(zip(queries, map(json.loads, done.stdout.splitlines()), strict=True))

@@ -1,4 +1,4 @@
-"""The BLAS kernel: named in every record, the same on every x86-64-v3 machine unless somebody asks for another."""
+"""The BLAS kernel: named in every record, the same on every x86-64-v3 machine unless another is chosen."""
 
 import json
 import os

@@ -127,7 +127,7 @@ TEST(Calibration, AMeasuredLoadBelongsToTheDHatOfItsContact) {
   EXPECT_NEAR(*given.calibration.kappa * slope("cubic", 0.001, 0.01), 0.5, 1e-12);
 }
 
-/// A smaller load over a smaller d_hat may ask for more.
+/// A smaller load over a smaller d_hat may require more.
 TEST(Calibration, OneKappaCarriesTheLoadsOfEveryDHat) {
   const std::vector<std::string> fixed = {"/formulation=cubic", "/scene/bodies/1/d_hat_m=0.001"};
   const Calibrated c = calibrated(two_masses, fixed);
@@ -142,7 +142,7 @@ TEST(Calibration, OneKappaCarriesTheLoadsOfEveryDHat) {
   EXPECT_LT(c.record.load_N.value, largest);  // else the test shows nothing
 }
 
-/// Without a calibration run's contact nobody can be asked, whatever the load.
+/// Without a contact in the calibration run there is no stiffness to scale, whatever the load.
 TEST(Calibration, TheRecordSaysWhenAPolicyStaysAsGiven) {
   const std::string dynamic = R"(/formulation/stiffness_policy={"name": "elasticity_inclusive"})";
   for (const char* load : {"/matching/load_N=0.5", "/matching/theta=0.1"}) {

@@ -150,7 +150,7 @@ TEST(CalibrationDemand, TheAnswerOfAVertexIsThatOfTheSumOfItsForces) {
   }
 }
 
-/// Another number for each row by its gap, so that it is seen where it is asked.
+/// Another number for each row by its gap, so that the place of evaluation shows.
 class Soft final : public StiffnessPolicy {
  public:
   Soft(double at_d_hat, double below) : at_d_hat_(at_d_hat), below_(below) {}
@@ -186,7 +186,7 @@ TEST(CalibrationDemand, APolicyThatIsSofterThanABillionthGivesNoStiffness) {
   }
 }
 
-/// A contact that is left out is not asked for a stiffness of its own either.
+/// A contact that is left out is not evaluated for a stiffness of its own either.
 TEST(CalibrationDemand, APolicyIsNotAskedForAForceThatIsNoLoad) {
   Written written({only({{1, 0.5}})});
   written.answer(1, 0.9);

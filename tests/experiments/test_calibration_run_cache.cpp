@@ -19,7 +19,7 @@ TEST(CalibrationRunCache, KeepsWhatWasAskedForLastWithinItsBytes) {
   ASSERT_NE(cache.find("a"), nullptr);
   const auto held = cache.find("b");
   EXPECT_NE(cache.find("a"), nullptr);
-  cache.keep(calibration_run("c", 1));  // 1200 bytes with both: b was not asked for longest
+  cache.keep(calibration_run("c", 1));  // 1200 bytes with both: b was requested longest ago
   EXPECT_EQ(cache.find("b"), nullptr);
   EXPECT_NE(cache.find("a"), nullptr);
   EXPECT_EQ(held->config_id, "b");  // whoever has it keeps it

@@ -100,16 +100,16 @@ def test_a_longer_record_of_the_same_run_stays(program, config, tmp_path):
     earlier = (folder / "run.json").read_bytes()
     assert json.loads(earlier)["status"]["outcome"] == "timeout" and len(json.loads(earlier)["steps"]) == 40
     kept = {file.name: file.read_bytes() for file in folder.glob("checkpoint*")}
-    told = bench(program, "run", config, "--out", folder, *words, "--resume", "--time-limit", "0.000001")  # stopped before the resumed pass goes on
-    refused(told, "run.json stays", "--resume goes on", code=75)
+    reported = bench(program, "run", config, "--out", folder, *words, "--resume", "--time-limit", "0.000001")  # stopped before the resumed pass goes on
+    refused(reported, "run.json stays", "--resume goes on", code=75)
     assert kept and {file.name: file.read_bytes() for file in folder.glob("checkpoint*")} == kept and (folder / "run.json").read_bytes() == earlier
     for file in folder.glob("checkpoint*"):
         file.unlink()
     for limit in (("--time-limit", "0.000001"), ("--step-limit", "5")):  # before the start is looked at, and within the steps
-        told = bench(program, "run", config, "--out", folder, *words, "--resume", *limit)
-        refused(told, "run.json stays", "steps of this run", code=75)
+        reported = bench(program, "run", config, "--out", folder, *words, "--resume", *limit)
+        refused(reported, "run.json stays", "steps of this run", code=75)
         assert (folder / "run.json").read_bytes() == earlier
-        assert ("--resume goes on" in told.stderr) == (folder / "checkpoint.bin").exists() == (limit[0] == "--step-limit")
+        assert ("--resume goes on" in reported.stderr) == (folder / "checkpoint.bin").exists() == (limit[0] == "--step-limit")
     again = bench(program, "run", config, "--out", folder, *words, "--step-limit", "5")
     assert again.returncode == 75 and "checkpoint.bin goes" in again.stderr and "without --resume" in again.stderr
     assert (folder / "run.json").read_bytes() == earlier

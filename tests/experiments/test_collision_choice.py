@@ -1,4 +1,4 @@
-"""Choices of collision in whole runs: what is chosen is said, and no choice hides a crossing."""
+"""Choices of collision in whole runs: what is chosen is reported, and no choice hides a crossing."""
 
 import json
 from pathlib import Path
@@ -78,8 +78,8 @@ def test_a_start_through_each_other_is_refused_by_the_audit(program, tmp_path):
 def test_explain_says_what_every_pair_does_and_why(program, tmp_path):
     config = cloths(tmp_path, pair("auto") + [{"a": "large", "b": "large", "kind": "off"}])
     text = bench(program, "explain", config).stdout
-    said = text.split("pairs of bodies\n")[1].split("\n\n")[0].splitlines()
-    lines = {name: rest for name, *rest in (line.split(maxsplit=2) for line in said)}
+    message = text.split("pairs of bodies\n")[1].split("\n\n")[0].splitlines()
+    lines = {name: rest for name, *rest in (line.split(maxsplit=2) for line in message)}
     assert lines["large|small"] == ["audited", "auto: the surface of small is open"]
     assert lines["large|large"] == ["off", "as given"]
     assert lines["small|small"] == ["ccd", "by default"]
@@ -93,17 +93,17 @@ def guarantee(program, config, *more):
     return [line[10:] for line in lines[first:last]]
 
 
-@pytest.mark.parametrize(("kind", "said"), [
+@pytest.mark.parametrize(("kind", "message"), [
     ("proximity", "they may pass through each other"),
     ("off", "contact does nothing between them"),
     ("static", "what passes through as a whole from one state to the next is not seen"),
     ("audited", "a step for which that is not proven is done again as if the pair were ccd"),
 ])
-def test_explain_promises_of_every_pair_what_its_kind_bounds(program, tmp_path, kind, said):
+def test_explain_promises_of_every_pair_what_its_kind_bounds(program, tmp_path, kind, message):
     rest = [{"a": name, "b": name, "kind": kind} for name in ("large", "small")] if kind != "static" else []
     some = guarantee(program, cloths(tmp_path, pair(kind)))
     assert some[0].startswith("line_search, for 2 of 3 pairs of bodies (ccd): no surface passes through")
-    assert some[1].startswith(f"1 pair ({kind}): ") and said in some[1] and len(some) == 2
+    assert some[1].startswith(f"1 pair ({kind}): ") and message in some[1] and len(some) == 2
     if rest:
         none = guarantee(program, cloths(tmp_path, pair(kind) + rest))
         assert none[0] == "line_search: of contact what follows, since no pair of bodies collides as ccd"
@@ -113,10 +113,10 @@ def test_explain_promises_of_every_pair_what_its_kind_bounds(program, tmp_path, 
 
 
 def test_explain_promises_nothing_of_states_that_the_step_solver_does_not_refuse(program, tmp_path):
-    said = guarantee(program, cloths(tmp_path, pair("static")), "--set", "/step_solver/name=penalty", "--set",
+    message = guarantee(program, cloths(tmp_path, pair("static")), "--set", "/step_solver/name=penalty", "--set",
                      "/formulation/shape=quadratic")
-    assert said[0].startswith("penalty, for 2 of 3 pairs of bodies (ccd): none against passing through")
-    assert said[1] == "1 pair (static): none: the step solver accepts states in which they intersect"
+    assert message[0].startswith("penalty, for 2 of 3 pairs of bodies (ccd): none against passing through")
+    assert message[1] == "1 pair (static): none: the step solver accepts states in which they intersect"
 
 
 def test_audited_ends_as_ccd_whatever_an_iteration_passes_through(program, tmp_path):

@@ -49,7 +49,7 @@ WORDS = {
 }
 
 
-# The published planes are not asked to get through sphere_on_sheet: the test below says why.
+# The published planes need not get through sphere_on_sheet: the test below shows why.
 @pytest.mark.parametrize("scene, rule", [("stack", "planar_truncation"), ("stack", "planar_balanced"), ("stack", "per_vertex"),
                                          ("sphere_on_sheet", "planar_balanced"), ("sphere_on_sheet", "per_vertex"), ("strip_on_disk", "planar_truncation"),
                                          ("strip_on_disk", "planar_balanced"), ("strip_on_disk", "per_vertex")])  # fmt: skip

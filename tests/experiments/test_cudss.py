@@ -1,4 +1,4 @@
-"""The linear solver cudss where something of it is missing: what is said, exit code 2, nothing written."""
+"""The linear solver cudss where something of it is missing: the message, exit code 2, nothing written."""
 
 import json
 import os

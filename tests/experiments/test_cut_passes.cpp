@@ -47,7 +47,7 @@ TEST(CutPasses, BothWholePassesEndInOneState) {
   EXPECT_TRUE(record.status.valid);
 }
 
-/// A pass that was cut off ends in another state: that says nothing about the other one.
+/// A pass that was cut off ends in another state: that shows nothing about the other one.
 TEST(CutPasses, APassThatWasCutOffIsComparedWithNothing) {
   for (const int steps : {2, 5}) {
     const RunRecord second = cut_in("diagnose", steps);

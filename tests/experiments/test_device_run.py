@@ -1,4 +1,4 @@
-"""Runs on a device that lacks memory or a kernel, or is not there: exit codes, what is said, the record, and going on."""
+"""Runs on a device that lacks memory or a kernel, or is not there: exit codes, messages, the record, and going on."""
 
 import json
 import os

@@ -16,12 +16,12 @@ def device(*arguments):
 
 
 def test_json_and_words_say_the_same():
-    asked, said = device("--json", "--measure"), device()
-    found = json.loads(asked.stdout)
-    assert asked.returncode == said.returncode == (0 if found["usable"] else 5)
-    assert found["schema"] == "barrierbench.device/1" and asked.stderr == said.stderr == ""
+    requested, message = device("--json", "--measure"), device()
+    found = json.loads(requested.stdout)
+    assert requested.returncode == message.returncode == (0 if found["usable"] else 5)
+    assert found["schema"] == "barrierbench.device/1" and requested.stderr == message.stderr == ""
     if found["usable"]:
-        assert found["card"] in said.stdout and found["copy"]["on_the_card_Bps"] > 1e9
+        assert found["card"] in message.stdout and found["copy"]["on_the_card_Bps"] > 1e9
     else:
-        assert found["why"] and found["why"] in said.stdout and found["copy"] is None
+        assert found["why"] and found["why"] in message.stdout and found["copy"] is None
         assert any(word in found["why"] for word in ("without CUDA", "driver", "card"))

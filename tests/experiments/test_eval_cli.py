@@ -153,9 +153,9 @@ def test_warp_is_x_as_of_a_body_and_not_the_order_of_the_corners(program):
     assert min(abs(e[5] / e[0] - 1), abs(e[6] / e[0] - 1)) > 1e-3  # it does depend on the direction
 
 
-@pytest.mark.parametrize("change, said", [
+@pytest.mark.parametrize("change, message", [
     ({"model": "arap", "warp_axis": [1, 0, 0]}, "no direction"), ({"warp_axis": [2, 0, 0]}, "a unit vector"), ({"warp_axis": [1, 0]}, "/warp_axis"),
     ({"warp_axis": "x"}, "/warp_axis"), ({"rest": [[0, 0, 0], [0, 1, 0], [0, 0, 1]]}, "/warp_axis")])
-def test_a_warp_that_cannot_be_is_refused(program, change, said):
+def test_a_warp_that_cannot_be_is_refused(program, change, message):
     done = subprocess.run([program, "eval"], input=json.dumps(BARAFF | change) + "\n", capture_output=True, text=True, check=False)
-    assert done.returncode == 2 and said in done.stdout, done.stdout
+    assert done.returncode == 2 and message in done.stdout, done.stdout

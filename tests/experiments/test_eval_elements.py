@@ -2,7 +2,7 @@
 
 import mpmath as mp
 import numpy as np
-from eval_known import asked, cross, dot, norm, off, sub
+from eval_known import cross, dot, norm, off, requested, sub
 from mpmath import mpf
 
 
@@ -86,7 +86,7 @@ def test_energies(program):
             x[[1, 2]] = x[[2, 1]]  # inverted
         more = {"k": 3.0} if model == "spring" else {"k": 2.0, "rest_angle": 0.3} if model in ("hinge", "rod_bend") else {"lame_mu": 3.0, "lame_lambda": 2.0}
         queries.append({"kind": "energy", "model": model, "rest": rest.tolist(), "x": x.tolist(), **more})
-    for q, answer in asked(program, queries):
+    for q, answer in requested(program, queries):
         x = [[mpf(c) for c in p] for p in q["x"]]
         convex += derivatives_agree(lambda p, q=q: element_energy(q, p), x, answer, 10.0, rng)
         assert np.abs(answer["gradient"]).max() > 1e-3
@@ -103,9 +103,9 @@ def test_friction(program):
         two = {"mu_static": 0.7, "reach": 0.15} if law == "static_kinetic" else {}
         queries.append({"kind": "friction", "law": law, "mu": 0.4, "load": 5.0, "eps": 0.1, "pair": pair, **two,
                         "points_lagged": lagged.tolist(), "points_start": start.tolist(), "points_end": end.tolist()})
-    closest = asked(program, [{"kind": "distance", "pair": q["pair"], "points": q["points_lagged"]} for q in queries])
+    closest = requested(program, [{"kind": "distance", "pair": q["pair"], "points": q["points_lagged"]} for q in queries])
     regimes = set()
-    for (q, answer), (_, near) in zip(asked(program, queries), closest):
+    for (q, answer), (_, near) in zip(requested(program, queries), closest):
         weights, eps = [mpf(w) for w in near["weights"]], mpf(q["eps"])
         sums = lambda x, w=weights: [sum(w[i] * mpf(x[i][c]) for i in range(len(w))) for c in range(3)]  # noqa: E731
         n = sums(q["points_lagged"])

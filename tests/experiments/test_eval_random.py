@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import mpmath as mp
 import numpy as np
-from eval_known import EPS, SHAPES, asked, cross, dot, off, rounded, sub, terms
+from eval_known import EPS, SHAPES, cross, dot, off, requested, rounded, sub, terms
 from mpmath import mpf
 
 
@@ -18,7 +18,7 @@ def test_shapes(program):
         h, u = 10 ** rng.uniform(-6, 2), (rng.uniform(0.01, 0.9), 10 ** rng.uniform(-7, 0))[k % 2]
         queries.append({"kind": "shape", "shape": rng.choice(list(SHAPES)), "argument": rng.choice(["gap", "squared_gap"]), "d": u * h, "d_hat": h,
                         "precision": ("double", "float")[k // 2 % 2]})
-    for query, answer in asked(program, queries):
+    for query, answer in requested(program, queries):
         q = rounded(query)
         b, db, d2b = terms(q["shape"], q["argument"], q["d"], q["d_hat"])
         u, eps = q["d"] / q["d_hat"], EPS[q["precision"]]
@@ -39,7 +39,7 @@ def test_contacts_under_a_load(program):
         if k % 3 == 0:
             queries.append({"kind": "equilibrium", **common, "kappa": size, "d_hat": h, "load": size * h * rng.uniform(0.01, 0.3)})
     answered = 0
-    for q, answer in asked(program, queries):
+    for q, answer in requested(program, queries):
         if q["kind"] == "equilibrium":
             if answer.get("status") == "above_capacity":
                 continue
@@ -72,7 +72,7 @@ def test_strain_limits_and_singular_values(program):
         s = 1 + onset + width * np.sort(rng.uniform(0.05, 0.9, 2))[::-1]
         u, v = np.linalg.qr(rng.normal(size=(3, 2)))[0], np.linalg.qr(rng.normal(size=(2, 2)))[0]
         queries.append({"kind": "strain_limit", "shape": list(SHAPES)[k % len(SHAPES)], "F": (u * s @ v.T).tolist(), "onset": onset, "width": width})
-    for q, answer in asked(program, queries):
+    for q, answer in requested(program, queries):
         f = np.array(q["F"])
         if q["kind"] == "svd":
             u, s, v = (np.array(answer[name]) for name in ("U", "sigma", "V"))
@@ -102,7 +102,7 @@ def test_stiffness(program):
         queries.append({"kind": "stiffness", "policy": "elasticity_inclusive", "mass_term": ("paper", "inertia", "none")[k % 3], "weights": w.tolist(),
                         "normal": (normal / np.linalg.norm(normal)).tolist(), "gap": 10 ** rng.uniform(-4, 0), "masses": rng.uniform(0.1, 2, n).tolist(),
                         "hessian": (a @ a.T).tolist(), **({"dt": 0.013, "c": 4 / 9} if k % 3 == 1 else {})})
-    for q, answer in asked(program, queries):
+    for q, answer in requested(program, queries):
         w = np.kron(q["weights"], q["normal"])
         over = {"paper": q["gap"] ** 2, "inertia": q.get("c", 0) * q.get("dt", 0) ** 2, "none": np.inf}[q["mass_term"]]
         mass = w * np.repeat(q["masses"], 3) / over
@@ -132,7 +132,7 @@ def test_crossings(program):
             points = [[c * (1 + rng.choice([0, 0, 2.0**-52])) for c in p] for p in points]
         queries.append({"kind": "intersects", "segment": points[:2], "triangle": points[2:]})
     seen = {"crossing": 0, "touch": 0}
-    for q, answer in asked(program, queries):
+    for q, answer in requested(program, queries):
         known = crosses(*([[Fraction(c) for c in p] for p in q[name]] for name in ("segment", "triangle")))
         assert not (answer["crossing"] and answer["touch"]), q
         assert answer == known if known else not answer["crossing"], q
@@ -153,11 +153,11 @@ def test_a_motion_is_free_until_its_time_of_impact(program):
         queries.append({"kind": "ccd", "pair": "point_point" if n == 2 else "edge_edge", "points_t0": start.tolist(), "points_t1": end.tolist(),
                         "offset": float(rng.choice([0, 0.05, 0.4]))})
     states = []
-    for q, answer in asked(program, queries):
+    for q, answer in requested(program, queries):
         start, end = np.array(q["points_t0"]), np.array(q["points_t1"])
         times = np.unique([*np.linspace(0, 1, 101), *(answer["toi"] * np.array([0.5, 0.9, 0.999, 1 - 1e-6]))])
         states += [(q, answer, t, {"kind": "distance", "pair": q["pair"], "points": (start + t * (end - start)).tolist()}) for t in times]
-    gaps = [near["d"] - q["offset"] for (q, _, _, _), (_, near) in zip(states, asked(program, [s[3] for s in states]))]
+    gaps = [near["d"] - q["offset"] for (q, _, _, _), (_, near) in zip(states, requested(program, [s[3] for s in states]))]
     hits = 0
     for _, group in itertools.groupby(zip(states, gaps), key=lambda item: id(item[0][0])):
         group = list(group)

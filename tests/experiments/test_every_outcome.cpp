@@ -28,7 +28,7 @@ const char* hanging =
 struct Case {
   const char* name;
   Outcome outcome;
-  const char *step, *solve;  // words among those of its steps and solves; null: not asked
+  const char *step, *solve;  // words among those of its steps and solves; null: not checked
   std::vector<std::string> says;
   std::function<Ending()> reach;
 };

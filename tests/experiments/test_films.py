@@ -168,28 +168,28 @@ def test_a_film_that_crosses_itself_is_said_before_the_first_step(program, tmp_p
 
 
 def test_what_a_film_may_not_be_is_said_by_name(program, tmp_path, film):
-    def said(path, *parts, **settings):
+    def message(path, *parts, **settings):
         name = "c.json"
         refused(bench(program, "check", write(tmp_path / name, config(of_film(path, **settings)))), *parts)
 
     good = film("good")
-    said(good, "found 3 times", "4, one a frame", times_s=TIMES[:3])
-    said(good, "of frame 2 after 0.02", "times that increase", times_s=[0, 0.02, 0.01, 0.1])
-    said(good, "frame_s beside times_s", frame_s=0.1, times_s=TIMES)
-    said(good, "times.csv beside the frames", start_s=0.0)
-    said(good, "one of linear, smooth", frame_s=0.1, interpolation="cubic")
-    said(film("mm", frames=lambda x: [1000 * x, 1000 * x]), "1000 times as large", frame_s=0.1)
-    said(film("moved", frames=lambda x: [x + [0, 0, 0.1], x]), "0.1 m from where the body starts", frame_s=0.1)
-    said(film("short", frames=lambda x: [x, x[:-1]]), "box_001.obj", "a vertex from 1 to 25", frame_s=0.1)
+    message(good, "found 3 times", "4, one a frame", times_s=TIMES[:3])
+    message(good, "of frame 2 after 0.02", "times that increase", times_s=[0, 0.02, 0.01, 0.1])
+    message(good, "frame_s beside times_s", frame_s=0.1, times_s=TIMES)
+    message(good, "times.csv beside the frames", start_s=0.0)
+    message(good, "one of linear, smooth", frame_s=0.1, interpolation="cubic")
+    message(film("mm", frames=lambda x: [1000 * x, 1000 * x]), "1000 times as large", frame_s=0.1)
+    message(film("moved", frames=lambda x: [x + [0, 0, 0.1], x]), "0.1 m from where the body starts", frame_s=0.1)
+    message(film("short", frames=lambda x: [x, x[:-1]]), "box_001.obj", "a vertex from 1 to 25", frame_s=0.1)
     bad = film("nan", frames=lambda x: [x, np.where(np.arange(len(x))[:, None] == 3, np.nan, x)])
-    said(bad, "box_001.obj", "nan", frame_s=0.1)
+    message(bad, "box_001.obj", "nan", frame_s=0.1)
     turned = film("turned", faces=np.array([[0, 2, 1]]))
-    said(turned, "triangles", "as the mesh of the body has", frame_s=0.1)
+    message(turned, "triangles", "as the mesh of the body has", frame_s=0.1)
     hole = film("hole")
     (tmp_path / "hole/box_001.obj").unlink()
-    said(hole, "no frame between box_000.obj and box_002.obj", frame_s=0.1)
-    said(str(tmp_path / "none/a_0.obj"), "none", "folder of mesh files", frame_s=0.1)
-    said(good, "the hash of the files' hashes", frame_s=0.1, sha256="0" * 64)
+    message(hole, "no frame between box_000.obj and box_002.obj", frame_s=0.1)
+    message(str(tmp_path / "none/a_0.obj"), "none", "folder of mesh files", frame_s=0.1)
+    message(good, "the hash of the files' hashes", frame_s=0.1, sha256="0" * 64)
     ball = {"name": "ball", "kind": "sphere", "radius_m": 0.1, "point_m": [0, 0, 9], **of_film(good)}
     both = config({})
     both["scene"]["obstacles"] = [ball]

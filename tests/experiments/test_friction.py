@@ -101,13 +101,13 @@ def test_bits_do_not_depend_on_threads(program, tmp_path):
     assert len(hashes) == 1
 
 
-@pytest.mark.parametrize(("setting", "said"), [
+@pytest.mark.parametrize(("setting", "message"), [
     ("/friction/mu=-0.1", "/friction/mu"), ("/scene/bodies/0/friction=-1", "/scene/bodies/0/friction"),
     ("/scene/obstacles/0/friction=-1", "/scene/obstacles/0/friction"), ("/friction/eps_v_m_per_s=0", "/friction/eps_v_m_per_s"),
     ("/friction/lag_iterations=0", "/friction/lag_iterations"), ("/friction/law=coulomb", "smoothed_coulomb, capped, static_kinetic"), ("/friction/combine=most", "min, max, mean"),
 ])
-def test_what_has_no_meaning_is_refused(program, tmp_path, setting, said):
-    refused(bench(program, "run", SLOPE, "--out", tmp_path, "--set", setting), said)
+def test_what_has_no_meaning_is_refused(program, tmp_path, setting, message):
+    refused(bench(program, "run", SLOPE, "--out", tmp_path, "--set", setting), message)
 
 
 def published(program: str, out: Path, *settings: str, changed: bool = False) -> dict:
@@ -195,7 +195,7 @@ def test_the_rule_of_combination_is_of_both_coefficients(program, tmp_path):
             assert acceleration(steps) == pytest.approx(expected, rel=0.01), rule
 
 
-@pytest.mark.parametrize(("settings", "said"), [
+@pytest.mark.parametrize(("settings", "message"), [
     (["/friction/mu_static=0.6"], ("/friction/mu_static", "smoothed_coulomb", "static_kinetic")),
     (["/friction/law=capped", "/scene/bodies/0/friction_static=0.6"], ("/scene/bodies/0/friction_static", "capped")),
     (["/friction/law=static_kinetic", "/friction/mu_static=0.5"], ("/friction/mu_static", "0.5", "0.51", "/friction/mu is")),
@@ -208,9 +208,9 @@ def test_the_rule_of_combination_is_of_both_coefficients(program, tmp_path):
     (["/friction/refresh=per_iteration", "/step_solver/name=pncg"], ("/friction/refresh", "pncg", "line_search, accumulated_toi, penalty")),
     (["/friction/hessian=secant"], ("/friction/hessian", "exact or adaptive", "line_search")),
 ])
-def test_forms_of_friction_that_contradict_each_other_are_refused(program, tmp_path, settings, said):
+def test_forms_of_friction_that_contradict_each_other_are_refused(program, tmp_path, settings, message):
     words = [w for setting in settings for w in ("--set", setting)]
-    refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), *said)
+    refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), *message)
 
 
 def test_loads_of_every_iterate_end_where_a_lag_ends_that_was_renewed_often(program, tmp_path):

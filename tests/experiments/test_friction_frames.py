@@ -50,10 +50,10 @@ def test_their_sum_is_what_the_momentum_of_a_sliding_patch_changes_by(program, t
 def test_they_are_there_when_they_are_asked_for_alone(program, tmp_path):
     _, plain = run(program, tmp_path / "plain", SLOPE, "/time/steps=5")
     assert not set(FIELDS) & set(plain[-1].of_vertices) and "load_N" in plain[-1].of_vertices
-    _, asked = run(program, tmp_path / "asked", SLOPE, "/time/steps=5", "/output/friction_forces=true")
-    assert set(FIELDS) <= set(asked[-1].of_vertices) and (asked[-1].vertices == plain[-1].vertices).all()
+    _, requested = run(program, tmp_path / "asked", SLOPE, "/time/steps=5", "/output/friction_forces=true")
+    assert set(FIELDS) <= set(requested[-1].of_vertices) and (requested[-1].vertices == plain[-1].vertices).all()
     _, none = run(program, tmp_path / "none", SLOPE, "/time/steps=5", "/output/friction_forces=true", "/friction/mu=0")
-    assert not forces(none[-1]).any() and forces(asked[-1]).any()
+    assert not forces(none[-1]).any() and forces(requested[-1]).any()
 
 
 def test_two_bodies_give_each_other_opposite_ones(program, tmp_path):

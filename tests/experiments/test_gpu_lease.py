@@ -185,30 +185,30 @@ def checkout(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize(("where", "words", "lacks", "said"), [
+@pytest.mark.parametrize(("where", "words", "lacks", "reported"), [
     ("clone", (), "", "--before HEAD~1: this clone is shallow and does not have that commit; allowed: a commit that it has, or --before none"),
     ("origin", ("--before", "elsewhere"), "", "--before elsewhere: this is no commit of the checkout"),
     ("clone", ("--before", "none"), "xz", "the program xz was not found"),
     ("clone", ("--before", "none"), "strip", "the program strip was not found"),
     ("clone", ("--bundle", "full/"), "", "full: it is there and is not an empty folder; allowed: a new folder or an empty one")])
-def test_a_bundle_that_cannot_be_made_is_refused_before_anything_is_built(checkout, where, words, lacks, said):
+def test_a_bundle_that_cannot_be_made_is_refused_before_anything_is_built(checkout, where, words, lacks, reported):
     (checkout / "full").mkdir(), (checkout / "full/kept").write_text("kept"), (checkout / "few").mkdir()
     for tool in {"bash", "dirname", "readlink", "date", "git", "realpath", "find", "xz", "strip"} - {lacks}:
         (checkout / "few" / tool).symlink_to(shutil.which(tool))
     executable(checkout / "bench", f'#!/bin/bash\n: >"{checkout}/built"\nexit 70\n')
     done = subprocess.run([checkout / where / "experiments/gpu_evidence.sh", "--bundle", "new/", *words], cwd=checkout, capture_output=True, text=True, check=False,
                           env={"PATH": str(checkout / "few"), "BARRIERBENCH_BENCH": str(checkout / "bench")})
-    assert done.returncode == 2 and said in done.stderr, done.stderr
+    assert done.returncode == 2 and reported in done.stderr, done.stderr
     assert not (checkout / "built").exists() and not (checkout / "new").exists() and (checkout / "full/kept").exists()
 
 
-@pytest.mark.parametrize(("words", "said"), [
+@pytest.mark.parametrize(("words", "reported"), [
     (("--before", "none"), "--before means nothing without --bundle"), (("--seconds", "90"), "--seconds means nothing without --lease"),
     (("--lease", "--only", "tests"), "--only means nothing with --lease"), (("--lease", "--records", "kept"), "--records means nothing with --lease"),
     (("--lease", "--bundle", "card"), "--bundle means nothing with --lease"), (("--bundle", ""), '--bundle "": the value is empty')])
-def test_options_that_mean_nothing_together_are_refused(tmp_path, words, said):
+def test_options_that_mean_nothing_together_are_refused(tmp_path, words, reported):
     done = subprocess.run([ROOT / "experiments/gpu_evidence.sh", *words], cwd=tmp_path, env={**os.environ, "BARRIERBENCH_BENCH": "/bin/false"}, capture_output=True, text=True, check=False)
-    assert done.returncode == 2 and f"gpu_evidence: {said}" in done.stderr and not list(tmp_path.iterdir())
+    assert done.returncode == 2 and f"gpu_evidence: {reported}" in done.stderr and not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("words", [("--lease", "--seconds", "59"), ("--lease", "--seconds", "0059"), ("--lease", "--seconds", "ten"), ("--dry",), ("--archives", "somewhere")])

@@ -35,7 +35,7 @@ TEST(Calibration, ADynamicLimitCarriesTheCalibrationRunsLoads) {
     EXPECT_EQ(record.status.outcome, Outcome::ok) << record.status.detail;
     EXPECT_GT(record.summary.limit_load_max_N_per_m.value, 0);
   }
-  EXPECT_GT(scale[1], 1.2 * scale[0]);  // 1.37: asked at the width alone, frozen or not makes no difference
+  EXPECT_GT(scale[1], 1.2 * scale[0]);  // 1.37: at the width alone, frozen or not makes no difference
 }
 
 /// kappa_e = w^T M w/(c h^2) by hand for every element that the calibration run stretched into its limit, and the load

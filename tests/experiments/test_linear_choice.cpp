@@ -79,7 +79,7 @@ TEST(LinearChoice, KeepsThePreconditionerThatIsAskedFor) {
 TEST(LinearChoice, LeavesAnyOtherSolver) {
   const RunConfig config = decided(hanging(19), {"/linear_solver/name=cholmod"});
   EXPECT_EQ(config.linear_solver.name, "cholmod");
-  EXPECT_EQ(config.linear_solver_reason, "as asked for");
+  EXPECT_EQ(config.linear_solver_reason, "as requested");
 }
 
 }  // namespace

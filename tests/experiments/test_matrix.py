@@ -105,7 +105,7 @@ def test_condition_numbers_agree_with_dense_eigenvalues_of_numpy(replayed, name)
 
 
 def test_the_dense_estimate_sees_the_end_of_a_spectrum_that_spans_14_decades(replayed):
-    """lambda_min by Cholesky and inverse iteration in 80-bit numbers: 694.4452050468949. Four steps of polishing said 917.8, and a cond of 9.7e13."""
+    """lambda_min by Cholesky and inverse iteration in 80-bit numbers: 694.4452050468949. Four steps of polishing gave 917.8, and a cond of 9.7e13."""
     for tier in (2, 3, 4):
         mine = estimate(replayed["strain_limit_end"], tier, "none")
         assert mine["lambda_min"] == pytest.approx(694.4452050468949, rel=1e-6), tier

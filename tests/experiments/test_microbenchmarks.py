@@ -18,7 +18,7 @@ def models(program, section):
     return re.findall(r"^  (\w+)", subprocess.run([program, "list", section], capture_output=True, text=True, check=True).stdout, re.M)
 
 
-def asked(program):
+def requested(program):
     """Terms of the registries, and the benchmarks of their elements; those of contact are of their own kind (contact/...)."""
     named = {"external_force": ["weight"], "pull": ["soft_pin"], "springs": ["spring"], "cloth_springs": ["cloth_spring"], "hinges": ["hinge"], "rods": ["rod"],
              "membrane": models(program, "membranes"), "tetrahedra": [f"{name}_solid" for name in models(program, "solids")],
@@ -36,7 +36,7 @@ def test_every_kind_of_element_is_timed_where_it_pushes(program, build_folder):
     done = subprocess.run([suite, *words], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     found = {one["name"].split("/")[1]: one for one in json.loads(done.stdout)["benchmarks"]}
-    expected = [name for names in asked(program).values() for name in names]
+    expected = [name for names in requested(program).values() for name in names]
     assert sorted(found) == sorted(expected) and len(expected) > 20
     for name, one in found.items():
         assert one["items"] > 1000 and one["s_per_item"] > 0 and one["gradient"] > 0, name

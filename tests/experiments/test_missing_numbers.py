@@ -1,4 +1,4 @@
-"""A number that is missing has the reason that holds for the whole run: what was asked and not there is not what nobody asked for."""
+"""A number that is missing has the reason that holds for the whole run: what was requested and is not there differs from what was never requested."""
 
 import json
 

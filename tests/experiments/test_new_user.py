@@ -1,4 +1,4 @@
-"""What somebody who meets the program asks it first: help of one place, the version, a config through a pipe, how large a scene is, which
+"""What somebody who meets the program tries first: help of one place, the version, a config through a pipe, how large a scene is, which
 row is which run, and lines that fit the terminal."""
 
 import json
@@ -54,8 +54,8 @@ def test_a_place_that_is_not_there_is_refused_with_the_nearest(program):
 
 
 def test_the_version(program):
-    said = bench(program, "--version")
-    assert said.returncode == 0 and re.match(r"barrierbench \d+\.\d+\.\d+, commit .*, records 3\.\d+\.\d+$", said.stdout)
+    message = bench(program, "--version")
+    assert message.returncode == 0 and re.match(r"barrierbench \d+\.\d+\.\d+, commit .*, records 3\.\d+\.\d+$", message.stdout)
 
 
 # --- a config from the standard input
@@ -89,12 +89,12 @@ def test_check_says_how_large_a_scene_its_edges_and_d_hat_are(program, tmp_path)
     grid = {"generator": "grid", "n_x": 5, "n_y": 5, "size_x_m": 0.4, "size_y_m": 0.4}  # edges of 0.1 m and their diagonals
     body = {"name": "cloth", "mesh": grid, "transform": {"translate_m": [1, 0, 2]}}
     file = write(tmp_path / "a.json", {**CLOTH_ON_BALL, "scene": {"bodies": [body]}, "formulation": {"name": "log", "d_hat_m": 0.01}})
-    said = bench(program, "check", file).stdout
-    assert "bounding box 0.4 x 0.4 x 0 m, from (0.8, -0.2, 2) to (1.2, 0.2, 2) m" in said
+    message = bench(program, "check", file).stdout
+    assert "bounding box 0.4 x 0.4 x 0 m, from (0.8, -0.2, 2) to (1.2, 0.2, 2) m" in message
     mean = (40 * 0.1 + 16 * 0.1 * 2**0.5) / 56
-    assert f"body cloth: 25 vertices, 56 edges of 0.1 to 0.141 m, mean {mean:.3g} m; d_hat 0.01 m is {0.01 / mean:.2g} of the mean edge\n" in said
+    assert f"body cloth: 25 vertices, 56 edges of 0.1 to 0.141 m, mean {mean:.3g} m; d_hat 0.01 m is {0.01 / mean:.2g} of the mean edge\n" in message
     wide = bench(program, "check", file, "--set", "/formulation/d_hat_m=0.11").stdout
-    assert "more than the shortest edge" in wide and "more than" not in said
+    assert "more than the shortest edge" in wide and "more than" not in message
 
 
 TWO_SQUARES = """v 0 0 1
@@ -116,16 +116,16 @@ def test_names_of_an_obj_are_said_and_make_bodies_and_pins(program, tmp_path):
     mesh = {"file": str(tmp_path / "squares.obj")}
     body = {"name": "cloth", "mesh": mesh, "pins": [{"objects": ["rim"]}]}
     config = {**CLOTH_ON_BALL, "scene": {"bodies": [body]}, "formulation": {"name": "log", "d_hat_m": 0.01}}
-    said = bench(program, "check", write(tmp_path / "a.json", config)).stdout
-    assert "body cloth: 6 vertices" in said and f"objects and groups of {mesh['file']}: right half (4 vertices), rim (2 vertices)\n" in said
+    message = bench(program, "check", write(tmp_path / "a.json", config)).stdout
+    assert "body cloth: 6 vertices" in message and f"objects and groups of {mesh['file']}: right half (4 vertices), rim (2 vertices)\n" in message
     half = bench(program, "check", tmp_path / "a.json", "--set", '/scene/bodies/0/mesh/objects=["right half"]').stdout
     assert "body cloth: 4 vertices" in half and "right half (4 vertices), rim (2 vertices)\n" in half  # all of the file
     unknown = bench(program, "check", tmp_path / "a.json", "--set", '/scene/bodies/0/pins/0/objects=["hem"]')
     refused(unknown, "/scene/bodies/0/pins/0/objects/0: found \"hem\"", "allowed: one of right half, rim")
 
     for kind in ("body", "frame"):
-        asked = json.dumps({"path": mesh["file"], "as": kind, "names": True})
-        answer = subprocess.run([program, "meshes"], input=asked.encode(), capture_output=True, check=True).stdout
+        requested = json.dumps({"path": mesh["file"], "as": kind, "names": True})
+        answer = subprocess.run([program, "meshes"], input=requested.encode(), capture_output=True, check=True).stdout
         names = json.loads(answer.split(b"\n", 1)[0])["objects"]
         assert names == [{"name": "right half", "vertices": 4, "faces": 1, "lines": 1}, {"name": "rim", "vertices": 2, "faces": 0, "lines": 1}]
 
@@ -136,8 +136,8 @@ def test_names_of_an_obj_are_said_once_for_a_file_and_briefly(program, tmp_path)
     mesh = {"file": str(tmp_path / "many.obj"), "objects": ["right half"]}
     bodies = [{"name": name, "mesh": mesh, "transform": {"translate_m": [0, 0, z]}} for name, z in (("low", 0), ("high", 1))]
     config = {**CLOTH_ON_BALL, "scene": {"bodies": bodies}, "formulation": {"name": "log", "d_hat_m": 0.01}}
-    said = bench(program, "check", write(tmp_path / "a.json", config)).stdout
-    [line] = [line for line in said.splitlines() if "objects and groups of" in line]
+    message = bench(program, "check", write(tmp_path / "a.json", config)).stdout
+    [line] = [line for line in message.splitlines() if "objects and groups of" in line]
     assert line.endswith("part 16 (2 vertices), and 13 more; the verb meshes has all of their names")
     assert "x" * 100 + "... (5000 bytes) (2 vertices)" in line and "x" * 101 not in line
 
@@ -216,8 +216,8 @@ def test_what_may_be_compared_fits_the_terminal_and_loses_no_word(program, tmp_p
     few = {"/matching/rule": "as_given", "/time/steps": 30, "/time/dt_s": 0.01}
     spec = {"schema": "barrierbench.sweep/1", "name": "two", "base": BLOCK, "set": few, "axes": [{"cases": cases}]}
     words = ["sweep", write(tmp_path / "two.json", spec), "--out", tmp_path / "out"]
-    said = on_terminal(program, columns, *words) if columns else bench(program, *words).stdout
-    lines = shown_lines(said)
+    message = on_terminal(program, columns, *words) if columns else bench(program, *words).stdout
+    lines = shown_lines(message)
     below = lines[next(k for k, line in enumerate(lines) if "comparability" in line) :]
     assert all(line == line.rstrip() and (not columns or len(line) <= columns) for line in below)
     assert below[0].split() == ["run", "outcome", "comparability"]

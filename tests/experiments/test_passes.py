@@ -72,8 +72,8 @@ def test_a_sweep_goes_on_after_a_case_that_fails_midway(program, build_folder, t
     words = ["--set", "/time/steps=2", "--set", '/matching/rule="as_given"', "--set", '/integrator/name="{}"']
     ids = {}
     for name in ("negative_weight", "implicit_euler"):
-        told = bench(program, "--plugin", plugin, "explain", BLOCK, *(word.format(name) for word in words)).stdout
-        ids[name] = told.splitlines()[0].rsplit("-", 1)[1]
+        reported = bench(program, "--plugin", plugin, "explain", BLOCK, *(word.format(name) for word in words)).stdout
+        ids[name] = reported.splitlines()[0].rsplit("-", 1)[1]
     assert [p.name for p in (tmp_path / "out").glob("name=*")] == [f"name=implicit_euler-{ids['implicit_euler']}"]
     failed = tmp_path / "out" / f"name=negative_weight-{ids['negative_weight']}"
     failed.mkdir()

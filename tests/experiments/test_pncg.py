@@ -38,19 +38,19 @@ def test_a_record_says_where_a_step_ended_and_how_far_that_is_from_the_solution(
 
 
 def test_list_and_explain_say_what_it_guarantees(program, tmp_path):
-    said = bench(program, "explain", shot(tmp_path, 0), "--set", "/step_solver/name=pncg").stdout
-    line = next(line for line in said.splitlines() if line.startswith("guarantee "))
+    message = bench(program, "explain", shot(tmp_path, 0), "--set", "/step_solver/name=pncg").stdout
+    line = next(line for line in message.splitlines() if line.startswith("guarantee "))
     assert line.split()[1] == "pncg:" and "half_d_hat, as published, none" in line
     assert line.split(": ", 1)[1] in bench(program, "list", "step_solvers").stdout
 
 
-@pytest.mark.parametrize(("words", "said"), [
+@pytest.mark.parametrize(("words", "message"), [
     (["/step_solver/pncg_epsilon=1"], ["/step_solver/pncg_epsilon"]),
     (["/step_solver/pncg_bound=ccd"], ["/step_solver/pncg_bound", "half_d_hat"]),
     (["/step_solver/pncg_preconditioner=mas"], ["/step_solver/pncg_preconditioner", "block_jacobi"]),
     (["/step_solver/saddle=escape"], ["/step_solver/saddle"]),
     (["/contact/step_bound=per_vertex"], ["/contact/step_bound"]),
 ])
-def test_what_does_not_go_with_it_is_refused_by_name(program, tmp_path, words, said):
+def test_what_does_not_go_with_it_is_refused_by_name(program, tmp_path, words, message):
     sets = [word for each in words for word in ("--set", each)]
-    refused(bench(program, "check", shot(tmp_path, 0), "--set", "/step_solver/name=pncg", *sets), *said)
+    refused(bench(program, "check", shot(tmp_path, 0), "--set", "/step_solver/name=pncg", *sets), *message)

@@ -52,12 +52,12 @@ def test_a_square_comes_to_the_floor_with_a_ball_through_it(program, tmp_path, s
 
 
 def test_explain_says_that_points_alone_are_kept_out(program, tmp_path):
-    said = bench(program, "explain", config(tmp_path)).stdout
-    assert "points only: this holds for vertices at obstacles; edges and triangles between them may be in an obstacle" in said
+    message = bench(program, "explain", config(tmp_path)).stdout
+    assert "points only: this holds for vertices at obstacles; edges and triangles between them may be in an obstacle" in message
     assert "points only" not in bench(program, "explain", config(tmp_path), "--set", "/contact/model=all_pairs").stdout
 
 
-@pytest.mark.parametrize(("sets", "said"), [
+@pytest.mark.parametrize(("sets", "message"), [
     (["/device=host"], '/contact/model: found "points"; allowed: all_pairs with device host: its kernels know no other pairs'),
     (["/contact/weighting=area"], '/contact/model: found "points"; allowed: all_pairs, or weighting none: points have no area'),
     (["/contact/model=edges"], "/contact/model"),
@@ -66,10 +66,10 @@ def test_explain_says_that_points_alone_are_kept_out(program, tmp_path):
     (["/scene/bodies/0/material/cloth_softening_m=0.1"], "/material/cloth_softening_m: found 0.1; allowed: 0 without a cloth spring"),
     (["/scene/bodies/0/material/cloth_skip_one_N_per_m=-1"], "cloth_skip_one_N_per_m"),
 ])
-def test_what_does_not_go_with_it_is_refused_by_name(program, tmp_path, sets, said):
+def test_what_does_not_go_with_it_is_refused_by_name(program, tmp_path, sets, message):
     words = [word for one in sets for word in ("--set", one)]
     done = bench(program, "check", config(tmp_path), *words)
-    assert done.returncode == 2 and said in done.stderr, done.stderr
+    assert done.returncode == 2 and message in done.stderr, done.stderr
 
 
 def test_springs_two_apart_are_refused_on_what_is_no_grid(program, tmp_path):

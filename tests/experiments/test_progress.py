@@ -12,12 +12,12 @@ def test_lines_come_from_every_pass_and_the_estimate_covers_those_that_follow(pr
     done = bench(program, "run", *DRAPE, "--out", tmp_path / "out", "--progress-every", "0.02")
     assert done.returncode == 0, done.stderr
     lines = done.stderr.splitlines()
-    told = [LINE.search(line) for line in lines]
-    assert lines and all(found or "before the end of the first step" in line for line, found in zip(lines, told)), lines[:5]
-    passes = [found[1] for found in told if found]
+    reported = [LINE.search(line) for line in lines]
+    assert lines and all(found or "before the end of the first step" in line for line, found in zip(lines, reported)), lines[:5]
+    passes = [found[1] for found in reported if found]
     assert {"time", "diagnose"} <= set(passes)
     assert passes == sorted(passes, key=["calibration", "time", "diagnose"].index)
-    steps = [int(found[2]) for found in told if found and found[1] == "diagnose"]
+    steps = [int(found[2]) for found in reported if found and found[1] == "diagnose"]
     assert steps == sorted(steps) and steps
 
 

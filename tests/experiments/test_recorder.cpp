@@ -1,4 +1,4 @@
-// What a recorder makes of a simulation: each number against the state it is said to be of.
+// What a recorder makes of a simulation: each number against the state that it describes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

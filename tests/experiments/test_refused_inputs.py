@@ -1,4 +1,4 @@
-"""What would be wrong from its first step on is refused with its place, and what is asked for is done or refused, never passed over."""
+"""What would be wrong from its first step on is refused with its place, and what is requested is done or refused, never passed over."""
 
 import json
 
@@ -32,17 +32,17 @@ def test_what_is_prescribed_does_not_jump_to_where_an_earlier_start_had_led(prog
         assert bench(program, "check", config(tmp_path, (SHEET, good))).returncode == 0
 
 
-@pytest.mark.parametrize("motion, said", [
+@pytest.mark.parametrize("motion, message", [
     ({"velocity_m_per_s": [0, 0, 1]}, "a way with a z component"),
     ({"keyframes": [{"time_s": 0}, {"time_s": 1, "translate_m": [0, 0, 1]}]}, "a way with a z component"),
     ({"angular_velocity_rad_per_s": 1, "axis": [1, 0, 0]}, "a rotation out of the plane")])
 @pytest.mark.parametrize("of", ["rigid", "pin", "pull"])
-def test_nothing_leaves_the_plane_of_a_planar_scene(program, tmp_path, motion, said, of):
+def test_nothing_leaves_the_plane_of_a_planar_scene(program, tmp_path, motion, message, of):
     plane = {"planar": True, "gravity_m_per_s2": [0, -9.81, 0]}
     flat = SHEET | {"transform": {"translate_m": [0, 0.5, 0]}}
     pin = {"box_m": [[-1, 0.6, -1], [1, 1, 1]], "motion": motion} | ({"pull_N_per_m": 5} if of == "pull" else {})
     bodies = (flat, PLATE | {"motion": motion}) if of == "rigid" else (flat | {"pins": [pin]},)
-    refused(bench(program, "check", config(tmp_path, bodies, plane)), said, "the scene is planar")
+    refused(bench(program, "check", config(tmp_path, bodies, plane)), message, "the scene is planar")
 
 
 def test_a_start_beyond_the_strain_limit_is_no_scene(program, tmp_path):
@@ -90,7 +90,7 @@ def test_a_record_is_no_config_and_says_what_takes_it(program, tmp_path):
 
 
 def test_a_run_that_was_cut_off_goes_on_though_its_audit_has_found_something(program, tmp_path):
-    """A crossing is told, and is no end: the steps that are missing are made, and then the outcome is that of the whole run."""
+    """A crossing is reported, and is no end: the steps that are missing are made, and then the outcome is that of the whole run."""
     falling = SHEET | {"transform": {"translate_m": [0, 0, 0.05]}, "velocity_m_per_s": [0, 0, -20]}
     soft = {"shape": "quadratic", "d_hat_m": 0.01, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 50}}
     file = config(tmp_path, (falling, PLATE), formulation=soft, time={"dt_s": 0.01, "steps": 20}, output={"checkpoint_every": 5}, step_solver={"name": "penalty"},

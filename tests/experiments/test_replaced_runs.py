@@ -1,4 +1,4 @@
-"""What is there stays: a run replaces the record of its own config alone, and no file of another program, unless it is told to."""
+"""What is there stays: a run replaces the record of its own config alone, and no file of another program, unless --replace is given."""
 
 import json
 import os
@@ -193,13 +193,13 @@ def test_a_case_whose_folder_has_what_is_not_its_own_is_refused_and_the_others_r
 
 def test_scenes_writes_over_no_other_file_and_may_be_typed_twice(program, tmp_path):
     command = [sys.executable, ROOT / "analysis", "scenes", "twist", "--write"]
-    told = {"env": {**os.environ, "BARRIERBENCH_PROGRAM": program}, "capture_output": True, "text": True, "check": False}
+    reported = {"env": {**os.environ, "BARRIERBENCH_PROGRAM": program}, "capture_output": True, "text": True, "check": False}
     for _ in range(2):
-        assert subprocess.run([*command, tmp_path / "new.json"], **told).returncode == 0
+        assert subprocess.run([*command, tmp_path / "new.json"], **reported).returncode == 0
     assert json.loads((tmp_path / "new.json").read_text())["scene"]
     for other, text in (("mine.json", "mine"), ("bytes.json", "\udcff")):
         file = tmp_path / other
         file.write_bytes(text.encode(errors="surrogateescape"))
         before = file.read_bytes()
-        done = subprocess.run([*command, file], **told)
+        done = subprocess.run([*command, file], **reported)
         assert done.returncode == 2 and file.read_bytes() == before and f"{file} is there, with other contents" in done.stderr, done.stderr

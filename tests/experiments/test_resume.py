@@ -73,10 +73,10 @@ def kill_until_done(program: str, config: Path, folder: Path, more: list[str], s
             if comes_to(new_checkpoints(folder, rng.randint(1, 2)), process, 300):
                 time.sleep(rng.uniform(0, 0.05))  # a random moment is what it is about
                 process.kill()
-            _, told = process.communicate(timeout=300)
+            _, reported = process.communicate(timeout=300)
         if process.returncode == 0:
             return kills
-        assert process.returncode == -signal.SIGKILL, (process.returncode, told)
+        assert process.returncode == -signal.SIGKILL, (process.returncode, reported)
     raise AssertionError("a hundred kills, and the run is not over")
 
 
@@ -116,10 +116,10 @@ def killed(program: str, config: Path, folder: Path, how=signal.SIGKILL) -> subp
         with started(program, "run", config, "--out", folder) as process:
             comes_to(new_checkpoints(folder, 7), process, 300)
             process.send_signal(how)
-            out, told = process.communicate(timeout=300)
-        assert process.returncode in (0, 75, -signal.SIGKILL), told
+            out, reported = process.communicate(timeout=300)
+        assert process.returncode in (0, 75, -signal.SIGKILL), reported
         if (folder / "trace.jsonl.part").exists():
-            return subprocess.CompletedProcess(process.args, process.returncode, out, told)
+            return subprocess.CompletedProcess(process.args, process.returncode, out, reported)
         shutil.rmtree(folder)
     raise AssertionError("over three times before it could be stopped")
 
@@ -235,8 +235,8 @@ def test_a_frame_that_is_not_as_it_was_is_refused_and_the_others_stay(program, c
         victim.unlink()
     else:
         victim.write_bytes(kept.read_bytes()[:-1] + bytes([kept.read_bytes()[-1] ^ 1]))
-    told = bench(program, "run", config, "--out", out, *more, "--resume")
-    assert told.returncode == 2 and "step_000000.ply" in told.stderr
+    reported = bench(program, "run", config, "--out", out, *more, "--resume")
+    assert reported.returncode == 2 and "step_000000.ply" in reported.stderr
     victim.write_bytes(kept.read_bytes())
     assert sorted((out / "frames.part").iterdir()) == frames
     assert bench(program, "run", config, "--out", out, *more, "--resume").returncode == 0

@@ -1,4 +1,4 @@
-// Which elements, bodies and vertices the ends of the spectrum are said to live on, where that is known.
+// Which elements, bodies and vertices the ends of the spectrum are reported to live on, where that is known.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -77,7 +77,7 @@ TEST(StartCheck, AStopIsHeardBetweenAllPartsOfWhatComesBeforeTheFirstStep) {
 
 TEST(StartCheck, AStopCutsNoStepInWhoseMiddleItIsHeard) {
   RunConfig config = given_sheets(1);
-  config.passes = {false, false, true};  // the audit of each state asks for stops
+  config.passes = {false, false, true};  // the audit of each state looks for stops
   const Scene scene = build_scene(config);
   const Plan plan = plan_of(config, scene);
   RunRecord record;

@@ -137,7 +137,7 @@ def other_archive(document: dict, packed: bytes) -> bytes:
     return zlib.compress(bytes(archive[8 * i + k] for k in range(8) for i in range(m)) + archive[8 * m :])
 
 
-@pytest.mark.parametrize("edit, said", [
+@pytest.mark.parametrize("edit, message", [
     (lambda document, packed: packed[:-20], "cut off or damaged"),
     (lambda document, packed: bytes(reversed(packed)), "cut off or damaged"),
     (lambda document, _: document["config"]["scene"].update(n=7), "of another scene or mesh"),
@@ -147,15 +147,15 @@ def other_archive(document: dict, packed: bytes) -> bytes:
     (lambda document, _: document.update(velocity_hash="0"), "an archive of another build"),
     (other_archive, "an archive of another build (archive: more than this program keeps)"),
 ])
-def test_a_state_that_this_program_cannot_take_is_refused_with_the_command_that_remakes_it(program, kept, tmp_path, edit, said):
+def test_a_state_that_this_program_cannot_take_is_refused_with_the_command_that_remakes_it(program, kept, tmp_path, edit, message):
     folder = damaged(kept, tmp_path / "states", edit)
     done = bench(program, "steps", "--corpus", folder, "--out", tmp_path / "out.json")
     assert done.returncode == 2 and done.stdout == "" and not (tmp_path / "out.json").exists()
-    assert said in done.stderr and f"{folder}/small" in done.stderr and "./bench study step-corpus --make --only small" in done.stderr
+    assert message in done.stderr and f"{folder}/small" in done.stderr and "./bench study step-corpus --make --only small" in done.stderr
 
 
 def test_what_is_not_there_is_refused_by_name(program, kept, tmp_path):
-    for words, said in [
+    for words, message in [
         (["--corpus", tmp_path], f"{tmp_path}: found no state"),
         (["--corpus", tmp_path / "none"], "none: found no folder"),
         (["--corpus", kept, "--only", "smal"], '--only: found "smal"; allowed: states of'),
@@ -168,7 +168,7 @@ def test_what_is_not_there_is_refused_by_name(program, kept, tmp_path):
         ([], "config: found nothing"),
     ]:
         done = bench(program, "steps", *words)
-        assert done.returncode == 2 and said in done.stderr and done.stdout == "", (words, done.stderr)
+        assert done.returncode == 2 and message in done.stderr and done.stdout == "", (words, done.stderr)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -181,17 +181,17 @@ def test_the_halves_alternate_in_alphabetical_order():
     assert make.halves(["c", "a", "b"]) == {"a": "tune", "b": "report", "c": "tune"}
 
 
-@pytest.mark.parametrize("edit, said", [
+@pytest.mark.parametrize("edit, message", [
     (lambda spec: spec["states"][0].update(base="x.json", catalogue="twist"), "either base (a config) or catalogue"),
     (lambda spec: spec["states"].append(spec["states"][0]), "a name twice"),
     (lambda spec: spec["states"][0].pop("hard_for"), "states/0/hard_for: is missing"),
 ])
-def test_a_bad_list_is_refused(tmp_path, edit, said):
+def test_a_bad_list_is_refused(tmp_path, edit, message):
     spec = json.loads((ROOT / "configs/steps/corpus.json").read_text())
     edit(spec)
     file = tmp_path / "corpus.json"
     file.write_text(json.dumps(spec))
-    with pytest.raises(UserError, match=re.escape(said)):
+    with pytest.raises(UserError, match=re.escape(message)):
         make.read_corpus(file)
 
 
@@ -238,8 +238,8 @@ def test_what_an_earlier_list_had_goes_by_name_and_own_files_stay(tmp_path, caps
     (tmp_path / "lone.state").write_bytes(b"x")
     make.drop_unlisted(tmp_path, ["listed"])
     assert {file.stem for file in tmp_path.iterdir()} == {"listed", "mine", "other", "lone"}
-    said = capsys.readouterr().err
-    assert said.count("removed") == 2 and f"{tmp_path}/earlier.json" in said and f"{tmp_path}/earlier.state" in said
+    message = capsys.readouterr().err
+    assert message.count("removed") == 2 and f"{tmp_path}/earlier.json" in message and f"{tmp_path}/earlier.state" in message
 
 
 def test_a_take_that_is_cut_off_leaves_the_earlier_record(monkeypatch, tmp_path):

@@ -74,7 +74,7 @@ def test_what_steps_of_chosen_length_cannot_have_is_refused_by_name(program, con
 
 QUADRATIC = {"/formulation": {"shape": "quadratic", "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 50}}, "/strain_limit/enabled": False}
 LITERAL = {"/scene": {"name": "drape2d", "variant": "pinned", "protocol": "article_literal", "pairs": "vertex_vertex"}, "/strain_limit/shape": "log", "/time/step_iterations": 1}
-COMES_TO_ITS_END = {  # the barrier is bounded under penalty, and augmented_lagrangian may pass through: neither is asked here
+COMES_TO_ITS_END = {  # the barrier is bounded under penalty, and augmented_lagrangian may pass through: neither is tested here
     "line_search": {}, "al_barrier": {}, "augmented_lagrangian": {}, "penalty": QUADRATIC, "article_literal": LITERAL}
 
 

@@ -43,8 +43,8 @@ def test_what_is_faster_than_it_can_see_is_a_penetration_that_the_audit_names(pr
 
 @pytest.mark.parametrize("solver", BASELINES)
 def test_list_and_explain_say_what_a_step_solver_guarantees(program, tmp_path, solver):
-    said = bench(program, "explain", shot(tmp_path, 0), "--set", f"/step_solver/name={solver}").stdout
-    line = next(line for line in said.splitlines() if line.startswith("guarantee "))
+    message = bench(program, "explain", shot(tmp_path, 0), "--set", f"/step_solver/name={solver}").stdout
+    line = next(line for line in message.splitlines() if line.startswith("guarantee "))
     assert line.split()[1] == solver + ":" and "none" in line
     listed = bench(program, "list", "step_solvers").stdout
     assert line.split(": ", 1)[1] in listed
@@ -96,7 +96,7 @@ def test_settings_of_later_solvers_stand_in_a_config_that_has_one(program, tmp_p
         assert {name for name in own.values() if name in stated} == ({own[solver]} if solver in own else set())
 
 
-@pytest.mark.parametrize(("solver", "words", "said"), [
+@pytest.mark.parametrize(("solver", "words", "message"), [
     ("penalty", ["/formulation/name=log"], ["/formulation/shape", "finite at contact"]),
     ("penalty", ["/formulation/name=cubic_dynamic"], ["/formulation/stiffness_policy/name", "fixed: the step solver is penalty"]),
     ("penalty", ["/formulation/argument=squared_gap"], ["/formulation/argument", "gap: the step solver is penalty"]),
@@ -105,9 +105,9 @@ def test_settings_of_later_solvers_stand_in_a_config_that_has_one(program, tmp_p
     ("projection", ["/step_solver/saddle=escape"], ["/step_solver/saddle", "line_search", "augmented_lagrangian"]),
     ("projection", ["/friction/lag_iterations=2"], ["/friction/lag_iterations", "penalty", "augmented_lagrangian"]),
 ])
-def test_what_does_not_go_with_them_is_refused_by_name(program, tmp_path, solver, words, said):
+def test_what_does_not_go_with_them_is_refused_by_name(program, tmp_path, solver, words, message):
     sets = [word for each in words for word in ("--set", each)]
-    refused(bench(program, "check", shot(tmp_path, 0), "--set", f"/step_solver/name={solver}", *sets), *said)
+    refused(bench(program, "check", shot(tmp_path, 0), "--set", f"/step_solver/name={solver}", *sets), *message)
 
 
 def test_a_chain_of_projection_is_as_long_as_its_sweeps_make_it(program, tmp_path):

@@ -34,8 +34,8 @@ def test_a_resolved_config_has_the_settings_of_its_own_solver(program, tmp_path,
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_list_and_explain_say_what_they_guarantee(program, tmp_path, solver):
-    said = bench(program, "explain", shot(tmp_path, 0), "--set", f"/step_solver/name={solver}").stdout
-    line = next(line for line in said.splitlines() if line.startswith("guarantee "))
+    message = bench(program, "explain", shot(tmp_path, 0), "--set", f"/step_solver/name={solver}").stdout
+    line = next(line for line in message.splitlines() if line.startswith("guarantee "))
     assert line.split()[1] == solver + ":" and "no surface passes through another" in line
     assert line.split(": ", 1)[1] in bench(program, "list", "step_solvers").stdout
 
@@ -46,7 +46,7 @@ def test_the_same_bits_with_one_thread_and_with_two(program, tmp_path):
         assert len(ends) == 1, solver
 
 
-@pytest.mark.parametrize(("solver", "words", "said"), [
+@pytest.mark.parametrize(("solver", "words", "message"), [
     ("al_barrier", ["/step_solver/al_barrier_near=1"], ["/step_solver/al_barrier_near"]),
     ("al_barrier", ["/step_solver/al_barrier_growth=0.5"], ["/step_solver/al_barrier_growth"]),
     ("al_free", ["/step_solver/al_free_standoff=0"], ["/step_solver/al_free_standoff"]),
@@ -54,18 +54,18 @@ def test_the_same_bits_with_one_thread_and_with_two(program, tmp_path):
     ("al_free", ["/step_solver/saddle=escape"], ["/step_solver/saddle"]),
     ("al_free", ["/contact/step_bound=per_vertex"], ["/contact/step_bound"]),
 ])
-def test_what_does_not_go_with_them_is_refused_by_name(program, tmp_path, solver, words, said):
+def test_what_does_not_go_with_them_is_refused_by_name(program, tmp_path, solver, words, message):
     sets = [word for each in words for word in ("--set", each)]
-    refused(bench(program, "check", shot(tmp_path, 0), "--set", f"/step_solver/name={solver}", *sets), *said)
+    refused(bench(program, "check", shot(tmp_path, 0), "--set", f"/step_solver/name={solver}", *sets), *message)
 
 
-@pytest.mark.parametrize(("solver", "words", "said"), [
+@pytest.mark.parametrize(("solver", "words", "message"), [
     ("al_barrier", ["/step_solver/al_barrier_release=0.005"], "al_barrier_release"),
     ("al_free", ["/friction/mu=0.3"], "friction"),
 ])
-def test_what_only_a_run_can_know_is_refused_before_its_first_step(program, tmp_path, solver, words, said):
+def test_what_only_a_run_can_know_is_refused_before_its_first_step(program, tmp_path, solver, words, message):
     sets = [word for each in words for word in ("--set", each)]
     done = bench(program, "run", shot(tmp_path, 0), "--out", tmp_path / "out", "--progress", "none", "--set", f"/step_solver/name={solver}", *sets)
-    assert done.returncode != 0 and said in done.stderr
+    assert done.returncode != 0 and message in done.stderr
     record = tmp_path / "out" / "run.json"
     assert not record.exists() or json.loads(record.read_text())["status"]["outcome"] == "invalid_config"

@@ -1,4 +1,4 @@
-"""Every case of a sweep is a run of its own: what would undo itself, or be told apart by nothing, is refused before the first run."""
+"""Every case of a sweep is a run of its own: what would undo itself, or differ in nothing, is refused before the first run."""
 
 import json
 
@@ -23,7 +23,7 @@ def case(label, **settings):
 ASSIGNED = case("a", **{"/time/steps=3": 1})
 
 
-@pytest.mark.parametrize("axes, more, said", [
+@pytest.mark.parametrize("axes, more, message", [
     ([{"pointer": "/seeds/main=x", "values": [1]}], {}, ["#/axes/0/pointer", "/seeds/main=x", "without \"=\""]),
     ([{"pointer": "/name=x", "values": [1, 2]}], {}, ["#/axes/0/pointer", "/name=x"]),
     ([STEPS], {"set": {"/time/dt_s=1": 3}}, ["#/set", "/time/dt_s=1"]),
@@ -40,10 +40,10 @@ ASSIGNED = case("a", **{"/time/steps=3": 1})
      ["[two]", "the same run as [one]"]),
     ([{"pointer": "/time/dt_s", "values": [0.01, 1e-2, 0.010]}], {}, ["again"]),
 ])
-def test_what_is_not_a_run_of_its_own_is_refused(program, tmp_path, axes, more, said):
+def test_what_is_not_a_run_of_its_own_is_refused(program, tmp_path, axes, more, message):
     file = spec(tmp_path, *axes, **more)
-    refused(bench(program, "sweep", file, "--dry-run"), str(file), *said)
-    refused(bench(program, "sweep", file, "--out", tmp_path / "out"), *said)
+    refused(bench(program, "sweep", file, "--dry-run"), str(file), *message)
+    refused(bench(program, "sweep", file, "--out", tmp_path / "out"), *message)
     assert not (tmp_path / "out").exists()
 
 

@@ -52,8 +52,8 @@ def test_edges_that_are_no_path_are_refused():
 
 
 def test_the_line_tears_through_stitch_by_stitch(program, tmp_path):
-    said = torn(program, tmp_path)
-    assert f"{COLUMNS} of {COLUMNS} stitches are broken" in said.stdout
+    message = torn(program, tmp_path)
+    assert f"{COLUMNS} of {COLUMNS} stitches are broken" in message.stdout
     record = read_record(tmp_path / "run/run.json")
     counts = [step["broken_stitches"] for step in record["steps"]]
     assert counts == sorted(counts) and counts[0] == 0

@@ -28,9 +28,9 @@ def run(program, out):
 
 
 def test_the_first_run_makes_the_block_and_the_record_names_it(program, tmp_path):
-    record, said = run(program, tmp_path / "out")
+    record, message = run(program, tmp_path / "out")
     reports = list((tmp_path / "validity").glob("*.json"))
-    assert len(reports) == 1 and said == ""
+    assert len(reports) == 1 and message == ""
     build = record["validity"]["build"]
     assert build["valid"] and build["checks"] == len(json.loads(reports[0].read_text())["checks"]) > 0
     assert record["summary"]["wall_s"] > 0 and record["samples"]["wall_s"]
@@ -44,9 +44,9 @@ def test_a_build_that_fails_a_check_shows_no_times(program, tmp_path):
     document["checks"][0]["value"] = 2 * document["checks"][0]["bound"] + 1
     report.write_text(json.dumps(document))
 
-    record, said = run(program, tmp_path / "second")
+    record, message = run(program, tmp_path / "second")
     name = document["checks"][0]["name"]
-    assert name in said and "no times" in said
+    assert name in message and "no times" in message
     assert record["validity"]["build"]["failed"] == name
     assert not record["validity"]["valid"] and not record["status"]["valid"]
     assert record["summary"]["wall_s"] is None and record["summary"]["wall_s_status"] == "build_not_valid"

@@ -71,14 +71,14 @@ def test_threads_of_the_device_executor_go_the_same_way(program, tmp_path):
     np.testing.assert_allclose(there, here, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("text, said", [
+@pytest.mark.parametrize("text, message", [
     ("0\n1\n2\n" + "0\n" * 6, "side.txt:3: found 2; allowed: one number from 0 to 1 in a line"),
     ("0\n" * 8, "side.txt: found 8 numbers; allowed: 9, one a vertex of the body"),
 ])
-def test_a_wrong_file_is_refused_before_the_first_step(program, tmp_path, text, said):
+def test_a_wrong_file_is_refused_before_the_first_step(program, tmp_path, text, message):
     made = config(tmp_path)
     (tmp_path / "side.txt").write_text(text)
-    refused(bench(program, "run", write(tmp_path / "config.json", made), "--out", tmp_path / "out"), said)
+    refused(bench(program, "run", write(tmp_path / "config.json", made), "--out", tmp_path / "out"), message)
     assert not (tmp_path / "out").exists()
 
 

@@ -45,20 +45,20 @@ def test_trials_short_of_a_pose_are_counted_and_compare_no_energies(program, tmp
 
 
 def test_the_plan_leaves_out_what_it_does_without(program):
-    said = bench(program, "explain", CHAIN, *XPBD).stdout
+    message = bench(program, "explain", CHAIN, *XPBD).stdout
     for item, reason in [("linear_solver", "no matrix"), ("trial_energies", "feasibility alone"), ("end_check", "saddle is ignore")]:
-        line = next(line for line in said.splitlines() if line.split()[:1] == [item])
+        line = next(line for line in message.splitlines() if line.split()[:1] == [item])
         assert reason in line, line
     assert "feasibility alone" not in bench(program, "explain", CHAIN).stdout
 
 
-@pytest.mark.parametrize(("config", "words", "said"), [
+@pytest.mark.parametrize(("config", "words", "message"), [
     (HANG, [], ["xpbd with the term", "offers no constraints"]),
     (CHAIN, ["--set", "/step_solver/saddle=report"], ["/step_solver/saddle"]),
     (CHAIN, ["--set", "/integrator/name=bdf2"], ["/integrator/name", "implicit_euler: the step solver is xpbd"]),
     (CHAIN, ["--set", "/device=host", "--set", "/linear_solver/name=pcg_resident"], ["/step_solver/name"]),
 ])
-def test_what_it_cannot_step_is_refused_before_the_first_step(program, tmp_path, config, words, said):
+def test_what_it_cannot_step_is_refused_before_the_first_step(program, tmp_path, config, words, message):
     for verb in (["check", config], ["run", config, "--out", tmp_path / "out"]):
-        refused(bench(program, *verb, *XPBD, *words), *said)
+        refused(bench(program, *verb, *XPBD, *words), *message)
     assert not (tmp_path / "out" / "run.json").exists()

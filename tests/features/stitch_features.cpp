@@ -38,7 +38,7 @@ std::string is_drawn_together(const Method& method, const Track& run) {
 
 constexpr double seam = 20000, strength = 1, ramp = 0.3;  // N/m, N, s
 
-/// A plate of four equal vertices hangs on four stitches while gravity grows. Their strength is said as twice as much, with a
+/// A plate of four equal vertices hangs on four stitches while gravity grows. Their strength is set to twice as much, with a
 /// weight of a half.
 json torn(const Method& method) {
   json config = bare(method, 1e-3, 300);

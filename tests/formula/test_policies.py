@@ -61,9 +61,9 @@ def test_the_gap_enters(program, tmp_path):
 
 
 def test_spellings_of_one_tree_are_one_config(program):
-    said = [bench(program, "explain", STRIP, "--set", policy(name="formula", formula=text)) for text in ("m/h^2+k", "m / (h**2) + k", "k + m/h^2")]
-    first = [done.stdout.splitlines()[0] for done in said]
-    assert first[0] == first[1] != first[2], said[0].stderr
+    message = [bench(program, "explain", STRIP, "--set", policy(name="formula", formula=text)) for text in ("m/h^2+k", "m / (h**2) + k", "k + m/h^2")]
+    first = [done.stdout.splitlines()[0] for done in message]
+    assert first[0] == first[1] != first[2], message[0].stderr
 
 
 @pytest.mark.parametrize("keys, found", [

@@ -50,8 +50,8 @@ def test_a_run_is_that_of_the_closed_form(program, tmp_path, shape):
     assert mine["summary"]["contact_load_max_N"] == pytest.approx(built["summary"]["contact_load_max_N"], rel=1e-8)
     dropped = run(program, tmp_path / "dropped", STRIP, policy(name="formula", formula=SCALED, refresh="per_step"), *common)
     assert dropped["summary"]["gap_min_m"] != pytest.approx(mine["summary"]["gap_min_m"], rel=1e-3)
-    said = [record["config"]["formulation"]["stiffness_policy"] for record in (mine, dropped)]
-    assert said[0]["potential"] == "derived" and "potential" not in said[1]  # an id from before the key stays
+    message = [record["config"]["formulation"]["stiffness_policy"] for record in (mine, dropped)]
+    assert message[0]["potential"] == "derived" and "potential" not in message[1]  # an id from before the key stays
 
 
 @pytest.mark.parametrize("shape, argument", [("log", "gap"), ("log", "squared_gap"), ("two_stage", "gap"), ("formula:(d_hat - d)^3/d_hat", "gap")])

@@ -84,10 +84,10 @@ def test_record_keeps_text_and_hash_and_repeats_itself(program, tmp_path, cache)
 
 
 def test_spellings_of_one_tree_are_one_config(program):
-    said = [bench(program, "explain", BLOCK, "--set", setting(shape)) for shape in (
+    message = [bench(program, "explain", BLOCK, "--set", setting(shape)) for shape in (
         {"formula": "(d - d_hat)^2", "at_zero": "finite"}, {"formula": "((d-d_hat))**2"}, "formula: (d - d_hat) ^ 2", "formula:(d_hat - d)^2")]
-    first = [done.stdout.splitlines()[0] for done in said]
-    assert first[0] == first[1] == first[2] != first[3] and "formula-" in first[0], said[0].stderr
+    first = [done.stdout.splitlines()[0] for done in message]
+    assert first[0] == first[1] == first[2] != first[3] and "formula-" in first[0], message[0].stderr
 
 
 def test_the_strain_limit_takes_a_formula(program):
@@ -144,7 +144,7 @@ def test_eval_says_what_is_wrong(program):
 
 
 def test_a_card_takes_a_formula_where_nvcc_makes_a_kernel_of_it(program):
-    """What is asked before a card is looked for, so that it is known on any machine."""
+    """What is checked before a card is looked for, so that it is known on any machine."""
     on_a_card = ("check", BLOCK, "--set", '/device="cuda"', "--set")
     done = bench(program, *on_a_card, setting({"formula": "(d - d_hat)^2"}))
     if device.find_nvcc():

@@ -13,7 +13,7 @@ PROVEN = "(d - d_hat)^2"
 FEW = ("--set", "/time/steps=1", "--set", "/formulation/stiffness_policy={\"name\": \"fixed\", \"kappa_N_per_m\": 1e9}")
 
 
-def said(done) -> list[str]:
+def message(done) -> list[str]:
     assert done.returncode == 0, done.stderr
     return [line for line in done.stderr.splitlines() if "only sampled" in line]
 
@@ -26,13 +26,13 @@ def caveat(cache) -> str:
 
 
 def test_a_run_and_its_rerun_say_it(program, tmp_path, caveat):
-    assert said(bench(program, "run", BLOCK, *FEW, "--set", setting({"formula": SAMPLED}), "--out", tmp_path / "one")) == [caveat]
-    assert said(bench(program, "run", tmp_path / "one/run.json", "--out", tmp_path / "two")) == [caveat]
+    assert message(bench(program, "run", BLOCK, *FEW, "--set", setting({"formula": SAMPLED}), "--out", tmp_path / "one")) == [caveat]
+    assert message(bench(program, "run", tmp_path / "one/run.json", "--out", tmp_path / "two")) == [caveat]
 
 
 def test_a_formula_that_is_proven_and_a_built_in_shape_have_none(program, tmp_path):
     for folder, shape in (("proven", {"formula": PROVEN}), ("built", "cubic")):
-        assert said(bench(program, "run", BLOCK, *FEW, "--set", setting(shape), "--out", tmp_path / folder)) == []
+        assert message(bench(program, "run", BLOCK, *FEW, "--set", setting(shape), "--out", tmp_path / folder)) == []
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
@@ -41,4 +41,4 @@ def test_a_sweep_says_it_once(program, tmp_path, caveat, jobs):
             "axes": [{"pointer": "/time/steps", "values": [1, 2, 3]}]}
     (tmp_path / "sweep.json").write_text(json.dumps(spec))
     done = bench(program, "sweep", tmp_path / "sweep.json", "--out", tmp_path / "out", "--jobs", jobs, *FEW[2:])
-    assert said(done) == [caveat] and len(list((tmp_path / "out").glob("*/run.json"))) == 3
+    assert message(done) == [caveat] and len(list((tmp_path / "out").glob("*/run.json"))) == 3

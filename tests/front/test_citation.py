@@ -10,7 +10,7 @@ from barrierbench_analysis.front.version import version
 from barrierbench_analysis.io.places import ROOT
 
 FILE = ROOT / "CITATION.cff"
-# What version 1.2.0 of the format asks of the keys that are used here; any other key is a mistake.
+# What version 1.2.0 of the format requires of the keys that are used here; any other key is a mistake.
 ENTITY = {"type": "object", "properties": {"name": {"type": "string"}}, "required": ["name"], "additionalProperties": False}
 DOI = {"type": "object", "additionalProperties": False, "required": ["type", "value"],
        "properties": {"type": {"const": "doi"}, "value": {"type": "string", "pattern": r"^10\.\d{4,9}(\.\d+)?/[A-Za-z0-9:/_;\-\.\(\)\[\]\\\\]+$"},

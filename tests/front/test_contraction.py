@@ -17,6 +17,6 @@ def test_the_compiler_fuses_no_multiply_add_by_itself(program):
     assert products > 5_000, "this is not the code of the pipeline"
     if not re.search(r"\tvfn?m(?:add|sub)\d", code):
         pytest.skip("built for processors without fused multiply-add: std::fma is a call there, and nothing can be fused")
-    # Alternating signs are the one form that no source asks for (std::fma has one sign), and the one that g++ 12 makes in spite
+    # Alternating signs are the one form that no source contains (std::fma has one sign), and the one that g++ 12 makes in spite
     # of -ffp-contract=off.
     assert re.findall(r"\tvfm(?:addsub|subadd)\w+", code) == []

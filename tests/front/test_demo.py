@@ -17,7 +17,7 @@ from barrierbench_analysis.pages.report import verb as report
 
 @pytest.fixture
 def calls(monkeypatch):
-    """Sweeps that are no runs: what was asked of each; `codes` says how each ends."""
+    """Sweeps that are no runs: what was requested of each; `codes` says how each ends."""
     made, codes = [], {}
 
     def run_sweep(file: Path, out: Path, *words: str, stdout: None) -> CompletedProcess:

@@ -103,7 +103,7 @@ def test_a_verb_names_the_file_and_leaves_what_was_there(program, inputs, tmp_pa
 
 
 def test_nothing_is_at_issue_without_the_limit(program, inputs, tmp_path):
-    """The same words write the same files where the disk has room."""
+    """The same words write the same files where the disk has space."""
     here = tmp_path / "here"
     shutil.copytree(inputs, here)
     for words, file, _ in WRITE[:6]:

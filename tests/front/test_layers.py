@@ -36,7 +36,7 @@ def edges(source: Path = SOURCE) -> list[tuple[str, str]]:
 
 
 def layer(name: str) -> str:
-    """Empty: of the package itself, which loads what it exports when it is asked for."""
+    """Empty: of the package itself, which loads what it exports on request."""
     return name.split(".")[1] if name.count(".") else ""
 
 

@@ -51,7 +51,7 @@ def test_the_navigation_has_every_page_once_by_section():
 
 
 def test_no_page_of_ours_loses_a_link():
-    """Errors of `staged` are those that the build would have; the extensions that formulas and lists need are asked for."""
+    """Errors of `staged` are those that the build would have; the extensions that formulas and lists need are loaded."""
     assert len(site_pages.staged(ROOT)) > 120
     config, recipe = (ROOT / "mkdocs.yml").read_text(), site.REQUIREMENTS.read_text()
     assert all(re.search(rf"^{name}==", recipe, re.M) for name in ("mkdocs", "mkdocs-material", "django-static-mathjax", "mdx_truly_sane_lists"))

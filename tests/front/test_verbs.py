@@ -202,7 +202,7 @@ def test_one_place_makes_parsers_of_verbs():
 
 @pytest.mark.parametrize(("words", "meant"), [
     (["claim"], "study claims"), (["swep"], "sweep"), (["gapmap"], "study gap-map"), (["buidl"], "build"), (["studdy"], "study"), (["neutrl"], "export-scene"),
-    (["study", "gapmap"], "gap-map"), (["data", "matrix"], "matrices"), (["dev", "formt"], "format"), (["gate", "acept"], "accept"), (["draw", "render"], "still")])
+    (["-h", "swep"], "sweep"), (["--help", "nosense"], "scenes"), (["study", "gapmap"], "gap-map"), (["data", "matrix"], "matrices"), (["dev", "formt"], "format"), (["gate", "acept"], "accept"), (["draw", "render"], "still")])
 def test_a_wrong_word_gets_the_nearest_before_anything_is_built(words, meant, capsys):
     assert door.main(words) == 2
     said = capsys.readouterr()

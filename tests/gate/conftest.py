@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-# Runs the real program with settings that a defect of the code would amount to, then writes what was asked for into the record: to the gate it
+# Runs the real program with settings that a defect of the code would amount to, then writes what was requested into the record: to the gate it
 # is the same config, and only the numbers can give the defect away.
 STAND_IN = """#!{python}
 import hashlib, json, os, subprocess, sys

@@ -47,7 +47,7 @@ def link_to(target: str) -> Callable[[Path], None]:
 
 
 def sparse(n_bytes: int) -> Callable[[Path], None]:
-    """A file of zeros that takes no room on the disk."""
+    """A file of zeros that takes no space on the disk."""
     def create(path: Path) -> None:
         with path.open("wb") as file:
             file.truncate(n_bytes)

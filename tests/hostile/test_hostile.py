@@ -64,12 +64,12 @@ def test_hostile(program: str, tmp_path: Path, case: Case):
     done = subprocess.run([program, *case.command], cwd=tmp_path, env=environment, input=case.stdin, capture_output=True,
                           check=False, timeout=case.seconds, preexec_fn=limits)
 
-    told = done.stderr.decode(errors="replace") + done.stdout.decode(errors="replace")
-    assert done.returncode == case.code, (done.returncode, told[:2000])
+    reported = done.stderr.decode(errors="replace") + done.stdout.decode(errors="replace")
+    assert done.returncode == case.code, (done.returncode, reported[:2000])
     for part in case.says:
-        assert part in told, (part, told[:2000])
-    assert "internal" not in told
-    assert len(told) < 20000, "a message that nobody reads"
+        assert part in reported, (part, reported[:2000])
+    assert "internal" not in reported
+    assert len(reported) < 20000, "a message that nobody reads"
     left = listing(tmp_path) - before
     assert not [p for p in left if ".tmp" in p or p.endswith(".part")], left
     assert all(p.split("/")[0] in case.writes for p in left), left

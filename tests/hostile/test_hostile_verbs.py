@@ -45,8 +45,8 @@ def test_a_verb_in_python(program: str, tmp_path: Path, case: VerbCase):
             output.close()
     else:
         done = forked(list(case.words), tmp_path, environment, SECONDS, limits)
-    told = done.stderr.decode(errors="replace") + (done.stdout or b"").decode(errors="replace")
-    assert done.returncode == case.code, (done.returncode, told[-2000:])
-    assert all(part in told for part in case.says), told[-2000:]
-    assert "Traceback" not in told and len(told) < 20000
+    reported = done.stderr.decode(errors="replace") + (done.stdout or b"").decode(errors="replace")
+    assert done.returncode == case.code, (done.returncode, reported[-2000:])
+    assert all(part in reported for part in case.says), reported[-2000:]
+    assert "Traceback" not in reported and len(reported) < 20000
     assert {path.name for path in tmp_path.iterdir()} - before <= set(case.writes)

@@ -1,4 +1,4 @@
-// Names that become folders, and the memory that a scene may ask for.
+// Names that become folders, and the memory that a scene may request.
 #include <gtest/gtest.h>
 
 #include "core/base/input/memory.hpp"

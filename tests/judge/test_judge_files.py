@@ -1,4 +1,4 @@
-"""`bench judge` on what programs write: every habit has the verdict of what the file shows, and what is left out is said."""
+"""`bench judge` on what programs write: every habit has the verdict of what the file shows, and what is left out is reported."""
 
 import struct
 
@@ -35,20 +35,20 @@ def notes_of(tmp_path, path, *words):
 
 def test_what_is_left_out_is_counted_and_said(program, tmp_path):
     lines = obj_lines(CROSSED) + "f 1 2 3\nf 4 5 6\np 1\nq 1 2 3\nq 4 5 6\n"
-    _, _, said = notes_of(tmp_path, text(tmp_path, "f.obj", lines))
-    assert 'a line that begins with "q": 2 not understood and left out, the first at' in said and "f.obj:10" in said
-    assert "points (p): 1 left out" in said
+    _, _, message = notes_of(tmp_path, text(tmp_path, "f.obj", lines))
+    assert 'a line that begins with "q": 2 not understood and left out, the first at' in message and "f.obj:10" in message
+    assert "points (p): 1 left out" in message
     cells = [*FACES, [0], []]
-    _, _, said = notes_of(tmp_path, text(tmp_path, "g.vtu", vtu(piece(CROSSED, [np.array(c, int) for c in cells], [5, 5, 1, 0]))))
-    assert 'cell "vertex": 1 left out, the first at' in said and 'cell "empty cell": 1 left out' in said
+    _, _, message = notes_of(tmp_path, text(tmp_path, "g.vtu", vtu(piece(CROSSED, [np.array(c, int) for c in cells], [5, 5, 1, 0]))))
+    assert 'cell "vertex": 1 left out, the first at' in message and 'cell "empty cell": 1 left out' in message
 
 
 def test_the_field_of_the_motion_is_said_and_can_be_asked_for(program, tmp_path):
     folder = tmp_path / "in"
     folder.mkdir()
     path = habits.polyfem(folder)
-    code, record, said = notes_of(tmp_path, path)
-    assert "the field 'solution' is added to the points, which rest" in said and "Contact, Volume" in said
+    code, record, message = notes_of(tmp_path, path)
+    assert "the field 'solution' is added to the points, which rest" in message and "Contact, Volume" in message
     assert (record["trajectory"]["displacement"], record["trajectory"]["moves"]) == ("solution", True)
     code, record, _ = notes_of(tmp_path, path, "--displacement", "none")
     assert code == 0 and record["trajectory"]["moves"] is False and record["trajectory"]["displacement"] is None
@@ -78,12 +78,12 @@ def test_seams_are_said_and_welded(program, tmp_path):
         leaf = np.array([[0.4, 0.4, z], [0.6, 0.4, z], [0.5, 0.6, z]])
         faces = "".join("f " + " ".join(str(v + 1) for v in s) + "\n" for s in [*sides, [24, 25, 26]])
         text(tmp_path, f"f_{k}.obj", points + obj_lines(leaf) + faces)
-    code, record, said = notes_of(tmp_path, tmp_path)
-    assert "1 bodies are closed but for 16 vertices" in said and "--weld 0 joins" in said
+    code, record, message = notes_of(tmp_path, tmp_path)
+    assert "1 bodies are closed but for 16 vertices" in message and "--weld 0 joins" in message
     assert record["verdict"] == "passes_between_frames" and record["total"]["closed_bodies"] == []
-    code, record, said = notes_of(tmp_path, tmp_path, "--weld", "0")
+    code, record, message = notes_of(tmp_path, tmp_path, "--weld", "0")
     assert (code, record["verdict"]) == (1, "penetrates") and record["total"]["closed_bodies"] == ["part 0"]
-    assert "16 vertices were joined to others" in said and "closed but for" not in said
+    assert "16 vertices were joined to others" in message and "closed but for" not in message
 
 
 def pc2(folder, start, rate):
@@ -136,11 +136,11 @@ def test_what_cannot_be_read_is_refused_with_its_place(program, tmp_path, capsys
     folder = tmp_path / "in"
     folder.mkdir()
     code, record = judge(tmp_path, REFUSED[words](folder))
-    said = capsys.readouterr().err
+    message = capsys.readouterr().err
     assert (code, record) == (2, None)
     if words == "`faces` and `triangles`":
         words = "are both names of `triangles`"
-    assert words in said
+    assert words in message
 
 
 def test_a_field_that_is_not_there_is_refused_with_those_that_are(program, tmp_path, capsys):

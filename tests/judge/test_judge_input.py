@@ -239,6 +239,6 @@ def test_a_fault_is_told_by_file_and_place(program, tmp_path, capsys, words):
     folder = tmp_path / "in"
     folder.mkdir()
     code, record = judge(tmp_path, *REFUSED[words](folder))
-    said = capsys.readouterr().err
+    message = capsys.readouterr().err
     assert (code, record) == (2, None)
-    assert words in said and "barrierbench-judge-" not in said
+    assert words in message and "barrierbench-judge-" not in message

@@ -19,7 +19,7 @@ long n_allocations() { return count; }
 
 void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
-// std::stable_sort asks this way; its memory comes back to the operator delete below
+// std::stable_sort allocates this way; its memory comes back to the operator delete below
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++count;
   return std::malloc(size == 0 ? 1 : size);

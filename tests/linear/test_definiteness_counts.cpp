@@ -87,7 +87,7 @@ TEST(DefinitenessCounts, EveryIterationUpToTheOneThatDecides) {
     const VecXd d =
         seed % 3 == 0 ? VecXd(2 * VecXd::Ones(n) + random_vector(n, seed)) : VecXd(VecXd::Ones(n));
     for (const int cap : {1, 3, 100}) expect_recurrence(a, d, cap, tally);
-    expect_recurrence(-with_spectrum(s.cwiseAbs(), seed), d, 5, tally);  // the first direction tells
+    expect_recurrence(-with_spectrum(s.cwiseAbs(), seed), d, 5, tally);  // the first direction shows it
   }
   EXPECT_GE(tally.positive, 5);
   EXPECT_GE(tally.unknown, 20);
@@ -95,7 +95,7 @@ TEST(DefinitenessCounts, EveryIterationUpToTheOneThatDecides) {
   EXPECT_GE(tally.late, 20);
 }
 
-/// The examination has as many iterations as it is told and no more: one below what the matrix needs says nothing.
+/// The examination has as many iterations as its cap and no more: one below what the matrix needs decides nothing.
 TEST(DefinitenessCounts, TheCapItselfIsEnough) {
   int judged = 0;
   for (const int kinds : {1, 3, 6}) {

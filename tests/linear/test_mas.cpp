@@ -134,7 +134,7 @@ TEST(BlockMesh, HasFreeVerticesAndWhatElementsJoin) {
   const std::vector<int> triangles = {0, 1, 2, 0, 2, 3}, contact = {3, 4};
   blocks.set_elements({{3, triangles}});
   blocks.set_contacts({{2, contact}});
-  EXPECT_EQ(blocks.reduce(blocks.values()).mesh, nullptr);  // nobody asked
+  EXPECT_EQ(blocks.reduce(blocks.values()).mesh, nullptr);  // no solver requested it
   Positions x(3, 5);
   x << 0, 1, 1, 0, 7, 0, 0, 1, 1, 7, 0, 0, 0, 0, 7;
   blocks.set_mesh(x);

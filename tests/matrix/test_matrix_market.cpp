@@ -133,7 +133,7 @@ TEST(MatrixMarket, NoPrefixOfAFileIsReadAsAnotherMatrixOfItsCount) {
     const bool last_number_begun = part.find("2 2 3\n") != std::string::npos &&
                                    part.rfind("2 2 ") + 4 < length &&
                                    part.rfind("2 2 ") > part.find("2 2 3\n");
-    if (last_number_begun) continue;  // only the hash in the side-car can tell
+    if (last_number_begun) continue;  // only the hash in the side-car shows it
     EXPECT_FALSE(complaint(part).empty()) << length << ": " << part;
     ++refused;
   }

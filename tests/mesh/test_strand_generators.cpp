@@ -10,7 +10,7 @@
 namespace bb::mesh::strand_generators_test {
 namespace {
 
-/// Of two segments, by sampling both: fine enough to tell which of two strands is above.
+/// Of two segments, by sampling both: fine enough to decide which of two strands is above.
 double distance(const TriangleMesh& mesh, const std::array<int, 2>& a, const std::array<int, 2>& b) {
   double least = 1e300;
   for (int i = 0; i <= 20; ++i) {

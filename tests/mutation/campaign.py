@@ -178,14 +178,14 @@ class Campaign:
 
 
 def table(campaign: Campaign) -> str:
-    """One line a mutant, then a line a room and the sums."""
+    """One line a mutant, then a line for each table of mutants and the sums."""
     lines = [f"{v.verdict:<10} {v.label:<44} {v.file}:{v.line}\n{'':11}{v.breaks}" + (f"\n{'':11}-> {v.detail}" if v.verdict != "caught" else "")
              for v in campaign.ordered()]
-    lines.append(f"\n{'room':<14}{'caught':>8}{'survived':>10}{'equivalent':>12}{'broken':>8}")
-    rooms = sorted({v.label.split("/")[0] for v in campaign.ordered()})
-    for room in rooms:
-        own = [v.verdict for v in campaign.ordered() if v.label.split("/")[0] == room]
-        lines.append(f"{room:<14}{own.count('caught'):>8}{own.count('survived'):>10}{own.count('equivalent'):>12}{own.count('broken'):>8}")
+    lines.append(f"\n{'table':<14}{'caught':>8}{'survived':>10}{'equivalent':>12}{'broken':>8}")
+    tables = sorted({v.label.split("/")[0] for v in campaign.ordered()})
+    for name in tables:
+        own = [v.verdict for v in campaign.ordered() if v.label.split("/")[0] == name]
+        lines.append(f"{name:<14}{own.count('caught'):>8}{own.count('survived'):>10}{own.count('equivalent'):>12}{own.count('broken'):>8}")
     n, rate = campaign.counts(), campaign.rate()
     lines.append(f"{'all':<14}{n['caught']:>8}{n['survived']:>10}{n['equivalent']:>12}{n['broken']:>8}")
     lines.append(f"caught of those that are not equivalent: {'none ran' if rate is None else f'{100 * rate:.1f} %'}, at least {100 * REQUIRED_RATE:.0f} % are required")

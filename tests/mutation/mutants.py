@@ -19,7 +19,7 @@ FIELDS = {"name", "file", "find", "replace", "breaks", "judges", "equivalent"}
 
 @dataclass(frozen=True)
 class Mutant:
-    room: str
+    table: str
     name: str
     file: str
     find: str
@@ -30,7 +30,7 @@ class Mutant:
 
     @property
     def label(self) -> str:
-        return f"{self.room}/{self.name}"
+        return f"{self.table}/{self.name}"
 
     def applied_to(self, text: str) -> str:
         """The file's text with the mistake in it. Raises ValueError when `find` is not there exactly once."""
@@ -48,7 +48,7 @@ def read_mutants(folder: Path) -> list[Mutant]:
             unknown, missing = set(entry) - FIELDS, FIELDS - {"equivalent"} - set(entry)
             if unknown or missing or not entry["judges"] or entry["find"] == entry["replace"]:
                 sys.exit(f"mutate: {path.name}: {entry.get('name')}: unknown {sorted(unknown)}, missing {sorted(missing)}, or it changes or asks nothing")
-            mutants.append(Mutant(room=path.stem, **(entry | {"judges": tuple(entry["judges"])})))
+            mutants.append(Mutant(table=path.stem, **(entry | {"judges": tuple(entry["judges"])})))
     labels = [m.label for m in mutants]
     twice = sorted({label for label in labels if labels.count(label) > 1})
     if twice:

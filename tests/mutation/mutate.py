@@ -2,7 +2,7 @@
 
     ./bench dev mutate                        every mutant; what one build can hold together is built together (switches.py)
     ./bench dev mutate --one-by-one           a build for every mutant: about half a minute of one core each
-    ./bench dev mutate --only 'newton/*'      those whose room/name matches a pattern (repeatable)
+    ./bench dev mutate --only 'newton/*'      those whose table/name matches a pattern (repeatable)
     ./bench dev mutate --list                 the mutants, nothing is built
     ./bench dev mutate --check                only whether every text is still found, a second
     ./bench dev mutate --resume               keeps the verdicts of results.json that were made on this very tree
@@ -11,7 +11,7 @@
 A mutant is an entry of one of the *.toml files beside this script:
 
     [[mutant]]
-    name = "armijo_sign"                  unique within its file, which is its room
+    name = "armijo_sign"                  unique within its file, the table
     file = "core/newton/line_search.cpp"
     find = '''a <= -b'''                 exact text, found exactly once in the file
     replace = '''a <= b'''
@@ -49,7 +49,7 @@ def parse_arguments() -> argparse.Namespace:
     about = "Puts mistakes into the code one at a time and counts those that the tests catch.\n\nexample:\n  ./bench dev mutate --only 'newton/armijo*'"
     parser = argparse.ArgumentParser(prog="bench dev mutate", usage="bench dev mutate [OPTIONS]", description=about, epilog=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", action="append", metavar="PATTERN", help="room/name, with * and ?")
+    parser.add_argument("--only", action="append", metavar="PATTERN", help="table/name, with * and ?")
     parser.add_argument("--list", action="store_true", help="the mutants, nothing is built")
     parser.add_argument("--check", action="store_true", help="only whether every text is found once")
     parser.add_argument("--resume", action="store_true", help="keep verdicts made on the very same files")

@@ -90,7 +90,7 @@ TEST(AccumulatedScripted, InfeasibleStatesAreHalved) {
   ScriptedIteration one = free_for(0.8);
   one.change = [](double part) -> Change {
     if (part * extension > 0.3) return std::nullopt;
-    return EnergyChange{5, 1};  // E is not asked
+    return EnergyChange{5, 1};  // E is not compared
   };
   const Advanced step({one, free_for(1)}, {.target = 0.1});
   ASSERT_GE(step.system.feasible_asked.size(), 3U);
@@ -122,7 +122,7 @@ TEST(AccumulatedScripted, AStepWithoutIterationsLeftKeepsWhatItReached) {
   EXPECT_EQ(Advanced({free_for(0.1)}, {.target = 0.19, .most = 2}).report.status, StepStatus::converged);
 }
 
-/// The matrix of the last pass is looked at, and no other; a saddle is said and not left.
+/// The matrix of the last pass is looked at, and no other; a saddle is reported and not left.
 TEST(AccumulatedScripted, TheEndIsLookedAtInTheLastPassAlone) {
   for (const SaddleRule rule : {SaddleRule::ignore, SaddleRule::report, SaddleRule::escape}) {
     ScriptedIteration saddle = free_for(0.2);

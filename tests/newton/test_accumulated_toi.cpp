@@ -188,7 +188,7 @@ TEST(AccumulatedToi, a_free_fall_ends_at_its_solution) {
   EXPECT_LT(flight.report.end_error_tolerances.value, 1e-3);
 }
 
-/// report: the last matrix of a step that is not asked to converge is looked at all the same.
+/// report: the last matrix of a step that does not have to converge is looked at all the same.
 TEST(AccumulatedToi, can_be_asked_whether_it_ends_in_a_saddle) {
   for (const double speed : {0.2, -0.2}) {
     const Scene scene = test::driven_sheet({.speed = speed});

@@ -119,7 +119,7 @@ Scene net_over_ball() {
 
 /// jaxls itself (its example at commit 50a58be, float, 2026-11-26): the mean of the points, m, and the highest and the lowest one
 /// after some steps of 1/30 s. Its page states -0.000 and 0.176 for the heights of its end, 150 steps; run here it prints -0.000 and
-/// 0.226. The net still slides off the ball then, so the end is asked to lie between the two.
+/// 0.226. The net still slides off the ball then, so the end has to lie between the two.
 TEST(AugmentedLagrangian, a_net_falls_over_a_ball_as_in_the_program_of_jaxls) {
   struct Known {
     int steps;

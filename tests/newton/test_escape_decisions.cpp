@@ -127,7 +127,7 @@ TEST(EscapeDecisions, AreTakenUnderTheRuleEscapeAlone) {
   EXPECT_EQ(escaped(minimum), 0);
 }
 
-/// Away from a cusp there is no curvature to ask for: E has to fall by a part of what its slope promises, and beyond rounding.
+/// Away from a cusp there is no curvature to require: E has to fall by a part of what its slope promises, and beyond rounding.
 TEST(EscapeDecisions, LeaveACuspWhateverTheCurvature) {
   for (const double curvature : {-2.0, 0.0, 5.0}) {
     auto script = saddle(curvature, at_one(-0.05));

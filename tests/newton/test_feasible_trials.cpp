@@ -12,7 +12,7 @@
 namespace bb::feasible_trials_test {
 namespace {
 
-/// A term writes energies of trials where evaluate() asks it to, and nowhere else: what is not 0 there was requested.
+/// A term writes energies of trials where evaluate() requests them, and nowhere else: what is not 0 there was requested.
 class TrialEnergies final : public StepObserver {
  public:
   void on_matrix(StepSystem& system, int, int) override {

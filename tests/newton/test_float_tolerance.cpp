@@ -1,4 +1,4 @@
-// In float no step is asked for less than the rounding of its coordinates: of which coordinates, and only in float.
+// In float no step has a tolerance below the rounding of its coordinates: of which coordinates, and only in float.
 #include <gtest/gtest.h>
 
 #include "tests/newton/scripted_system.hpp"

@@ -1,4 +1,4 @@
-// What an iteration and a step say of their contacts, over rows of both tables.
+// What an iteration and a step report of their contacts, over rows of both tables.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -166,7 +166,7 @@ class FirstIteration final : public StepObserver {
 };
 
 /// E of a falling particle is a quadratic: a step of alpha changes it by -(alpha - alpha^2/2) D, where D is
-/// the decrement -g . dx. Armijo asks for a fall of armijo alpha D, so alpha <= 2 (1 - armijo).
+/// the decrement -g . dx. Armijo requires a fall of armijo alpha D, so alpha <= 2 (1 - armijo).
 TEST(LineSearch, takes_the_first_halved_step_whose_fall_is_armijos_share_of_the_slope) {
   struct Case {
     double armijo, alpha;

@@ -68,7 +68,7 @@ TEST(MovingObstacles, a_plane_that_rises_carries_a_particle_at_the_gap_of_a_stil
   ASSERT_TRUE(expected.d.has_value());
   const Positions& x = run.simulation.history().x;
   EXPECT_EQ(run.last.contacts.obstacle, 1U);
-  EXPECT_NEAR(x(2, 1), 6 * speed, 1e-13) << "the plane is where it was told to be";
+  EXPECT_NEAR(x(2, 1), 6 * speed, 1e-13) << "the plane is where it has to be";
   EXPECT_NEAR((x(2, 0) - x(2, 1)) / *expected.d, 1, 1e-7);
   EXPECT_NEAR(run.simulation.history().v(2, 0), speed, 1e-8);
 }

@@ -1,4 +1,4 @@
-// A run in parts of unlike length: the integrator is told the length that each step really had.
+// A run in parts of unlike length: the integrator receives the length that each step really had.
 #include <gtest/gtest.h>
 
 #include <vector>

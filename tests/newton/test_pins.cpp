@@ -69,7 +69,7 @@ TEST(Pins, a_plate_that_moves_several_d_hat_a_step_pushes_a_free_cloth_ahead_of_
     contacts += report.contacts.total();
   }
   EXPECT_GT(contacts, 0U);
-  EXPECT_NEAR(simulation.history().x(2, 17), 0.15, 1e-15);             // the plate is where it was told to be
+  EXPECT_NEAR(simulation.history().x(2, 17), 0.15, 1e-15);             // the plate is where it has to be
   EXPECT_GT(simulation.history().x.row(2).head(16).minCoeff(), 0.15);  // and the cloth is above it
 }
 

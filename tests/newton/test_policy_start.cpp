@@ -1,4 +1,4 @@
-// What a policy that balances B against the rest of E is told, and how often.
+// What a policy that balances B against the rest of E receives, and how often.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ TEST(PolicyStart, is_once_a_run_with_the_sums_of_the_first_contacts) {
   EXPECT_EQ(heard[0].time.c, 0.25);
 }
 
-/// Vertices that are let go into contact: newmark looks at the forces of that state first, and what it told the policy then is
+/// Vertices that are let go into contact: newmark looks at the forces of that state first, and what the policy received then is
 /// forgotten. The policy starts with the sums of the step: weights of 2 and 4 N, and the inertia of an acceleration by weight and
 /// contact, at 30 N/m.
 TEST(PolicyStart, is_that_of_the_step_and_not_of_the_look_at_its_first_forces) {
@@ -98,7 +98,7 @@ TEST(PolicyStart, is_told_the_smallest_d_hat_of_the_scene) {
   }
 }
 
-/// A step solver that is not asked to converge measures its end in a system of its own: for the policy that is no run.
+/// A step solver that does not have to converge measures its end in a system of its own: for the policy that is no run.
 TEST(PolicyStart, is_not_repeated_where_the_end_of_a_step_is_measured) {
   const Scene scene = three_particles();
   std::vector<StiffnessGlobals> heard;

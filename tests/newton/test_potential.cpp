@@ -91,7 +91,7 @@ TEST(Potential, the_gradient_is_that_of_E_with_everything_moving_that_moves) {
     }
     EXPECT_LT((numeric - gradient).norm(), 1e-6 * gradient.norm()) << mass_term;
 
-    // the weights did move: asked at x, the policy gives other masses than it gave at the step's start
+    // the weights did move: evaluated at x, the policy gives other masses than it gave at the step's start
     const ContactTable frozen = at.rows().rows;
     at.begin(at.x);
     EXPECT_GT(largest_difference(frozen, at.rows().rows), 1e-3);

@@ -1,5 +1,5 @@
 // From which directions a step reads how fast it converges: from whole ones of this step, one right after the other.
-// What follows anything else says nothing of the rate, and is judged by the rate that counts as unknown.
+// What follows anything else shows nothing of the rate, and is judged by the rate that counts as unknown.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -34,7 +34,7 @@ std::vector<IterationReport> reported(const std::vector<ScriptedIteration>& scri
   return ScriptedStep(script, SaddleRule::escape, 0.1, static_cast<int>(script.size())).iterations;
 }
 
-/// What the second of two iterations says of the rate; empty: it knows it.
+/// What the second of two iterations reports of the rate; empty: it knows it.
 std::string rate_after(const ScriptedIteration& first) {
   const std::vector<IterationReport> all = reported({first, {.dx = 1}});
   EXPECT_EQ(all.size(), 2U);

@@ -56,7 +56,7 @@ TEST(RoundingRoom, of_a_direction_is_that_of_its_own_body) {
   EXPECT_GT(alone[3].inf_m, 0);
 }
 
-/// A run with a rigid body at 1e10 m says of its errors what the run without it says.
+/// A run with a rigid body at 1e10 m reports of its errors what the run without it says.
 TEST(RoundingRoom, a_far_body_leaves_the_estimate_as_it_is) {
   struct Estimates final : StepObserver {
     void on_iteration(const IterationReport& report) override { of.push_back(report.error_estimate_m.value); }

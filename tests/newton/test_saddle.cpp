@@ -214,7 +214,7 @@ TEST(Saddle, every_escape_lowers_the_energy) {
   EXPECT_GE(escapes, 5);
 }
 
-/// Where the gradient has a part along it, the direction goes down, is as long as it was asked to be and moves no
+/// Where the gradient has a part along it, the direction goes down, is as long as requested and moves no
 /// prescribed vertex.
 TEST(Saddle, the_way_out_does_not_climb) {
   int steep = 0;

@@ -134,7 +134,7 @@ TEST(SolidLimit, a_policy_with_its_own_stiffness_holds_a_falling_block) {
   EXPECT_LT(largest, onset + width);
 }
 
-/// A face of a solid that is a membrane too: both kinds of element are limited, and what is said is of both.
+/// A face of a solid that is a membrane too: both kinds of element are limited, and what is reported is of both.
 TEST(SolidLimit, triangles_and_tetrahedra_of_one_scene_are_limited_together) {
   BodySpec body = hanging_block(true);
   body.mesh.triangles = solid_faces(body.mesh.tetrahedra).surface;

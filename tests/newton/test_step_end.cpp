@@ -44,7 +44,7 @@ Scene two_particles() {
   return scene;
 }
 
-/// A run of the two particles whose policy keeps what it is told.
+/// A run of the two particles whose policy keeps what it receives.
 struct ListenedRun {
   Heard heard;
   Method method;

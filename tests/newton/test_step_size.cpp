@@ -18,7 +18,7 @@ constexpr double dt = 0.02, d_hat = 0.05;
 TEST(StepSize, halves_after_a_costly_step_and_doubles_after_a_cheap_one) {
   StepSize size({StepSizeRule::adaptive, 8, 2, 1e-3});
   ASSERT_TRUE(size.adaptive());
-  size.took(0, 12, 0);  // 3/2 of what is asked for is not more than that
+  size.took(0, 12, 0);  // 3/2 of what is requested is not more than that
   EXPECT_EQ(size.halvings(), 0);
   size.took(0, 13, 0);
   EXPECT_EQ(size.halvings(), 1);

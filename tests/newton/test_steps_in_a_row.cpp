@@ -172,7 +172,7 @@ TEST(StepsInARow, AreEachTheFirstOfAFreshObject) {
       EXPECT_TRUE(count(solver.name, taken, compared(taken, choice, terms))) << solver.name;
       if (HasFailure()) return;
     }
-    EXPECT_GT(contacts[solver.name], 0U) << solver.name << " was asked about nothing that touches";
+    EXPECT_GT(contacts[solver.name], 0U) << solver.name << " met nothing that touches";
   }
   for (const TermEntry& entry : term_entries())
     EXPECT_TRUE(terms.contains(std::string(entry.name))) << entry.name;

@@ -92,7 +92,7 @@ TEST(Times, a_state_of_the_limit_is_measured_once) {
   ASSERT_EQ(report.status, StepStatus::converged);
   ASSERT_GT(report.max_stretch.value, 0);
   ASSERT_GE(report.newton_iterations, 2);
-  // the start and every trial; accepted trials, their derivatives and the reports ask again for what is known
+  // the start and every trial; accepted trials, their derivatives and the reports reuse what is known
   EXPECT_EQ(simulation.system().diagnosis().terms().find<StrainLimitTerm>()->family().sweeps(),
             1 + watch.trials);
 }

@@ -1,4 +1,4 @@
-// What a list of parameters says of an object: one message form each, with place, value and what is allowed.
+// What a list of parameters reports of an object: one message form each, with place, value and what is allowed.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-"""The player in headless Chromium: pixels follow the slider, the colours and the camera, nothing is asked of a network, and no
+"""The player in headless Chromium: pixels follow the slider, the colours and the camera, nothing is requested of a network, and no
 error is said. Skipped where Chromium or playwright is absent: ./bench test --browser installs both.
 """
 
@@ -16,7 +16,7 @@ PATIENCE_MS = 120_000  # a machine without a card that does other things too
 
 
 class Opened:
-    """A page with what it asked for and what it said."""
+    """A page with its requests and its messages."""
 
     def __init__(self, browser, file, width=1000, height=700, scheme="light"):
         self.context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme, offline=True)

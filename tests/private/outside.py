@@ -35,8 +35,8 @@ def callers() -> str:
 class Watch:
     """Of one process; `folders`: those of its test."""
 
-    def __init__(self, folders: list, told: str):
-        self.told = told
+    def __init__(self, folders: list, reported: str):
+        self.told = reported
         self.may_read = [ROOT, *folders, sys.prefix, sys.base_prefix, *SYSTEM, *NOWHERE]
         self.may_write = [*folders, f"{ROOT}/build", *DEVICES, *NOWHERE]
         self.busy = False
@@ -72,15 +72,15 @@ class Watch:
 
 
 def wrapped(function, watch: Watch):
-    def asked(path, *words, **more):
+    def requested(path, *words, **more):
         if more.get("dir_fd") is None:
             watch.look(path, False)
         return function(path, *words, **more)
 
     for name in SETS:
         if function in getattr(os, name):
-            getattr(os, name).add(asked)
-    return asked
+            getattr(os, name).add(requested)
+    return requested
 
 
 def start() -> None:

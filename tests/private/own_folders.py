@@ -19,7 +19,7 @@ PLACE = "BARRIERBENCH_TESTS_PLACE"  # the variable with the folder of this run o
 
 
 def begin() -> None:
-    """In this process, a run of pytest or a worker of one, before anything asks the environment."""
+    """In this process, a run of pytest or a worker of one, before anything reads the environment."""
     if PLACE not in os.environ:
         os.environ[PLACE] = os.path.realpath(tempfile.mkdtemp(prefix="barrierbench-tests-"))
         atexit.register(shutil.rmtree, os.environ[PLACE], ignore_errors=True)
@@ -36,7 +36,7 @@ def begin() -> None:
     outside.start()
 
 
-def told() -> list[str]:
+def reported() -> list[str]:
     """What was read and written outside since the last call."""
     file = Path(os.environ[outside.TOLD])
     lines = file.read_text(errors="replace").splitlines() if file.exists() else []
@@ -47,5 +47,5 @@ def told() -> list[str]:
 @pytest.fixture(autouse=True)
 def own_folders_only():
     yield
-    lines = told() + [f"leaves {path}" for path in left_over(Path(os.environ[outside.TOLD]).parent, "pytest-of-*")]
+    lines = reported() + [f"leaves {path}" for path in left_over(Path(os.environ[outside.TOLD]).parent, "pytest-of-*")]
     assert not lines, "outside the clone and the test's own folders:\n" + "\n".join(lines)

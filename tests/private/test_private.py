@@ -42,7 +42,7 @@ GOOD = ("from pathlib import Path\nimport json, os, subprocess, sys, tempfile\nR
 
 @pytest.fixture(scope="module")
 def verdicts(tmp_path_factory) -> dict:
-    """Name of a planted test -> what is said of it; one run of pytest in a folder of its own, as on a machine where much lies about."""
+    """Name of a planted test -> what is reported of it; one run of pytest in a folder of its own, as on a machine where much lies about."""
     there = tmp_path_factory.mktemp("machine")
     (ROOT / "build").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(dir=ROOT / "build", prefix="planted-") as place:
@@ -93,10 +93,10 @@ def test_what_is_left_is_named_and_taken_away(tmp_path):
 
 def test_a_browser_of_tests_has_a_home_of_its_own(tmp_path):
     """Chromium keeps certificates in ~/.pki, whatever its profile. No other test starts it otherwise."""
-    asked = {}
-    play = SimpleNamespace(chromium=SimpleNamespace(launch=lambda **words: asked.update(words) or "started"))
-    assert browser.launched(play, tmp_path, 7) == "started" and asked["timeout"] == 7
-    folders = {name: Path(asked["env"][name]) for name in ("HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME")}
-    assert folders["HOME"] == tmp_path and all(folder.is_relative_to(tmp_path) for folder in folders.values()) and asked["env"]["PATH"] == os.environ["PATH"]
+    requested = {}
+    play = SimpleNamespace(chromium=SimpleNamespace(launch=lambda **words: requested.update(words) or "started"))
+    assert browser.launched(play, tmp_path, 7) == "started" and requested["timeout"] == 7
+    folders = {name: Path(requested["env"][name]) for name in ("HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME")}
+    assert folders["HOME"] == tmp_path and all(folder.is_relative_to(tmp_path) for folder in folders.values()) and requested["env"]["PATH"] == os.environ["PATH"]
     starts = [path.name for path in (ROOT / "tests").rglob("*.py") if ".launch(" in path.read_text() and path != Path(__file__)]
     assert starts == ["browser.py"]

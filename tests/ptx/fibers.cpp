@@ -15,7 +15,7 @@ namespace ptx {
 #ifdef __x86_64__
 
 // Saves the registers that a call keeps on the old stack and takes them from the new one: a few nanoseconds, where
-// swapcontext asks the kernel for the signal mask twice.
+// swapcontext calls the kernel for the signal mask twice.
 extern "C" void bb_ptx_switch(void** save, void* to);
 asm(R"(
 .text

@@ -6,7 +6,7 @@
 
 namespace ptx {
 
-/// A thread of control that runs where it is told to.
+/// A thread of control that runs where it is resumed.
 class Fibers {
  public:
   explicit Fibers(std::size_t n);

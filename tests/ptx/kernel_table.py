@@ -5,7 +5,7 @@ instructions of its PTX, cache lines and sectors that a request of a warp touche
     kernel_table.py --check              compares what is built with results/KERNELS.json; nothing is compiled or run
     kernel_table.py [--profile FILE]...  writes results/KERNELS.json and results/KERNELS.md
 
-The kernels are those of the lists kernels.inc of rooms, their numbers those of the object files bb_device_ROOM. A check fails
+The kernels are those of the lists kernels.inc of modules (`room` in the table), their numbers those of the object files bb_device_ROOM. A check fails
 (exit code 1) when registers, stack, accesses to local memory or FP64 instructions have grown, a kernel is new, gone or without its numbers, a kernel of PCG or of sums uses local
 memory, or a buffer is read in more sectors than 1.2 times the least without a reason in gathers.toml. Where another
 version of nvcc made the objects, only names are compared. Exit code 2: an object file is missing or not understood.
@@ -31,7 +31,7 @@ from machine_code import MachineCodeError, machine_code  # noqa: E402
 ROOT = Path(__file__).resolve().parents[2]
 RESULT = ROOT / "results" / "KERNELS"
 CODE = ("registers", "stack", "local", "fp64")  # of every row
-WITHOUT_LOCAL = ("linear", "sums")  # rooms
+WITHOUT_LOCAL = ("linear", "sums")  # modules
 MOST = 1.2  # sectors of a request over the least
 FP64 = re.compile(r"^\s*(?:@!?%p\d+\s+)?(?:add|sub|mul|fma|div|sqrt|rcp|neg|abs|min|max|setp|selp|cvt)\.[\w.]*f64\b", re.M)
 
@@ -114,18 +114,18 @@ def add_spills(now: dict, before: dict, build: Path, ptxas: str) -> None:
         same = "spills" in old and all(old.get(key) == row[key] for key in CODE)
         row["spills"] = 0 if not row["local"] else old["spills"] if same else None
     for room in sorted({row["room"] for row in kernels.values()}):
-        asked = [row for row in kernels.values() if row["room"] == room and row["spills"] is None]
-        if not asked:
+        requested = [row for row in kernels.values() if row["room"] == room and row["spills"] is None]
+        if not requested:
             continue
         with tempfile.TemporaryDirectory() as folder:
             ptx = Path(folder) / "room.ptx"
             ptx.write_text(embedded_ptx(object_file(build, room).read_bytes()))
-            entries = [word for row in asked for word in ("-e", row["mangled"])]
+            entries = [word for row in requested for word in ("-e", row["mangled"])]
             done = subprocess.run([ptxas, "-v", "-arch=sm_90", *entries, "-o", f"{folder}/out.cubin", str(ptx)], capture_output=True, text=True)
         if done.returncode:
             raise TableError(f"ptxas, kernels of {room}: {done.stderr.strip()[-400:]}")
         spills = ptxas_spills(done.stderr)
-        for row in asked:
+        for row in requested:
             row["spills"] = spills[row["mangled"]]
 
 

@@ -76,7 +76,7 @@ const Kernel* find_instance(std::string_view wrapper, std::string_view type);
 
 enum class Order { forward, reverse, shuffled };
 
-/// What the warps of a kernel ask of memory: requests, 128 B lines and 32 B sectors that they touch, and how many sectors
+/// The memory traffic of the warps of a kernel: requests, 128 B lines and 32 B sectors that they touch, and how many sectors
 /// the bytes of each request would fill if they lay side by side.
 struct Traffic {
   std::uint64_t requests = 0, lines = 0, sectors = 0, least = 0;

@@ -33,7 +33,7 @@ def sections_of(elf: bytes) -> list[Section]:
     heads = [struct.unpack_from("<IIQQQQII", elf, offset + i * size) for i in range(count)]
 
     def data(head: tuple) -> bytes:
-        return b"" if head[1] == 8 else elf[head[4] : head[4] + head[5]]  # 8: takes no room in the file
+        return b"" if head[1] == 8 else elf[head[4] : head[4] + head[5]]  # 8: takes no space in the file
 
     names = data(heads[names_at])
     return [Section(names[h[0] : names.index(b"\0", h[0])].decode(), h[1], data(h), h[6]) for h in heads]

@@ -202,6 +202,6 @@ def test_a_scene_is_that_of_the_config(bb, drape):
     assert scene.obstacles and scene.mass.sum() == pytest.approx(0.15, rel=1e-9)
     with pytest.raises(bb.ConfigError, match="/scene/layers"):
         bb.build_scene({"scene": {"name": "drape", "layers": 0}})
-    with pytest.raises(bb.ConfigError, match="/time/step.*did you mean") as told:
+    with pytest.raises(bb.ConfigError, match="/time/step.*did you mean") as reported:
         bb.resolve({"scene": {"name": "drape"}, "time": {"step": 3}}, {"/seeds/jitter": "x"})
-    assert isinstance(told.value, ValueError)
+    assert isinstance(reported.value, ValueError)

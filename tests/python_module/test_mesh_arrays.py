@@ -56,7 +56,7 @@ def test_the_mesh_lies_beside_the_record_which_repeats_itself(bb, tmp_path, prog
     ({"vertices": [[0, 0, 0], [1, 0]]}, "/mesh/vertices", "shape ()"),
 ])
 def test_arrays_that_are_no_mesh_are_refused_with_their_place(bb, tmp_path, change, place, found):
-    with pytest.raises(bb.ConfigError) as said:
+    with pytest.raises(bb.ConfigError) as message:
         bb.run(config({**SQUARE, **change}), out=tmp_path / "run")
-    assert place in str(said.value) and found in str(said.value)
+    assert place in str(message.value) and found in str(message.value)
     assert not (tmp_path / "run").exists()

@@ -33,12 +33,12 @@ def executed(bb, name, folder, *more):
 
 def test_from_formula_to_figure(bb, tmp_path):
     pytest.importorskip("matplotlib")
-    told = executed(bb, "from_formula_to_figure", tmp_path, "assert steps['cubic'][-1]['contacts']['total'] > 0")
-    assert "shape wrong: found b' = " in told and told.count(": ok, ") == 3
+    reported = executed(bb, "from_formula_to_figure", tmp_path, "assert steps['cubic'][-1]['contacts']['total'] > 0")
+    assert "shape wrong: found b' = " in reported and reported.count(": ok, ") == 3
     assert (tmp_path / "from_formula_to_figure.png").stat().st_size > 10_000
 
 
 def test_judge_an_engine(bb, program, tmp_path):
     pytest.importorskip("barrierbench_analysis")
-    told = executed(bb, "judge_an_engine", tmp_path, "assert verdicts['careful'] == 'clean' != verdicts['careless']")
-    assert "careful: clean; 8 frames" in told and "passage" in told
+    reported = executed(bb, "judge_an_engine", tmp_path, "assert verdicts['careful'] == 'clean' != verdicts['careless']")
+    assert "careful: clean; 8 frames" in reported and "passage" in reported

@@ -90,7 +90,7 @@ def test_what_it_raises_ends_the_step_and_nothing_is_lost(bb, drape):
 
 
 @pytest.mark.parametrize(
-    "fault, told",
+    "fault, reported",
     [
         ({"kappa": lambda self, rows: -rows.m}, r"kappa = -1.0 N/m at d = 0.004 m"),
         ({"kappa": lambda self, rows: rows.m * np.inf}, r"kappa = inf"),
@@ -101,8 +101,8 @@ def test_what_it_raises_ends_the_step_and_nothing_is_lost(bb, drape):
         ({"name": "My Policy"}, r"snake_case"),
     ],
 )
-def test_a_declaration_that_does_not_hold_is_refused(bb, fault, told):
-    with pytest.raises(bb.ConfigError, match=told):
+def test_a_declaration_that_does_not_hold_is_refused(bb, fault, reported):
+    with pytest.raises(bb.ConfigError, match=reported):
         bb.register_policy(type("Bad", (Inertia,), {"name": "bad_policy", **fault})())
     with pytest.raises(bb.ConfigError, match="bad_policy"):
         bb.resolve({"scene": "hang", "formulation": {"shape": "cubic", "stiffness_policy": {"name": "bad_policy"}}})

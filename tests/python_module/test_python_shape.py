@@ -80,7 +80,7 @@ def test_what_it_raises_ends_the_step_and_nothing_is_lost(bb, drape):
 
 
 @pytest.mark.parametrize(
-    "fault, told",
+    "fault, reported",
     [
         ({"terms": lambda self, d, h: ((h - d) ** 3, -3 * (h - d) ** 2, 6 * (h - d))}, r"b at d = 0.05 d_hat changes by 8"),
         ({"terms": lambda self, d, h: (s := h - d) is None or (s**2, -s, s * 0 + 2)}, r"b' = .* at d = 0.05 d_hat"),
@@ -93,9 +93,9 @@ def test_what_it_raises_ends_the_step_and_nothing_is_lost(bb, drape):
         ({"smoothness_at_d_hat": "two"}, r"an integer"),
     ],
 )
-def test_a_declaration_that_does_not_hold_is_refused(bb, fault, told):
+def test_a_declaration_that_does_not_hold_is_refused(bb, fault, reported):
     shape = type("Bad", (Cubic,), {"name": "bad", **fault})()
-    with np.errstate(all="ignore"), pytest.raises(bb.ConfigError, match=told):
+    with np.errstate(all="ignore"), pytest.raises(bb.ConfigError, match=reported):
         bb.register_shape(shape)
     assert "bad" not in bb.shapes()
 

@@ -25,12 +25,12 @@ def test_a_run_replaces_the_record_of_its_own_config_alone(bb, drape, tmp_path):
 
 def test_a_simulation_replaces_the_record_of_a_whole_run_of_the_same_config(bb, drape, tmp_path):
     """Although it makes no timed pass, which its record says in its config."""
-    asked = {"/time/steps": 2, "/passes/time": True}
-    assert bb.run(drape, asked, out=tmp_path)["config"]["passes"]["time"] is True
-    with bb.Simulation(drape, asked, out=tmp_path) as sim:
+    requested = {"/time/steps": 2, "/passes/time": True}
+    assert bb.run(drape, requested, out=tmp_path)["config"]["passes"]["time"] is True
+    with bb.Simulation(drape, requested, out=tmp_path) as sim:
         assert sim.run().finish()["config"]["passes"]["time"] is False
     with pytest.raises(bb.ConfigError, match="/passes/time is false there and true in this run"):
-        bb.run(drape, asked, out=tmp_path)
+        bb.run(drape, requested, out=tmp_path)
 
 
 def test_what_else_made_the_record_that_is_replaced_is_a_warning(bb, drape, tmp_path):

@@ -22,7 +22,7 @@ def untimed(audit):
 
 
 def numbers_of(record):
-    """Without what tells one run of a config from another."""
+    """Without what distinguishes one run of a config from another."""
     kept = {name: value for name, value in record.items() if name not in APART}
     kept["summary"] = {k: v for k, v in kept["summary"].items() if k not in ("start_check_s", "peak_rss_bytes")}
     kept["audit"] = untimed(kept["audit"])

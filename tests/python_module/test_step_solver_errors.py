@@ -19,9 +19,9 @@ def test_what_it_raises_ends_the_step_and_nothing_is_lost(bb, drape, scripted):
     sim = touching(bb, solved_by(drape, "scripted"))
     before, steps = sim.state_hash, sim.record()["steps"]
     scripted.script = script
-    with pytest.raises(ZeroDivisionError, match="in my step solver") as told:
+    with pytest.raises(ZeroDivisionError, match="in my step solver") as reported:
         sim.step()
-    assert "in script" in "".join(traceback.format_tb(told.tb))
+    assert "in script" in "".join(traceback.format_tb(reported.tb))
     assert sim.state_hash == before and sim.record()["steps"] == steps and not sim.done
     scripted.script = None
     assert sim.run().state_hash == bb.Simulation(solved_by(drape, "scripted")).run().state_hash
@@ -81,7 +81,7 @@ def test_a_step_that_fails_is_tried_again_shorter(bb, drape, scripted):
 
 
 @pytest.mark.parametrize(
-    "script, error, told",
+    "script, error, reported",
     [
         (lambda step: None if next(step.iterations()) == 0 else "", "ConfigError", "None returned by advance; allowed: one of conv"),
         (lambda step: "done" if next(step.iterations()) == 0 else "", "ConfigError", "'done' returned by advance"),
@@ -110,13 +110,13 @@ def test_a_step_that_fails_is_tried_again_shorter(bb, drape, scripted):
         ),
     ],
 )
-def test_what_is_wrong_in_a_step_is_named(bb, drape, scripted, script, error, told):
+def test_what_is_wrong_in_a_step_is_named(bb, drape, scripted, script, error, reported):
     drape["step_solver"] = {"name": "scripted", "max_iterations": 2}
     scripted.script = script
     sim = bb.Simulation(drape)
     before = sim.state_hash
     errors = {"ConfigError": bb.ConfigError, "RuntimeError": RuntimeError, "ValueError": ValueError}
-    with pytest.raises(errors[error], match=told):
+    with pytest.raises(errors[error], match=reported):
         sim.step()
     assert sim.state_hash == before and sim.steps == 0
 
@@ -160,7 +160,7 @@ def test_an_error_of_a_hook_is_not_swallowed(bb, drape, scripted):
 
 
 @pytest.mark.parametrize(
-    "fault, told",
+    "fault, reported",
     [
         ({"advance": 3}, r"an object with advance\(step\)"),
         ({"name": "My Solver"}, "snake_case"),
@@ -171,8 +171,8 @@ def test_an_error_of_a_hook_is_not_swallowed(bb, drape, scripted):
         ({"counters": {"toi": "x"}}, 'the counter "toi"; allowed: one that no other'),
     ],
 )
-def test_a_declaration_that_does_not_hold_is_refused(bb, fault, told):
-    with pytest.raises(bb.ConfigError, match=told):
+def test_a_declaration_that_does_not_hold_is_refused(bb, fault, reported):
+    with pytest.raises(bb.ConfigError, match=reported):
         bb.register_step_solver(type("Bad", (Newton,), {"name": "bad_solver", **fault})())
     with pytest.raises(bb.ConfigError, match="bad_solver"):
         bb.resolve({"scene": "hang", "step_solver": {"name": "bad_solver"}})

@@ -1,4 +1,4 @@
-"""Reports in headless Chromium without a network: tables sort and filter, nothing is asked of anyone and no error is said, a
+"""Reports in headless Chromium without a network: tables sort and filter, nothing is requested of anyone and no error is printed, a
 telephone scrolls no page sideways, text can be read in light and dark, everything has a name. Skipped where Chromium or playwright
 is absent: ./bench test --browser installs both.
 """
@@ -75,7 +75,7 @@ NAMELESS = """() => {
 
 
 class Opened:
-    """A page with what it asked for and what it said."""
+    """A page with its requests and its messages."""
 
     def __init__(self, browser, file, width=1200, height=800, scheme="light"):
         self.context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme, offline=True)

@@ -11,7 +11,7 @@
 
 namespace standin {
 
-/// What the stand-in pretends. Set before the calls that ask.
+/// What the stand-in pretends. Set before the calls that read it.
 struct Settings {
   cudaError_t count_code = cudaSuccess;  // of cudaGetDeviceCount
   int count = 1, driver = 13000, runtime = 13000;
@@ -28,7 +28,7 @@ struct Settings {
 
 /// What happened since reset().
 struct Counts {
-  int launches = 0;  // asked for, those of graphs once for each replay
+  int launches = 0;  // requested, those of graphs once for each replay
   int graphs = 0;    // instantiated
   int replays = 0;
   int waits = 0;

@@ -1,4 +1,4 @@
-// Launches of the stand-in: nvcc's registration tells which kernel a host stub stands for; the translated PTX runs.
+// Launches of the stand-in: nvcc's registration shows which kernel a host stub stands for; the translated PTX runs.
 #include "tests/standin/kernels.hpp"
 
 #include <cstring>

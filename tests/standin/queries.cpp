@@ -1,4 +1,4 @@
-// What the stand-in says of its card.
+// What the stand-in reports of its card.
 #include <cstring>
 
 #include "tests/standin/cudart.hpp"

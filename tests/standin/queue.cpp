@@ -165,7 +165,7 @@ cudaError_t cudaStreamEndCapture(cudaStream_t stream, cudaGraph_t* graph) {
   return result(cudaSuccess);
 }
 cudaError_t cudaGraphGetNodes(cudaGraph_t graph, cudaGraphNode_t* nodes, size_t* n) {
-  if (nodes) return result(cudaErrorInvalidValue);  // nobody asks for them
+  if (nodes) return result(cudaErrorInvalidValue);  // nothing reads them
   *n = graph->nodes.size();
   return result(cudaSuccess);
 }

@@ -71,7 +71,7 @@ TEST_F(Standin, ProbeSaysWhyThereIsNoCard) {
     EXPECT_TRUE(probe.built);
     EXPECT_FALSE(probe.usable);
     expect_parts(probe.why, c.says);
-    EXPECT_EQ(cudaGetLastError(), standin::broken());  // what was told is not the error of a later launch
+    EXPECT_EQ(cudaGetLastError(), standin::broken());  // what was reported is not the error of a later launch
     standin::reset();
     c.set(standin::settings());
     expect_parts(message<ConfigError>([] { cuda::make_device_executor(); }), {"/device", probe.why});

@@ -131,13 +131,13 @@ std::string refusal(cuda::DeviceExecutor& device, const DeviceCode& code) {
   return "";
 }
 
-/// PTX without what it says of the card and the compiler.
+/// PTX without what it reports of the card and the compiler.
 std::string kernel_in(const std::string& ptx) {
   const std::size_t begin = ptx.find(".visible .entry"), end = ptx.rfind('}');
   return begin < end ? ptx.substr(begin, end - begin) : "no kernel in " + ptx;
 }
 
-/// From the text on: the program asks analysis/src/barrierbench_analysis/program/formula for the library and for the kernel, which is that of the sample.
+/// From the text on: the program gets from analysis/src/barrierbench_analysis/program/formula the library and the kernel, which is that of the sample.
 using KernelOfAText = FormulaKernel;
 TEST_P(KernelOfAText, IsMadeWhenItIsAskedFor) {
   try {

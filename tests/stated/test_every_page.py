@@ -1,4 +1,4 @@
-"""A number that stands with the same words under the same heading of one page is told where it stands there otherwise, and counts also where
+"""A number that stands with the same words under the same heading of one page is reported where it stands there otherwise, and counts also where
 the tables, another page or the kept data have another one.
 """
 
@@ -43,7 +43,7 @@ def planted(text: str, page: str) -> list[list[str]]:
 
 
 TRIED = 12  # plants of a page
-TOLD = 0.9  # share of them that is told at least, over all pages; the others stand in what names a row, or in few words
+TOLD = 0.9  # share of them that is reported at least, over all pages; the others stand in what names a row, or in few words
 
 
 def test_a_page_that_states_one_thing_twice_and_differently_is_told():
@@ -64,7 +64,7 @@ def test_a_page_that_states_one_thing_twice_and_differently_is_told():
     assert [page for page, n in told.items() if n == 0] == []
 
 
-CHANGES = [  # page, what stands there, what is planted, what is told of
+CHANGES = [  # page, what stands there, what is planted, what is reported
     ("results/STRESS.md", "1349 of 1349 runs", "1349 of 1348 runs", "stress runs"),
     ("results/STRESS.md", "1349 of 1349 runs", "1348 of 1349 runs", "stress runs as expected"),
     ("results/STRESS.md", "26 of 26 relations", "25 of 26 relations", "stress relations that hold"),

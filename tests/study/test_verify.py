@@ -1,4 +1,4 @@
-"""Records held against their files: a study as it was written is green, and every edit, loss and addition is told; runs are made again."""
+"""Records held against their files: a study as it was written is green, and every edit, loss and addition is reported; runs are made again."""
 
 import json
 import shutil

@@ -39,9 +39,9 @@ def planned(program: str, file: Path, *words) -> list[str]:
     return [Path(line).name for line in done.stdout.splitlines()]
 
 
-def refused(done: subprocess.CompletedProcess, *said: str, code: int = 2) -> None:
+def refused(done: subprocess.CompletedProcess, *message: str, code: int = 2) -> None:
     assert done.returncode == code, (done.returncode, done.stdout, done.stderr)
-    for text in said:
+    for text in message:
         assert text in done.stderr, (text, done.stderr)
 
 

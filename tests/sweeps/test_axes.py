@@ -102,7 +102,7 @@ def test_a_run_longer_than_its_budget_ends_as_timeout_and_a_spent_budget_begins_
 
 
 def test_plan_names_every_case_whose_scene_cannot_be_built(program, tmp_path):
-    """Such a scene is found when its size is asked for, after the config was read."""
+    """Such a scene is found when its size is computed, after the config was read."""
     pins = {"box_m": [[-9, -9, -9], [9, 0, 9]]}
     body = {"name": "cloth", "mesh": {"generator": "grid", "n_x": 3, "n_y": 3}, "material": {"youngs_N_per_m": 100}, "pins": [pins]}
     base = tmp_path / "base.json"

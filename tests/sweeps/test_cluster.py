@@ -43,8 +43,8 @@ def called(script: str, *words, environment) -> str:
 @pytest.mark.parametrize("script, words", [("parallel.sh", [2]), ("slurm.sh", [2])])
 def test_a_recipe_makes_every_record_and_judges_them(tmp_path, environment, script, words):
     file, out = write_sweep(tmp_path, STEPS, SHAPES, settings={"/time/dt_s": 0.01}), tmp_path / "out"
-    said = called(script, file, out, *words, environment=environment)
-    assert "own: 6 runs (2 x 3), 0 there" in said
+    message = called(script, file, out, *words, environment=environment)
+    assert "own: 6 runs (2 x 3), 0 there" in message
     assert len(records(out)) == 6 and verb("status", out).returncode == 0
     assert all(record["comparability"]["reference_run"] for record in records(out).values())
     words_of = {word for record in records(out).values() for word in record["provenance"]["argv"]}

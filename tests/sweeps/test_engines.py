@@ -51,7 +51,7 @@ def by_slurm(spec: Path, out: Path, environment: dict) -> None:
 
 
 def by_snakemake_on_slurm(spec: Path, out: Path, environment: dict) -> None:
-    """This Slurm has no accounting, so the state of a job is asked of squeue."""
+    """This Slurm has no accounting, so the state of a job is read from squeue."""
     if snakemake() is None:
         pytest.skip("Snakemake is not installed (examples/cluster/snakemake.sh SPEC DIR SHARDS installs it)")
     options = ["--executor", "slurm", "--jobs", 2, "--slurm-no-account", "--slurm-status-command", "squeue",

@@ -28,13 +28,13 @@ def test_an_index_is_the_run_of_the_plan(program, tmp_path):
     assert [path.parent.name for path in out.glob("*/run.json")] == planned(program, file)[4:5]
 
 
-@pytest.mark.parametrize("words, said", [
+@pytest.mark.parametrize("words, message", [
     (["--shard", "0/3"], ["--shard", "1 <= i <= N"]), (["--shard", "4/3"], ["--shard", "4/3"]), (["--shard", "1"], ["--shard"]),
     (["--shard", "1/3x"], ["--shard"]), (["--shard", "1/-3"], ["--shard"]), (["--index", "6"], ["--index", "0 to 5", "6 cases"]),
     (["--index", "1", "--shard", "1/2"], ["--index", "--shard beside it"]), (["--index", "1", "--jobs", "2"], ["--index", "--jobs beside it"]),
     (["--jobs", "0"], ["--jobs"])])
-def test_a_share_that_there_is_not_is_refused(program, tmp_path, words, said):
-    refused(bench(program, "sweep", write_sweep(tmp_path, STEPS, SHAPES), *words, "--out", tmp_path / "out"), *said)
+def test_a_share_that_there_is_not_is_refused(program, tmp_path, words, message):
+    refused(bench(program, "sweep", write_sweep(tmp_path, STEPS, SHAPES), *words, "--out", tmp_path / "out"), *message)
     assert not (tmp_path / "out").exists()
 
 

@@ -1,4 +1,4 @@
-"""Sweeps that are killed, interrupted, short of room, or not alone in their folder: nothing is lost and nothing is made twice."""
+"""Sweeps that are killed, interrupted, short of disk space, or not alone in their folder: nothing is lost and nothing is made twice."""
 
 import os
 import resource
@@ -35,10 +35,10 @@ def test_a_sweep_that_is_stopped_goes_on_to_the_same_records(program, tmp_path, 
     with started(program, "sweep", file, "--out", out, "--jobs", jobs) as sweep:
         wait_until(lambda: list(out.glob("*/checkpoint.bin")), sweep)
         sweep.send_signal(sent)
-        _, told = sweep.communicate(timeout=60)
-    assert sweep.returncode == (75 if sent == signal.SIGTERM else -sent), told
+        _, reported = sweep.communicate(timeout=60)
+    assert sweep.returncode == (75 if sent == signal.SIGTERM else -sent), reported
     if sent == signal.SIGTERM:
-        assert f"records kept in {out}" in told and not locks(out)
+        assert f"records kept in {out}" in reported and not locks(out)
     assert list(out.glob("*/checkpoint.bin")) and len(records(out)) < 3
     if jobs == 2:  # without their parent the runs keep a checkpoint and end
         wait_for(lambda: not locks(out))
@@ -54,9 +54,9 @@ def test_two_sweeps_in_one_folder_make_every_record_once(program, tmp_path):
     many = {"pointer": "/time/steps", "range": {"from": 100, "to": 111, "count": 12}}
     file, out = write_sweep(tmp_path, many), tmp_path / "out"
     with started(program, "sweep", file, "--out", out, "--jobs", 2) as one, started(program, "sweep", file, "--out", out) as two:
-        said = [process.communicate(timeout=60) for process in (one, two)]
-    assert {one.returncode, two.returncode} <= {0, 75} and 0 in (one.returncode, two.returncode), said
-    rows = [line for out_text, _ in said for line in out_text.split("\n\n")[0].splitlines() if line.startswith("own: ")]
+        message = [process.communicate(timeout=60) for process in (one, two)]
+    assert {one.returncode, two.returncode} <= {0, 75} and 0 in (one.returncode, two.returncode), message
+    rows = [line for out_text, _ in message for line in out_text.split("\n\n")[0].splitlines() if line.startswith("own: ")]
     made = [line.split("  ")[0] for line in rows if " ok " in line]
     assert len(records(out)) == 12 and sorted(set(made)) == sorted(f"own: {label}" for label in records(out))
     started_at = {path.parent.name: path.stat().st_mtime_ns for path in out.glob("*/run.json")}
@@ -127,8 +127,8 @@ def test_a_run_whose_process_dies_stops_no_other(program, tmp_path):
         wait_until(lambda: len(records(out)) == 2 and len(under_way()) == 1, sweep)
         (lock,) = under_way()
         os.kill(int(lock.read_text().split()[1]), signal.SIGABRT)
-        told = sweep.communicate(timeout=60)[1]
-    assert sweep.returncode == 70 and "killed by signal 6" in told and "steps=10000000" in told
+        reported = sweep.communicate(timeout=60)[1]
+    assert sweep.returncode == 70 and "killed by signal 6" in reported and "steps=10000000" in reported
     assert len(records(out)) == 2
 
 

@@ -1,4 +1,4 @@
-// Terms asked as the Newton step asks them.
+// Terms evaluated as the Newton step evaluates them.
 #pragma once
 
 #include "core/terms/term.hpp"

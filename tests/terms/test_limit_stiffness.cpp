@@ -153,7 +153,7 @@ TEST(LimitStiffness, OncePerStepIsAlsoOfTheGapOfTheFirstIterate) {
   }
 }
 
-/// The smaller of the two gaps of an element is asked, but none below the floor.
+/// The smaller of the two gaps of an element is used, but none below the floor.
 TEST(LimitStiffness, IsAskedAtTheFloorWhereTheGapIsSmaller) {
   const Positions x_n = stretched(1, 1), near_limit = stretched(1.2, 1), far = stretched(1.03, 1);
   Rule rule = rule_of(MassTerm::paper, false, Refresh::per_iteration);

@@ -30,7 +30,7 @@ Plan plan_of(const Scene& scene, const TermOptions& terms = {}, const PlanOption
   return make_plan(scene, terms, options);
 }
 
-/// What is needed beside inertia, weight and what every step solver here asks for.
+/// What is needed beside inertia, weight and what every step solver here requires.
 std::set<std::string> needed(const Plan& plan) {
   std::set<std::string> names;
   for (const auto& [name, item] : plan.items()) {

@@ -1,4 +1,4 @@
-// Which pairs a policy that adapts between steps is told of.
+// Which pairs a policy that adapts between steps receives.
 #include <gtest/gtest.h>
 
 #include <algorithm>

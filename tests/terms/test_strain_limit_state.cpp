@@ -148,7 +148,7 @@ TEST(StrainLimitState, MeasuresEachStateOnce) {
   });
 }
 
-/// A trial that becomes the iterate after something was said of the iterate before is measured as what it is.
+/// A trial that becomes the iterate after something was reported of the iterate before is measured as what it is.
 TEST(StrainLimitState, AnAcceptedTrialIsNotTheStateThatWasReportedLast) {
   for_each_kind([](bool of_solids, exec::Order order) {
     Limited limit(of_solids, every_iteration, order);

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Hands out characters and tells how many were taken, so that every error has a line.
+/// Hands out characters and counts those that were taken, so that every error has a line.
 struct CountingIterator {
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
@@ -115,7 +115,7 @@ class Watch {
 
   [[noreturn]] void fail(JsonFault fault, std::string found, std::string allowed,
                          const std::string& pointer = "") const {
-    // the character that was taken last is the one that told
+    // the character that was taken last is the one that showed the fault
     const auto last = static_cast<std::ptrdiff_t>(std::min(taken_ > 0 ? taken_ - 1 : 0, text_.size()));
     const auto line = 1 + std::count(text_.begin(), text_.begin() + last, '\n');
     const std::string place = pointer.empty() ? "" : "#" + pointer;

@@ -1,4 +1,4 @@
-// Another program, asked once.
+// Another program, run once for an answer.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // Named fields that somebody hands in, read one by one. What is wrong, missing or unknown is collected, so that all of it can be
-// told at once. The interface only: whoever reads fields knows neither JSON nor where they come from.
+// reported at once. The interface only: whoever reads fields knows neither JSON nor where they come from.
 #pragma once
 
 #include <cmath>

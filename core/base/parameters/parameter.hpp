@@ -50,7 +50,7 @@ struct Rule {
   bool low_open = false, high_open = false;         // the bound itself is not allowed
   double least = 0;                                 // of the size of a number that is not 0
   std::size_t min_size = 0, max_size = 0;           // bytes of a text, elements of a list; 0: no bound
-  std::function<std::vector<std::string>()> words;  // asked when needed: plugins add names
+  std::function<std::vector<std::string>()> words;  // evaluated when needed: plugins add names
   bool names = false;                               // the words are names of a registry
   std::map<std::string, std::string> renamed;       // words of before: what is read in the place of each
   bool several_lines = false;                       // a text may have line ends and tabs

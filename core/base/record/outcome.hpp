@@ -24,7 +24,7 @@ enum class Outcome {
   not_pd,                // the matrix was not positive definite
   oom,                   // memory ran out; the steps before count
   kernel_failed,         // a kernel of the device failed; the steps before count
-  timeout,               // the time limit that was asked for was reached between two steps
+  timeout,               // the time limit of the run was reached between two steps
   unproven,              // finished, but the audit could not certify every motion
   ok                     // finished; an overlap that the step solver promises to keep to is no failure
 };

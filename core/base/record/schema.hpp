@@ -1,4 +1,4 @@
-// What the lists of fields say of run.json and trace.jsonl, for tools and readers.
+// What the lists of fields report of run.json and trace.jsonl, for tools and readers.
 #pragma once
 
 #include <string>

@@ -102,7 +102,7 @@ BB_HD PairLanes<K, double> relative_points(const double* x, const int* vertex) {
   return out;
 }
 
-/// No less than the least stop level of a pair of these n vertices, m, with room for its rounding: by their own
+/// No less than the least stop level of a pair of these n vertices, m, with a margin for its rounding: by their own
 /// coordinates, and by `size`, the largest of its other lengths.
 BB_HD inline double stop_floor(const BoundQuery& q, const int* vertex, int n, double size) {
   double largest = size;
@@ -207,7 +207,7 @@ BB_HD inline double time_of_item(const BoundQuery& q, const CandidateItem& item,
   }
 }
 
-/// Counts of RankItems: 1 for the pairs of a chunk, items begin and on, that have to be asked; until when a pair is proven
+/// Counts of RankItems: 1 for the pairs of a chunk, items begin and on, that have to be queried; until when a pair is proven
 /// apart, rounded down.
 struct ScreenPairs {
   static constexpr bool two = false;
@@ -239,8 +239,8 @@ struct KeepPairs {
   }
 };
 
-// --- parts of SumParts: what the items of a batch say of the bound
-/// Asks the pairs of a batch that are not proven to be later than what is known. Where n_asked is there: the first batch
+// --- parts of SumParts: what the items of a batch report of the bound
+/// Queries the pairs of a batch that are not proven to be later than what is known. Where n_asked is there: the first batch
 /// of a chunk, whose pairs are not sorted; nothing where one batch does not hold all of them.
 struct AskPairs {
   using Sum = BoundTotal;
@@ -264,7 +264,7 @@ struct AskPairs {
   }
 };
 
-/// Asks all pairs of the leaves from `place` on without a list of them.
+/// Queries all pairs of the leaves from `place` on without a list of them.
 template <PairKind K>
 struct AskInTree {
   using Sum = BoundTotal;
@@ -289,7 +289,7 @@ struct AskInTree {
   }
 };
 
-/// Asks the candidates of obstacles from item `begin` on.
+/// Queries the candidates of obstacles from item `begin` on.
 struct AskObstacles {
   using Sum = BoundTotal;
   BoundQuery query;

@@ -16,7 +16,7 @@ class BoxTrees {
                {executor, "tree of edges"},
                {executor, "tree of triangles"},
                {executor, "tree of lone edges"}} {}
-  /// of.begin is set here. codes: room for size() of them, until fit() returns.
+  /// of.begin is set here. codes: memory for size() of them, until fit() returns.
   void fit(TreeSources of, Key* codes);
   static Index size(const TreeSources& of) { return of.points.n + of.edges.n + of.triangles.n + of.lone.n; }
   void free() {

@@ -1,5 +1,5 @@
 // Kernels that find candidate pairs, in rounds: every leaf walks its tree on floats until its places are full or the tree
-// ends, one thread a pair asks the rules about what was found, and what is kept goes into the lists. The next round goes on
+// ends, one thread a pair applies the rules to what was found, and what is kept goes into the lists. The next round goes on
 // where the walks stopped, so that no part of a tree is walked twice. Everything has its place by sizes alone.
 #pragma once
 
@@ -25,7 +25,7 @@ struct CandidateSource {
   bool obstacles;
 };
 
-/// Leaves and primitives that are asked for candidates as one range of items, list by list (candidate_lists.hpp).
+/// Leaves and primitives that are queried for candidates as one range of items, list by list (candidate_lists.hpp).
 struct Askers {
   Index begin[n_candidate_lists + 1];
   int round, each, n_obstacles;  // each: places of an item
@@ -160,7 +160,7 @@ struct HeldCandidates {
   }
 };
 
-/// The candidates of a round behind those of the rounds before; nothing where a list has no room.
+/// The candidates of a round behind those of the rounds before; nothing where a list is too short.
 struct FillCandidates {
   struct List {
     TreeView first;    // of leaves; empty: of the primitives themselves

@@ -136,7 +136,7 @@ Askers ExecutorBroadPhase::askers(const CandidateSource& from, int round) const 
 
 HeldPairs ExecutorBroadPhase::held() { return {held_.data(), n_held_.data(), next_.data()}; }
 
-/// The lists get room for what was counted last; `next`: before the next count, which may find more. @return whether what they
+/// The lists get memory for what was counted last; `next`: before the next count, which may find more. @return whether what they
 /// hold is still there
 bool ExecutorBroadPhase::size_lists(ExecutorCandidates& out, bool next) const {
   const auto list = lists_of(out);
@@ -150,7 +150,7 @@ bool ExecutorBroadPhase::size_lists(ExecutorCandidates& out, bool next) const {
   return kept;
 }
 
-/// Puts the candidates that a round has found into the lists, as far as these have room.
+/// Puts the candidates that a round has found into the lists, as far as these are long enough.
 void ExecutorBroadPhase::put(const CandidateSource& from, const Askers& askers, ExecutorCandidates& out) {
   const PairSearch* const search[] = {&from.point_point, &from.point_edge, &from.point_triangle,
                                       &from.edge_edge};

@@ -16,7 +16,7 @@ struct CandidateCounts {
     return point_point + point_edge + point_triangle + edge_edge + obstacle + obstacle_edge +
            obstacle_triangle;
   }
-  /// Of their lists, with the room to grow that they are given.
+  /// Of their lists, with the spare capacity that they are given.
   std::size_t bytes() const { return static_cast<std::size_t>(total() + total() / 4) * sizeof(Key); }
 };
 
@@ -30,12 +30,12 @@ class ExecutorBroadPhase {
 
   /// Fits the trees to x0 -> x1 ([3 n_vertices] m; the same buffer: a state). Errors: OutOfMemory.
   void fit(const PositionsView& x0, const PositionsView& x1);
-  /// Fits, and counts the candidates: how long their lists are is known before they are. What the lists have room for is put
-  /// there on the way; before, they get room for what was counted last, where that takes `most` bytes at most.
+  /// Fits, and counts the candidates: how long their lists are is known before they are. What fits into the lists is put
+  /// there on the way; before, they get memory for what was counted last, where that takes `most` bytes at most.
   CandidateCounts count(const PositionsView& x0, const PositionsView& x1, ExecutorCandidates& out,
                         std::size_t most = 0);
   /// The candidates of the last count; positions unchanged since. A search of one round is not made again where the lists
-  /// had no room for it, one of several is. Errors: OutOfMemory.
+  /// was too short for it, one of several is. Errors: OutOfMemory.
   void fill(ExecutorCandidates& out);
   /// Both. The lists are those of BroadPhase::update in double, entry by entry.
   void update(const PositionsView& x0, const PositionsView& x1, ExecutorCandidates& out);
@@ -48,7 +48,7 @@ class ExecutorBroadPhase {
   CandidateSource source() const;
   /// Gives the trees back; source() needs another count then.
   void free();
-  /// Whether lists get room to grow; not where they are given back after every motion.
+  /// Whether lists get spare capacity to grow; not where they are given back after every motion.
   void keep_room(bool keep) { room_ = keep; }
   /// What an executor that only counts buffers is to take the candidates for.
   void expect(const CandidateCounts& counts) { counts_ = counts; }

@@ -41,7 +41,7 @@ Index ExecutorStepBound::pairs_of_chunk(Index begin) const {
   return std::min(batches_.chunk, lists_.begin[first_obstacle_list] - begin);
 }
 
-/// Screens the pairs of a chunk and asks them at once where one batch holds them.
+/// Screens the pairs of a chunk and queries them at once where one batch holds them.
 void ExecutorStepBound::look_at_chunk(Index begin) {
   const Index n = pairs_of_chunk(begin);
   if (proven_.size() < n) proven_.fit(n);

@@ -19,9 +19,9 @@ struct BoundBatches {
 };
 
 /// Pairs are screened in chunks of their lists: axes and planes prove of most that they come later than the smallest
-/// time known. The rest is asked in batches, in the order of what is proven of it. Counters are the same in any order
+/// time known. The rest is queried in batches, in the order of what is proven of it. Counters are the same in any order
 /// of a launch; they differ from the CPU path's, whose batches are others. Keeps its buffers: 7 B a pair of a
-/// chunk, 8 B a pair that has to be asked.
+/// chunk, 8 B a pair that has to be queried.
 class ExecutorStepBound {
  public:
   using Column = Buffer<double>;

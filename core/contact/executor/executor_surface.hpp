@@ -68,7 +68,7 @@ struct SurfaceView {
   const int*
       rest_body;  // [n_vertices] vertices of one number are ruled at rest: `body`, or with the rule off one each
 
-  // what row_rule.hpp asks
+  // what row_rule.hpp calls
   BB_HD bool is_free(int v) const { return vertex_free[v] != 0; }
   BB_HD bool ruled_at_rest(int v, int w) const { return rest_body[v] == rest_body[w]; }
   template <int N>

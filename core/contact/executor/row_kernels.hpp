@@ -10,7 +10,7 @@
 
 namespace bb::exec {
 
-/// Asks the rule about a candidate where no plane proves it far.
+/// Applies the rule to a candidate where no plane proves it far.
 struct NarrowPhase {
   SurfaceView surface;
   const double* x;  // [3 n_vertices] m

@@ -30,7 +30,7 @@ BB_HD inline unsigned overlapping(const OfSiblings<float> (&lo)[3], const OfSibl
 #if !defined(__CUDACC__) && defined(__SSE2__)
   const __m128i tags = _mm_or_si128(_mm_loadu_si128(reinterpret_cast<const __m128i*>(&tag)),
                                     _mm_set1_epi32(static_cast<int>(a_tag)));
-  __m128 meet = _mm_castsi128_ps(_mm_slli_epi32(tags, 31));  // the sign is what is asked
+  __m128 meet = _mm_castsi128_ps(_mm_slli_epi32(tags, 31));  // only the sign is read
   for (int c = 0; c < 3; ++c) {
     meet = _mm_and_ps(meet, _mm_cmple_ps(_mm_set1_ps(a_lo[c]), _mm_loadu_ps(&hi[c].first)));
     meet = _mm_and_ps(meet, _mm_cmple_ps(_mm_loadu_ps(&lo[c].first), _mm_set1_ps(a_hi[c])));

@@ -21,7 +21,7 @@ struct HessianChoice {
   Projection projection = Projection::psd;
   bool blended = false;  // then projection is not read, and no force
   double t = 1;
-  double threshold = -1;          // N; below 0: no vertex is asked
+  double threshold = -1;          // N; below 0: no vertex is compared
   const double* force = nullptr;  // [n_vertices] N, read where there is a threshold
 
   BB_HD Projection projection_of(const RowView& rows, Index r) const {

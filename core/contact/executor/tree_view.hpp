@@ -62,7 +62,7 @@ struct TreeView {
   BB_HD TreeNode leaf(Index place) const { return node(0, place); }
 };
 
-/// The siblings of a group that a walk visits: those that the asking leaf may meet, from place `from` on.
+/// The siblings of a group that a walk visits: those that the querying leaf may meet, from place `from` on.
 BB_HD inline unsigned to_visit(const TreeView& tree, int level, Index group, const TreeNode& asking,
                                Index from) {
   const TreeGroup& of = tree.group[tree.begin[level] + group];

@@ -46,7 +46,7 @@ class LimitFamily : public ElementFamily {
   /// are to be filled then.
   virtual void make_kappa(const StiffnessPolicy& policy, const KappaSources& from) = 0;
   /// [n] J, what the policy has for these pseudo-gaps [n]; a number also where it has a potential. In the host's memory alone; a state is to
-  /// be measured and its kappa to be made before anything else is asked.
+  /// be measured and its kappa to be made before anything else is called.
   virtual std::vector<double> kappa_at(std::span<const double> gaps, const StiffnessPolicy& policy,
                                        const KappaSources& from) = 0;
   /// Largest relative change of an active element's kappa by the last make_kappa(). Of a policy that is not uniform. Waits.

@@ -313,7 +313,7 @@ struct StretchBound {
                                             limit.template band<T>(e), most, static_cast<T>(park));
     if (bound < most) exec::atomic_min(smallest, exec::ordered_bits(bound));
   }
-  /// Most elements are within at the end of the motion, and ask no more.
+  /// Most elements are within at the end of the motion, and need no more work.
   static constexpr int lanes = stretch_lanes<R, N>;
   void abreast(exec::Index first) const requires(lanes > 1) {
     if (before && *before == ~exec::Key{0}) return;

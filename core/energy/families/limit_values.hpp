@@ -1,4 +1,4 @@
-// What the kernels of a strain limit are given from outside, and what they say of a state.
+// What the kernels of a strain limit are given from outside, and what they report of a state.
 #pragma once
 
 #include "core/barrier/stiffness_sums.hpp"

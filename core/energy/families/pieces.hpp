@@ -1,4 +1,4 @@
-// Which elements of a family are asked for local terms at a time, and for which Hessian.
+// Which elements of a family give local terms at a time, and for which Hessian.
 #pragma once
 
 #include "core/exec/kernel.hpp"
@@ -16,7 +16,7 @@ struct Piece {
 struct HessianRequest {
   Projection first = Projection::psd;
   double t = 0;
-  double threshold = -1;          // N; below 0: no vertex is asked
+  double threshold = -1;          // N; below 0: no vertex is compared
   const double* force = nullptr;  // [n_vertices] N, read where there is a threshold
 };
 

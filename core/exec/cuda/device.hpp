@@ -13,7 +13,7 @@ struct DeviceProbe {
   bool built = false;                // this program has device code
   bool usable = false;               // and a card ran it and gave the right answer
   std::string why;                   // not usable: the reason in words; else empty
-  std::string card;                  // its name; empty where none was asked
+  std::string card;                  // its name; empty where none was queried
   int capability = 0;                // 90: compute capability 9.0
   int driver = 0;                    // CUDA version of the driver, 13000: 13.0; 0: none
   int runtime = 0;                   // CUDA version of the run time that this program is linked with

@@ -28,20 +28,20 @@ KernelTable& kernel_table() {
 
 namespace {
 
-/// All 0 where it cannot be asked.
+/// All 0 where it cannot be queried.
 cudaFuncAttributes attributes_of(const DeviceKernel& kernel) {
   cudaFuncAttributes of{};
   if (cudaFuncGetAttributes(&of, kernel.function) == cudaSuccess) return of;
-  cudaGetLastError();  // the launch tells what is wrong
+  cudaGetLastError();  // the launch reports what is wrong
   return {};
 }
 
-/// Bytes of the card that a kernel's local memory takes; 0 where it cannot be asked.
+/// Bytes of the card that a kernel's local memory takes; 0 where it cannot be queried.
 std::size_t local_memory_of(const cudaFuncAttributes& of) {
   int processors = 0, threads = 0;
   if (cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0) != cudaSuccess ||
       cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, 0) != cudaSuccess) {
-    cudaGetLastError();  // the launch tells what is wrong
+    cudaGetLastError();  // the launch reports what is wrong
     return 0;
   }
   return of.localSizeBytes * static_cast<std::size_t>(processors) * static_cast<std::size_t>(threads);
@@ -256,7 +256,7 @@ void* DeviceExecutor::allocate_bytes(std::size_t bytes) {
   void* memory = nullptr;
   const cudaError_t code = cudaMalloc(&memory, bytes);
   if (code == cudaErrorMemoryAllocation) {
-    cudaGetLastError();  // it is told here; the next launch shall not report it
+    cudaGetLastError();  // it is reported here; the next launch shall not report it
     return nullptr;
   }
   check(code, "cudaMalloc");

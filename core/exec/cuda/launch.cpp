@@ -19,7 +19,7 @@ int launch(const DeviceKernel& kernel, const void* f, Index n, int threads, CUst
   const cudaError_t code =
       cudaLaunchKernel(kernel.function, dim3(static_cast<unsigned>(blocks)),
                        dim3(static_cast<unsigned>(threads)), kernel.blocks ? of_blocks : of_each, 0, stream);
-  if (code != cudaSuccess) cudaGetLastError();  // it is told here; no later call shall report it
+  if (code != cudaSuccess) cudaGetLastError();  // it is reported here; no later call shall report it
   return code;
 }
 

@@ -9,7 +9,7 @@ struct CUstream_st;
 
 namespace bb::cuda {
 
-/// An array and as much room beside it; a sort leaves its result in array[current].
+/// An array and a second one of its size; a sort leaves its result in array[current].
 template <class T>
 struct TwoArrays {
   T* array[2];

@@ -38,7 +38,7 @@ namespace {
 
 void check(cudaError_t code, const exec::KernelInfo& kernel, const char* call) {
   if (code == cudaSuccess) return;
-  cudaGetLastError();  // it is told here; no later call shall report it
+  cudaGetLastError();  // it is reported here; no later call shall report it
   throw ExecutionError(kernel.code->entry + ": " + call + ": " + cudaGetErrorString(code) + " (CUDA error " +
                        std::to_string(code) + ")");
 }

@@ -17,7 +17,7 @@ class Compaction {
         rank_(executor, name + " ranks"),
         block_(executor, name + " places"),
         sum_(executor) {}
-  /// Room for the counts of n items; a kernel fills them, at most 255 each.
+  /// Memory for the counts of n items; a kernel fills them, at most 255 each.
   std::uint8_t* counts(Index n) {
     count_.fit(n);
     return count_.data();
@@ -29,13 +29,13 @@ class Compaction {
     rank_by(count_.size(), StoredCounts{count_.data()});
     return executor_->counts_only() ? expected : sum();
   }
-  /// Ranks n items by what counts says of them (RankItems), in one launch and a scan.
+  /// Ranks n items by what counts reports of them (RankItems), in one launch and a scan.
   template <class Counts>
   void rank_by(Index n, const Counts& counts) {
     executor_->blocks(blocks_of(n), RankItems<Counts>{counts, room(n)});
     finish(n);
   }
-  /// For kernels that rank themselves: room for n items; then finish().
+  /// For kernels that rank themselves: memory for n items; then finish().
   RankPlaces room(Index n) {
     rank_.fit(n);
     block_.fit(blocks_of(n) + 1);

@@ -60,7 +60,7 @@ BB_HD void rank_block(Block& block, RankShared& shared, const RankPlaces& to, In
   });
 }
 
-/// Counts: a struct whose call (Index i) is what rank_block() asks; two: whether it has two sorts.
+/// Counts: a struct whose call (Index i) is what rank_block() counts; two: whether it has two sorts.
 template <class Counts>
 struct RankItems {
   using Shared = RankShared;

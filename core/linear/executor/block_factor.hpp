@@ -40,7 +40,7 @@ BB_HD inline FactorStatus inverse_factor(const Mat3d& d, double* w) {
   }
   norm = std::sqrt(norm);
   double l[6];
-  // A pivot below the rounding of its own subtraction says nothing.
+  // A pivot below the rounding of its own subtraction shows nothing.
   if (!factorize_block(d, 4 * DBL_EPSILON, l)) {
     // Semidefinite within rounding: definite with the rounding of its eigenvalues added.
     Mat3d shifted = d;

@@ -13,7 +13,7 @@
 
 namespace bb {
 
-/// Hard limit 1 + onset + width on the stretches of triangles, and of tetrahedra where `solids` asks for it (docs/theory/strain-limit.md).
+/// Hard limit 1 + onset + width on the stretches of triangles, and of tetrahedra where `solids` is set (docs/theory/strain-limit.md).
 struct StrainLimitSpec {
   double onset = 0.01, width = 0.01;  // 1
   bool solids = false;

@@ -41,7 +41,7 @@ inline ElementAnswer cusp_answer(bool is_cusp, ElementAnswer answer) {
   return answer;
 }
 
-/// f.operator()<T>() in the scalar that the fields ask for.
+/// f.operator()<T>() in the scalar that the fields request.
 template <class F>
 ElementAnswer in_scalar_of(const Fields& fields, const F& f) {
   return fields.single() ? f.template operator()<float>() : f.template operator()<double>();

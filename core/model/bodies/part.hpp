@@ -51,7 +51,7 @@ class Part {
   virtual std::string_view keys_doc() const { return {}; }
   /// Defaults that follow from other keys, and keys that exclude each other.
   virtual void settle(const GivenMaterial&, const Complaints&, Material&) const {}
-  /// What the ranges of its keys cannot tell. The mesh has been checked. Complaints are at "/material/KEY".
+  /// Checks that the ranges of its keys cannot express. The mesh has been checked. Complaints are at "/material/KEY".
   virtual void check(const BodySpec&, bool /*planar*/, const Complaints&) const {}
 
   /// What the mesh lacks for a key of this part to mean anything, as "the body has no triangle"; empty: nothing.
@@ -78,7 +78,7 @@ class Part {
                             std::vector<std::unique_ptr<ElementFamily>>& out) const = 0;
   virtual void add_frame_fields(const Scene&, const Positions& /*x*/, FrameFields&) const {}
 
-  // --- a single element, as `eval` asks for it
+  // --- a single element, as `eval` requests it
   /// Names that are requested.
   virtual std::vector<std::string> element_names() const = 0;
   /// Reads every field, calls finish(), then computes. Errors: ConfigError of finish().

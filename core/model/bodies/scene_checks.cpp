@@ -17,7 +17,7 @@ namespace bb {
 namespace {
 
 /// Keys of a part that the mesh has nothing for; returns whether there are any. What switches elements off may stand, and
-/// what follows from another key is not said of it too.
+/// what follows from another key is not reported of it too.
 bool refuse_without_subject(const Complaints& complain, const BodySpec& spec, const Part& part) {
   Settings<Material> keys("");
   part.add_keys(keys);

@@ -17,7 +17,7 @@ void check_weights(const Complaints& report, const BodySpec& spec);
 const WeightGroup* require_group(const Complaints& report, const std::vector<WeightGroup>& groups,
                                  const std::string& what, const std::string& name);
 
-/// Of all vertices of the body. Requires a spec that check_weights has nothing to say of.
+/// Of all vertices of the body. Requires a spec in which check_weights finds no fault.
 WeightMix mix_of(const BodySpec& spec, const std::vector<WeightShare>& shares);
 /// Of some of them, in their order; the body's own vertices are numbered from `first` on.
 WeightMix mix_of(const BodySpec& spec, const std::vector<WeightShare>& shares,

@@ -1,4 +1,4 @@
-// Procedural meshes. All are centred at the origin unless said otherwise; closed surfaces are oriented
+// Procedural meshes. All are centred at the origin unless stated otherwise; closed surfaces are oriented
 // outwards. Errors of all: ConfigError for a count or size out of range, and for a surface that does not fit
 // into the memory of this process (core/base/input/memory.hpp).
 #pragma once

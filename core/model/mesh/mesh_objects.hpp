@@ -32,7 +32,7 @@ struct MeshObjects {
 };
 
 inline constexpr std::size_t most_listed = 20;
-/// The first names of a list, and how many more there are: what a message has room for.
+/// The first names of a list, and how many more there are: as many as a message prints.
 std::string listed(std::span<const std::string> names);
 
 }  // namespace bb

@@ -99,7 +99,7 @@ void parse_binary(const std::string& bytes, RawMesh& mesh) {
   }
 }
 
-/// Binary files may start with "solid" too: the size is what tells them apart.
+/// Binary files may start with "solid" too: the size distinguishes them.
 bool is_binary(const std::string& bytes) {
   const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
   if (lower(std::string_view(bytes).substr(begin, 5)) != "solid") return true;

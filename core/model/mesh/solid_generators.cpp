@@ -64,7 +64,7 @@ Section disk_section(int n_radial) {
 }
 
 /// `n` layers of prisms between copies of the section, three tetrahedra each; `closed`: the last copy is the first. A wall of a
-/// prism is split from its lower vertex of smaller number to the upper one of larger number, whichever prism asks.
+/// prism is split from its lower vertex of smaller number to the upper one of larger number, whichever prism is split.
 TriangleMesh extruded(const Section& section, int n, bool closed,
                       const std::function<Vec3d(const Vec2d&, int)>& place) {
   const int per_layer = static_cast<int>(section.points.size()), copies = closed ? n : n + 1;

@@ -66,7 +66,7 @@ void silence() {
   ::alarm(seconds_to_load);
   try {
     load();
-  } catch (...) {  // NOLINT(bugprone-empty-catch): thrown again where it can be told
+  } catch (...) {  // NOLINT(bugprone-empty-catch): thrown again where it can be reported
   }
   const char byte = 1;
   const bool told = ::write(done, &byte, 1) == 1;

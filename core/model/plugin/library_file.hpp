@@ -1,4 +1,4 @@
-// What can be told of a plugin's file before its code runs in this process. Internal to this module.
+// What can be checked of a plugin's file before its code runs in this process. Internal to this module.
 #pragma once
 
 #include <functional>

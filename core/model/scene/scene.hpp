@@ -160,7 +160,7 @@ struct Scene : parts::AllColumns {
 
   std::vector<Body> bodies;
   Positions rest, x0, v0;                // [3 x n] rest, start (m), start velocity (m/s)
-  std::vector<double> mass;              // [n] lumped, kg; 0 for vertices that are given
+  std::vector<double> mass;              // [n] lumped, kg; 0 for prescribed vertices
   std::vector<int> body;                 // [n]
   std::vector<double> d_hat, offset;     // [n] m
   Vec3d gravity = Vec3d::Zero();         // m/s^2

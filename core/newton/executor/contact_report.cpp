@@ -1,4 +1,4 @@
-// What contact in an executor's memory says of its rows, numbers of all rows in one pass.
+// What contact in an executor's memory reports of its rows, numbers of all rows in one pass.
 #include "core/newton/executor/executor_contact.hpp"
 #include "core/terms/known_step.hpp"
 

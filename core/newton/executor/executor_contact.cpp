@@ -61,7 +61,7 @@ void ExecutorContact::prepare(const Motion& motion, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::broad_phase);
   if (frugal()) assembly_.free_matrix();
   const std::size_t lists = count_candidates(motion.x0, motion.x1, list_budget());
-  listed_ = lists <= list_budget();  // asked again: counting took memory
+  listed_ = lists <= list_budget();  // read again: counting took memory
   in_trees_ = !listed_;
   if (listed_) {
     fill_lists();

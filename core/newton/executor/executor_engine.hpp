@@ -32,13 +32,13 @@ class ExecutorEngine final : public IncrementalPotential {
 
   void drop_caches() override;
   /// From now on the end of a phase waits for what the phase launched (PhaseClock::wait_at_ends). What a kernel did wrong
-  /// is said by the next call that waits.
+  /// is reported by the next call that waits.
   void synchronize_phases();
 
   bool pattern_changed() const override;
   void fill_matrix(const Column& x, const HessianRegularisation& level, const Column& force) override;
   void fill_exact(const Column& x, const Column& force) override;
-  /// Errors: std::logic_error always: only article_literal asks, which runs on the host.
+  /// Errors: std::logic_error always: only article_literal calls it, and it runs on the host.
   double add_tikhonov(double relative, double absolute) override;
   void multiply(const Column& v, Column& out) override;
   void solve(const Column& b, RightSide of, Column& step, SolveReport& report) override;

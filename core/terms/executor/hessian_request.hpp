@@ -6,7 +6,7 @@
 
 namespace bb::exec {
 
-/// What hessian_at (core/newton/hessian_regularisation.hpp) gives. threshold: infinity where no vertex is asked. force: [n_vertices]
+/// What hessian_at (core/newton/hessian_regularisation.hpp) gives. threshold: infinity where no vertex is compared. force: [n_vertices]
 /// N, in the executor's memory.
 HessianRequest hessian_request(StepHessian choice, double t, double threshold, const double* force);
 

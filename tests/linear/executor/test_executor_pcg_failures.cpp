@@ -40,7 +40,7 @@ TEST(ExecutorPcg, NamesASingularBlock) {
   EXPECT_EQ(got.fault, 1);
   EXPECT_NE(got.report.detail.find("vertex 1 is 0 or singular"), std::string::npos) << got.report.detail;
   a.block<3, 3>(3, 3).setZero();
-  a.block<3, 3>(6, 6) = -Mat3d::Identity();  // worse, and told first
+  a.block<3, 3>(6, 6) = -Mat3d::Identity();  // worse, and reported first
   EXPECT_EQ(solve(from_dense(a), VecXd::Ones(9), no_fixed(3), {}).report.status,
             LinearStatus::matrix_indefinite);
   EXPECT_EQ(solve(from_dense(a), VecXd::Ones(9), {0, 0, 7}, {}).report.status,

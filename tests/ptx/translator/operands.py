@@ -9,7 +9,7 @@ from .words import MEMORY_WORDS, SPACES, SPECIAL, Unknown, convert, is_float, sy
 
 
 class Operands:
-    """Names that hold in one function, and what instructions of every kind ask for."""
+    """Names that hold in one function, and what instructions of every kind require."""
 
     def __init__(self, module, function: Function):
         self.module, self.function = module, function

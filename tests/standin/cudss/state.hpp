@@ -1,4 +1,4 @@
-// What a test tells the stand-in for cuDSS, and what it saw. One object in the test; the library finds it there.
+// What a test sets in the stand-in for cuDSS, and what that saw. One object in the test; the library finds it there.
 #pragma once
 
 #include <cudss.h>
@@ -8,7 +8,7 @@
 namespace standin {
 
 struct CudssState {
-  // Set before the calls that ask.
+  // Set before the calls that read it.
   std::string failing;  // the call of this name, or cudssExecute with this phase, returns `status`
   cudssStatus_t status = CUDSS_STATUS_EXECUTION_FAILED;
   int major = CUDSS_VERSION_MAJOR;

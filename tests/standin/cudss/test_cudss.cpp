@@ -1,5 +1,5 @@
 // The linear solver cudss through the compiled device executor and a stand-in for the library: solutions, how often the
-// pattern is analysed, what fails and what is said then.
+// pattern is analysed, what fails and what is reported then.
 #include "core/exec/executor.hpp"
 #include "core/linear/cudss/library.hpp"
 #include "core/linear/solvers/linear_solvers.hpp"
@@ -116,7 +116,7 @@ TEST_F(CudssStandin, WhatIsNotFiniteGoesNowhere) {
   EXPECT_EQ(standin::cudss().solves, 1);
 }
 
-// Of every call in turn: the name and the status are told, and the next solve begins anew.
+// Of every call in turn: the name and the status are reported, and the next solve begins anew.
 TEST_F(CudssStandin, AnErrorNamesTheCallAndItsStatus) {
   const ReducedSystem system = grid_system(4, 0.1, 1);
   const VecXd b = random_vector(system.lower.rows(), 2);

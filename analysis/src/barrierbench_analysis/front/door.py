@@ -132,6 +132,8 @@ def _answer(arguments: list[str]) -> int:
         asked = verbs.asked(arguments[1:])
         if asked and not asked.rest:
             arguments = [*arguments[1:], "--help"]
+        elif asked is None and arguments[0] in HELP and not arguments[1].startswith("-"):
+            arguments = arguments[1:]  # the help of a word that is no verb
     asked = verbs.asked(arguments)
     if asked is None:
         if not arguments[0].startswith("-"):

@@ -19,7 +19,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.building import build, folder, job_count, say, setup
 
 from . import format as formatting
-from . import private, python_module, rooms
+from . import modules, private, python_module
 
 OWN = ("--sanitize", "--browser")  # what ctest does not see
 NAMED_TESTS = 20  # C++ tests that the summary names
@@ -165,7 +165,7 @@ def main(argv: list[str]) -> int:
         build(preset, *python_module.MODULE)
     summary.lines.append(f"built    {preset} ({time.monotonic() - start:.0f} s)")
     summary.step("clang-format", lambda: formatting.clang_format("--dry-run", "--Werror"))
-    summary.step("modules", lambda: rooms.main([]))
+    summary.step("modules", lambda: modules.main([]))
     summary.step(f"C++ tests ({preset})", lambda: cpp_tests(preset, arguments, summary))
     if arguments:
         summary.lines.append("not run  Python tests (ctest arguments were given)")

@@ -122,7 +122,7 @@ def _holder(lock: Path) -> Sighting | None:
 
 def sighted(case: Case) -> Sighting:
     """A run is dead when its process is gone, or has given no sign of life for DEAD_AFTER_S seconds; stopped
-    when it has left a checkpoint: ./bench sweep goes on with both. Its record is not opened: status.py tells
+    when it has left a checkpoint: ./bench sweep goes on with both. Its record is not opened: status.py shows
     one that cannot be read from one that can.
     """
     holder = _holder(case.folder / "bench.lock")

@@ -67,7 +67,7 @@ def passed_on(code: int) -> int:
 
 
 def text_of(error: UserError | OSError) -> str:
-    """What is said: of a file its name and what the system said."""
+    """The message: of a file its name and the message of the system."""
     if isinstance(error, UserError) or error.errno is None:
         return str(error)
     error = _cause(error)
@@ -75,7 +75,7 @@ def text_of(error: UserError | OSError) -> str:
 
 
 def tells(verb: str) -> Callable:
-    """For `main(argv)` of a verb: an error for the user, or of a file, is said on stderr, and its code is the
+    """For `main(argv)` of a verb: an error of the user, or of a file, is printed on stderr; its code is the
     exit code.
     """
 

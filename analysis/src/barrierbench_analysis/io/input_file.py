@@ -47,9 +47,9 @@ def below(root: Path, name: str) -> list[Path]:
 
 
 def opened(path: str | os.PathLike, most: int = LARGE, more: str = "") -> BinaryIO:
-    """The bytes of a regular file of at most `most` bytes, to be read and closed. more: behind what is said
-    of a file that cannot be read. Errors: UserError: no path, not there, no regular file, no rights, too
-    large.
+    """The bytes of a regular file of at most `most` bytes, to be closed by the caller. more: end of the
+    message about a file that cannot be read. Errors: UserError: no path, not there, no regular file, no
+    rights, too large.
     """
     if "\0" in os.fsdecode(path):
         raise _refuse(repr(os.fsdecode(path)), "a zero byte in a path", more)

@@ -38,7 +38,7 @@ def _each_key_once(pairs: list[tuple[str, object]]) -> dict:
 
 
 def read_json(path: Path, remedy: str = "") -> object:
-    """What a file holds. remedy: behind what is said of a file that cannot be read. Errors: UserError, also
+    """What a file holds. remedy: the end of the message about an unreadable file. Errors: UserError, also
     for a key that is given twice in one object.
     """
     text = input_file.read_bytes(path, more=remedy)

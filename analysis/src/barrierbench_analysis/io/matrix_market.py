@@ -18,7 +18,7 @@ LEAST_LINE = 6  # bytes of "1 1 1" and an end of line
 
 
 def _check_sizes(path: Path, text: bytes) -> None:
-    """Before anything of the announced size is made. Errors: UserError for entries that the file has no room
+    """Before anything of the announced size is made. Errors: UserError for entries that the file cannot hold
     for, and for many rows without an entry; ValueError for a header that is none.
     """
     rows, columns, entries, form, *_ = scipy.io.mminfo(io.BytesIO(text))
@@ -26,7 +26,7 @@ def _check_sizes(path: Path, text: bytes) -> None:
     if entries > room or max(rows, columns) > max(entries, EMPTY_ROWS):
         raise UserError(
             f"{path}: its header says {rows} x {columns} with {entries} entries, and the file has {len(text)}"
-            f" bytes, room for at most {room}; as many entries as it says, and one in every row, are needed"
+            f" bytes, enough for at most {room}; as many entries as it says, and one in every row, are needed"
         )
 
 

@@ -1,5 +1,5 @@
 """What the schema of a record says of one value: its type, its words, its minimum, and the same of what lies
-below. Asked of every value of every record, so the common answer is quick.
+below. It is applied to every value of every record, so the common answer is quick.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ def shown(value) -> str:
 
 
 class RecordRule:
-    """A rule of the schema as it is asked of every value of a record, looked up once."""
+    """A rule of the schema as it is applied to every value of a record, looked up once."""
 
     def __init__(self, rule: dict) -> None:
         while "$ref" in rule:

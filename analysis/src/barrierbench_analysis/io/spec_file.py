@@ -76,8 +76,7 @@ def read_spec(path: Path, kind: str) -> dict:
 
 
 def checked(data: dict, path: Path, kind: str, above: str = "") -> dict:
-    """What was read of a file that is no JSON, or stands at the key `above` of one; otherwise as
-    read_spec."""
+    """What was read of a file that is not JSON, or stands at its key `above`; otherwise as read_spec."""
     if errors := sorted(_validator(kind).iter_errors(data), key=_order):
         raise UserError(f"{path}#/{_fault(errors[0], above)}")
     return data

@@ -31,7 +31,7 @@ def read_store(path: Path, schema: str, of: Callable[[dict], T], remedy: str, em
 
 
 def check_digest(path: Path, key: str, found: str | None, needed: str, what: str, again: str) -> None:
-    """Errors: UserError where the numbers of a store are of another `what` than is asked for now, by its
+    """Errors: UserError where the numbers of a store are of another `what` than is requested now, by its
     digest at a key of the store. again: the command that makes them.
     """
     if found != needed:

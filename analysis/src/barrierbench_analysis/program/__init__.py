@@ -1,1 +1,1 @@
-"""The program: how it is built, started and asked, what reads files through it, and the table of verbs."""
+"""The program: how it is built, started and called, what reads files through it, and the table of verbs."""

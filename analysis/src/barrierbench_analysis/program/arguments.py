@@ -24,12 +24,12 @@ def text_width() -> int:
 
 
 class Parser(argparse.ArgumentParser):
-    """A wrong argument is an error of the user like any other: `tells` says it."""
+    """A wrong argument is an error of the user like any other: `tells` reports it."""
 
     takes_formula = False
 
     def parse_args(self, args: list[str] | None = None, namespace=None) -> argparse.Namespace:
-        """A word that is empty would be the folder that this is called from, or no number."""
+        """A word that is empty would be the folder that this is called from, or not a number."""
         options = self._option_string_actions
         for number, (before, word) in enumerate(zip(["", *(args or [])], args or []), 1):
             if before == "--":

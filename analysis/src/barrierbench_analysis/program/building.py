@@ -46,7 +46,7 @@ def of_script(*words: str) -> int:
 
 def setup(*packages: str) -> None:
     """Packages of the system and the Python environment, by the script ./bench. Errors: UserError; the script
-    has said why.
+    has reported why.
     """
     if code := of_script("setup", *packages):
         raise UserError("the setup failed", code)
@@ -78,19 +78,19 @@ def _cuda_here() -> str:
 def _device_options(preset: str, options: dict[str, str]) -> tuple[dict[str, str], bool]:
     """The options with BB_CUDA (cmake/Cuda.cmake) where this build needs a word about device code, and
     whether CMake has to look again. Kernels take minutes of nvcc, so where no card is only what compiles and
-    tests them asks for them (AUTO); a compiler or a card that is found later is used later.
+    tests them requests them (AUTO); a compiler or a card that is found later is used later.
     """
     cache = folder(preset) / "CMakeCache.txt"
     if not (folder(preset) / "build.ninja").is_file():
         return ({"BB_CUDA": "CARD", **options} if preset == "release" else options), True
     known = input_file.read_text(cache)
-    asked = re.search(r"^BB_CUDA:STRING=(AUTO|CARD)$", known, re.M)
+    configured = re.search(r"^BB_CUDA:STRING=(AUTO|CARD)$", known, re.M)
     without = {name: value for name, value in options.items() if name != "BB_CUDA"}
-    if not asked or "BB_CUDA_BUILT:INTERNAL=OFF" not in known:
-        return without, False  # it has device code, or somebody has said that it shall have none
+    if not configured or "BB_CUDA_BUILT:INTERNAL=OFF" not in known:
+        return without, False  # it has device code, or its configuration says that it shall have none
     stamp = folder(preset) / "cuda_asked"
-    wanted = "AUTO" if options.get("BB_CUDA") == "AUTO" else asked[1]
-    same = wanted == asked[1] and stamp.is_file() and input_file.read_text(stamp) == _cuda_here()
+    wanted = "AUTO" if options.get("BB_CUDA") == "AUTO" else configured[1]
+    same = wanted == configured[1] and stamp.is_file() and input_file.read_text(stamp) == _cuda_here()
     return {**without, "BB_CUDA": wanted}, not same
 
 

@@ -29,14 +29,14 @@ class MeshArrays:
     corners: np.ndarray | None = None  # of all polygons in a row, of a frame
     sizes: np.ndarray | None = None  # [polygons]
     fields: dict[str, int] = field(default_factory=dict)  # of the points: name, components
-    values: dict[str, np.ndarray] = field(default_factory=dict)  # [n, components] of those asked for
+    values: dict[str, np.ndarray] = field(default_factory=dict)  # [n, components] of those requested
     notes: tuple[str, ...] = ()  # what the file has and no mesh
-    uvs: np.ndarray | None = None  # [u, 2] texture coordinates, where they are asked for
+    uvs: np.ndarray | None = None  # [u, 2] texture coordinates, where they are requested
     corner_uvs: np.ndarray | None = None  # [corners] into uvs, -1: none
 
 
 class Reader:
-    """One process of the program that answers as long as it is asked."""
+    """One process of the program that answers as long as requests come."""
 
     def __init__(self) -> None:
         self.child = piped("meshes")
@@ -74,9 +74,9 @@ class Reader:
         try:
             self.child.kill()
         finally:
-            said = self.child.stderr.read().decode(errors="replace").strip()
+            message = self.child.stderr.read().decode(errors="replace").strip()
         raise UserError(
-            f"{built_program()}: the verb meshes does not answer: {said[:300] or 'it ended'}"
+            f"{built_program()}: the verb meshes does not answer: {message[:300] or 'it ended'}"
             "; allowed: a program that ./bench build made"
         )
 
@@ -87,7 +87,7 @@ def reader(program: Path) -> Reader:
     return Reader()
 
 
-def _asked(path: Path, **more: object) -> tuple[dict, dict[str, np.ndarray]]:
+def _requested(path: Path, **more: object) -> tuple[dict, dict[str, np.ndarray]]:
     return reader(built_program()).ask({"path": str(path.absolute()), "name": str(path), **more})
 
 
@@ -100,7 +100,7 @@ def read_frame_file(path: Path, fields: tuple[str, ...] = (), uvs: bool = False)
     coordinates too, which OBJ files have; of other files there are none. Errors: UserError with the file and
     the place.
     """
-    answer, arrays = _asked(path, fields=list(fields), uvs=uvs)
+    answer, arrays = _requested(path, fields=list(fields), uvs=uvs)
     corners = arrays["corners"]
     if uvs and not len(arrays["corner_uvs"]):
         arrays["corner_uvs"] = np.full(len(corners), -1)
@@ -121,7 +121,7 @@ def read_body_file(path: Path, skin: bool = False) -> MeshArrays:
     """By the rules of a body's mesh. skin: triangles that are faces of one tetrahedron stay. Errors:
     UserError as read_frame_file.
     """
-    answer, arrays = _asked(path, **{"as": "body"}, skin=skin)
+    answer, arrays = _requested(path, **{"as": "body"}, skin=skin)
     return MeshArrays(
         arrays["points"],
         *(_wide(arrays[name]) for name in ("triangles", "segments", "tetrahedra")),

@@ -44,7 +44,7 @@ def _is_program(path: Path) -> bool:
 
 
 def require_program() -> None:
-    """What BARRIERBENCH_PROGRAM names is asked once whether it is the program: another one hangs, or answers
+    """BARRIERBENCH_PROGRAM is tested once, whether it names the program: another one hangs, or answers
     what nobody can read. Errors: UserError.
     """
     path = built_program()
@@ -68,12 +68,12 @@ def started(
     *words: str, plugins: list[str] = (), under: list[str] = (), **options
 ) -> subprocess.CompletedProcess:
     """The program with these words, until it ends, as an argument of another program where `under` names one;
-    what it says is kept unless `options` (of subprocess.run) say otherwise. Errors: UserError where it is not
+    its output is kept unless `options` (of subprocess.run) take it. Errors: UserError where it is not
     built. What its exit code means is the caller's.
     """
-    said = {} if {"stdout", "stderr", "capture_output"} & set(options) else {"capture_output": True}
+    captured = {} if {"stdout", "stderr", "capture_output"} & set(options) else {"capture_output": True}
     command = [*under, str(built_program()), *plugin_words(list(plugins)), *words]
-    return subprocess.run(command, check=False, **{"text": True, **said, **options})
+    return subprocess.run(command, check=False, **{"text": True, **captured, **options})
 
 
 def begun(*words: str) -> subprocess.Popen:
@@ -119,12 +119,12 @@ def run_sweep(
 
 
 def check_ended(done: subprocess.CompletedProcess, what: str) -> None:
-    """Errors: UserError, with the first line of what the program said, where it did not end with 0. what: the
+    """Errors: UserError, with the first line of the program's message, where it did not end with 0. what: the
     file or run that it was started for, at the beginning of the message.
     """
     if done.returncode != 0:
-        said = (done.stderr or "").strip() or (done.stdout or "").strip()
-        first, *more = said.splitlines() or ["it said nothing"]
+        message = (done.stderr or "").strip() or (done.stdout or "").strip()
+        first, *more = message.splitlines() or ["it printed nothing"]
         others = f" (and {len(more)} more lines)" if more else ""
         raise UserError(
             f"{what}the program ended with {done.returncode}: {first}{others}", passed_on(done.returncode)

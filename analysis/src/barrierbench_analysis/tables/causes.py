@@ -57,7 +57,7 @@ def clamped(row: dict) -> dict[tuple[str, str], dict]:
 
 
 def cond_of(sample: dict) -> float:
-    """LARGEST_COND where there is no number: singular or not positive definite."""
+    """LARGEST_COND where there is none: singular or not positive definite."""
     return LARGEST_COND if sample["cond"] is None else sample["cond"]
 
 
@@ -185,16 +185,16 @@ def run_folder(
     UserError for what a record, whose run is over, cannot take: settings, plugins, another folder.
     """
     if given.is_dir() or given.name == "run.json":
-        asked = (
+        refused = (
             [f"--set {text}" for text in settings]
             + [f"--plugin {file}" for file in plugins]
             + ([f"--out {out}"] if out else [])
             + (["--replace"] if replace else [])
         )
-        if asked:
+        if refused:
             raise UserError(
-                f"{asked[0]}: given with a record, whose run is over: {given}; allowed: with a config, which"
-                f" is run, e.g. ./bench study causes CONFIG.json {asked[0]}"
+                f"{refused[0]}: given with a record, whose run is over: {given}; allowed: with a config,"
+                f" which is run, e.g. ./bench study causes CONFIG.json {refused[0]}"
             )
         return given if given.is_dir() else given.parent
     folder = out or ROOT / "results/runs" / f"causes-{given.stem}"

@@ -36,7 +36,7 @@ class Records:
 
 
 def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
-    """File and sha256 of every plugin of the run; formulas are no plugins that could be asked for."""
+    """File and sha256 of every plugin of the run; formulas are no plugins that could be requested."""
     plugins = record.get("provenance", {}).get("plugins") or []
     plugins = [plugin for plugin in plugins if not plugin["name"].startswith("formula:")]
     return tuple((str((folder / plugin["file"]).resolve()), plugin["sha256"]) for plugin in plugins)
@@ -103,7 +103,7 @@ def _say_other_meanings(root: Path, runs: list[dict]) -> None:
 
 
 def _unique_series(runs: pd.DataFrame) -> pd.Series:
-    """Two runs of a group never share a name: that of their configs, where it differs, tells them apart; else
+    """Two runs of a group never share a name: that of their configs, where it differs, separates them; else
     they are numbered.
     """
     name = runs["note"].fillna("").str.partition(": ")[0]

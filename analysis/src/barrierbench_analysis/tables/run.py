@@ -1,5 +1,5 @@
 """One run with all that lies beside its record, as pandas, numpy and scipy objects. Files are read when they
-are asked for, and only where they are the very ones that the record names.
+are requested, and only where they are the very ones that the record names.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ def judged_words(row: pd.Series) -> list[str]:
 
 
 def end_word(row: pd.Series) -> str:
-    """Which residual the steps of a run end with that its step solver does not ask to converge; else
+    """Which residual the steps of a run end with that its step solver does not have to converge; else
     empty."""
     if row.get("convergence") != "not_asked":
         return ""

@@ -45,8 +45,8 @@ def parts(names: Iterable[str], by_rank: list[str], figure: str) -> list[Part]:
     size = math.ceil(len(rest) / count)
     groups = [rest[k * size : (k + 1) * size] for k in range(count)]
     suffixes = [MORE, *(f"{MORE}_{k + 1}" for k in range(1, count))]
-    said = "; ".join(f"{figure}{suffix}: {', '.join(group)}" for suffix, group in zip(suffixes, groups))
-    found = [Part("", tuple(name for name in names if name in by_rank[:MOST]), f"Other series: {said}.")]
+    listed = "; ".join(f"{figure}{suffix}: {', '.join(group)}" for suffix, group in zip(suffixes, groups))
+    found = [Part("", tuple(name for name in names if name in by_rank[:MOST]), f"Other series: {listed}.")]
     for suffix, group in zip(suffixes, groups):
         beside = [by_rank[0]] if len(group) < MOST else []
         found.append(

@@ -78,7 +78,7 @@ def as_text(table: pd.DataFrame) -> str:
     """Aligned columns for a terminal; a blank line between groups."""
     pointers = [
         name for name in table.columns if name.startswith("/") and table[name].map(str).nunique() > 1
-    ]  # one value tells no run from another
+    ]  # one value distinguishes no run from another
     names = [*HEADINGS, *pointers]
     cells = [[_cell(name, row[name]) for name in names] for _, row in table.iterrows()]
     head, *lines = aligned([*HEADINGS.values(), *pointers], cells, set(range(len(WORDS), len(names))))

@@ -26,9 +26,9 @@ OUTCOMES = {
     "not_pd": "a matrix that has to be positive definite was not",
     "oom": "memory ran out; the steps before count",
     "kernel_failed": "a kernel of the graphics card failed; the steps before count",
-    "timeout": "the time limit that was asked for was reached between two steps",
+    "timeout": "the time limit of the run was reached between two steps",
     "unproven": "all steps were made, but the audit could not certify every motion",
-    "ok": "all steps were made and the audit, where it was asked for, is clean",
+    "ok": "all steps were made and the audit, where it was requested, is clean",
 }
 
 # Words of comparability.verdict.

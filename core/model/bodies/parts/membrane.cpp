@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double config_youngs = 100;  // N/m, of a material that says nothing
+constexpr double config_youngs = 100;  // N/m, of a material that gives none
 
 /// Lame parameters of a shell in plane stress, times the thickness, N/m:
 ///   mu = E t / (2 (1 + nu)), lambda = E t nu / (1 - nu^2).

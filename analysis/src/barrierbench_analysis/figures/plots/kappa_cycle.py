@@ -17,7 +17,7 @@ from barrierbench_analysis.tables.records import Records, step_spans
 
 from . import swings
 
-# Copies of settled_kappa and unsettled_iterations in core/newton/iteration.cpp.
+# settled_kappa and unsettled_iterations of core/terms/report.cpp (tests/front/test_program_constants.py).
 SETTLED = 0.01  # a change of kappa below it leaves Newton alone
 UNSETTLED_ITERATIONS = 10  # that many above it in a row are a cycle
 SHOWN = (

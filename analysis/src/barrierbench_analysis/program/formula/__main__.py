@@ -1,7 +1,7 @@
 """What the program starts when it meets a formula: a JSON object {"kind", "formula"} from the standard input,
 one to the standard output. Of kind shape and policy: formula, label, library, library_sha256; of a shape
 at_zero too and, where its signs are not proven, unproven (a text); of a policy reads_gap and
-slope_error_rel. Of kind device, which is asked with a layout, the kernel of a shape: entry, ptx (a file),
+slope_error_rel. Of kind device, which is requested with a layout, the kernel of a shape: entry, ptx (a file),
 ptx_sha256. Or found and allowed of what is wrong.
 """
 
@@ -15,27 +15,27 @@ from .compiled import compiled, compiled_policy, signs_of
 from .device import device_code
 from .grammar import FormulaError
 
-TOLD = ("formula", "label", "at_zero", "reads_gap", "slope_error_rel", "library_sha256")
+REPORTED = ("formula", "label", "at_zero", "reads_gap", "slope_error_rel", "library_sha256")
 
 
 def _library(made: Compiled) -> dict:
-    known = {key: made.about[key] for key in TOLD if key in made.about}
+    known = {key: made.about[key] for key in REPORTED if key in made.about}
     if unproven := made.about.get("unproven"):
         known["unproven"] = signs_of(unproven)
     return {**known, "library": str(made.library)}
 
 
 ANSWERS = {
-    "shape": lambda asked: _library(compiled(asked["formula"])),
-    "policy": lambda asked: _library(compiled_policy(asked["formula"])),
-    "device": lambda asked: device_code(asked["formula"], asked["layout"]),
+    "shape": lambda request: _library(compiled(request["formula"])),
+    "policy": lambda request: _library(compiled_policy(request["formula"])),
+    "device": lambda request: device_code(request["formula"], request["layout"]),
 }
 
 
 def main() -> int:
-    asked = json.load(sys.stdin)
+    request = json.load(sys.stdin)
     try:
-        answer = ANSWERS[asked["kind"]](asked)
+        answer = ANSWERS[request["kind"]](request)
     except FormulaError as error:
         answer = {"found": error.found, "allowed": error.allowed}
     print(json.dumps(answer))

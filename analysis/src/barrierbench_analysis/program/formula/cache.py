@@ -115,7 +115,7 @@ def find(key: str) -> Compiled | None:
 
 def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[Path], dict]) -> Compiled:
     """Compiles and keeps, with all that `judge` says of the library. Errors: FormulaError with what the
-    compiler said, where nothing can be written, and of `judge`.
+    compiler reported, where nothing can be written, and of `judge`.
     """
     place = folder()
     try:

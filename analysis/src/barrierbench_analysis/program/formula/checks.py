@@ -46,7 +46,7 @@ def grid() -> list[mpmath.mpf]:
 
 
 def check(terms: Terms, declared: str | None) -> Ends:
-    """declared: "infinite", "finite", or None: not said. Errors: FormulaError with the place, as d/d_hat."""
+    """declared: "infinite", "finite", or None: unknown. Errors: FormulaError with the place, as d/d_hat."""
     with mpmath.workdps(DIGITS):
         _check_poles(terms.plain[0])
         unproven = _check_signs(terms)

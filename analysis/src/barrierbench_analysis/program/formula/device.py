@@ -1,4 +1,4 @@
-"""The kernel of a formula's shape: PTX text, made by nvcc when a run on a card asks for it, and kept beside
+"""The kernel of a formula's shape: PTX text, made by nvcc when a run on a card requests it, and kept beside
 the compiled formulas. It is good as long as every header that it was made from is as it was.
 """
 
@@ -92,7 +92,7 @@ def _make(formula: Formula, layout: int, words: list[str], place: Path) -> dict:
             cache.compile_there(
                 [*plain, "-MD", "-MF", "headers.d", "-o", "formula.ptx", "formula.cu"],
                 there,
-                f"{REMEDY} ({words[0]} was asked)",
+                f"{REMEDY} ({words[0]} was requested)",
             )
             known = {
                 "entry": source.ENTRY,

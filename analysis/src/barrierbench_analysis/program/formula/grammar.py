@@ -87,7 +87,7 @@ NO_UNIT = powers()
 
 
 def read(text: str, quantity: Quantity = SHAPE) -> Formula:
-    """Errors: FormulaError for anything but the symbols allowed, an exponent that is no number, and a unit
+    """Errors: FormulaError for anything but the symbols allowed, an exponent that is not a number, and a unit
     that is not that of the quantity.
     """
     if not text.strip() or len(text) > MOST_CHARACTERS:

@@ -1,4 +1,4 @@
-"""A stiffness as a formula: kappa in N/m of a contact, checked on a grid of what it may be asked at, printed
+"""A stiffness as a formula: kappa in N/m of a contact, checked on a grid of its arguments, printed
 as C++ (a plugin with one policy) and compared with 40 digits.
 """
 
@@ -22,7 +22,7 @@ from .symbolic import expression
 SYMBOLS = {name: sp.Symbol(name, positive=True) for name in POLICY.symbols}
 ORDER = tuple(SYMBOLS)  # m, k, h, c, d, d_hat: the arguments of kappa_of in the library
 UNITS = {"m": "kg", "k": "N/m", "h": "s", "c": "", "d": "m", "d_hat": "m"}
-# What a run may ask at: decades of masses and stiffnesses, of steps and lengths; d as a part of d_hat.
+# Arguments of runs: decades of masses and stiffnesses, of steps and lengths; d as a part of d_hat.
 GRID = {
     "m": ("1e-8", "1e-5", "1e-2", "10"),
     "k": ("0", "1e-3", "1", "1e4", "1e8"),
@@ -31,7 +31,7 @@ GRID = {
     "d": ("1e-6", "1e-3", "0.05", "0.2", "0.5", "0.7", "0.9", "0.99", "1"),
     "d_hat": ("1e-5", "1e-3", "0.1"),
 }
-EVERY = 7  # points that the compiled library is asked at
+EVERY = 7  # points at which the compiled library is evaluated
 
 TEMPLATE = """\
 // kappa = {formula}
@@ -125,7 +125,7 @@ def points(kappa: sp.Expr) -> Iterator[dict[str, mpmath.mpf]]:
 
 
 def check(kappa: sp.Expr) -> int:
-    """The number of points of the grid. Errors: FormulaError with the first where kappa is no number, not
+    """The number of points of the grid. Errors: FormulaError with the first where kappa is not finite, not
     real or negative, and where it is 0 at all of them.
     """
     value = sp.lambdify(list(SYMBOLS.values()), kappa, "mpmath")
@@ -141,7 +141,7 @@ def check(kappa: sp.Expr) -> int:
             count += 1
             positive += y > 0
     if positive == 0:
-        raise FormulaError(f"kappa = 0 at all {count} points that it was asked at", "a kappa that is not 0")
+        raise FormulaError(f"kappa = 0 at all {count} points of the check", "a kappa that is not 0")
     return count
 
 
@@ -192,7 +192,7 @@ def _statements(x: sp.Expr) -> tuple[str, str]:
 
 def judge(library: Path, kappa: sp.Expr) -> dict[str, float]:
     """Largest errors of the library at points of the grid: error_rel of kappa, and slope_error_rel of d
-    kappa/dd as a part of kappa/d, which is asked by who derives a potential. Errors: FormulaError where the
+    kappa/dd as a part of kappa/d, which a derived potential requires. Errors: FormulaError where the
     first is above MOST_ERROR.
     """
     call, value = _call(library), sp.lambdify(list(SYMBOLS.values()), kappa, "mpmath")

@@ -63,7 +63,7 @@ def policy_card(about: dict) -> str:
         [
             f"formula     {about['formula']}",
             f"label       {about['label']}",
-            f"kappa       {reads}; finite and not negative at all {about['points']} points it was asked at",
+            f"kappa       {reads}; finite and not negative at all {about['points']} points of the check",
             f"            relative error {about['error_rel']:.1e}",
             _potential_line(about),
         ]

@@ -44,7 +44,7 @@ def _misspelt(name: str) -> tuple[str, str] | None:
 
 
 class Npz:
-    """Arrays are read when they are asked for: one that is pickled and not asked for is never opened."""
+    """Arrays are read on request: one that is pickled and not requested is never opened."""
 
     def __init__(self, path: Path, file: np.lib.npyio.NpzFile) -> None:
         self.path, self.file = path, file
@@ -71,10 +71,10 @@ class Npz:
             like = _misspelt(name)
             if like and self.key[like[1]] is None:
                 raise UserError(f"{self.path}: the array `{name}` is not known; did you mean `{like[0]}`?")
-        said = [f"`{name}` is read as `{key}`" for key, name in self.key.items() if name not in (None, key)]
+        notes = [f"`{name}` is read as `{key}`" for key, name in self.key.items() if name not in (None, key)]
         if others:
-            said.append(f"arrays that are not read: {', '.join(sorted(others))}")
-        return tuple(said)
+            notes.append(f"arrays that are not read: {', '.join(sorted(others))}")
+        return tuple(notes)
 
     def cells(self, key: str) -> np.ndarray:
         """[n, corners]; edges that are sides of triangles are no rods."""
@@ -126,7 +126,7 @@ def _npz(path: Path, raw: BinaryIO) -> np.lib.npyio.NpzFile:
         if not isinstance(file, np.lib.npyio.NpzFile):
             raise ValueError("one array without a name")
     except Exception as error:  # noqa: BLE001 (cut off, empty or of another kind, it fails in any way)
-        why = str(error) or "nothing was said"
+        why = str(error) or "no reason was given"
         raise UserError(f"{path}: not an NPZ file: {type(error).__name__}: {why}") from None
     return file
 

@@ -77,36 +77,36 @@ def with_field(trajectory: Trajectory, name: str, first: list[MeshArrays]) -> Tr
             yield np.concatenate([_moved(part, wanted) for part, wanted in zip(parts, names)])
 
     without = [path.name for path, wanted in zip(trajectory.files[0], names) if not wanted]
-    said = f"the field {name!r} is added to the points, which rest"
+    note = f"the field {name!r} is added to the points, which rest"
     if without:
-        said += f"; {', '.join(without)} has it not and stays where it is"
-    return replace(trajectory, frames=read, heard=notes, notes=(*trajectory.notes, said), displacement=name)
+        note += f"; {', '.join(without)} has it not and stays where it is"
+    return replace(trajectory, frames=read, heard=notes, notes=(*trajectory.notes, note), displacement=name)
 
 
-def displaced(trajectory: Trajectory, asked: str | None) -> Trajectory:
-    """By the field that is asked for, or by a usual one where the points rest. Errors: UserError for a field
+def displaced(trajectory: Trajectory, chosen: str | None) -> Trajectory:
+    """By the field that is requested, or by a usual one where the points rest. Errors: UserError for a field
     that no file has, and for points that move beside it.
     """
     if trajectory.files is None:
-        if asked not in (None, NO_FIELD):
+        if chosen not in (None, NO_FIELD):
             raise UserError(
-                f"--displacement {asked}: {trajectory.source} has no fields; allowed: for .vtu, .vtp, .vtk"
+                f"--displacement {chosen}: {trajectory.source} has no fields; allowed: for .vtu, .vtp, .vtk"
             )
         return trajectory
     first = [read_mesh(path) for path in trajectory.files[0]]
     known = {name: width for part in first for name, width in part.fields.items()}
-    if asked == NO_FIELD:
+    if chosen == NO_FIELD:
         return trajectory
-    if asked is not None:
-        if not any(parts_of_field(part.fields, asked) for part in first):
+    if chosen is not None:
+        if not any(parts_of_field(part.fields, chosen) for part in first):
             have = ", ".join(vector_fields(known)) or "no field of 2 or 3 components"
-            raise UserError(f"--displacement {asked}: {trajectory.source} has {have}")
+            raise UserError(f"--displacement {chosen}: {trajectory.source} has {have}")
         if not _rest(trajectory, first):
             raise UserError(
-                f"--displacement {asked}: the points of {trajectory.source} move by themselves; allowed:"
+                f"--displacement {chosen}: the points of {trajectory.source} move by themselves; allowed:"
                 " points that rest, or --displacement none"
             )
-        return with_field(trajectory, asked, first)
+        return with_field(trajectory, chosen, first)
     if not (usual := usual_field(known)):
         return trajectory
     if len(trajectory.files) == 1:

@@ -114,8 +114,8 @@ def of_lists(frames: list[list[Path]], source: str, kind: str, times_s: list[flo
             raise UserError(f"{paths[0]}: {len(found)} files; the first frame has {len(every[0])}")
     trajectory = of_parts(every, source, kind, times_s)
     if hidden:
-        said = f"blocks that show the same bodies once more are not judged: {', '.join(sorted(hidden))}"
-        trajectory = replace(trajectory, notes=(*trajectory.notes, said))
+        note = f"blocks that show the same bodies once more are not judged: {', '.join(sorted(hidden))}"
+        trajectory = replace(trajectory, notes=(*trajectory.notes, note))
     return trajectory
 
 
@@ -134,20 +134,22 @@ def _entries(path: Path) -> list[Entry]:
     ]
 
 
-def _entry(path: Path, k: int, said: dict[str, str]) -> Entry:
+def _entry(path: Path, k: int, attributes: dict[str, str]) -> Entry:
     place = f"{path}: DataSet {k}"
-    missing = next((key for key in ("timestep", "file") if key not in said), None)
+    missing = next((key for key in ("timestep", "file") if key not in attributes), None)
     if missing:
         raise UserError(f"{place}: has no {missing}; every one needs timestep= and file=")
     try:
-        time_s = float(said["timestep"])
+        time_s = float(attributes["timestep"])
     except ValueError:
-        raise UserError(f"{place}: found the timestep {said['timestep']!r}; a number is needed") from None
+        raise UserError(
+            f"{place}: found the timestep {attributes['timestep']!r}; a number is needed"
+        ) from None
     try:
-        part = int(said.get("part") or 0)
+        part = int(attributes.get("part") or 0)
     except ValueError:
-        raise UserError(f"{place}: found the part {said['part']!r}; an integer is needed") from None
-    return Entry(k, time_s, (part, said.get("group", "")), said["file"])
+        raise UserError(f"{place}: found the part {attributes['part']!r}; an integer is needed") from None
+    return Entry(k, time_s, (part, attributes.get("group", "")), attributes["file"])
 
 
 def _check_same_times(path: Path, one: list[Entry], other: list[Entry]) -> None:

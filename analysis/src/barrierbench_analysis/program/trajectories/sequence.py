@@ -42,7 +42,7 @@ def numbered(paths: list[Path]) -> list[Path]:
     for path in sorted(paths):
         found = re.findall(r"\d+", path.stem)
         if not found:
-            raise UserError(f"{path}: no number in the name of one of {len(paths)} frames")
+            raise UserError(f"{path}: found no frame number in its name; one of {len(paths)} frames")
         if int(found[-1]) in number:
             raise UserError(f"{path}: has the number of {number[int(found[-1])].name}")
         number[int(found[-1])] = path
@@ -74,7 +74,7 @@ def of_files(paths: list[Path], source: str) -> Trajectory:
 
 
 class Notes:
-    """What files have and no mesh, said once for all files of one kind."""
+    """What files have and no mesh, reported once for all files of one kind."""
 
     def __init__(self) -> None:
         self.first: dict[str, str] = {}

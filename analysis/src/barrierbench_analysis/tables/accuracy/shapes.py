@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from barrierbench_analysis.io.errors import UserError
 
-TINY = 1e-300  # u below which a logarithm is not asked for
+TINY = 1e-300  # u below which a logarithm is not evaluated
 
 
 def _log(u: float) -> tuple[float, float]:
@@ -90,6 +90,6 @@ def gap_of_load(shape: str, argument: str, kappa: float, d_hat: float, load: flo
     if missing(low) <= 0:
         raise UserError(
             f"{shape} with kappa {kappa:g} N/m and d_hat {d_hat:g} m carries at most"
-            f" {load + missing(low):.6g} N; {load:.6g} N are asked"
+            f" {load + missing(low):.6g} N; {load:.6g} N are required"
         )
     return float(np.exp(brentq(missing, low, high, xtol=1e-15, rtol=1e-15))) * d_hat

@@ -135,7 +135,7 @@ def _say_what_is_not_there(folder: Path, rows: list[dict], unreadable: list[str]
     for name, what in (("build_id", "programs"), ("machine_id", "machines")):
         if len(known := {row.get(name) for row in rows}) > 1:
             print(
-                f"{folder}: records of {len(known)} {what}: the column {name} tells them apart",
+                f"{folder}: records of {len(known)} {what}: the column {name} distinguishes them",
                 file=sys.stderr,
             )
 

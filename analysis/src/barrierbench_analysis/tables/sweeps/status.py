@@ -127,14 +127,14 @@ def arguments(argv: list[str]) -> argparse.Namespace:
 
 
 def watch(args: argparse.Namespace) -> int:
-    outcomes, told = Outcomes(), ""
+    outcomes, last = Outcomes(), ""
     while True:
         shown, is_over = text(args.folder, read_cases(args.folder), outcomes, args.all)
         if sys.stdout.isatty():
             command(CLEAR)
             print(shown, flush=True)
-        elif (line := shown.split(", eta")[0].splitlines()[0]) != told:
-            told = line
+        elif (line := shown.split(", eta")[0].splitlines()[0]) != last:
+            last = line
             print(shown.splitlines()[0], flush=True)
         if is_over:
             return 0

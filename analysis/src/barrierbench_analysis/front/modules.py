@@ -12,13 +12,13 @@ from barrierbench_analysis.program.building import folder, regenerate
 @tells("dev modules")
 def main(argv: list[str]) -> int:
     regenerate("release")
-    rooms = folder("release") / "rooms.txt"
+    modules = folder("release") / "modules.txt"
     words = [
         "cmake",
-        f"-DROOMS={rooms}",
+        f"-DMODULES={modules}",
         f"-DSOURCE_DIR={ROOT}",
         "-DPRINT=ON",
         "-P",
-        str(ROOT / "cmake/RoomCheck.cmake"),
+        str(ROOT / "cmake/ModuleCheck.cmake"),
     ]
     return subprocess.run(words, check=False).returncode

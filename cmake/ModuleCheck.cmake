@@ -1,12 +1,12 @@
 # Script: reads every #include "..." line of the modules and compares it with the modules that are declared (bb_module). An error for a file that includes a module its own module does not name, for a module that is named and not
 # included, for modules that need each other in a circle, and for a module of core that includes a file from outside core.
-#   cmake -DROOMS=build/release/rooms.txt -DSOURCE_DIR=$PWD [-DPRINT=ON] -P cmake/RoomCheck.cmake
-# A line of ROOMS: name|folder|modules it names|modules it is linked with, separated by commas. PRINT: the graph, lowest module first. Behind a module
+#   cmake -DMODULES=build/release/modules.txt -DSOURCE_DIR=$PWD [-DPRINT=ON] -P cmake/ModuleCheck.cmake
+# A line of MODULES: name|folder|modules it names|modules it is linked with, separated by commas. PRINT: the graph, lowest module first. Behind a module
 # stand those that no #include of its own files shows: "linked", where its library is linked with another module's that it does not name (what
 # it calls is handed to it or defined above it), and "generated", where code that the build writes for it (the
-# folder generated beside ROOMS) includes another module.
+# folder generated beside MODULES) includes another module.
 cmake_minimum_required(VERSION 3.25)
-file(STRINGS "${ROOMS}" entries)
+file(STRINGS "${MODULES}" entries)
 set(names "")
 foreach(entry IN LISTS entries)
   string(REPLACE "|" ";" entry "${entry}")
@@ -25,7 +25,7 @@ foreach(entry IN LISTS entries)
 endforeach()
 list(LENGTH names n_modules)
 if(n_modules EQUAL 0)
-  message(FATAL_ERROR "${ROOMS} declares no module")
+  message(FATAL_ERROR "${MODULES} declares no module")
 endif()
 
 # module_of(PATH OUT): the module with the longest folder that PATH is below; empty for none.
@@ -136,7 +136,7 @@ function(unseen name out)
     string(PREPEND text "  linked:")
   endif()
   set(made "")
-  get_filename_component(build "${ROOMS}" DIRECTORY)
+  get_filename_component(build "${MODULES}" DIRECTORY)
   if(EXISTS "${build}/generated")
     file(GLOB_RECURSE files RELATIVE "${build}/generated" "${build}/generated/${folder_${name}}/*")
     foreach(file IN LISTS files)
@@ -175,7 +175,7 @@ if(PRINT)
   execute_process(COMMAND "${CMAKE_COMMAND}" -E echo_append "${text}")
 endif()
 if(NOT faults STREQUAL "")
-  message(FATAL_ERROR "modules (cmake/RoomCheck.cmake):${faults}\nAdd the module to DEPS in the CMakeLists.txt of its folder, or do without.")
+  message(FATAL_ERROR "modules (cmake/ModuleCheck.cmake):${faults}\nAdd the module to DEPS in the CMakeLists.txt of its folder, or do without.")
 endif()
 if(n_includes EQUAL 0)
   message(FATAL_ERROR "modules: no #include was read below ${SOURCE_DIR}")
