@@ -71,6 +71,10 @@ class Look:
     marker: str
     dash: object
 
+    def line(self, **more) -> dict:
+        """What matplotlib draws its lines with, and more."""
+        return {"color": self.color, "marker": self.marker, "linestyle": self.dash} | more
+
 
 # Okabe-Ito colours.
 LOOKS = {
@@ -132,37 +136,30 @@ def marks(length: int, wanted: int = 12) -> int:
     return max(1, length // wanted)
 
 
+def look_of(row: pd.Series) -> Look:
+    """Of a run of runs_of()."""
+    return look(row["formulation"], int(row.get("variant", 0)))
+
+
 def marker_face(row: pd.Series) -> str:
     """What the markers of a run are filled with."""
-    return "none" if verdict_word(row) else look(row["formulation"], int(row.get("variant", 0))).color
+    return "none" if verdict_word(row) else look_of(row).color
 
 
 def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "default") -> None:
     """One run's line. Hollow markers: run_words.HOLLOW; a failure ends in a cross. steps: matplotlib's
     drawstyle, `steps-mid` for a count of each time step, `steps-post` for a share.
     """
-    style = look(row["formulation"], int(row.get("variant", 0)))
-    axis.plot(
-        x,
-        y,
-        color=style.color,
-        linestyle=style.dash,
-        drawstyle=steps,
-        marker=style.marker,
-        markevery=marks(len(x)),
-        markerfacecolor=marker_face(row),
-        markeredgewidth=0.8,
-        label=name_of(row),
-    )
+    line = look_of(row).line(drawstyle=steps, markevery=marks(len(x)), label=name_of(row))
+    axis.plot(x, y, **line, markerfacecolor=marker_face(row), markeredgewidth=0.8)
     if end_mark and row["outcome"] != "ok" and len(x) > 0:
-        draw_failure(axis, x[-1], y[-1], style.color)
+        draw_failure(axis, x[-1], y[-1], look_of(row).color)
 
 
-def draw_failure(axis, x: float, y: float, color: str) -> None:
-    """The cross at the end of a line."""
-    axis.plot(
-        [x], [y], linestyle="none", marker="x", markersize=6, markeredgewidth=1.4, color=color, gid=FAILURE
-    )
+def draw_failure(axis, x: float, y: float, color: str, size: float = 6, **how) -> None:
+    """A cross, as at the end of a line."""
+    cross = {"marker": "x", "markersize": size, "markeredgewidth": 0.2 + size / 5, "gid": FAILURE}
+    axis.plot([x], [y], linestyle="none", color=color, **cross, **how)
 
 
 def failures_above(axis, places, color: str, row: int = 0) -> None:
@@ -170,17 +167,7 @@ def failures_above(axis, places, color: str, row: int = 0) -> None:
     several series each in a row of its own, the first on top.
     """
     for x in places:
-        axis.plot(
-            [x],
-            [0.97 - 0.05 * row],
-            transform=axis.get_xaxis_transform(),
-            linestyle="none",
-            marker="x",
-            markersize=5,
-            markeredgewidth=1.2,
-            color=color,
-            gid=FAILURE,
-        )
+        draw_failure(axis, x, 0.97 - 0.05 * row, color, 5, transform=axis.get_xaxis_transform())
 
 
 def marker_sentence(runs: pd.DataFrame) -> str:

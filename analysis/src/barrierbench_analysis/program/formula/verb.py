@@ -58,30 +58,23 @@ def main(argv: list[str]) -> int:
 
 def policy_card(about: dict) -> str:
     """What there is to say of a stiffness."""
-    reads = f"reads {', '.join(about['symbols']) or 'nothing'}"
-    return "\n".join(
-        [
-            f"formula     {about['formula']}",
-            f"label       {about['label']}",
-            f"kappa       {reads}; finite and not negative at all {about['points']} points it was asked at",
-            f"            relative error {about['error_rel']:.1e}",
-            _potential_line(about),
-        ]
-    )
-
-
-def _potential_line(about: dict) -> str:
-    if not about["reads_gap"]:
-        return "potential   kappa b, since kappa does not depend on d"
+    reads, potential = ", ".join(about["symbols"]) or "nothing", "kappa b, since kappa does not depend on d"
+    if about["reads_gap"]:
+        error = f"{about['slope_error_rel']:.1e} of kappa/d"
+        potential = f'-int kappa(s) b\'(s) ds, with "potential": "derived" in a config; d kappa/dd to {error}'
     return (
-        "potential   -int kappa(s) b'(s) ds, with \"potential\": \"derived\" in a config; d kappa/dd to"
-        f" {about['slope_error_rel']:.1e} of kappa/d"
+        f"formula     {about['formula']}\n"
+        f"label       {about['label']}\n"
+        f"kappa       reads {reads}; finite and not negative at all {about['points']} points it was asked at\n"
+        f"            relative error {about['error_rel']:.1e}\n"
+        f"potential   {potential}"
     )
 
 
 def card(about: dict) -> str:
     """What there is to say of a formula, a line each."""
     terms, error = about["terms"], about["error_rel"]
+    units = ("d_hat^2 ", "d_hat ", "")
     lines = [
         f"formula     {about['formula']}",
         f"name        formula:{about['formula']}",
@@ -93,7 +86,7 @@ def card(about: dict) -> str:
         "with u = d/d_hat, e = 1 - u, l = -ln u:",
         *(
             f"  {name:<4}= {unit}({terms[name].replace('**', '^')})   relative error {error[name]:.1e}"
-            for name, unit in zip(terms, ("d_hat^2 ", "d_hat ", ""), strict=True)
+            for name, unit in zip(terms, units, strict=True)
         ),
     ]
     return "\n".join(lines)
