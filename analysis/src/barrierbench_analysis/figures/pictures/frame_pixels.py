@@ -22,9 +22,11 @@ from barrierbench_analysis.io.frames import (
     without_bodies,
 )
 
+from . import vtk_picture
 from .coloring import colors_of_corners, palette
 from .picture import Surfaces, camera_of, picture
 
+RENDERERS = ("own", "vtk")
 THINNEST = 0.006  # radius of a rod for a metre of reach: thinner ones would have no pixels
 
 
@@ -39,6 +41,7 @@ class Look:
     bare: bool = False  # the picture alone, without title and legend
     hidden: tuple[str, ...] = ()  # bodies that are not drawn
     bicubic: tuple[int, int] | None = None  # points along columns and rows of grids; None: as they are
+    renderer: str = RENDERERS[0]
 
 
 def _assemble(
@@ -124,7 +127,8 @@ def drawn(
     surfaces, scale = _assemble(
         frame, scene, look.color, reach, radii, look.subdivide or look.bicubic is not None, top
     )
-    return picture(surfaces, camera, look.size, scene["planar"], camera.target, reach), scale
+    draw = picture if look.renderer == "own" else vtk_picture.picture
+    return draw(surfaces, camera, look.size, scene["planar"], camera.target, reach), scale
 
 
 def drawn_of_run(

@@ -18,7 +18,7 @@ from barrierbench_analysis.program.arguments import (
 
 from .animation import animate
 from .coloring import COLORINGS
-from .frame_pixels import Look
+from .frame_pixels import RENDERERS, Look
 from .picture_file import MEANS
 from .preview import preview
 from .still_picture import render
@@ -84,6 +84,13 @@ def look_arguments(parser: argparse.ArgumentParser) -> None:
         " its vertices and smooth at rods; gaps are judged without",
     )
     bicubic_argument(parser)
+    parser.add_argument(
+        "--renderer",
+        choices=RENDERERS,
+        default=RENDERERS[0],
+        help="own (default): soft shadows, obstacles without facets; vtk: drawn by VTK, which"
+        " analysis/requirements-render.txt installs",
+    )
     parser.add_argument("--bare", action="store_true", help="the picture alone, without title and legend")
     parser.add_argument(
         "--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn, such as a container"
@@ -104,6 +111,7 @@ def written(given: argparse.Namespace) -> Path:
         given.bare,
         tuple(given.hide),
         given.bicubic and tuple(given.bicubic),
+        given.renderer,
     )
     if look.bicubic and look.subdivide:
         raise UserError("--bicubic: found beside --subdivide; allowed: one of the two")

@@ -108,7 +108,8 @@ def shown(look: Look) -> str:
             *look.bicubic
         )
     hidden = f"; not drawn: {', '.join(look.hidden)}" if look.hidden else ""
-    return f"Shown: {colored}; analytic obstacles grey, at their true size; {surface}{hidden}."
+    by = "; drawn by VTK" if look.renderer == "vtk" else ""
+    return f"Shown: {colored}; analytic obstacles grey, at their true size; {surface}{hidden}{by}."
 
 
 def render(

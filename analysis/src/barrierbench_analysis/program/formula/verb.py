@@ -61,11 +61,13 @@ def policy_card(about: dict) -> str:
     reads, potential = ", ".join(about["symbols"]) or "nothing", "kappa b, since kappa does not depend on d"
     if about["reads_gap"]:
         error = f"{about['slope_error_rel']:.1e} of kappa/d"
-        potential = f'-int kappa(s) b\'(s) ds, with "potential": "derived" in a config; d kappa/dd to {error}'
+        derived = '"potential": "derived" in a config'
+        potential = f"-int kappa(s) b'(s) ds, with {derived}; d kappa/dd to {error}"
     return (
         f"formula     {about['formula']}\n"
         f"label       {about['label']}\n"
-        f"kappa       reads {reads}; finite and not negative at all {about['points']} points it was asked at\n"
+        f"kappa       reads {reads}; finite and not negative at all {about['points']} points it was asked"
+        " at\n"
         f"            relative error {about['error_rel']:.1e}\n"
         f"potential   {potential}"
     )
