@@ -43,25 +43,17 @@ own_math.install()
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
 
 plt.rcParams.update(
-    {
-        "font.size": 8,
-        "axes.titlesize": 8,
-        "axes.labelsize": 8,
-        "legend.fontsize": 7,
-        "xtick.labelsize": 7,
-        "ytick.labelsize": 7,
+    {f"{name}.labelsize": 7 for name in ("xtick", "ytick")}
+    | {f"axes.spines.{side}": False for side in ("top", "right")}
+    | {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "legend.fontsize": 7}
+    | {
         "lines.linewidth": 1.0,
         "lines.markersize": 3.5,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
         "axes.grid": True,
         "grid.linewidth": 0.3,
         "grid.alpha": 0.6,
-        "pdf.fonttype": 42,
-        "svg.fonttype": "none",
-        "svg.hashsalt": "barrierbench",
-        "savefig.dpi": 200,
     }
+    | {"pdf.fonttype": 42, "svg.fonttype": "none", "svg.hashsalt": "barrierbench", "savefig.dpi": 200}
 )
 
 
@@ -184,20 +176,12 @@ def legend_below(fig, axis, runs: pd.DataFrame | None = None) -> None:
     """One legend for the figure, below its panels; with `runs`, the rule of hollow markers as its title."""
     handles, labels = axis.get_legend_handles_labels()
     if handles:
-        width = max(
-            LEGEND_COLUMN_IN, 0.6 + 0.055 * max(map(len, labels))
-        )  # of a column, inches: its line, and letters of 7 points
+        # of a column, inches: its line, and letters of 7 points
+        width = max(LEGEND_COLUMN_IN, 0.6 + 0.055 * max(map(len, labels)))
         columns = max(1, min(len(labels), int(fig.get_figwidth() / width)))
-        title = hollow_rule(runs) if runs is not None else ""
-        fig.legend(
-            handles,
-            labels,
-            loc="outside lower center",
-            ncols=columns,
-            frameon=False,
-            title=title or None,
-            title_fontsize=6,
-        )
+        title = (hollow_rule(runs) if runs is not None else "") or None
+        how = {"loc": "outside lower center", "ncols": columns, "frameon": False}
+        fig.legend(handles, labels, **how, title=title, title_fontsize=6)
 
 
 def letter_panels(axes) -> None:
@@ -213,18 +197,10 @@ def reference_line(axis, y: float, label: str, dash: str = "-", below: bool = Fa
     low, high = axis.get_ylim()
     axis.set_ylim(min(low, y / 1.2), max(high, 1.2 * y))
     axis.axhline(y, color="#666666", linewidth=0.5, linestyle=dash, gid=REFERENCE)
-    text = axis.annotate(
-        label,
-        (0.995, y),
-        xycoords=("axes fraction", "data"),
-        xytext=(0, -2 if below else 1),
-        textcoords="offset points",
-        ha="right",
-        va="top" if below else "bottom",
-        fontsize=6,
-        color="#444444",
-        bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5},
-    )
+    where = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "ha": "right"}
+    where |= {"xytext": (0, -2), "va": "top"} if below else {"xytext": (0, 1), "va": "bottom"}
+    box = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5}
+    text = axis.annotate(label, (0.995, y), **where, fontsize=6, color="#444444", bbox=box)
     text.set_in_layout(False)
 
 

@@ -6,8 +6,6 @@ Exit codes: 0 all is there, 1 a run does not keep what the demonstration promise
 failed first.
 """
 
-from __future__ import annotations
-
 import importlib
 import time
 from pathlib import Path
@@ -19,14 +17,8 @@ from barrierbench_analysis.program.building import job_count, say
 from barrierbench_analysis.program.start import run_sweep
 
 OUT = ROOT / "results/runs/demo"
-SWEEPS = (  # configs/sweeps/NAME.json
-    "demo_equal_gap",
-    "demo_drape",
-    "demo_long",
-    "demo_strip",
-    "demo_pinned",
-    "demo_article",
-)
+# configs/sweeps/NAME.json
+SWEEPS = [f"demo_{name}" for name in ("equal_gap", "drape", "long", "strip", "pinned", "article")]
 
 
 def run_all(out: Path, jobs: int) -> int:

@@ -6,8 +6,6 @@ build/fuzz/corpus. A crash, a report of a sanitizer, a leak or an input that tak
 target; the input is kept. Exit code 1 when there was one, 2 for a wrong request.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -90,24 +88,13 @@ def run_target(
     before = {path.name for path in kept.iterdir()}
     words = _command(name, build, kept, seconds, runs, seed)
     start = time.monotonic()
-    done = subprocess.run(
-        words,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        check=False,
-        cwd=kept,
-        env={**os.environ, **SANITIZER},
-    )
+    streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    done = subprocess.run(words, **streams, check=False, cwd=kept, env={**os.environ, **SANITIZER})
     took = time.monotonic() - start
     log = done.stderr.decode(errors="replace")
     found = [str(path) for path in sorted(kept.iterdir()) if path.name not in before]
-    row = {
-        "target": name,
-        **parse_log(log),
-        "seconds": took,
-        "findings": found,
-        "failed": done.returncode != 0,
-    }
+    row = {"target": name, **parse_log(log), "seconds": took}
+    row |= {"findings": found, "failed": done.returncode != 0}
     if row["failed"]:
         write_whole(kept / "log.txt", log)
         row["findings"] = found or [str(kept / "log.txt")]
@@ -117,31 +104,17 @@ def run_target(
 
 def table(rows: list[dict]) -> str:
     head = ["target", "executions", "seconds", "executions/s", "coverage", "new coverage", "crashes"]
-    lines = [head]
+    lines = []
     for row in rows:
-        per_second = row["executions"] / row["seconds"] if row["seconds"] > 0 else 0
-        lines.append(
-            [
-                row["target"],
-                f"{row['executions']:,}",
-                f"{row['seconds']:.0f}",
-                f"{per_second:,.0f}",
-                *("-" if row[key] is None else str(row[key]) for key in ("coverage", "new_coverage")),
-                str(int(row["failed"])),
-            ]
-        )
-    lines.append(
-        [
-            "all",
-            f"{sum(r['executions'] for r in rows):,}",
-            f"{sum(r['seconds'] for r in rows):.0f}",
-            "",
-            "",
-            "",
-            str(sum(r["failed"] for r in rows)),
-        ]
+        rate = row["executions"] / row["seconds"] if row["seconds"] > 0 else 0
+        counts = [f"{row['executions']:,}", f"{row['seconds']:.0f}", f"{rate:,.0f}"]
+        seen = ["-" if row[key] is None else str(row[key]) for key in ("coverage", "new_coverage")]
+        lines.append([row["target"], *counts, *seen, str(int(row["failed"]))])
+    executions, seconds, failed = (
+        sum(row[key] for row in rows) for key in ("executions", "seconds", "failed")
     )
-    return "\n".join(aligned(head, lines[1:], set(range(1, len(head)))))
+    lines.append(["all", f"{executions:,}", f"{seconds:.0f}", "", "", "", str(failed)])
+    return "\n".join(aligned(head, lines, set(range(1, len(head)))))
 
 
 def prepare(names: list[str]) -> None:

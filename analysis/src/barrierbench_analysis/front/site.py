@@ -5,8 +5,6 @@ Exit codes: 0 built, 1 mkdocs has found a broken link or another fault, 2 the pa
 a page links to nothing.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

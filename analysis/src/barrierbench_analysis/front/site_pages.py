@@ -2,8 +2,6 @@
 their navigation by folders.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

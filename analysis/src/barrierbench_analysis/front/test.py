@@ -2,8 +2,6 @@
 earlier failure, and the summary names every skip.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -2,8 +2,6 @@
 first argument is the verb, which its row of the table says.
 """
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """A film for a config out of whatever holds frames: ./bench data film SOURCE OUT."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator
 from pathlib import Path

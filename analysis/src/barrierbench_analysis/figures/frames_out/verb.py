@@ -1,7 +1,5 @@
 """Files of the frames of a run for other tools: ./bench data frames RUN OUT --format obj|ply|pc2|vtu."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import shutil

@@ -4,8 +4,6 @@ What stays the same over the run (triangles, rods, bodies, obstacles) stands onc
 (scales.py), the page (page.py).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

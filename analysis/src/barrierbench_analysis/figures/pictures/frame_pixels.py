@@ -1,7 +1,5 @@
 """The pixels of a frame of a run: surfaces, rods and obstacles before a camera that holds them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,16 +63,8 @@ def _assemble(
         triangles.append(sides + len(frame.vertices))
         points.append(made)
         corners.append(np.broadcast_to(rgb, (len(sides), 3, 3)))
-    return (
-        Surfaces(
-            np.concatenate(points),
-            np.concatenate(triangles),
-            np.concatenate(corners),
-            0 if times else len(frame.triangles),
-            scene["obstacles"],
-        ),
-        scale,
-    )
+    lined, joined = 0 if times else len(frame.triangles), map(np.concatenate, (points, triangles, corners))
+    return Surfaces(*joined, lined, scene["obstacles"]), scale
 
 
 def _rod_radii(record: dict, scene: dict, frame: Frame) -> np.ndarray:

@@ -1,7 +1,5 @@
 """The file of a picture that a verb writes where the user says (--out)."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError

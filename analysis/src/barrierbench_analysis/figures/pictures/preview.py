@@ -1,7 +1,5 @@
 """The start of a config as a still, without a run: ./bench draw still CONFIG."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tempfile

@@ -2,8 +2,6 @@
 ./bench draw still RUN [--step N] [--color gap|stretch|load|body].
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 
@@ -58,22 +56,12 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 def look_arguments(parser: argparse.ArgumentParser) -> None:
     """How a picture is drawn, beside its colours."""
-    parser.add_argument(
-        "--view",
-        type=finite_number,
-        nargs=2,
-        default=(-60.0, 22.0),
-        metavar=("AZIMUTH", "ELEVATION"),
-        help="direction to the camera, degrees (default: -60 22)",
-    )
-    parser.add_argument(
-        "--size",
-        type=int,
-        nargs=2,
-        default=(1000, 720),
-        metavar=("WIDTH", "HEIGHT"),
-        help="pixels (default: 1000 720)",
-    )
+    numbers = {"nargs": 2, "type": finite_number, "default": (-60.0, 22.0)}
+    words = "direction to the camera, degrees (default: -60 22)"
+    parser.add_argument("--view", **numbers, metavar=("AZIMUTH", "ELEVATION"), help=words)
+    pixels = {"nargs": 2, "type": int, "default": (1000, 720)}
+    words = "pixels (default: 1000 720)"
+    parser.add_argument("--size", **pixels, metavar=("WIDTH", "HEIGHT"), help=words)
     parser.add_argument(
         "--subdivide",
         type=int,
@@ -103,16 +91,10 @@ def _is_film(out: Path | None) -> bool:
 
 def written(given: argparse.Namespace) -> Path:
     """What was asked for. Errors: UserError, RecordError."""
-    look = Look(
-        given.color,
-        tuple(given.view),
-        tuple(given.size),
-        given.subdivide,
-        given.bare,
-        tuple(given.hide),
-        given.bicubic and tuple(given.bicubic),
-        given.renderer,
+    view, size, hidden, bicubic = (
+        v and tuple(v) for v in (given.view, given.size, given.hide, given.bicubic)
     )
+    look = Look(given.color, view, size, given.subdivide, given.bare, hidden, bicubic, given.renderer)
     if look.bicubic and look.subdivide:
         raise UserError("--bicubic: found beside --subdivide; allowed: one of the two")
     is_config = given.run.is_file() and given.run.name != "run.json"

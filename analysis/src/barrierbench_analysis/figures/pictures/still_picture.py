@@ -1,7 +1,5 @@
 """A still of one step of a run as a PNG with its title, its legend and its caption, without a display."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path

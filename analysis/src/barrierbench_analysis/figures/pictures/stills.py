@@ -4,8 +4,6 @@ Runs need frames (/output/frames_every). A run that a body has passed through an
 other: its outcome says so.
 """
 
-from __future__ import annotations
-
 import math
 import tempfile
 from pathlib import Path

@@ -2,8 +2,6 @@
 shadows. The package `vtk` is installed by whoever wants it (analysis/requirements-render.txt).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

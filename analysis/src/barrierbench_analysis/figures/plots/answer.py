@@ -1,7 +1,5 @@
 """The log over the cubic: condition numbers and iterations of every pair of runs, by place and theta."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterable, Mapping
 from pathlib import Path

@@ -1,8 +1,6 @@
 """The shapes themselves: b, -b', b'' and rho(u), asked from the program, so that no formula is written
 twice."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

@@ -2,8 +2,6 @@
 a figure beside it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

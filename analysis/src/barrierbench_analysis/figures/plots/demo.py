@@ -1,7 +1,5 @@
 """All figures and the table of a folder of runs."""
 
-from __future__ import annotations
-
 import itertools
 import multiprocessing
 import os

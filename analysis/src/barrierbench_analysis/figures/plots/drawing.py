@@ -1,7 +1,5 @@
 """What figures of the comparison are drawn of and with, and how one says that there is nothing to draw."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass

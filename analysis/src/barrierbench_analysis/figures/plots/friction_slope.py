@@ -1,7 +1,5 @@
 """A patch on a slope: acceleration and creep over the coefficient of friction, beside the closed form."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """How the gaps of all vertices in contact are spread, frame after frame: a ridge a frame."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -2,8 +2,6 @@
 and how large a step every formulation gets through with.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -25,24 +23,14 @@ OPTIONS = {
     "y_label": "Young's modulus x thickness (N/m)",
 }
 WORDS = tuple(fields.schema("run")["$defs"]["Status"]["properties"]["outcome"]["enum"])
-LETTERS = {
-    "ok": "o",
-    "invalid_scene": "V",
-    "given_parts_cross": "G",
-    "initial_intersection": "X",
-    "pin_infeasible": "F",
-    "kernel_failed": "K",
-    "penetration": "P",
-    "unproven": "U",
-    "nan": "N",
-    "ccd_cap": "C",
-    "stall_overload": "S",
-    "newton_stall": "I",
-    "linear_failure": "L",
-    "not_pd": "D",
-    "timeout": "T",
-    "oom": "M",
-}
+LETTERS = dict(
+    word.split(":")
+    for word in (
+        "ok:o invalid_scene:V given_parts_cross:G initial_intersection:X pin_infeasible:F kernel_failed:K"
+        " penetration:P unproven:U nan:N ccd_cap:C stall_overload:S newton_stall:I linear_failure:L not_pd:D"
+        " timeout:T oom:M"
+    ).split()
+)
 FAILED = "#bdbdbd"
 APART = 1.035  # factor between lines of two formulations, which often lie on one another
 SHOWN = (

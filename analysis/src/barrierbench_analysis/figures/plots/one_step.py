@@ -2,8 +2,6 @@
 number and both ends of the spectrum.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

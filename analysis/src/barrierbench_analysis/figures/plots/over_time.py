@@ -2,8 +2,6 @@
 those of condition.py they are kinds of the comparison too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

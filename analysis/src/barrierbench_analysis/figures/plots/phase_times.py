@@ -1,7 +1,5 @@
 """What a run spends its time on: stacked bars of phases."""
 
-from __future__ import annotations
-
 import itertools
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Float against double, from the origin outwards: how far the end of a run is from that in double."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

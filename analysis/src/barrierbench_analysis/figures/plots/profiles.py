@@ -2,8 +2,6 @@
 and Wild 2009), and ratios of costs pair by pair.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Error against mesh size: how far the centre of mass is from where it is on the finest mesh."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Time and iterations of conjugate gradients against the number of unknowns."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pandas as pd

@@ -1,7 +1,5 @@
 """Lines through points on two logarithmic axes, and their slopes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

@@ -1,7 +1,5 @@
 """Error against work over the time step: each formulation against its own run at the smallest step."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

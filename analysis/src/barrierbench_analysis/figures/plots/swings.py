@@ -1,7 +1,5 @@
 """Where a series goes up and down in turns, and the band that it does so in."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

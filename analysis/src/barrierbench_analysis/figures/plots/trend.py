@@ -1,7 +1,5 @@
 """The numbers of the gate over the commits that accepted new ones."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

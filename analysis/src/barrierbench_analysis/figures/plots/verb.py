@@ -1,8 +1,6 @@
 """The verb figures: those of the records below a folder, in an archive of one, or of ./bench data steps
 --out."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import tells

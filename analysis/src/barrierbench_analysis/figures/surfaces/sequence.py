@@ -1,7 +1,5 @@
 """What is written of a run: a mesh that stays the same, and its states in the order of time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property

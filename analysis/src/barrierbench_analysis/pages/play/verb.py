@@ -2,8 +2,6 @@
 player RUN [RUN2].
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable
 from pathlib import Path

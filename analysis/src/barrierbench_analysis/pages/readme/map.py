@@ -1,7 +1,5 @@
 """The sentences of the gap map that README shows, from results/gap_map.json."""
 
-from __future__ import annotations
-
 import textwrap
 from pathlib import Path
 

@@ -3,8 +3,6 @@ docs/results/which-barrier.md, from results/claims.json and results/gap_map.json
 strongest evidence there is.
 """
 
-from __future__ import annotations
-
 import textwrap
 from dataclasses import dataclass
 

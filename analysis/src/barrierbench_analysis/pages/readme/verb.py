@@ -6,8 +6,6 @@ Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 th
 from.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

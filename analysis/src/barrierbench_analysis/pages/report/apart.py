@@ -2,29 +2,13 @@
 that are not compared.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.tables.words import meaning
 
+from . import tables
 from .gather import Entry, Folder
-from .tables import (
-    COMMAND,
-    GROUP,
-    NONE,
-    OUTCOME,
-    RUN,
-    Cell,
-    Column,
-    Table,
-    head,
-    numeric,
-    outcome,
-    record,
-    table_of,
-    text,
-)
+from .tables import COMMAND, GROUP, NONE, OUTCOME, RUN, Cell, Column, Table, numeric, record, table_of, text
 
 UNREADABLE = Cell("unreadable", tone="bad")
 
@@ -78,7 +62,7 @@ def failures(folder: Folder, page: Path) -> Table:
     for entry in folder.entries:
         if entry.trace_fault:
             why = "its trace: the numbers of its record count, and no figure over time has it"
-            add(head(entry), Cell(entry.group), UNREADABLE, why, Cell(entry.trace_fault), entry)
+            add(tables.head(entry), Cell(entry.group), UNREADABLE, why, Cell(entry.trace_fault), entry)
     for path in folder.earlier:
         why = "no case of its sweep as it is now; it is in no other number of this page"
         add(Cell(path.parent.name), Cell(path.parent.parent.name), Cell("left out", tone="bad"), why, NONE)
@@ -90,7 +74,7 @@ def reserved(folder: Folder, page: Path) -> Table:
     columns = [
         RUN,
         Column("group", of=GROUP.of, filtered=True),
-        Column("outcome", "ok, and what its audit allows", outcome),
+        Column("outcome", "ok, and what its audit allows", tables.outcome),
         Column("what the record says", of=_detail),
         Column(
             "deepest overlap m",

@@ -1,7 +1,5 @@
 """The page of two folders: verdict, what regressed, outcomes, metrics, pairs, and what only one side has."""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 
@@ -247,16 +245,11 @@ def _provenance(folder: Folder) -> str:
 def page(diff: Diff, out: Path) -> str:
     table, left = regressed(diff)
     a, b = shown_path(diff.a.place), shown_path(diff.b.place)
+    commands = [f"./bench gate compare {a} {b} --common", f"./bench report {a} {b}"]
+    parts = {"regressed": table, "left": left, "metrics": metrics(diff), "commands": commands}
+    parts |= {"pairs": pairs(diff, out), "lonely": lonely(diff, out)}
+    about = [_provenance(diff.a), _provenance(diff.b)]
+    heading = f"{title(diff.b)} against {title(diff.a)}"
     return filled(
-        "diff.html",
-        title=f"{title(diff.b)} against {title(diff.a)}",
-        about=[_provenance(diff.a), _provenance(diff.b)],
-        verdict=verdict(diff),
-        limits=limits(diff),
-        regressed=table,
-        left=left,
-        metrics=metrics(diff),
-        pairs=pairs(diff, out),
-        lonely=lonely(diff, out),
-        commands=[f"./bench gate compare {a} {b} --common", f"./bench report {a} {b}"],
+        "diff.html", title=heading, about=about, verdict=verdict(diff), limits=limits(diff), **parts
     )

@@ -2,8 +2,6 @@
 hold, and for larger groups one that puts a mark for each run.
 """
 
-from __future__ import annotations
-
 import base64
 import glob
 import struct

@@ -1,7 +1,5 @@
 """The tables of a report as rows of cells; page.html draws them, page.js sorts and filters them."""
 
-from __future__ import annotations
-
 import os
 import shlex
 from collections import Counter

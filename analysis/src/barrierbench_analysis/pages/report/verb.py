@@ -6,8 +6,6 @@ folders: what differs between them.
 Exit codes: 0 written, 2 no record can be read, or the file cannot be written.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, code_of, tells

@@ -1,7 +1,5 @@
 """The compiled library beside 40 digits: how much of b, b', b'' double precision keeps."""
 
-from __future__ import annotations
-
 import ctypes
 from pathlib import Path
 

@@ -2,8 +2,6 @@
 in place by renaming, and its JSON, which says that it is whole, after it.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shlex
@@ -19,26 +17,16 @@ from barrierbench_analysis.io.places import ROOT
 
 from .grammar import Formula, FormulaError
 
-HEADERS = (
-    "barriers/shapes/builtin_shape.hpp",
-    "core/barrier/shape_potential.hpp",
-    "barriers/shapes/lane_batch.hpp",
-    "core/barrier/normalized_gap.hpp",
-    "barriers/shapes/shape_family.hpp",
-    "core/barrier/shape.hpp",
-    "core/barrier/stiffness_sums.hpp",
-    "core/math/atan2.hpp",
-    "core/math/device_code.hpp",
-    "core/math/exp.hpp",
-    "core/math/host_device.hpp",
-    "core/math/lanes.hpp",
-    "core/math/lanes_log.hpp",
-    "core/math/log.hpp",
-    "core/math/scale.hpp",
-    "core/math/select.hpp",
-    "core/math/types.hpp",
+HEADERS = [
+    *(f"barriers/shapes/{name}.hpp" for name in ("builtin_shape", "lane_batch", "shape_family")),
+    *(
+        f"core/barrier/{name}.hpp"
+        for name in ("shape_potential", "normalized_gap", "shape", "stiffness_sums")
+    ),
+    *(f"core/math/{name}.hpp" for name in "atan2 device_code exp host_device lanes lanes_log log".split()),
+    *(f"core/math/{name}.hpp" for name in ("scale", "select", "types")),
     "core/model/plugin/barrierbench_plugin.h",
-)
+]
 EIGEN = "/usr/include/eigen3"
 SECONDS_TO_COMPILE = 120
 HOST_COMPILER = "a C++ compiler as c++, or named by the variable CXX (Debian: apt-get install g++)"

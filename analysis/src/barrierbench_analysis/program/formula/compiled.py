@@ -1,7 +1,5 @@
 """From the text of a formula to a library that the program loads."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import signal

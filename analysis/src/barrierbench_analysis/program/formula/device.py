@@ -2,8 +2,6 @@
 the compiled formulas. It is good as long as every header that it was made from is as it was.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -2,8 +2,6 @@
 as C++ (a plugin with one policy) and compared with 40 digits.
 """
 
-from __future__ import annotations
-
 import ctypes
 import itertools
 import math

@@ -3,8 +3,6 @@
 (core/model/plugin/barrierbench_plugin.h), and in a kernel for a card.
 """
 
-from __future__ import annotations
-
 import math
 
 import sympy as sp

@@ -1,7 +1,5 @@
 """`bench formula`: what a formula is as a barrier."""
 
-from __future__ import annotations
-
 import argparse
 import json
 

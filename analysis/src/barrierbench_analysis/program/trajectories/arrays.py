@@ -1,7 +1,5 @@
 """Trajectories of a NumPy file (.npz): positions, cells and times under the names that programs give them."""
 
-from __future__ import annotations
-
 import difflib
 from pathlib import Path
 from typing import BinaryIO

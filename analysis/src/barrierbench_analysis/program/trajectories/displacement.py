@@ -2,8 +2,6 @@
 itself where points rest and a field has a usual name.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """One frame from a mesh file, as the program reads it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

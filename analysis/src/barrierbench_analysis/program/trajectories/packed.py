@@ -1,7 +1,5 @@
 """Trajectories of one file for all frames and no cells: PC2 of Blender, MDD of LightWave."""
 
-from __future__ import annotations
-
 import struct
 from pathlib import Path
 

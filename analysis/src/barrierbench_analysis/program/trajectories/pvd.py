@@ -2,8 +2,6 @@
 time (.vtm, .pvtu, .pvtp). Several parts of one time are one frame.
 """
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, replace
 from pathlib import Path

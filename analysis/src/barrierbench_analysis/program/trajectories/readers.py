@@ -2,8 +2,6 @@
 run of barrierbench.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path

@@ -3,8 +3,6 @@
 The topology is that of the first frame; one of another topology is refused by name.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Times of frames, from whatever file."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A trajectory as it is judged: topology once, positions frame after frame."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
