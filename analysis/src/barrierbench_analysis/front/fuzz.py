@@ -20,7 +20,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program import building
-from barrierbench_analysis.program.arguments import count_from_1, parser_of
+from barrierbench_analysis.program.arguments import number_type, parser_of
 
 BUILD = ROOT / "build" / "fuzz"
 CRASHES = ROOT / "results" / "runs" / "fuzz"
@@ -28,6 +28,7 @@ CRASHES = ROOT / "results" / "runs" / "fuzz"
 MAX_LEN = {"config": 4096, "record": 16384, "sweep": 2048, "trace": 8192}
 # Short stacks of allocations and a small quarantine: a third faster, and a report still names its place.
 SANITIZER = {"ASAN_OPTIONS": "malloc_context_size=3:quarantine_size_mb=8:detect_leaks=1"}
+POSITIVE = number_type("integer, 1 or more", lambda n: n >= 1, int)
 LIMITS = ["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=1"]
 
 
@@ -135,11 +136,11 @@ def main(argv: list[str]) -> int:
         "targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)"
     )
     length = parser.add_mutually_exclusive_group()
-    length.add_argument("--seconds", type=count_from_1, default=30, help="for each target (default 30)")
-    length.add_argument("--runs", type=count_from_1, help="executions of each target")
+    length.add_argument("--seconds", type=POSITIVE, default=30, help="for each target (default 30)")
+    length.add_argument("--runs", type=POSITIVE, help="executions of each target")
     parser.add_argument(
         "--seed",
-        type=count_from_1,
+        type=POSITIVE,
         default=1,
         help="of libFuzzer; the corpus of earlier runs matters too (default 1)",
     )

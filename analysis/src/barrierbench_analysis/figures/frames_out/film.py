@@ -8,7 +8,7 @@ import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import parser_of, positive_number
+from barrierbench_analysis.program.arguments import above_zero, parser_of
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import Trajectory, has_cells
 
@@ -89,11 +89,9 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("out", type=Path, metavar="OUT", help="a folder that is not there yet")
     parser.add_argument("--body", help="of a run: the body whose vertices are wanted")
     parser.add_argument(
-        "--frame-s", type=positive_number, help="time (s) of a frame, where the source has no times"
+        "--frame-s", type=above_zero, help="time (s) of a frame, where the source has no times"
     )
-    parser.add_argument(
-        "--scale", type=positive_number, default=1.0, help="factor to m, as 0.001 of files in mm"
-    )
+    parser.add_argument("--scale", type=above_zero, default=1.0, help="factor to m, as 0.001 of files in mm")
     return parser.parse_args(argv)
 
 

@@ -20,7 +20,7 @@ from barrierbench_analysis.figures.surfaces.sequence import (
 )
 from barrierbench_analysis.figures.surfaces.uv_binding import bound_by_uv
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import bicubic_argument, number_type, parser_of, positive_number
+from barrierbench_analysis.program.arguments import above_zero, bicubic_argument, number_type, parser_of
 from barrierbench_analysis.program.mesh_arrays import SUFFIXES, read_frame_file
 
 from .formats import WRITERS, write
@@ -151,7 +151,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     finer.add_argument(
         "--subdivide",
-        type=number_type(f"a number from 1 to {MOST_TIMES}", lambda value: 1 <= value <= MOST_TIMES, int),
+        type=number_type(f"number from 1 to {MOST_TIMES}", lambda n: 1 <= n <= MOST_TIMES, int),
         metavar="N",
         help=f"cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})",
     )
@@ -172,7 +172,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     parser.add_argument(
         "--reach",
-        type=positive_number,
+        type=above_zero,
         metavar="M",
         help="largest distance (m) of a vertex of --render-mesh from the surface (default:"
         f" {REACH:g} of the diagonal of the body's box)",

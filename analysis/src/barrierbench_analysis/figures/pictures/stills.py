@@ -21,8 +21,7 @@ from barrierbench_analysis.program.arguments import finite_number, parser_of
 from barrierbench_analysis.program.progress import counted
 
 from .frame_pixels import Look
-from .picture_file import MEANS, picture_file
-from .still_picture import render
+from .still_picture import MEANS, picture_file, render
 
 MOST = 60  # runs in one picture
 COLUMNS = 5  # that are as wide as a page

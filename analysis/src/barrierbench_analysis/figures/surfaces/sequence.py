@@ -72,6 +72,11 @@ class Run:
     def start(self) -> Frame:
         return self._drawn(self.recorded)
 
+    @property
+    def frame_bytes(self) -> int:
+        """Of a frame in single precision: position, gap and load of vertices, stretch of triangles."""
+        return 4 * (5 * len(self.start.vertices) + len(self.start.triangles))
+
     def _drawn(self, frame: Frame) -> Frame:
         return self.splines.finer(frame) if self.splines else frame
 

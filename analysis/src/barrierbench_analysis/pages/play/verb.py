@@ -3,19 +3,15 @@ player RUN [RUN2].
 """
 
 import argparse
+import math
 from collections.abc import Callable
 from pathlib import Path
 
-from barrierbench_analysis.figures.pictures.film import Film, Source, filmed, kept, opened
+from barrierbench_analysis.figures.pictures.film import Film, filmed, kept, opened
+from barrierbench_analysis.figures.surfaces.sequence import Run
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import (
-    bicubic_argument,
-    color_argument,
-    count_from_1,
-    parser_of,
-    positive_number,
-)
+from barrierbench_analysis.program.arguments import bicubic_argument, color_argument, number_type, parser_of
 from barrierbench_analysis.tables.run_rows import case_name, own_name
 
 from .page import page, page_bytes
@@ -29,11 +25,11 @@ def _megabytes(count: float) -> str:
     return f"{count / 1e6:.1f} MB"
 
 
-def _film_bytes(sources: list[Source], every: int) -> int:
+def _film_bytes(sources: list[Run], every: int) -> int:
     return sum(len(kept(source.steps, every)) * source.frame_bytes for source in sources)
 
 
-def every_within(sources: list[Source], fits: Callable[[int], bool]) -> int:
+def every_within(sources: list[Run], fits: Callable[[int], bool]) -> int:
     """The first of every 1, 2, 3, ... frames whose bytes fit; if none does only the first and the last frame
     are left.
     """
@@ -43,7 +39,7 @@ def every_within(sources: list[Source], fits: Callable[[int], bool]) -> int:
     return every
 
 
-def chosen_every(sources: list[Source], asked: int | None, limit_mb: float) -> tuple[int, str]:
+def chosen_every(sources: list[Run], asked: int | None, limit_mb: float) -> tuple[int, str]:
     """Every how many frames a page keeps, and a sentence where the limit decides. Errors: UserError: not even
     the first and the last frame fit.
     """
@@ -121,13 +117,13 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     color_argument(parser, COLOURS, "gap", "what colors mean at first; the page can change it")
     parser.add_argument(
         "--every",
-        type=count_from_1,
+        type=number_type("number of frames, 1 or more", lambda n: n >= 1, int),
         metavar="N",
         help="one of every N frames, and the last one (default: 1, or what --limit-mb needs)",
     )
     parser.add_argument(
         "--limit-mb",
-        type=positive_number,
+        type=number_type("number of MB above 0", lambda size: 0 < size < math.inf),
         default=LIMIT_MB,
         metavar="MB",
         help=f"most that the file may take where --every is not given (default: {LIMIT_MB})",

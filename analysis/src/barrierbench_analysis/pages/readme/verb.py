@@ -25,12 +25,12 @@ from barrierbench_analysis.studies.kit.study import page as study_page
 from barrierbench_analysis.studies.kit.study.spec import read_study
 
 from . import figures
-from .map import gather as gather_map
 from .numbers import FILE, RUNS, gather, read, write
 from .slices import MAP
 from .slices import gather as gather_slices
 from .snippets import faults
 from .templates import PARTS, filled, lacking
+from .templates import gather as gather_map
 
 PAGES = tuple(PARTS)
 # Pages whose snippets are checked and which have no generated numbers.

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, code_of, tells
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import count_from_0, parser_of
+from barrierbench_analysis.program.arguments import number_type, parser_of
 from barrierbench_analysis.tables.archive import beside, study
 
 from . import figures, players
@@ -74,7 +74,7 @@ def main(argv: list[str]) -> int:
     )
     parser.add_argument(
         "--players",
-        type=count_from_0,
+        type=number_type("number of players, 0 or more", lambda n: n >= 0, int),
         default=players.MOST,
         metavar="N",
         help=f"scenes in motion at most; each takes up to 3 MB (default: {players.MOST})",

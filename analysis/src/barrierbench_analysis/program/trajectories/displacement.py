@@ -10,9 +10,8 @@ import numpy as np
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.program.mesh_arrays import MeshArrays
 
-from .meshes import read_mesh
 from .sequence import Notes, read_parts
-from .trajectory import Trajectory
+from .trajectory import Trajectory, read_mesh
 
 # As PolyFEM (solution), FEniCS and sfepy (u), MOOSE (disp_x, disp_y, disp_z) and others write it.
 USUAL = ("displacement", "displacements", "displacement_field", "disp", "displ", "u", "solution", "depl")

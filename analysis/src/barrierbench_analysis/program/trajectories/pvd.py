@@ -10,8 +10,7 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import SMALL, read_bytes
 
 from .sequence import no_frames, of_obstacles, of_parts
-from .times import increasing
-from .trajectory import Trajectory
+from .trajectory import Trajectory, increasing
 
 PartName = tuple[int, str]  # part and group
 
