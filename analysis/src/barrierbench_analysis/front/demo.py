@@ -12,7 +12,7 @@ from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.program.building import job_count, say
 from barrierbench_analysis.program.start import run_sweep
 
@@ -39,16 +39,10 @@ def run_all(out: Path, jobs: int) -> int:
 @tells("demo")
 def main(argv: list[str]) -> int:
     parser = parser_of("demo", __doc__, "./bench demo --jobs 1 --out results/runs/demo_again")
-    parser.add_argument(
-        "--out",
-        type=Path,
-        default=OUT,
-        metavar="DIR",
-        help="folder of the records (default: results/runs/demo)",
-    )
-    parser.add_argument(
-        "--jobs", type=int, default=job_count(), metavar="N", help="runs at a time (default: one a core)"
-    )
+    text = """
+--out DIR: folder of the records (default: results/runs/demo)
+--jobs N: runs at a time (default: one a core)"""
+    options(parser, text, out={"type": Path, "default": OUT}, jobs={"type": int, "default": job_count()})
     args = parser.parse_args(argv)
     if args.jobs < 1:
         raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")

@@ -20,7 +20,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program import building
-from barrierbench_analysis.program.arguments import number_type, parser_of
+from barrierbench_analysis.program.arguments import number_type, options, parser_of
 
 BUILD = ROOT / "build" / "fuzz"
 CRASHES = ROOT / "results" / "runs" / "fuzz"
@@ -132,19 +132,14 @@ def prepare(names: list[str]) -> None:
 @tells("dev fuzz")
 def main(argv: list[str]) -> int:
     parser = parser_of("dev fuzz", __doc__.split("\n\n", 1)[1])
-    parser.add_argument(
-        "targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)"
-    )
     length = parser.add_mutually_exclusive_group()
-    length.add_argument("--seconds", type=POSITIVE, default=30, help="for each target (default 30)")
-    length.add_argument("--runs", type=POSITIVE, help="executions of each target")
-    parser.add_argument(
-        "--seed",
-        type=POSITIVE,
-        default=1,
-        help="of libFuzzer; the corpus of earlier runs matters too (default 1)",
-    )
-    parser.add_argument("--json", type=Path, help="file of everything that the table shows")
+    text = "--seconds: for each target (default 30)\n--runs: executions of each target"
+    options(length, text, seconds={"type": POSITIVE, "default": 30}, runs=POSITIVE)
+    text = f"""
+targets TARGET: of {", ".join(targets())} (default: all)
+--seed: of libFuzzer; the corpus of earlier runs matters too (default 1)
+--json: file of everything that the table shows"""
+    options(parser, text, targets={"nargs": "*"}, seed={"type": POSITIVE, "default": 1}, json=Path)
     arguments = parser.parse_args(argv)
     names = chosen(arguments.targets)
     prepare(names)

@@ -8,7 +8,7 @@ import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import above_zero, parser_of
+from barrierbench_analysis.program.arguments import above_zero, options, parser_of
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import Trajectory, has_cells
 
@@ -85,13 +85,14 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "./bench data film dance.pc2 out/dance --frame-s 0.041666667",
         "./bench data film results/runs/drape out/cloth --body cloth",
     )
-    parser.add_argument("source", type=Path, metavar="SOURCE", help="a folder or file with frames, or a run")
-    parser.add_argument("out", type=Path, metavar="OUT", help="a folder that is not there yet")
-    parser.add_argument("--body", help="of a run: the body whose vertices are wanted")
-    parser.add_argument(
-        "--frame-s", type=above_zero, help="time (s) of a frame, where the source has no times"
-    )
-    parser.add_argument("--scale", type=above_zero, default=1.0, help="factor to m, as 0.001 of files in mm")
+    text = """
+source SOURCE: a folder or file with frames, or a run
+out OUT: a folder that is not there yet
+--body BODY: of a run: the body whose vertices are wanted
+--frame-s FRAME_S: time (s) of a frame, where the source has no times
+--scale SCALE: factor to m, as 0.001 of files in mm"""
+    scale = {"type": above_zero, "default": 1.0}
+    options(parser, text, source=Path, out=Path, frame_s=above_zero, scale=scale)
     return parser.parse_args(argv)
 
 

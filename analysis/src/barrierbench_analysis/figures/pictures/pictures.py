@@ -14,7 +14,7 @@ from barrierbench_analysis.io.errors import UserError, passed_on, tells
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.program.start import started
 
 from .frame_pixels import Look
@@ -110,13 +110,8 @@ def placed(text: str, row: str) -> str:
 @tells("draw pictures")
 def main(argv: list[str]) -> int:
     parser = parser_of("draw pictures", __doc__)
-    parser.add_argument(
-        "--runs",
-        type=Path,
-        default=RUNS,
-        metavar="DIR",
-        help="folder of the records (default: results/runs/pictures)",
-    )
+    text = "--runs DIR: folder of the records (default: results/runs/pictures)"
+    options(parser, text, runs={"type": Path, "default": RUNS})
     given = parser.parse_args(argv)
     page = ROOT / "README.md"
     placed(input_file.read_text(page), "")  # before minutes of work

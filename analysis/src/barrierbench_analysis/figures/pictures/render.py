@@ -18,6 +18,7 @@ from barrierbench_analysis.program.arguments import (
     bicubic_argument,
     color_argument,
     finite_number,
+    options,
     parser_of,
     set_argument,
 )
@@ -38,21 +39,14 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         "./bench draw still results/runs/drape --color gap --out drape.gif",
         "./bench draw still configs/scenes/sheets_on_ball.json --out start.png",
     )
-    parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json; or a config")
-    parser.add_argument("--step", type=int, help="a step with a frame, -1: the start (default: the last)")
+    options(parser, "run RUN: folder of run.json; or a config", run=Path)
     color_argument(parser, ["body", *COLORINGS], "body", "what colors mean")
-    parser.add_argument(
-        "--out",
-        type=Path,
-        help=f"{MEANS}; FILE.gif or FILE.mp4: all frames in motion (default: RUN/step_NNNNNN_COLOR.png;"
-        " NAME_start.png of a config NAME.json)",
-    )
-    parser.add_argument(
-        "--fps",
-        type=finite_number,
-        metavar="N",
-        help="frames a second of a GIF or MP4 (default: for 5 s)",
-    )
+    text = f"""
+--step: a step with a frame, -1: the start (default: the last)
+--out: {MEANS}; FILE.gif or FILE.mp4: all frames in motion (default: RUN/step_NNNNNN_COLOR.png;
+    NAME_start.png of a config NAME.json)
+--fps N: frames a second of a GIF or MP4 (default: for 5 s)"""
+    options(parser, text, step=int, out=Path, fps=finite_number)
     set_argument(parser, "override of a config")
     look_arguments(parser)
     given = parser.parse_args(arguments)
@@ -63,33 +57,25 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 def look_arguments(parser: argparse.ArgumentParser) -> None:
     """How a picture is drawn, beside its colours."""
-    numbers = {"nargs": 2, "type": finite_number, "default": (-60.0, 22.0)}
-    words = "direction to the camera, degrees (default: -60 22)"
-    parser.add_argument("--view", **numbers, metavar=("AZIMUTH", "ELEVATION"), help=words)
-    pixels = {"nargs": 2, "type": int, "default": (1000, 720)}
-    words = "pixels (default: 1000 720)"
-    parser.add_argument("--size", **pixels, metavar=("WIDTH", "HEIGHT"), help=words)
-    parser.add_argument(
-        "--subdivide",
-        type=int,
-        choices=range(1, MOST_TIMES + 1),
-        default=0,
-        metavar="N",
-        help=f"cut every triangle into 4, N times (1 to {MOST_TIMES}), for a surface that is curved between"
-        " its vertices and smooth at rods; gaps are judged without",
+    text = f"""
+--view AZIMUTH ELEVATION: direction to the camera, degrees (default: -60 22)
+--size WIDTH HEIGHT: pixels (default: 1000 720)
+--subdivide N: cut every triangle into 4, N times (1 to {MOST_TIMES}), for a surface that is curved between
+    its vertices and smooth at rods; gaps are judged without
+--renderer: own (default): soft shadows, obstacles without facets; vtk: drawn by VTK, which
+    analysis/requirements-render.txt installs
+--bare: the picture alone, without title and legend
+--hide BODY: bodies that are not drawn, such as a container"""
+    options(
+        parser,
+        text,
+        view={"nargs": 2, "type": finite_number, "default": (-60.0, 22.0)},
+        size={"nargs": 2, "type": int, "default": (1000, 720)},
+        subdivide={"type": int, "choices": range(1, MOST_TIMES + 1), "default": 0},
+        renderer={"choices": RENDERERS, "default": RENDERERS[0]},
+        hide={"nargs": "+", "default": ()},
     )
     bicubic_argument(parser)
-    parser.add_argument(
-        "--renderer",
-        choices=RENDERERS,
-        default=RENDERERS[0],
-        help="own (default): soft shadows, obstacles without facets; vtk: drawn by VTK, which"
-        " analysis/requirements-render.txt installs",
-    )
-    parser.add_argument("--bare", action="store_true", help="the picture alone, without title and legend")
-    parser.add_argument(
-        "--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn, such as a container"
-    )
 
 
 def _is_film(out: Path | None) -> bool:

@@ -11,7 +11,13 @@ from barrierbench_analysis.figures.pictures.film import Film, filmed, kept, open
 from barrierbench_analysis.figures.surfaces.sequence import Run
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import bicubic_argument, color_argument, number_type, parser_of
+from barrierbench_analysis.program.arguments import (
+    bicubic_argument,
+    color_argument,
+    number_type,
+    options,
+    parser_of,
+)
 from barrierbench_analysis.tables.run_rows import case_name, own_name
 
 from .page import page, page_bytes
@@ -112,22 +118,16 @@ def play(
 
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = parser_of("draw player", "Frames are written by runs with --set /output/frames_every=1.")
-    parser.add_argument("runs", type=Path, nargs="+", metavar="RUN", help="folder of run.json; one or two")
-    parser.add_argument("--out", type=Path, help="the HTML file (default: play.html in the folder of RUN)")
+    text = f"""
+runs RUN: folder of run.json; one or two
+--out: the HTML file (default: play.html in the folder of RUN)
+--every N: one of every N frames, and the last one (default: 1, or what --limit-mb needs)
+--limit-mb MB: most that the file may take where --every is not given (default: {LIMIT_MB})"""
+    every = number_type("number of frames, 1 or more", lambda n: n >= 1, int)
+    limit = number_type("number of MB above 0", lambda size: 0 < size < math.inf)
+    kinds = {"runs": {"type": Path, "nargs": "+"}, "limit_mb": {"type": limit, "default": LIMIT_MB}}
+    options(parser, text, out=Path, every=every, **kinds)
     color_argument(parser, COLOURS, "gap", "what colors mean at first; the page can change it")
-    parser.add_argument(
-        "--every",
-        type=number_type("number of frames, 1 or more", lambda n: n >= 1, int),
-        metavar="N",
-        help="one of every N frames, and the last one (default: 1, or what --limit-mb needs)",
-    )
-    parser.add_argument(
-        "--limit-mb",
-        type=number_type("number of MB above 0", lambda size: 0 < size < math.inf),
-        default=LIMIT_MB,
-        metavar="MB",
-        help=f"most that the file may take where --every is not given (default: {LIMIT_MB})",
-    )
     bicubic_argument(parser)
     args = parser.parse_args(arguments)
     if len(args.runs) > 2:

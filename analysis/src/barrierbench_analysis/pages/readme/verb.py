@@ -17,7 +17,7 @@ from barrierbench_analysis.pages.reference import make as reference
 from barrierbench_analysis.pages.stated import several
 from barrierbench_analysis.pages.stated.check import faults as disagreements
 from barrierbench_analysis.pages.stated.cost import gather as gather_cost
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.studies.claims import table as claims_table
 from barrierbench_analysis.studies.gap_map import table as map_table
@@ -90,43 +90,17 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "./bench study claims && ./bench dev readme --fill",
     )
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument(
-        "--write",
-        action="store_true",
-        help=(
-            "keep the numbers of the records in results/demo.json, fill the pages with them, and copy the"
-            " figures that they show"
-        ),
-    )
-    what.add_argument(
-        "--fill",
-        action="store_true",
-        help=(
-            "fill the pages with the numbers that are kept in results/: after ./bench study claims, without"
-            " records"
-            " of the demo"
-        ),
-    )
-    what.add_argument(
-        "--check",
-        action="store_true",
-        help=(
-            "run or parse every snippet, compare the pages with the kept numbers, and look for two statements"
-            " on one thing that disagree"
-        ),
-    )
-    what.add_argument(
-        "--reference",
-        action="store_true",
-        help="write the pages of docs/reference that are made from what the program prints of itself",
-    )
-    parser.add_argument(
-        "--runs",
-        type=Path,
-        default=RUNS,
-        metavar="DIR",
-        help="folder of the demo's records (default: results/runs/demo)",
-    )
+    text = """
+--write: keep the numbers of the records in results/demo.json, fill the pages with them, and copy the figures
+    that they show
+--fill: fill the pages with the numbers that are kept in results/: after ./bench study claims, without records
+    of the demo
+--check: run or parse every snippet, compare the pages with the kept numbers, and look for two statements on
+    one thing that disagree
+--reference: write the pages of docs/reference that are made from what the program prints of itself"""
+    options(what, text)
+    text = "--runs DIR: folder of the demo's records (default: results/runs/demo)"
+    options(parser, text, runs={"type": Path, "default": RUNS})
     return parser.parse_args(argv)
 
 

@@ -5,7 +5,7 @@ import json
 
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 
 from .compiled import compiled, compiled_policy, signs_of
 from .grammar import POLICY, SHAPE, FormulaError
@@ -26,10 +26,12 @@ In a config: "stiffness_policy": {{"name": "formula", "formula": "m/h^2 + k"}}. 
 def parse(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("formula", DOC)
     parser.formula_argument("formula", "TEXT")
-    parser.add_argument("--at-zero", choices=("infinite", "finite"), help="what it is meant to do as d -> 0")
-    parser.add_argument("--policy", action="store_true", help="the formula is a stiffness, kappa in N/m")
-    parser.add_argument("--json", action="store_true", help="the answer as JSON")
-    parser.add_argument("--source", action="store_true", help="the C++ that was made of it instead")
+    text = """
+--at-zero: what it is meant to do as d -> 0
+--policy: the formula is a stiffness, kappa in N/m
+--json: the answer as JSON
+--source: the C++ that was made of it instead"""
+    options(parser, text, at_zero=("infinite", "finite"))
     args = parser.parse_args(argv)
     if args.policy and args.at_zero:
         raise UserError("--at-zero is of shapes, not of --policy")
