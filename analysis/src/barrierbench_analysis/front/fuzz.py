@@ -20,7 +20,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program import building
-from barrierbench_analysis.program.arguments import number_type, options, parser_of
+from barrierbench_analysis.program.arguments import count_from_1, options, parser_of
 
 BUILD = ROOT / "build" / "fuzz"
 CRASHES = ROOT / "results" / "runs" / "fuzz"
@@ -28,7 +28,6 @@ CRASHES = ROOT / "results" / "runs" / "fuzz"
 MAX_LEN = {"config": 4096, "record": 16384, "sweep": 2048, "trace": 8192}
 # Short stacks of allocations and a small quarantine: a third faster, and a report still names its place.
 SANITIZER = {"ASAN_OPTIONS": "malloc_context_size=3:quarantine_size_mb=8:detect_leaks=1"}
-POSITIVE = number_type("integer, 1 or more", lambda n: n >= 1, int)
 LIMITS = ["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=1"]
 
 
@@ -134,12 +133,12 @@ def main(argv: list[str]) -> int:
     parser = parser_of("dev fuzz", __doc__.split("\n\n", 1)[1])
     length = parser.add_mutually_exclusive_group()
     text = "--seconds: for each target (default 30)\n--runs: executions of each target"
-    options(length, text, seconds={"type": POSITIVE, "default": 30}, runs=POSITIVE)
+    options(length, text, seconds={"type": count_from_1, "default": 30}, runs=count_from_1)
     text = f"""
 targets TARGET: of {", ".join(targets())} (default: all)
 --seed: of libFuzzer; the corpus of earlier runs matters too (default 1)
 --json: file of everything that the table shows"""
-    options(parser, text, targets={"nargs": "*"}, seed={"type": POSITIVE, "default": 1}, json=Path)
+    options(parser, text, targets={"nargs": "*"}, seed={"type": count_from_1, "default": 1}, json=Path)
     arguments = parser.parse_args(argv)
     names = chosen(arguments.targets)
     prepare(names)

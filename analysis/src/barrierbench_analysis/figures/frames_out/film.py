@@ -8,7 +8,7 @@ import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import above_zero, options, parser_of
+from barrierbench_analysis.program.arguments import options, parser_of, positive_number
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import Trajectory, has_cells
 
@@ -91,8 +91,8 @@ out OUT: a folder that is not there yet
 --body BODY: of a run: the body whose vertices are wanted
 --frame-s FRAME_S: time (s) of a frame, where the source has no times
 --scale SCALE: factor to m, as 0.001 of files in mm"""
-    scale = {"type": above_zero, "default": 1.0}
-    options(parser, text, source=Path, out=Path, frame_s=above_zero, scale=scale)
+    scale = {"type": positive_number, "default": 1.0}
+    options(parser, text, source=Path, out=Path, frame_s=positive_number, scale=scale)
     return parser.parse_args(argv)
 
 

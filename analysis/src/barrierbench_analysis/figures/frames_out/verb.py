@@ -21,11 +21,11 @@ from barrierbench_analysis.figures.surfaces.sequence import (
 from barrierbench_analysis.figures.surfaces.uv_binding import bound_by_uv
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.program.arguments import (
-    above_zero,
     bicubic_argument,
     number_type,
     options,
     parser_of,
+    positive_number,
 )
 from barrierbench_analysis.program.mesh_arrays import SUFFIXES, read_frame_file
 
@@ -149,7 +149,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
 --render-mesh FILE: a mesh of triangles ({", ".join(SUFFIXES)}) in the place that --body has at the start: it
     follows the surface of the body and is written in its place
 --subdivide N: cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})"""
-    times = number_type(f"number from 1 to {MOST_TIMES}", lambda n: 1 <= n <= MOST_TIMES, int)
+    times = number_type(f"a number from 1 to {MOST_TIMES}", lambda n: 1 <= n <= MOST_TIMES, int)
     options(finer, text, render_mesh=Path, subdivide=times)
     bicubic_argument(finer)
     text = f"""
@@ -165,7 +165,7 @@ out OUT: a folder that is not there yet
     diagonal of the body's box)"""
     bind = {"choices": ("closest", "uv"), "default": "closest"}
     wanted = {"choices": WRITERS, "required": True}
-    options(parser, text, run=Path, out=Path, format=wanted, bind=bind, reach=above_zero)
+    options(parser, text, run=Path, out=Path, format=wanted, bind=bind, reach=positive_number)
     return parser.parse_args(argv)
 
 

@@ -3,7 +3,6 @@ player RUN [RUN2].
 """
 
 import argparse
-import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,9 +13,10 @@ from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import (
     bicubic_argument,
     color_argument,
-    number_type,
+    count_from_1,
     options,
     parser_of,
+    positive_number,
 )
 from barrierbench_analysis.tables.run_rows import case_name, own_name
 
@@ -123,10 +123,8 @@ runs RUN: folder of run.json; one or two
 --out: the HTML file (default: play.html in the folder of RUN)
 --every N: one of every N frames, and the last one (default: 1, or what --limit-mb needs)
 --limit-mb MB: most that the file may take where --every is not given (default: {LIMIT_MB})"""
-    every = number_type("number of frames, 1 or more", lambda n: n >= 1, int)
-    limit = number_type("number of MB above 0", lambda size: 0 < size < math.inf)
-    kinds = {"runs": {"type": Path, "nargs": "+"}, "limit_mb": {"type": limit, "default": LIMIT_MB}}
-    options(parser, text, out=Path, every=every, **kinds)
+    kinds = {"runs": {"type": Path, "nargs": "+"}, "limit_mb": {"type": positive_number, "default": LIMIT_MB}}
+    options(parser, text, out=Path, every=count_from_1, **kinds)
     color_argument(parser, COLOURS, "gap", "what colors mean at first; the page can change it")
     bicubic_argument(parser)
     args = parser.parse_args(arguments)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, code_of, tells
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import number_type, options, parser_of
+from barrierbench_analysis.program.arguments import count_from_0, options, parser_of
 from barrierbench_analysis.tables.archive import beside, study
 
 from . import figures, players
@@ -67,8 +67,7 @@ folder DIR: a folder with records below it, or an archive
 other DIR2: a second one: what differs
 --out FILE: the page (default: {NAME} in DIR, or beside an archive; of two, in DIR2)
 --players N: scenes in motion at most; each takes up to 3 MB (default: {players.MOST})"""
-    count = number_type("number of players, 0 or more", lambda n: n >= 0, int)
-    most = {"type": count, "default": players.MOST}
+    most = {"type": count_from_0, "default": players.MOST}
     options(parser, text, folder=Path, other={"type": Path, "nargs": "?"}, out=Path, players=most)
     args = parser.parse_args(argv)
     if args.other is None:
