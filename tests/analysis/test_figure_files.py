@@ -8,18 +8,18 @@ import pandas as pd
 import pytest
 
 from barrierbench_analysis.figures import style
-from barrierbench_analysis.figures.plots import barrier_shapes, condition, gaps, iterations, matrix_forms
+from barrierbench_analysis.figures.plots import barrier_shapes, condition, matrix_forms, over_time
 from barrierbench_analysis.tables.records import load
 from synthetic import bind, write_run, write_set
 
 
 @pytest.mark.usefixtures("unpainted")
-@pytest.mark.parametrize("module", [condition, iterations, gaps, barrier_shapes])
-def test_a_caption_stands_beside_every_figure(records, program, tmp_path, monkeypatch, module):
+@pytest.mark.parametrize("draw", [condition.figure, over_time.iterations, over_time.gaps, barrier_shapes.figure])
+def test_a_caption_stands_beside_every_figure(records, program, tmp_path, monkeypatch, draw):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
-    paths = module.figure(tmp_path) if module is barrier_shapes else module.figure(records, "strip", tmp_path)
+    paths = draw(tmp_path) if draw is barrier_shapes.figure else draw(records, "strip", tmp_path)
     text = paths[3].read_text()
-    if module is barrier_shapes:
+    if draw is barrier_shapes.figure:
         assert "d_hat" in text and "shapes of the runs" in text.replace("\n", " ")
     else:
         for part in ("strip", "hollow markers", "matching_rule equal_force", "Machine: a cpu, 2 cores", "BLAS: Haswell", "2024-01-31 (UTC), 4 runs"):
@@ -34,8 +34,8 @@ def test_panels_have_letters_and_reference_lines_have_words(records, tmp_path, m
     figures = {}
     monkeypatch.setattr(style, "save", lambda fig, stem, *_: [figures.setdefault(stem.name, fig)])
     condition.figure(records, "strip", tmp_path)
-    iterations.figure(records, "strip", tmp_path)
-    gaps.figure(records, "strip", tmp_path)
+    over_time.iterations(records, "strip", tmp_path)
+    over_time.gaps(records, "strip", tmp_path)
     assert lettered(figures["condition_strip"]) == ["(a)", "(b)"]
     assert lettered(figures["iterations_strip"]) == ["(a)", "(b)", "(c)"]
     axis = figures["gaps_strip"].axes[0]
@@ -48,7 +48,7 @@ def test_panels_have_letters_and_reference_lines_have_words(records, tmp_path, m
 def test_steps_are_drawn_as_steps_and_shares_start_at_0(records, tmp_path, monkeypatch):
     figures = []
     monkeypatch.setattr(style, "save", lambda fig, *_: [figures.append(fig)])
-    iterations.figure(records, "strip", tmp_path)
+    over_time.iterations(records, "strip", tmp_path)
     of_steps, shares, pcg = figures[0].axes
     runs = [line for line in of_steps.lines if line.get_gid() != style.FAILURE]
     assert {line.get_drawstyle() for line in runs} == {"steps-mid"}

@@ -12,7 +12,7 @@ import pytest
 
 from barrierbench_analysis.tables import run_words
 from barrierbench_analysis.figures import style
-from barrierbench_analysis.figures.plots import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
+from barrierbench_analysis.figures.plots import barrier_shapes, condition, demo, kappa_cycle, over_time
 from barrierbench_analysis.figures.plots import verb as figures_verb
 from barrierbench_analysis.tables.records import load
 from barrierbench_analysis.io.record_file import sha256_of
@@ -22,10 +22,10 @@ from synthetic import write_cycle, write_run, write_set
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize("module", [condition, iterations, gaps])
-def test_files_exist_and_are_the_same_twice(records, tmp_path, module):
-    paths = module.figure(records, "strip", tmp_path / "a")
-    again = module.figure(records, "strip", tmp_path / "b")
+@pytest.mark.parametrize("draw", [condition.figure, over_time.iterations, over_time.gaps])
+def test_files_exist_and_are_the_same_twice(records, tmp_path, draw):
+    paths = draw(records, "strip", tmp_path / "a")
+    again = draw(records, "strip", tmp_path / "b")
 
     assert [p.suffix for p in paths] == [".png", ".pdf", ".csv", ".txt", ".svg", ".dat"]
     for one, two in zip(paths, again):
@@ -34,7 +34,7 @@ def test_files_exist_and_are_the_same_twice(records, tmp_path, module):
 
 
 def test_pdf_fonts_are_truetype(records, tmp_path):
-    pdf = gaps.figure(records, "strip", tmp_path)[1].read_bytes()
+    pdf = over_time.gaps(records, "strip", tmp_path)[1].read_bytes()
 
     assert b"/Type3" not in pdf
     assert b"CIDFontType2" in pdf
@@ -54,8 +54,8 @@ def test_condition_numbers_beside_the_figure_are_the_traces(records, tmp_path):
 
 @pytest.mark.usefixtures("unpainted")
 def test_gaps_and_iterations_beside_the_figures_are_the_steps(records, tmp_path):
-    gap = pd.read_csv(gaps.figure(records, "strip", tmp_path)[2])
-    work = pd.read_csv(iterations.figure(records, "strip", tmp_path)[2])
+    gap = pd.read_csv(over_time.gaps(records, "strip", tmp_path)[2])
+    work = pd.read_csv(over_time.iterations(records, "strip", tmp_path)[2])
 
     assert list(gap[gap["series"] == "log"]["gap_min_rel"]) == [0.2, 0.1]
     newton = work[(work["what"] == "newton_per_step") & (work["series"] == "log")]
@@ -140,7 +140,7 @@ def test_verdicts_of_an_earlier_rule_are_marked_and_the_rule_is_stated(tmp_path,
     assert "ok, not_comparable by the rule before 3.5.0" in text and "ok, comparable by the rule before 3.5.0" in text
     rule = run_words.hollow_rule(records.runs).replace("\n", " ")
     assert "between two bodies" in rule and "by the rule before 3.5.0, with reference log, comparable: the smallest gap of the run" in rule
-    assert "by the rule before 3.5.0" in " ".join(gaps.figure(records, "strip", tmp_path / "out")[3].read_text().split())
+    assert "by the rule before 3.5.0" in " ".join(over_time.gaps(records, "strip", tmp_path / "out")[3].read_text().split())
     version(tmp_path / "runs", "log", "3.4.0")
     only = run_words.hollow_rule(load(tmp_path / "runs").runs).replace("\n", " ")
     assert only.startswith("hollow markers: the run failed, is not valid or not comparable; by the rule before 3.5.0") and "between two bodies" not in only

@@ -15,7 +15,7 @@ from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
 from barrierbench_analysis.studies.claims.inputs import inputs_of
 from barrierbench_analysis.studies.claims.table import Runs, Table
 from barrierbench_analysis.studies.rules.gap_map.table import COLUMNS, Map
-from barrierbench_analysis.pages.readme import map as gap_map
+from barrierbench_analysis.pages.readme import templates as gap_map
 from barrierbench_analysis.pages.readme import numbers, slices, snippets, templates
 from barrierbench_analysis.pages.stated import sources
 from barrierbench_analysis.pages.stated.number import OFF, OWN, SAME, Number

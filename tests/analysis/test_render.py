@@ -325,3 +325,20 @@ def test_the_package_needs_no_paths(tmp_path):
     if "No module named 'barrierbench_analysis'" in done.stderr:
         pytest.skip("barrierbench_analysis is not installed (./bench setup)")
     assert "no run.json below this folder" in done.stderr
+
+
+def test_a_still_by_vtk_has_its_bodies_where_ours_has_them(run, tmp_path):
+    pytest.importorskip("vtk", reason="vtk is not installed: analysis/requirements-render.txt")
+    own, vtk = (plt.imread(still_picture.render(run, out=tmp_path / f"{name}.png", look=frame_pixels.Look(size=SMALL, bare=True, renderer=name))) for name in ("own", "vtk"))
+    drawn = [(image[..., :3] < 0.98).any(axis=2) for image in (own, vtk)]
+
+    assert drawn[0].sum() > 1000 and (drawn[0] != drawn[1]).mean() < 0.02
+    assert "drawn by VTK" in (tmp_path / "vtk.txt").read_text().replace("\n", " ")
+
+
+def test_without_vtk_the_command_that_installs_it_is_said(run, tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "vtkmodules", None)
+    monkeypatch.setitem(sys.modules, "vtkmodules.all", None)
+
+    assert render.main([str(run), "--out", str(tmp_path / "a.png"), "--renderer", "vtk"]) == 2
+    assert "the package vtk is not installed: .venv/bin/python -m pip install --requirement analysis/requirements-render.txt" in capsys.readouterr().err

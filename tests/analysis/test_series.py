@@ -5,7 +5,7 @@ import pytest
 
 from barrierbench_analysis.tables import series
 from barrierbench_analysis.figures import style
-from barrierbench_analysis.figures.plots import condition, gaps, iterations
+from barrierbench_analysis.figures.plots import condition, over_time
 from barrierbench_analysis.tables.records import load
 from synthetic import write_run
 
@@ -45,13 +45,13 @@ def test_no_figure_has_more_than_five_and_none_is_lost(count, sizes):
 
 
 @pytest.mark.usefixtures("unpainted")
-@pytest.mark.parametrize("module", [condition, iterations, gaps])
-def test_every_figure_of_a_large_group_keeps_to_it(tmp_path, monkeypatch, module):
+@pytest.mark.parametrize("draw", [condition.figure, over_time.iterations, over_time.gaps])
+def test_every_figure_of_a_large_group_keeps_to_it(tmp_path, monkeypatch, draw):
     for k, name in enumerate(NAMES):
         write_run(tmp_path / "runs", name.split()[0], 1.0 + k, 0.1, note=f"strip: {name}", folder=f"run{k}")
     drawn, save = {}, style.save
     monkeypatch.setattr(style, "save", lambda fig, stem, *rest: drawn.setdefault(stem.name, fig) and save(fig, stem, *rest))
-    module.figure(load(tmp_path / "runs"), "strip", tmp_path / "out")
+    draw(load(tmp_path / "runs"), "strip", tmp_path / "out")
     labels = {name: [text.get_text() for text in fig.legends[0].get_texts()] for name, fig in drawn.items()}
     assert len(labels) == 2 and all(len(found) <= series.MOST for found in labels.values())
     assert {name for found in labels.values() for name in found} == set(NAMES)

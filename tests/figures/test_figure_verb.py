@@ -10,12 +10,12 @@ import pytest
 
 from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.figures.plots import heat_map, newton_condition, phase_times, preconditioned, profiles, scaling, step_front, step_lengths, success_frontier, trend
+from barrierbench_analysis.figures.plots import heat_map, matrices, one_step, phase_times, profiles, scaling, step_front, trend
 from barrierbench_analysis.studies.comparison import rebuild, sources
 from barrierbench_analysis.figures.plots.drawing import Drawing
 from barrierbench_analysis.studies.comparison.kinds import KINDS
 from barrierbench_analysis.studies.comparison.spec import FOLDER, chosen, known, read_spec
-from barrierbench_analysis.figures.plots.subjects import Place, SweepRecords, Wanted
+from barrierbench_analysis.figures.plots.drawing import Place, SweepRecords, Wanted
 from barrierbench_analysis.tables.records import Records
 from barrierbench_analysis.figures.style import SUFFIXES
 
@@ -131,8 +131,8 @@ FAILED = SweepRecords("none", Records(pd.DataFrame([FAILED_RUN]), *[pd.DataFrame
 
 @pytest.mark.parametrize("subject", [EMPTY, FAILED])
 @pytest.mark.parametrize(("draw", "options"), [
-    (profiles.performance_profile, profiles.OPTIONS), (profiles.data_profile, profiles.OPTIONS), (heat_map.figure, heat_map.OPTIONS), (success_frontier.figure, heat_map.OPTIONS),
-    (newton_condition.figure, {}), (preconditioned.figure, {}), (step_lengths.figure, {}), (phase_times.figure, phase_times.OPTIONS), (scaling.figure, {}), (step_front.figure, {})])
+    (profiles.performance_profile, profiles.OPTIONS), (profiles.data_profile, profiles.OPTIONS), (heat_map.figure, heat_map.OPTIONS), (heat_map.success_frontier, heat_map.OPTIONS),
+    (one_step.newton_condition, {}), (matrices.preconditioned, {}), (one_step.step_lengths, {}), (phase_times.figure, phase_times.OPTIONS), (scaling.figure, {}), (step_front.figure, {})])
 def test_a_figure_without_a_subject_is_refused(tmp_path, subject, draw, options):
     with pytest.raises(UserError, match="figure mine: nothing to draw: "):
         draw(subject, Drawing("mine", "Title", tmp_path / "mine", 7.0, options))

@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm
 from barrierbench_analysis.figures import pgfplots
 from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.figures.plots import eigenvalues, friction_slope, gap_ridge, heat_map, newton_condition, one_step, phase_times, preconditioned, profiles, resolution, scaling, slopes, step_front, success_frontier, trend
+from barrierbench_analysis.figures.plots import friction_slope, gap_ridge, heat_map, matrices, one_step, phase_times, profiles, resolution, scaling, slopes, step_front, trend
 from barrierbench_analysis.tables.records import load
 from synthetic import write_set
 
@@ -94,7 +94,7 @@ def test_every_outcome_of_the_schema_has_a_letter_of_its_own():
 
 
 def test_the_frontier_of_success():
-    found = success_frontier.table(GRID, "dt", "E").set_index("y")
+    found = heat_map.reached(GRID, "dt", "E").set_index("y")
 
     assert found.loc[1.0, "reached"] == 0.1 and found.loc[1.0, "fails_at"] == 0.2
     assert math.isnan(found.loc[2.0, "reached"])  # the smallest step fails, though a larger one gets through
@@ -102,7 +102,7 @@ def test_the_frontier_of_success():
 
 
 def test_the_distribution_of_eigenvalues_keeps_those_below_zero_in_the_count():
-    x, share = eigenvalues.ecdf(np.array([-1.0, 2.0, 3.0, 3.0]))
+    x, share = matrices.ecdf(np.array([-1.0, 2.0, 3.0, 3.0]))
 
     assert list(x) == [2, 3, 3]
     assert list(share) == [0.5, 0.75, 1.0]
@@ -173,17 +173,17 @@ def test_errors_of_meshes_against_both_references():
 
 
 def test_the_bound_of_conjugate_gradients():
-    assert preconditioned.bound(np.array([4.0]))[0] == pytest.approx(math.log(2e6))
+    assert matrices.bound(np.array([4.0]))[0] == pytest.approx(math.log(2e6))
 
 
 def test_points_of_the_preconditioned_matrix_are_the_traces(tmp_path):
     write_set(tmp_path)
-    found = preconditioned.table(load(tmp_path))
+    found = matrices.table(load(tmp_path))
     log = found[found["formulation"] == "log"]
 
     assert list(log["cond"]) == [1, 1, 2, 2, 3, 3]
     assert list(log["probe_pcg_iterations"]) == [10, 10, 11, 11, 12, 12]
-    assert preconditioned.ranks(found)["log"] == pytest.approx(1)
+    assert matrices.ranks(found)["log"] == pytest.approx(1)
 
 
 def test_the_step_that_is_held_back_most():
@@ -197,8 +197,8 @@ def test_the_step_that_is_held_back_most():
 def test_the_step_with_the_largest_condition_numbers():
     cond = pd.DataFrame({"run": list("abab"), "step": [0, 0, 1, 1], "cond": [10.0, 1000.0, 90.0, 90.0], "scaling": "none", "stage": "full"})
 
-    assert newton_condition.worst(cond) == 0  # geometric means 100 and 90
-    assert newton_condition.worst(cond.assign(scaling="block_jacobi")) is None
+    assert one_step.worst(cond) == 0  # geometric means 100 and 90
+    assert one_step.worst(cond.assign(scaling="block_jacobi")) is None
 
 
 def test_phase_times_are_sums_of_phases_over_iterations():

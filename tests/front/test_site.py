@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from barrierbench_analysis.front import site, site_pages
+from barrierbench_analysis.front import site
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 
@@ -21,18 +21,18 @@ def test_pages_come_with_what_they_link_to(tmp_path):
     tree(tmp_path, README_md="[a](docs/a.md#x) [b](https://b.c)", docs__a_md="[c](../configs/c.json) ![p](p_json.json)", configs__c_json="{}", configs__d_json="{}", docs__p_json="{}",
          examples__e_md="[f](../nothing.md)")
     (tmp_path / "docs/p.json").rename(tmp_path / "docs/p_json.json")
-    assert site_pages.staged(tmp_path) == ["README.md", "docs/a.md", "configs/c.json", "docs/p_json.json"]
-    assert site_pages.stage(tmp_path, tmp_path / "out") and (tmp_path / "out/configs/c.json").read_text() == "{}"
+    assert site.staged(tmp_path) == ["README.md", "docs/a.md", "configs/c.json", "docs/p_json.json"]
+    assert site.stage(tmp_path, tmp_path / "out") and (tmp_path / "out/configs/c.json").read_text() == "{}"
     tree(tmp_path, docs__a_md="[e](../examples/e.md)")
     for page, said in (("[e](../examples/e.md)", "examples/e.md: found a link to nothing.md"), ("[e](../configs)", "docs/a.md: found a link to configs")):
         tree(tmp_path, docs__a_md=page)
         with pytest.raises(UserError, match=said):
-            site_pages.staged(tmp_path)
+            site.staged(tmp_path)
 
 
 def test_lists_have_an_empty_line_before_them():
     text = "What:\n- a\n  more of a\n- b\n  - c\n\nText\n1. one\n\n```sh\nx\n- no item\n```\n- new\nafter\n- last\n"
-    made = site_pages.blank_before_lists(text)
+    made = site.blank_before_lists(text)
     assert made == text.replace("What:\n- a", "What:\n\n- a").replace("Text\n1.", "Text\n\n1.").replace("```\n- new", "```\n\n- new")
 
 
@@ -42,17 +42,17 @@ def leaves(entries) -> list[str]:
 
 def test_the_navigation_has_every_page_once_by_section():
     names = ["README.md", "docs/guides/b.md", "docs/guides/index.md", "docs/results/method/m.md", "docs/results/a.md", "results/R.md", "docs/words.md", "configs/c.json"]
-    made = site_pages.navigation(names)
+    made = site.navigation(names)
     assert made == [{"Home": "README.md"}, {"Guides": ["docs/guides/index.md", "docs/guides/b.md"]},
                     {"Results": ["docs/results/a.md", {"Method": ["docs/results/method/m.md"]}, {"Studies": ["results/R.md"]}]}, {"Project": ["docs/words.md"]}]  # fmt: skip
-    ours = site_pages.staged(ROOT)
+    ours = site.staged(ROOT)
     pages = [name for name in ours if name.endswith(".md")]
-    assert len(pages) > 80 and sorted(leaves(site_pages.navigation(ours))) == sorted(pages)
+    assert len(pages) > 80 and sorted(leaves(site.navigation(ours))) == sorted(pages)
 
 
 def test_no_page_of_ours_loses_a_link():
     """Errors of `staged` are those that the build would have; the extensions that formulas and lists need are loaded."""
-    assert len(site_pages.staged(ROOT)) > 120
+    assert len(site.staged(ROOT)) > 120
     config, recipe = (ROOT / "mkdocs.yml").read_text(), site.REQUIREMENTS.read_text()
     assert all(re.search(rf"^{name}==", recipe, re.M) for name in ("mkdocs", "mkdocs-material", "django-static-mathjax", "mdx_truly_sane_lists"))
     assert "arithmatex" in config and "scripts/tex-svg.js" in config and "http" not in config

@@ -4,7 +4,7 @@ import pytest
 
 from barrierbench_analysis.figures.plots import profiles
 from barrierbench_analysis.figures.plots.drawing import Drawing
-from barrierbench_analysis.figures.plots.subjects import SweepRecords
+from barrierbench_analysis.figures.plots.drawing import SweepRecords
 from barrierbench_analysis.tables.records import load
 from barrierbench_analysis.pages.report import apart, tables, verb, verdict
 from barrierbench_analysis.tables import words

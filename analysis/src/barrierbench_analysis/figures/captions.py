@@ -1,30 +1,12 @@
 """The text file beside every figure: what is shown, and what the records say of settings, machine and day."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-SETTINGS = (
-    "scene",
-    "matching_rule",
-    "step_solver",
-    "integrator",
-    "linear_solver",
-    "d_hat_m",
-    "dt_s",
-    "steps",
-    "dt_min_s",
-)
-
-
+SETTINGS = "scene matching_rule step_solver integrator linear_solver d_hat_m dt_s steps dt_min_s".split()
 PLACE = (
-    "machine_cpu_model",
-    "machine_cores",
-    "provenance_threads",
-    "provenance_blas_kernel",
-    "provenance_git_commit",
+    "machine_cpu_model machine_cores provenance_threads provenance_blas_kernel provenance_git_commit".split()
 )
 
 
@@ -74,9 +56,8 @@ def caption(shown: str, rows: list[dict]) -> str:
     if not rows:
         return textwrap.fill(shown, 100) + "\n"
     named = {column: _settings(rows, column) for column in SETTINGS}
-    lines.append(
-        "Settings: " + "; ".join(f"{column} {value}" for column, value in named.items() if value) + "."
-    )
+    words = "; ".join(f"{column} {value}" for column, value in named.items() if value)
+    lines.append(f"Settings: {words}.")
     cpu, cores, threads, blas, commit = (_distinct(rows, column) for column in PLACE)
     lines.append(
         f"Machine: {cpu or 'not recorded'}, {cores or '?'} cores, {threads or '?'} threads; "

@@ -1,7 +1,5 @@
 """Figures beside the pages that show them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

@@ -2,30 +2,14 @@
 matplotlib would parse whatever stands between two dollars, and end a figure where it cannot.
 """
 
-from __future__ import annotations
-
 import re
 
 from matplotlib.text import Text
 
 # Between two dollars, in the texts of this package, and in the labels of ticks.
 SEGMENTS = frozenset(
-    (
-        r"\hat d",
-        r"\hat{d}",
-        r"\mu",
-        r"^2",
-        r"b/\hat d^2",
-        r"-b'/\hat d",
-        r"b''",
-        r"\rho=\hat d\,b''/|b'|",
-        r"u=d/\hat d",
-        r"|\Delta x|_\infty",
-        r"\kappa",
-        r"\kappa = m/",
-        r"\lambda_{\max}",
-        r"\lambda_{\min}",
-    )
+    r"\hat d; \hat{d}; \mu; ^2; b/\hat d^2; -b'/\hat d; b''; \rho=\hat d\,b''/|b'|; u=d/\hat d;"
+    r" |\Delta x|_\infty; \kappa; \kappa = m/; \lambda_{\max}; \lambda_{\min}".split("; ")
 )
 OF_TICKS = re.compile(r"(?=.)(\\mathdefault\{)?[-\u2212+\d.e]*(\\times)?(10\^\{[-\u2212\d.]+\})?\}?")
 _preprocessed = Text._preprocess_math  # what of a text is mathematics, whoever draws it

@@ -1,7 +1,5 @@
 """Which panels a figure leaves out: one flat line, or the number of another panel times a constant."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import matplotlib.pyplot as plt

@@ -43,25 +43,17 @@ own_math.install()
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
 
 plt.rcParams.update(
-    {
-        "font.size": 8,
-        "axes.titlesize": 8,
-        "axes.labelsize": 8,
-        "legend.fontsize": 7,
-        "xtick.labelsize": 7,
-        "ytick.labelsize": 7,
+    {f"{name}.labelsize": 7 for name in ("xtick", "ytick")}
+    | {f"axes.spines.{side}": False for side in ("top", "right")}
+    | {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "legend.fontsize": 7}
+    | {
         "lines.linewidth": 1.0,
         "lines.markersize": 3.5,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
         "axes.grid": True,
         "grid.linewidth": 0.3,
         "grid.alpha": 0.6,
-        "pdf.fonttype": 42,
-        "svg.fonttype": "none",
-        "svg.hashsalt": "barrierbench",
-        "savefig.dpi": 200,
     }
+    | {"pdf.fonttype": 42, "svg.fonttype": "none", "svg.hashsalt": "barrierbench", "savefig.dpi": 200}
 )
 
 
@@ -70,6 +62,10 @@ class Look:
     color: str
     marker: str
     dash: object
+
+    def line(self, **more) -> dict:
+        """What matplotlib draws its lines with, and more."""
+        return {"color": self.color, "marker": self.marker, "linestyle": self.dash} | more
 
 
 # Okabe-Ito colours.
@@ -132,37 +128,30 @@ def marks(length: int, wanted: int = 12) -> int:
     return max(1, length // wanted)
 
 
+def look_of(row: pd.Series) -> Look:
+    """Of a run of runs_of()."""
+    return look(row["formulation"], int(row.get("variant", 0)))
+
+
 def marker_face(row: pd.Series) -> str:
     """What the markers of a run are filled with."""
-    return "none" if verdict_word(row) else look(row["formulation"], int(row.get("variant", 0))).color
+    return "none" if verdict_word(row) else look_of(row).color
 
 
 def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "default") -> None:
     """One run's line. Hollow markers: run_words.HOLLOW; a failure ends in a cross. steps: matplotlib's
     drawstyle, `steps-mid` for a count of each time step, `steps-post` for a share.
     """
-    style = look(row["formulation"], int(row.get("variant", 0)))
-    axis.plot(
-        x,
-        y,
-        color=style.color,
-        linestyle=style.dash,
-        drawstyle=steps,
-        marker=style.marker,
-        markevery=marks(len(x)),
-        markerfacecolor=marker_face(row),
-        markeredgewidth=0.8,
-        label=name_of(row),
-    )
+    line = look_of(row).line(drawstyle=steps, markevery=marks(len(x)), label=name_of(row))
+    axis.plot(x, y, **line, markerfacecolor=marker_face(row), markeredgewidth=0.8)
     if end_mark and row["outcome"] != "ok" and len(x) > 0:
-        draw_failure(axis, x[-1], y[-1], style.color)
+        draw_failure(axis, x[-1], y[-1], look_of(row).color)
 
 
-def draw_failure(axis, x: float, y: float, color: str) -> None:
-    """The cross at the end of a line."""
-    axis.plot(
-        [x], [y], linestyle="none", marker="x", markersize=6, markeredgewidth=1.4, color=color, gid=FAILURE
-    )
+def draw_failure(axis, x: float, y: float, color: str, size: float = 6, **how) -> None:
+    """A cross, as at the end of a line."""
+    cross = {"marker": "x", "markersize": size, "markeredgewidth": 0.2 + size / 5, "gid": FAILURE}
+    axis.plot([x], [y], linestyle="none", color=color, **cross, **how)
 
 
 def failures_above(axis, places, color: str, row: int = 0) -> None:
@@ -170,17 +159,7 @@ def failures_above(axis, places, color: str, row: int = 0) -> None:
     several series each in a row of its own, the first on top.
     """
     for x in places:
-        axis.plot(
-            [x],
-            [0.97 - 0.05 * row],
-            transform=axis.get_xaxis_transform(),
-            linestyle="none",
-            marker="x",
-            markersize=5,
-            markeredgewidth=1.2,
-            color=color,
-            gid=FAILURE,
-        )
+        draw_failure(axis, x, 0.97 - 0.05 * row, color, 5, transform=axis.get_xaxis_transform())
 
 
 def marker_sentence(runs: pd.DataFrame) -> str:
@@ -197,20 +176,12 @@ def legend_below(fig, axis, runs: pd.DataFrame | None = None) -> None:
     """One legend for the figure, below its panels; with `runs`, the rule of hollow markers as its title."""
     handles, labels = axis.get_legend_handles_labels()
     if handles:
-        width = max(
-            LEGEND_COLUMN_IN, 0.6 + 0.055 * max(map(len, labels))
-        )  # of a column, inches: its line, and letters of 7 points
+        # of a column, inches: its line, and letters of 7 points
+        width = max(LEGEND_COLUMN_IN, 0.6 + 0.055 * max(map(len, labels)))
         columns = max(1, min(len(labels), int(fig.get_figwidth() / width)))
-        title = hollow_rule(runs) if runs is not None else ""
-        fig.legend(
-            handles,
-            labels,
-            loc="outside lower center",
-            ncols=columns,
-            frameon=False,
-            title=title or None,
-            title_fontsize=6,
-        )
+        title = (hollow_rule(runs) if runs is not None else "") or None
+        how = {"loc": "outside lower center", "ncols": columns, "frameon": False}
+        fig.legend(handles, labels, **how, title=title, title_fontsize=6)
 
 
 def letter_panels(axes) -> None:
@@ -226,18 +197,10 @@ def reference_line(axis, y: float, label: str, dash: str = "-", below: bool = Fa
     low, high = axis.get_ylim()
     axis.set_ylim(min(low, y / 1.2), max(high, 1.2 * y))
     axis.axhline(y, color="#666666", linewidth=0.5, linestyle=dash, gid=REFERENCE)
-    text = axis.annotate(
-        label,
-        (0.995, y),
-        xycoords=("axes fraction", "data"),
-        xytext=(0, -2 if below else 1),
-        textcoords="offset points",
-        ha="right",
-        va="top" if below else "bottom",
-        fontsize=6,
-        color="#444444",
-        bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5},
-    )
+    where = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "ha": "right"}
+    where |= {"xytext": (0, -2), "va": "top"} if below else {"xytext": (0, 1), "va": "bottom"}
+    box = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5}
+    text = axis.annotate(label, (0.995, y), **where, fontsize=6, color="#444444", bbox=box)
     text.set_in_layout(False)
 
 

@@ -1,7 +1,5 @@
 """Readable ticks of logarithmic axes: few, and in plain numbers where these are short."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Titles of pictures, broken where they would be wider than what they stand above."""
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 

@@ -2,8 +2,6 @@
 and files. For bash: eval "$(./bench completion bash)"; for zsh: eval "$(./bench completion zsh)".
 """
 
-from __future__ import annotations
-
 from barrierbench_analysis.io.errors import tells
 from barrierbench_analysis.program import verbs
 from barrierbench_analysis.program.arguments import parser_of

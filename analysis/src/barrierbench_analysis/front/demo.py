@@ -6,27 +6,19 @@ Exit codes: 0 all is there, 1 a run does not keep what the demonstration promise
 failed first.
 """
 
-from __future__ import annotations
-
 import importlib
 import time
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.program.building import job_count, say
 from barrierbench_analysis.program.start import run_sweep
 
 OUT = ROOT / "results/runs/demo"
-SWEEPS = (  # configs/sweeps/NAME.json
-    "demo_equal_gap",
-    "demo_drape",
-    "demo_long",
-    "demo_strip",
-    "demo_pinned",
-    "demo_article",
-)
+# configs/sweeps/NAME.json
+SWEEPS = [f"demo_{name}" for name in ("equal_gap", "drape", "long", "strip", "pinned", "article")]
 
 
 def run_all(out: Path, jobs: int) -> int:
@@ -47,16 +39,10 @@ def run_all(out: Path, jobs: int) -> int:
 @tells("demo")
 def main(argv: list[str]) -> int:
     parser = parser_of("demo", __doc__, "./bench demo --jobs 1 --out results/runs/demo_again")
-    parser.add_argument(
-        "--out",
-        type=Path,
-        default=OUT,
-        metavar="DIR",
-        help="folder of the records (default: results/runs/demo)",
-    )
-    parser.add_argument(
-        "--jobs", type=int, default=job_count(), metavar="N", help="runs at a time (default: one a core)"
-    )
+    text = """
+--out DIR: folder of the records (default: results/runs/demo)
+--jobs N: runs at a time (default: one a core)"""
+    options(parser, text, out={"type": Path, "default": OUT}, jobs={"type": int, "default": job_count()})
     args = parser.parse_args(argv)
     if args.jobs < 1:
         raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")

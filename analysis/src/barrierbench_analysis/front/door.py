@@ -1,7 +1,5 @@
 """What ./bench starts: finds the verb, sees to what it needs, and runs it or becomes the program."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import sys

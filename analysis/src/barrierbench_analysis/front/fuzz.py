@@ -6,8 +6,6 @@ build/fuzz/corpus. A crash, a report of a sanitizer, a leak or an input that tak
 target; the input is kept. Exit code 1 when there was one, 2 for a wrong request.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -22,7 +20,7 @@ from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program import building
-from barrierbench_analysis.program.arguments import count_from_1, parser_of
+from barrierbench_analysis.program.arguments import count_from_1, options, parser_of
 
 BUILD = ROOT / "build" / "fuzz"
 CRASHES = ROOT / "results" / "runs" / "fuzz"
@@ -90,24 +88,13 @@ def run_target(
     before = {path.name for path in kept.iterdir()}
     words = _command(name, build, kept, seconds, runs, seed)
     start = time.monotonic()
-    done = subprocess.run(
-        words,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        check=False,
-        cwd=kept,
-        env={**os.environ, **SANITIZER},
-    )
+    streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    done = subprocess.run(words, **streams, check=False, cwd=kept, env={**os.environ, **SANITIZER})
     took = time.monotonic() - start
     log = done.stderr.decode(errors="replace")
     found = [str(path) for path in sorted(kept.iterdir()) if path.name not in before]
-    row = {
-        "target": name,
-        **parse_log(log),
-        "seconds": took,
-        "findings": found,
-        "failed": done.returncode != 0,
-    }
+    row = {"target": name, **parse_log(log), "seconds": took}
+    row |= {"findings": found, "failed": done.returncode != 0}
     if row["failed"]:
         write_whole(kept / "log.txt", log)
         row["findings"] = found or [str(kept / "log.txt")]
@@ -117,31 +104,17 @@ def run_target(
 
 def table(rows: list[dict]) -> str:
     head = ["target", "executions", "seconds", "executions/s", "coverage", "new coverage", "crashes"]
-    lines = [head]
+    lines = []
     for row in rows:
-        per_second = row["executions"] / row["seconds"] if row["seconds"] > 0 else 0
-        lines.append(
-            [
-                row["target"],
-                f"{row['executions']:,}",
-                f"{row['seconds']:.0f}",
-                f"{per_second:,.0f}",
-                *("-" if row[key] is None else str(row[key]) for key in ("coverage", "new_coverage")),
-                str(int(row["failed"])),
-            ]
-        )
-    lines.append(
-        [
-            "all",
-            f"{sum(r['executions'] for r in rows):,}",
-            f"{sum(r['seconds'] for r in rows):.0f}",
-            "",
-            "",
-            "",
-            str(sum(r["failed"] for r in rows)),
-        ]
+        rate = row["executions"] / row["seconds"] if row["seconds"] > 0 else 0
+        counts = [f"{row['executions']:,}", f"{row['seconds']:.0f}", f"{rate:,.0f}"]
+        seen = ["-" if row[key] is None else str(row[key]) for key in ("coverage", "new_coverage")]
+        lines.append([row["target"], *counts, *seen, str(int(row["failed"]))])
+    executions, seconds, failed = (
+        sum(row[key] for row in rows) for key in ("executions", "seconds", "failed")
     )
-    return "\n".join(aligned(head, lines[1:], set(range(1, len(head)))))
+    lines.append(["all", f"{executions:,}", f"{seconds:.0f}", "", "", "", str(failed)])
+    return "\n".join(aligned(head, lines, set(range(1, len(head)))))
 
 
 def prepare(names: list[str]) -> None:
@@ -158,19 +131,14 @@ def prepare(names: list[str]) -> None:
 @tells("dev fuzz")
 def main(argv: list[str]) -> int:
     parser = parser_of("dev fuzz", __doc__.split("\n\n", 1)[1])
-    parser.add_argument(
-        "targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)"
-    )
     length = parser.add_mutually_exclusive_group()
-    length.add_argument("--seconds", type=count_from_1, default=30, help="for each target (default 30)")
-    length.add_argument("--runs", type=count_from_1, help="executions of each target")
-    parser.add_argument(
-        "--seed",
-        type=count_from_1,
-        default=1,
-        help="of libFuzzer; the corpus of earlier runs matters too (default 1)",
-    )
-    parser.add_argument("--json", type=Path, help="file of everything that the table shows")
+    text = "--seconds: for each target (default 30)\n--runs: executions of each target"
+    options(length, text, seconds={"type": count_from_1, "default": 30}, runs=count_from_1)
+    text = f"""
+targets TARGET: of {", ".join(targets())} (default: all)
+--seed: of libFuzzer; the corpus of earlier runs matters too (default 1)
+--json: file of everything that the table shows"""
+    options(parser, text, targets={"nargs": "*"}, seed={"type": count_from_1, "default": 1}, json=Path)
     arguments = parser.parse_args(argv)
     names = chosen(arguments.targets)
     prepare(names)

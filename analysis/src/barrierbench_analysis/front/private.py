@@ -2,8 +2,6 @@
 variables of this machine.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 from collections.abc import Mapping

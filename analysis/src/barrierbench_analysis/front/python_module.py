@@ -1,7 +1,5 @@
 """The verb python: builds the Python module barrierbench in the release build and runs its tests."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -2,8 +2,6 @@
 earlier failure, and the summary names every skip.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess
@@ -18,8 +16,7 @@ from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.building import build, folder, job_count, say, setup
 
-from . import format as formatting
-from . import modules, private, python_module
+from . import private, python_module, tools
 
 OWN = ("--sanitize", "--browser")  # what ctest does not see
 NAMED_TESTS = 20  # C++ tests that the summary names
@@ -103,26 +100,16 @@ def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
 def python_tests(preset: str, summary: Summary) -> int:
     log = ROOT / "build/pytest.log"
     words = [
-        sys.executable,
         "-m",
         "pytest",
         "-c",
         str(ROOT / "pytest.ini"),
-        "-q",
-        "-rsfE",
-        "-p",
-        "no:cacheprovider",
-        "-n",
-        str(job_count()),
-        "--dist",
-        "loadfile",
-        str(ROOT / "tests"),
+        *"-q -rsfE -p no:cacheprovider --dist loadfile".split(),
     ]
-    code = _into(
-        log,
-        words,
-        env={**os.environ, "BARRIERBENCH_PROGRAM": str(folder(preset) / "experiments/barrierbench")},
-    )
+    words += ["-n", str(job_count()), str(ROOT / "tests")]
+    program = str(folder(preset) / "experiments/barrierbench")
+    environment = {**os.environ, "BARRIERBENCH_PROGRAM": program}
+    code = _into(log, [sys.executable, *words], env=environment)
     text = input_file.read_text(log)
     print(text, flush=True)
     summary.lines += [
@@ -164,8 +151,8 @@ def main(argv: list[str]) -> int:
     if preset == "release":
         build(preset, *python_module.MODULE)
     summary.lines.append(f"built    {preset} ({time.monotonic() - start:.0f} s)")
-    summary.step("clang-format", lambda: formatting.clang_format("--dry-run", "--Werror"))
-    summary.step("modules", lambda: modules.main([]))
+    summary.step("clang-format", lambda: tools.clang_format("--dry-run", "--Werror"))
+    summary.step("modules", lambda: tools.main(["dev modules"]))
     summary.step(f"C++ tests ({preset})", lambda: cpp_tests(preset, arguments, summary))
     if arguments:
         summary.lines.append("not run  Python tests (ctest arguments were given)")

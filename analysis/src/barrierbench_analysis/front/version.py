@@ -1,7 +1,5 @@
 """What ./bench --version says."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 

@@ -63,6 +63,25 @@ class Parser(argparse.ArgumentParser):
         return super().parse_known_args(args, namespace)
 
 
+def options(parser: argparse.ArgumentParser, text: str, **kinds) -> None:
+    """Arguments as lines `NAME METAVAR: help`, each with the lines below it that are indented. kinds: of each
+    by its name a type, what it may be (a tuple, list or range), or what add_argument takes; an option without
+    either, and without a metavar, is true where it is there.
+    """
+    for line in re.split(r"\n(?=\S)", text.strip()):
+        head, _, words = " ".join(line.split()).partition(": ")
+        name, *metavar = head.split()
+        kind = kinds.get(name.lstrip("-").replace("-", "_"), {})
+        if isinstance(kind, (tuple, list, range)):
+            kind = {"choices": kind}
+        how = kind if isinstance(kind, dict) else {"type": kind}
+        if metavar:
+            how = {"metavar": metavar[0] if len(metavar) == 1 else tuple(metavar)} | how
+        elif not how and name.startswith("-"):
+            how = {"action": "store_true"}
+        parser.add_argument(name, help=words or None, **how)
+
+
 def _kept_lines(text: str) -> str:
     return "\n".join(textwrap.fill(line, max(text_width(), 20)) for line in text.strip().splitlines())
 

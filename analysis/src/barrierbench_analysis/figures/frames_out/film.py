@@ -1,7 +1,5 @@
 """A film for a config out of whatever holds frames: ./bench data film SOURCE OUT."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +8,7 @@ import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import parser_of, positive_number
+from barrierbench_analysis.program.arguments import options, parser_of, positive_number
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import Trajectory, has_cells
 
@@ -87,15 +85,14 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "./bench data film dance.pc2 out/dance --frame-s 0.041666667",
         "./bench data film results/runs/drape out/cloth --body cloth",
     )
-    parser.add_argument("source", type=Path, metavar="SOURCE", help="a folder or file with frames, or a run")
-    parser.add_argument("out", type=Path, metavar="OUT", help="a folder that is not there yet")
-    parser.add_argument("--body", help="of a run: the body whose vertices are wanted")
-    parser.add_argument(
-        "--frame-s", type=positive_number, help="time (s) of a frame, where the source has no times"
-    )
-    parser.add_argument(
-        "--scale", type=positive_number, default=1.0, help="factor to m, as 0.001 of files in mm"
-    )
+    text = """
+source SOURCE: a folder or file with frames, or a run
+out OUT: a folder that is not there yet
+--body BODY: of a run: the body whose vertices are wanted
+--frame-s FRAME_S: time (s) of a frame, where the source has no times
+--scale SCALE: factor to m, as 0.001 of files in mm"""
+    scale = {"type": positive_number, "default": 1.0}
+    options(parser, text, source=Path, out=Path, frame_s=positive_number, scale=scale)
     return parser.parse_args(argv)
 
 

@@ -3,8 +3,6 @@
 Frames are numbered from 0, one after the other, in the order of times.csv.
 """
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Callable
 from pathlib import Path

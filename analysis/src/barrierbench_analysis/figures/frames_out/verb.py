@@ -1,7 +1,5 @@
 """Files of the frames of a run for other tools: ./bench data frames RUN OUT --format obj|ply|pc2|vtu."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import shutil
@@ -22,7 +20,13 @@ from barrierbench_analysis.figures.surfaces.sequence import (
 )
 from barrierbench_analysis.figures.surfaces.uv_binding import bound_by_uv
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import bicubic_argument, number_type, parser_of, positive_number
+from barrierbench_analysis.program.arguments import (
+    bicubic_argument,
+    number_type,
+    options,
+    parser_of,
+    positive_number,
+)
 from barrierbench_analysis.program.mesh_arrays import SUFFIXES, read_frame_file
 
 from .formats import WRITERS, write
@@ -140,45 +144,28 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "./bench data frames results/runs/duck out/duck --format pc2 --render-mesh fine.obj --body duck"
         " --smooth",
     )
-    parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
-    parser.add_argument("out", type=Path, metavar="OUT", help="a folder that is not there yet")
-    parser.add_argument("--format", choices=WRITERS, required=True, help="what other tool reads it")
     finer = parser.add_mutually_exclusive_group()
-    finer.add_argument(
-        "--render-mesh",
-        type=Path,
-        metavar="FILE",
-        help=f"a mesh of triangles ({', '.join(SUFFIXES)}) in the place that --body has at the start: it"
-        " follows the surface of the body and is written in its place",
-    )
-    finer.add_argument(
-        "--subdivide",
-        type=number_type(f"a number from 1 to {MOST_TIMES}", lambda value: 1 <= value <= MOST_TIMES, int),
-        metavar="N",
-        help=f"cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})",
-    )
+    text = f"""
+--render-mesh FILE: a mesh of triangles ({", ".join(SUFFIXES)}) in the place that --body has at the start: it
+    follows the surface of the body and is written in its place
+--subdivide N: cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})"""
+    times = number_type(f"a number from 1 to {MOST_TIMES}", lambda n: 1 <= n <= MOST_TIMES, int)
+    options(finer, text, render_mesh=Path, subdivide=times)
     bicubic_argument(finer)
-    parser.add_argument(
-        "--bind",
-        choices=("closest", "uv"),
-        default="closest",
-        help="with --render-mesh. closest (default): to the closest point of the surface. uv: to the point of"
-        " the surface that has the same texture coordinates; both are OBJ files with vt",
-    )
-    parser.add_argument("--body", metavar="NAME", help="the body that is drawn finer")
-    parser.add_argument(
-        "--smooth",
-        action="store_true",
-        help="normals between those of the vertices instead of those of the triangles; with --subdivide a"
-        " surface that is curved between the vertices, except at edges that are sharp at the start",
-    )
-    parser.add_argument(
-        "--reach",
-        type=positive_number,
-        metavar="M",
-        help="largest distance (m) of a vertex of --render-mesh from the surface (default:"
-        f" {REACH:g} of the diagonal of the body's box)",
-    )
+    text = f"""
+run RUN: folder of run.json
+out OUT: a folder that is not there yet
+--format: what other tool reads it
+--bind: with --render-mesh. closest (default): to the closest point of the surface. uv: to the point of the
+    surface that has the same texture coordinates; both are OBJ files with vt
+--body NAME: the body that is drawn finer
+--smooth: normals between those of the vertices instead of those of the triangles; with --subdivide a surface
+    that is curved between the vertices, except at edges that are sharp at the start
+--reach M: largest distance (m) of a vertex of --render-mesh from the surface (default: {REACH:g} of the
+    diagonal of the body's box)"""
+    bind = {"choices": ("closest", "uv"), "default": "closest"}
+    wanted = {"choices": WRITERS, "required": True}
+    options(parser, text, run=Path, out=Path, format=wanted, bind=bind, reach=positive_number)
     return parser.parse_args(argv)
 
 

@@ -1,8 +1,6 @@
 """All frames of a run in one GIF or MP4, each drawn as a still: ./bench draw still RUN --out
 FILE.gif|.mp4."""
 
-from __future__ import annotations
-
 import errno
 import importlib.util
 import io

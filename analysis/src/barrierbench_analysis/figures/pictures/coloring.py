@@ -1,7 +1,5 @@
 """Colours of a still: of vertices, triangles and bodies, and the legend or bar that says what they mean."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
@@ -15,16 +13,7 @@ from barrierbench_analysis.io.frames import Frame
 
 from .picture import OBSTACLE_COLOR
 
-BODY_COLORS = (
-    "#0072B2",
-    "#E69F00",
-    "#009E73",
-    "#CC79A7",
-    "#56B4E9",
-    "#D55E00",
-    "#F0E442",
-    "#999999",
-)  # Okabe-Ito
+BODY_COLORS = "#0072B2 #E69F00 #009E73 #CC79A7 #56B4E9 #D55E00 #F0E442 #999999".split()  # Okabe-Ito
 
 
 @dataclass(frozen=True)
@@ -94,20 +83,15 @@ def annotate(fig, scene: dict, frame: Frame, color: str, scale: Normalize | None
     """Legend of the bodies, or the bar of the colours."""
     axis = fig.axes[0]
     names = ", ".join(o["name"] for o in scene["obstacles"])
-    patches = [Patch(color=OBSTACLE_COLOR, label=f"{names} (analytic)")] if names else []
+    named = []
     if scale is None:
-        patches = [
-            Patch(color=BODY_COLORS[i % len(BODY_COLORS)], label=name)
-            for i, name in enumerate(scene["bodies"])
-        ] + patches
+        named = [(BODY_COLORS[i % len(BODY_COLORS)], name) for i, name in enumerate(scene["bodies"])]
     else:
-        coloring = COLORINGS[color]
-        fig.colorbar(
-            ScalarMappable(scale, coloring.colors), ax=axis, label=coloring.label, shrink=0.7, pad=0.01
-        )
-    shown = (
-        patches
-        if len(patches) <= 12
-        else patches[:11] + [Patch(color="none", label=f"and {len(patches) - 11} more")]
-    )
-    axis.legend(handles=shown, loc="upper left", frameon=False, fontsize=7)
+        bar = ScalarMappable(scale, COLORINGS[color].colors)
+        fig.colorbar(bar, ax=axis, label=COLORINGS[color].label, shrink=0.7, pad=0.01)
+    if names:
+        named.append((OBSTACLE_COLOR, f"{names} (analytic)"))
+    if len(named) > 12:
+        named[11:] = [("none", f"and {len(named) - 11} more")]
+    patches = [Patch(color=color, label=label) for color, label in named]
+    axis.legend(handles=patches, loc="upper left", frameon=False, fontsize=7)

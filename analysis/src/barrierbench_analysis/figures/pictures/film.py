@@ -4,26 +4,16 @@ What stays the same over the run (triangles, rods, bodies, obstacles) stands onc
 (scales.py), the page (page.py).
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.figures.surfaces.grid_splines import GridSplines
+from barrierbench_analysis.figures.surfaces import sequence
 from barrierbench_analysis.figures.surfaces.rasterizer import sharp_corners
+from barrierbench_analysis.figures.surfaces.sequence import Run
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.frames import (
-    Frame,
-    check_same_bodies,
-    frame_of,
-    frame_paths,
-    frames_of,
-    read_scene,
-    times_of,
-)
-from barrierbench_analysis.io.record_file import read_record
+from barrierbench_analysis.io.frames import Frame
 
 KINDS = ("plane", "sphere", "cylinder")  # obstacles that the page can draw
 
@@ -46,11 +36,6 @@ class Film:
     left_out: int  # frames of the run that are not in the film
 
 
-def bytes_of_a_frame(frame: Frame) -> int:
-    """What one frame adds to a film: position, gap and load of vertices, stretch of triangles."""
-    return 4 * (5 * len(frame.vertices) + len(frame.triangles))
-
-
 def kept(steps: list[int], every: int) -> list[int]:
     """Every so many frames, and always the first and the last one."""
     return [*steps[:-1:every], steps[-1]]
@@ -61,71 +46,37 @@ def _field(values: dict[str, np.ndarray], name: str, count: int) -> np.ndarray:
     return np.full(count, np.nan, np.float32) if found is None else np.asarray(found, np.float32)
 
 
-def _checked_scene(record: dict, run: Path) -> dict:
-    scene = read_scene(record, run)
-    for number, obstacle in enumerate(scene["obstacles"]):
+def opened(run: str | Path, bicubic: tuple[int, int] | None = None) -> Run:
+    """bicubic: points of bodies that are grids, along columns and rows. Errors: UserError, RecordError: no
+    run, no frames, a first frame that cannot be read, a body that is no grid, an obstacle of another kind.
+    """
+    found = sequence.opened(Path(run))
+    for number, obstacle in enumerate(found.scene["obstacles"]):
         if obstacle["kind"] not in KINDS:
             raise UserError(
-                f"{run}/frames/scene.json#/obstacles/{number}/kind: found {obstacle['kind']!r}; allowed:"
-                f" {', '.join(KINDS)}"
+                f"{found.folder}/frames/scene.json#/obstacles/{number}/kind: found {obstacle['kind']!r};"
+                f" allowed: {', '.join(KINDS)}"
             )
-    return scene
+    return sequence.on_splines(found, bicubic) if bicubic else found
 
 
-@dataclass
-class Source:
-    """A run whose frames are named but not read yet."""
-
-    run: Path
-    record: dict
-    steps: list[int]
-    frame_bytes: int
-    splines: GridSplines | None = None  # makes its frames finer
-
-
-def opened(run: str | Path, bicubic: tuple[int, int] | None = None) -> Source:
-    """bicubic: points of bodies that are grids, along columns and rows. Errors: UserError, RecordError: no
-    run, no frames, a first frame that cannot be read, a body that is no grid.
-    """
-    run = Path(run).parent if Path(run).name == "run.json" else Path(run)
-    if not (run / "run.json").is_file():
-        raise UserError(f"{run}: no run.json in this folder; allowed: the folder of a run")
-    record = read_record(run / "run.json")
-    steps = list(frame_paths(record, run))
-    start, splines = frame_of(record, run, steps[0]), None
-    if bicubic:
-        splines = GridSplines(record, read_scene(record, run), start, bicubic)
-        start = splines.finer(start)
-    return Source(run, record, steps, bytes_of_a_frame(start), splines)
-
-
-def filmed(source: Source, every: int = 1) -> Film:
+def filmed(source: Run, every: int = 1) -> Film:
     """Reads every so many frames. Errors: UserError, RecordError: a frame that is not the record's, is broken
     or has other bodies than the first one.
     """
-    run, record = source.run, source.record
-    steps, scene = kept(source.steps, every), _checked_scene(record, run)
-    paths, frames = frame_paths(record, run), []
-    if source.splines:
-        scene = source.splines.scene(scene)
-    for step, frame in zip(steps, frames_of(record, run, steps)):
-        frames.append(source.splines.finer(frame) if source.splines else frame)
-        check_same_bodies(frames[-1], frames[0], paths[step])
-    n, m = len(frames[0].vertices), len(frames[0].triangles)
+    numbers = kept(list(range(len(source.steps))), every)
+    steps, times = ([of[k] for k in numbers] for of in (source.steps, source.times_s))
+    frames = list(replace(source, steps=steps, times_s=times).frames())
+    n, m = len(source.start.vertices), len(source.start.triangles)
     return Film(
-        run=str(run),
-        labels=record["labels"],
-        outcome=record["status"]["outcome"],
-        scene=scene,
-        steps=steps,
-        times_s=times_of(record, steps, run),
-        start=frames[0],
+        str(source.folder), source.record["labels"], source.record["status"]["outcome"], source.scene, steps,
+        times_s=times, start=frames[0],
         positions=np.stack([frame.vertices.astype(np.float32) for frame in frames]),
         gap_rel=np.stack([_field(frame.of_vertices, "gap_rel", n) for frame in frames]),
         load_N=np.stack([_field(frame.of_vertices, "load_N", n) for frame in frames]),
         stretch=np.stack([_field(frame.of_triangles, "stretch", m) for frame in frames]),
         left_out=len(source.steps) - len(steps),
-    )
+    )  # fmt: skip
 
 
 def shaded_mesh(frame: Frame) -> tuple[np.ndarray, np.ndarray]:

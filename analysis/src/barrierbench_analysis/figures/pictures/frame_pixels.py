@@ -1,7 +1,5 @@
 """The pixels of a frame of a run: surfaces, rods and obstacles before a camera that holds them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,9 +20,11 @@ from barrierbench_analysis.io.frames import (
     without_bodies,
 )
 
+from . import vtk_picture
 from .coloring import colors_of_corners, palette
 from .picture import Surfaces, camera_of, picture
 
+RENDERERS = ("own", "vtk")
 THINNEST = 0.006  # radius of a rod for a metre of reach: thinner ones would have no pixels
 
 
@@ -39,6 +39,7 @@ class Look:
     bare: bool = False  # the picture alone, without title and legend
     hidden: tuple[str, ...] = ()  # bodies that are not drawn
     bicubic: tuple[int, int] | None = None  # points along columns and rows of grids; None: as they are
+    renderer: str = RENDERERS[0]
 
 
 def _assemble(
@@ -62,16 +63,8 @@ def _assemble(
         triangles.append(sides + len(frame.vertices))
         points.append(made)
         corners.append(np.broadcast_to(rgb, (len(sides), 3, 3)))
-    return (
-        Surfaces(
-            np.concatenate(points),
-            np.concatenate(triangles),
-            np.concatenate(corners),
-            0 if times else len(frame.triangles),
-            scene["obstacles"],
-        ),
-        scale,
-    )
+    lined, joined = 0 if times else len(frame.triangles), map(np.concatenate, (points, triangles, corners))
+    return Surfaces(*joined, lined, scene["obstacles"]), scale
 
 
 def _rod_radii(record: dict, scene: dict, frame: Frame) -> np.ndarray:
@@ -124,7 +117,8 @@ def drawn(
     surfaces, scale = _assemble(
         frame, scene, look.color, reach, radii, look.subdivide or look.bicubic is not None, top
     )
-    return picture(surfaces, camera, look.size, scene["planar"], camera.target, reach), scale
+    draw = picture if look.renderer == "own" else vtk_picture.picture
+    return draw(surfaces, camera, look.size, scene["planar"], camera.target, reach), scale
 
 
 def drawn_of_run(

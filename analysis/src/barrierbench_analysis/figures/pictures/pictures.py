@@ -4,8 +4,6 @@ captions.
 Exit codes: 0 all are made, 2 a run did not end ok, a picture is too large, or README has no place for them.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
@@ -16,7 +14,7 @@ from barrierbench_analysis.io.errors import UserError, passed_on, tells
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.program.start import started
 
 from .frame_pixels import Look
@@ -40,32 +38,20 @@ class Picture(NamedTuple):
     subdivide: int
 
 
+def _meshes(body: int, **counts: int) -> dict[str, object]:
+    return {f"/scene/bodies/{body}/mesh/n_{axis}": n for axis, n in counts.items()}
+
+
+SHEETS = {"/formulation/name": "cubic", "/scene/bodies/1/transform/angle_deg": 45, "/time/steps": 32}
+SHEETS |= _meshes(0, x=14, y=14) | _meshes(1, x=14, y=14)
+SOLIDS = _meshes(0, x=6, y=6, z=4) | _meshes(1, x=4, y=4, z=4)
+SOLIDS |= {f"/scene/bodies/{body}/material/solid_youngs_Pa": 15000 for body in (0, 1)}
+BALL, COILS = "two cloths that have fallen onto a ball", "a soft rod that has fallen in coils"
 PICTURES = (
+    Picture("picture_sheets", "sheets_on_ball", BALL, SHEETS, (-60, 22), 2),
+    Picture("picture_noodle", "noodle", COILS, {}, (-60, 30), 2),
     Picture(
-        "picture_sheets",
-        "sheets_on_ball",
-        "two cloths that have fallen onto a ball",
-        {
-            "/formulation/name": "cubic",
-            **{f"/scene/bodies/{body}/mesh/n_{axis}": 14 for body in (0, 1) for axis in "xy"},
-            "/scene/bodies/1/transform/angle_deg": 45,
-            "/time/steps": 32,
-        },
-        (-60, 22),
-        2,
-    ),
-    Picture("picture_noodle", "noodle", "a soft rod that has fallen in coils", {}, (-60, 30), 2),
-    Picture(
-        "picture_solids",
-        "solid_stack",
-        "two soft solids, one sinking into the other",
-        {
-            **{f"/scene/bodies/0/mesh/n_{axis}": n for axis, n in zip("xyz", (6, 6, 4))},
-            **{f"/scene/bodies/1/mesh/n_{axis}": 4 for axis in "xyz"},
-            **{f"/scene/bodies/{body}/material/solid_youngs_Pa": 15000 for body in (0, 1)},
-        },
-        (-25, 24),
-        1,
+        "picture_solids", "solid_stack", "two soft solids, one sinking into the other", SOLIDS, (-25, 24), 1
     ),
 )
 
@@ -124,13 +110,8 @@ def placed(text: str, row: str) -> str:
 @tells("draw pictures")
 def main(argv: list[str]) -> int:
     parser = parser_of("draw pictures", __doc__)
-    parser.add_argument(
-        "--runs",
-        type=Path,
-        default=RUNS,
-        metavar="DIR",
-        help="folder of the records (default: results/runs/pictures)",
-    )
+    text = "--runs DIR: folder of the records (default: results/runs/pictures)"
+    options(parser, text, runs={"type": Path, "default": RUNS})
     given = parser.parse_args(argv)
     page = ROOT / "README.md"
     placed(input_file.read_text(page), "")  # before minutes of work

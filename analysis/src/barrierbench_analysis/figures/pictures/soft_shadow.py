@@ -5,8 +5,6 @@ within the widest edge gives the width of the edge there, and the share of the l
 it.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """A still of one step of a run as a PNG with its title, its legend and its caption, without a display."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -22,7 +20,6 @@ from barrierbench_analysis.tables.run_rows import run_row
 
 from .coloring import COLORINGS, annotate
 from .frame_pixels import Look, drawn_of_run
-from .picture_file import picture_file
 
 BAR_IN = 1.2  # inches beside a picture that a bar of colours takes
 
@@ -108,7 +105,8 @@ def shown(look: Look) -> str:
             *look.bicubic
         )
     hidden = f"; not drawn: {', '.join(look.hidden)}" if look.hidden else ""
-    return f"Shown: {colored}; analytic obstacles grey, at their true size; {surface}{hidden}."
+    by = "; drawn by VTK" if look.renderer == "vtk" else ""
+    return f"Shown: {colored}; analytic obstacles grey, at their true size; {surface}{hidden}{by}."
 
 
 def render(
@@ -143,3 +141,24 @@ def render(
     text = f"{what}. {shown(look)} {_at_obstacles(frame, scene)}".rstrip()
     write_whole(path.with_suffix(".txt"), caption(text, [run_row(record)]))
     return path
+
+
+# --- picture file
+
+
+SUFFIX = ".png"
+MEANS = f"a file that ends in {SUFFIX} (it is added to a name without an ending), or a folder that is there"
+
+
+def picture_file(out: str | Path, name: str) -> Path:
+    """The very file that will be written. name: what it is called in a folder that is there. Errors:
+    UserError for another ending, since a picture of another kind would bear it.
+    """
+    out = Path(out)
+    if out.is_dir():
+        return out / name
+    if not out.suffix:
+        return out.with_name(out.name + SUFFIX)
+    if out.suffix.lower() != SUFFIX:
+        raise UserError(f"--out {out}: found the ending {out.suffix}; allowed: {MEANS}")
+    return out

@@ -4,8 +4,6 @@ Runs need frames (/output/frames_every). A run that a body has passed through an
 other: its outcome says so.
 """
 
-from __future__ import annotations
-
 import math
 import tempfile
 from pathlib import Path
@@ -19,12 +17,11 @@ from barrierbench_analysis.figures.titles import broken
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_figure
-from barrierbench_analysis.program.arguments import finite_number, parser_of
+from barrierbench_analysis.program.arguments import finite_number, options, parser_of
 from barrierbench_analysis.program.progress import counted
 
 from .frame_pixels import Look
-from .picture_file import MEANS, picture_file
-from .still_picture import render
+from .still_picture import MEANS, picture_file, render
 
 MOST = 60  # runs in one picture
 COLUMNS = 5  # that are as wide as a page
@@ -80,11 +77,15 @@ def sheet(stills: list[Still], out: Path, columns: int) -> Path:
 def main(argv: list[str]) -> int:
     """0: drawn; 2: a run without a record or frames."""
     parser = parser_of("draw sheet", __doc__)
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of run.json")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE.png", help=MEANS)
-    parser.add_argument("--columns", type=int, default=3, metavar="N", help="pictures in a row (default: 3)")
-    parser.add_argument("--view", type=finite_number, nargs=2, default=VIEW, metavar=("AZIMUTH", "ELEVATION"))
-    parser.add_argument("--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn")
+    text = f"""
+runs RUN: folders of run.json
+--out FILE.png: {MEANS}
+--columns N: pictures in a row (default: 3)
+--view AZIMUTH ELEVATION
+--hide BODY: bodies that are not drawn"""
+    kinds = {"runs": {"nargs": "+", "type": Path}, "out": {"type": Path, "required": True}}
+    kinds |= {"columns": {"type": int, "default": 3}, "hide": {"nargs": "+", "default": ()}}
+    options(parser, text, **kinds, view={"type": finite_number, "nargs": 2, "default": VIEW})
     given = parser.parse_args(argv)
     if given.columns < 1 or len(given.runs) > MOST:
         raise UserError(

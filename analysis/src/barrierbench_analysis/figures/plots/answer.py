@@ -1,7 +1,5 @@
 """The log over the cubic: condition numbers and iterations of every pair of runs, by place and theta."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -47,15 +45,7 @@ def _draw(axis, pairs: list[Pair], key: str, heights: list[float], looks: dict) 
         marker, colour = looks[pair.theta]
         face = colour if pair.is_comparable else "none"
         if (ratio := pair.ratios.get(key)) is not None:
-            axis.plot(
-                [ratio],
-                [height],
-                marker=marker,
-                color=colour,
-                markerfacecolor=face,
-                markersize=5,
-                linestyle="none",
-            )
+            axis.plot([ratio], [height], marker, color=colour, markerfacecolor=face, markersize=5)
 
 
 def _limits(axis, pairs: list[Pair], key: str) -> None:
@@ -109,8 +99,8 @@ def figure(rows: Iterable[Mapping], out: Path) -> list[Path]:
         axis.set_xlabel("log / cubic")
     if len(looks) > 1:
         handles = [
-            plt.Line2D([], [], marker=marker, color=colour, linestyle="none", label=_label(theta))
-            for theta, (marker, colour) in looks.items()
+            plt.Line2D([], [], marker=mark, color=colour, linestyle="none", label=_label(theta))
+            for theta, (mark, colour) in looks.items()
         ]
         fig.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)), frameon=False)
     numbers = pd.DataFrame(

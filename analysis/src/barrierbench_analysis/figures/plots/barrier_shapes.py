@@ -1,8 +1,6 @@
 """The shapes themselves: b, -b', b'' and rho(u), asked from the program, so that no formula is written
 twice."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path
@@ -112,19 +110,11 @@ def draw(shapes: dict[str, tuple[str, str]], plugins: list[str], width_in: float
     """The figure, and the numbers that are drawn. Errors: UserError for a shape that is not known."""
     u = np.concatenate([np.geomspace(1e-3, 0.05, 25, endpoint=False), np.linspace(0.05, 0.99, 60)])
     table = values(u, shapes, plugins)
-    fig, axes = plt.subplots(1, 4, figsize=(width_in, 2.3), layout="constrained")
+    fig, axes = plt.subplots(1, len(PANELS), figsize=(width_in, 2.3), layout="constrained")
     for name, rows in table.groupby("name", sort=False):
         look = style.look(str(name))
         for axis, (field, _) in zip(axes, PANELS):
-            axis.plot(
-                rows["u"],
-                rows[field],
-                color=look.color,
-                linestyle=look.dash,
-                marker=look.marker,
-                markevery=style.marks(len(rows), 6),
-                label=name,
-            )
+            axis.plot(rows["u"], rows[field], **look.line(markevery=style.marks(len(rows), 6), label=name))
     for axis, (_, title) in zip(axes, PANELS):
         axis.set(xlabel=r"$u=d/\hat d$", title=title, yscale="log")
     axes[3].set_xscale("log")

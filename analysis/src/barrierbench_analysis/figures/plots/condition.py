@@ -2,8 +2,6 @@
 a figure beside it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -62,33 +60,14 @@ class Group:
 
 
 def _estimates(records: Records, group: str, runs: pd.DataFrame) -> pd.DataFrame:
-    columns = [
-        "group",
-        "series",
-        "outcome",
-        "run",
-        "n",
-        "step",
-        "iteration",
-        "stage",
-        "scaling",
-        *FIELDS,
-        "status",
-        "at",
-    ]
+    columns = "group series outcome run n step iteration stage scaling".split() + [*FIELDS, "status", "at"]
     tables = []
     for scaling in SCALINGS:
         for _, row in runs.iterrows():
             found = condition_of(records, row["run"], scaling)
             if not found.empty:
-                tables.append(
-                    found.assign(
-                        at=places_in_time(records, row["run"], found),
-                        group=group,
-                        series=row["series"],
-                        outcome=row["outcome"],
-                    )
-                )
+                at = places_in_time(records, row["run"], found)
+                tables.append(found.assign(at=at, group=group, series=row["series"], outcome=row["outcome"]))
     return pd.concat(tables)[columns] if tables else pd.DataFrame(columns=columns)
 
 
@@ -99,14 +78,13 @@ def _chosen(group: Group, runs: pd.DataFrame, candidates: list[Panel]) -> tuple[
     only = [
         panel for panel in candidates if panel.scaling in set(bounds["scaling"]) - set(sure["scaling"])
     ]  # nothing there is equal to another panel's
-    kept, said = panels.choose(
-        [
-            panels.Panel(panel.name(), sure.loc[sure["scaling"] == panel.scaling, panel.field])
-            for panel in candidates
-            if panel not in only
-        ]
-    )
-    return [panel for panel in candidates if panel in only or panel.name() in kept], said
+    drawn = [
+        panels.Panel(panel.name(), sure.loc[sure["scaling"] == panel.scaling, panel.field])
+        for panel in candidates
+        if panel not in only
+    ]
+    kept, left_out = panels.choose(drawn)
+    return [panel for panel in candidates if panel in only or panel.name() in kept], left_out
 
 
 def _draw_panel(
@@ -123,25 +101,15 @@ def _draw_panel(
             last = int(
                 (sure["step"] < sure["step"].max()).sum()
             )  # a cycle is one of the iterations of a step
-            swinging = swings.draw(
-                axis, sure["at"].to_numpy(), sure[panel.field].to_numpy(), row, end_mark, last
-            )
-            bands += [(panel.name(), band) for band in swinging]
-            axis.plot(
-                bound["at"],
-                bound[panel.field],
-                linestyle="none",
-                marker="2",
-                markersize=4,
-                color=style.look(row["formulation"], int(row["variant"])).color,
-            )
+            at, values = sure["at"].to_numpy(), sure[panel.field].to_numpy()
+            bands += [(panel.name(), band) for band in swings.draw(axis, at, values, row, end_mark, last)]
+            axis.plot(bound["at"], bound[panel.field], "2", markersize=4, color=style.look_of(row).color)
     style.log_if_decades(axis)
     style.keep_span(axis)
     if not axis.lines:
         style.not_measured(axis)
-    axis.set_ylabel(LABELS[panel.field] + (UNITS[panel.scaling] if panel.field != "cond" else ""))
-    axis.set_title(SCALINGS[panel.scaling])
-    axis.set_xlabel("time (s)")
+    unit = UNITS[panel.scaling] if panel.field != "cond" else ""
+    axis.set(ylabel=LABELS[panel.field] + unit, title=SCALINGS[panel.scaling], xlabel="time (s)")
     return bands
 
 
@@ -155,23 +123,11 @@ def _draw(group: Group, runs: pd.DataFrame, shown: list[Panel], says: list[str],
     style.letter_panels(drawn)
     fig.suptitle(f"{group.name}: {group.what()}", fontsize=8)
     style.legend_below(fig, drawn[0], group.runs)
-    text = SHOWN.format(
-        group=group.name, what=group.what(), panels="; ".join(panel.name() for panel in shown)
-    )
+    names = "; ".join(panel.name() for panel in shown)
+    text = SHOWN.format(group=group.name, what=group.what(), panels=names)
+    words = [text, swings.sentence(bands, "{:.3g} s"), *says, style.marker_sentence(group.runs)]
     table = group.estimates[group.estimates["run"].isin(runs["run"])].drop(columns="at")
-    return style.save(
-        fig,
-        stem,
-        table,
-        " ".join(
-            [
-                text,
-                *filter(None, [swings.sentence(bands, "{:.3g} s"), *says]),
-                style.marker_sentence(group.runs),
-            ]
-        ),
-        runs,
-    )
+    return style.save(fig, stem, table, " ".join(filter(None, words)), runs)
 
 
 def figure(records: Records, group: str, out: Path, name: str = "") -> list[Path]:
@@ -185,22 +141,12 @@ def figure(records: Records, group: str, out: Path, name: str = "") -> list[Path
         main = part.suffix == ""
         kept, left_out = _chosen(found, some, [panel for panel in ALL if main or panel.field == "cond"])
         eigenvalues = [panel for panel in kept if panel.field != "cond"]
-        where = (
-            f"Eigenvalues: {name}{EIGENVALUES}."
-            if eigenvalues
-            else ""
-            if main
-            else "Their eigenvalues: in the CSV."
-        )
-        paths += _draw(
-            found,
-            some,
-            [panel for panel in kept if panel.field == "cond"],
-            [part.says, where, left_out],
-            out / f"{name}{part.suffix}",
-        )
+        where = f"Eigenvalues: {name}{EIGENVALUES}." if eigenvalues else ""
+        if not main and not eigenvalues:
+            where = "Their eigenvalues: in the CSV."
+        cond = [panel for panel in kept if panel.field == "cond"]
+        paths += _draw(found, some, cond, [part.says, where, left_out], out / f"{name}{part.suffix}")
         if eigenvalues:
-            paths += _draw(
-                found, some, eigenvalues, [f"Beside {name}.", left_out], out / f"{name}{EIGENVALUES}"
-            )
+            beside = [f"Beside {name}.", left_out]
+            paths += _draw(found, some, eigenvalues, beside, out / f"{name}{EIGENVALUES}")
     return paths

@@ -1,7 +1,5 @@
 """All figures and the table of a folder of runs."""
 
-from __future__ import annotations
-
 import itertools
 import multiprocessing
 import os
@@ -14,12 +12,16 @@ from barrierbench_analysis.program import processes
 from barrierbench_analysis.tables.records import Records, load
 from barrierbench_analysis.tables.table import as_text, summary_table
 
-from . import answer, barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
+from . import answer, barrier_shapes, condition, kappa_cycle, matrix_forms, over_time
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 LAYERED = ("demo_equal_gap", "demo_drape", "demo_long")  # five layers, each of which has to touch the next
 OF_A_GROUP = [  # each draws the runs of one sweep
-    module.figure for module in (condition, matrix_forms, iterations, gaps, kappa_cycle)
+    condition.figure,
+    matrix_forms.figure,
+    over_time.iterations,
+    over_time.gaps,
+    kappa_cycle.figure,
 ]
 _shared: list = []  # records and folder, in a process that draws
 

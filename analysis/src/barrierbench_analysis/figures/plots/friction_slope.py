@@ -1,12 +1,9 @@
 """A patch on a slope: acceleration and creep over the coefficient of friction, beside the closed form."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
@@ -14,9 +11,8 @@ from barrierbench_analysis.figures import style
 from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.tables.run import Run
 
-from .drawing import Drawing, common, formulations, outcomes
+from .drawing import Drawing, SweepRecords, common, each, outcomes
 from .resolution import weight
-from .subjects import SweepRecords
 
 SHOWN = (
     "A patch that is let go on a slope of {angle:.4g} degrees. Left: its mean acceleration over the"
@@ -68,54 +64,36 @@ def table(runs: list[tuple[pd.Series, Run]]) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _draw_each(axis, found: pd.DataFrame, column: str, lines: bool) -> None:
+def _draw_each(axis, found: pd.DataFrame, column: str, **how) -> None:
     """Hollow markers, larger for each formulation, so that equal numbers are seen round one another."""
-    for k, name in enumerate(formulations(found)):
-        mine, look = found[found["formulation"] == name].sort_values("mu"), style.look(name)
+    for k, name, mine, look in each(found, "mu"):
         good = mine.dropna(subset=column)
-        axis.plot(
-            good["mu"],
-            good[column],
-            linestyle=look.dash if lines else "none",
-            marker=look.marker,
-            markersize=2.5 + 2.2 * k,
-            color=look.color,
-            markerfacecolor="none",
-            label=name,
-        )
+        line = look.line(markersize=2.5 + 2.2 * k, markerfacecolor="none", label=name) | how
+        axis.plot(good["mu"], good[column], **line)
         style.failures_above(axis, mine.loc[mine["outcome"] != "ok", "mu"], look.color, k)
 
 
-def draw_sliding(axis, found: pd.DataFrame, slope: Slope) -> None:
-    across = np.linspace(found["mu"].min(), found["mu"].max(), 200)
-    axis.plot(across, slope.acceleration(across), color="#666666", linewidth=0.8, gid=style.REFERENCE)
-    axis.axvline(slope.tan, color="#666666", linestyle=":", linewidth=0.8, gid=style.REFERENCE)
-    _draw_each(axis, found, "acceleration_m_per_s2", lines=False)
-
-
-def draw_creep(axis, found: pd.DataFrame, slope: Slope) -> None:
-    axis.set_yscale("log")
-    sticking = found[(found["mu"] > slope.tan) & ~(found["speed_m_per_s"] <= 0)]
-    _draw_each(axis, sticking, "speed_m_per_s", lines=True)
-    axis.axhline(slope.eps_v, color="#666666", linewidth=0.8, gid=style.REFERENCE)
-
-
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
-    runs = subject.records.runs
-    pairs = [(row, subject.run(row)) for _, row in runs.iterrows()]
+    runs, pairs = subject.records.runs, subject.each_run()
     found = table(pairs)
     if found["acceleration_m_per_s2"].isna().all():
         raise drawing.nothing(f"no run ended ok ({outcomes(runs)})")
     slope = slope_of(pairs[0][1].config)
-    fig, axes = plt.subplots(1, 2, figsize=(drawing.width_in, 2.8), layout="constrained")
-    draw_sliding(axes[0], found, slope)
-    axes[0].set(xlabel=r"coefficient of friction $\mu$", ylabel="acceleration (m/s$^2$)")
+    fig, axes = drawing.panels(2, 2.8)
+    grey = {"color": "#666666", "linewidth": 0.8, "gid": style.REFERENCE}
+    across = np.linspace(found["mu"].min(), found["mu"].max(), 200)
+    axes[0].plot(across, slope.acceleration(across), **grey)
+    axes[0].axvline(slope.tan, linestyle=":", **grey)
+    _draw_each(axes[0], found, "acceleration_m_per_s2", linestyle="none")
+    axes[0].set(ylabel="acceleration (m/s$^2$)", title="sliding")
     if (found["mu"] > slope.tan).any():
-        draw_creep(axes[1], found, slope)
-    axes[1].set(xlabel=r"coefficient of friction $\mu$", ylabel="speed at the end (m/s)", title="creep")
-    axes[0].set_title("sliding")
-    style.letter_panels(axes)
-    style.legend_below(fig, axes[0])
+        axes[1].set_yscale("log")
+        sticking = found[(found["mu"] > slope.tan) & ~(found["speed_m_per_s"] <= 0)]
+        _draw_each(axes[1], sticking, "speed_m_per_s")
+        axes[1].axhline(slope.eps_v, **grey)
+    axes[1].set(ylabel="speed at the end (m/s)", title="creep")
+    for axis in axes:
+        axis.set_xlabel(r"coefficient of friction $\mu$")
     off = (found["acceleration_m_per_s2"] - found["closed_form_m_per_s2"]).abs()
     worst = found.loc[off.idxmax()]
     words = f"{off.max():.2g} m/s^2, {worst['formulation']} at mu {worst['mu']:g}"
@@ -123,18 +101,8 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
         f"{outcomes(runs)}; {found['mu'].nunique()} coefficients",
         "of one run each; acceleration: change of speed over the second half of the run over its time",
         "closed form of a rigid block",
-        common(
-            runs,
-            {
-                "scene": "scene",
-                "steps": "steps",
-                "dt_s": "dt (s)",
-                "d_hat_m": "d_hat (m)",
-                "matching_rule": "stiffness by",
-                "matching_theta": "theta",
-            },
-        )
+        common(runs, "scene steps dt_s d_hat_m matching_rule matching_theta")
         + f", eps_v {slope.eps_v:g} m/s",
     )
     shown = SHOWN.format(angle=math.degrees(math.atan(slope.tan)), worst=words)
-    return drawing.save(fig, found, shown, facts, runs)
+    return drawing.finish(fig, axes, found, shown, facts, runs=runs)

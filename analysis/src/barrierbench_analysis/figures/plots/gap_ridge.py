@@ -1,19 +1,15 @@
 """How the gaps of all vertices in contact are spread, frame after frame: a ridge a frame."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.figures.captions import Facts
 
-from .drawing import OF_RUNS, Drawing, common, formulations, outcomes
-from .subjects import SweepRecords
+from .drawing import Drawing, SweepRecords, common, each, outcomes
 
 BINS = 8  # a decade
 LEAST = -8.0  # log10 of the smallest gap / d_hat that has a bin of its own
@@ -83,32 +79,21 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     numbers, low = table(subject)
     if numbers.empty or not numbers["in_contact"].any():
         raise drawing.nothing("no frame of these runs has a vertex in contact")
-    names = formulations(numbers)
     spacing = float(np.diff(np.unique(numbers["t_s"])).min(initial=1.0))
-    fig, axes = plt.subplots(
-        1,
-        len(names),
-        figsize=(drawing.width_in, 3.2),
-        sharex=True,
-        sharey=True,
-        layout="constrained",
-        squeeze=False,
-    )
-    for axis, name in zip(axes[0], names):
-        mine = numbers[numbers["formulation"] == name]
+    fig, axes = drawing.panels(numbers["formulation"].nunique(), 3.2, sharex=True, sharey=True)
+    for axis, (_, name, mine, _) in zip(axes, each(numbers)):
         draw(axis, mine, spacing, numbers["share"].max())
         outcome = mine["outcome"].iloc[0]
         words = name.replace("_", "\n")
         axis.set_title(words if outcome == "ok" else f"{words}\n{outcome}", fontsize=6)
-        axis.set_xlabel(r"gap / $\hat d$")
-        axis.set_xlim(10**low, 1)
-    axes[0, 0].set_ylabel("time (s)")
+        axis.set(xlabel=r"gap / $\hat d$", xlim=(10**low, 1))
+    axes[0].set_ylabel("time (s)")
     style.letter_panels(axes)
     runs = subject.records.runs
     facts = Facts(
         f"{numbers.groupby(['formulation', 'step']).ngroups} frames of {outcomes(runs)}",
         "share of the vertices in contact of a frame",
         "d_hat, 1",
-        common(runs, OF_RUNS),
+        common(runs),
     )
     return drawing.save(fig, numbers, SHOWN.format(bins=BINS), facts, runs)

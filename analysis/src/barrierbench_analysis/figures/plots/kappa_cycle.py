@@ -2,8 +2,6 @@
 it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,11 +63,8 @@ def _cycling(trace: pd.DataFrame) -> list[tuple[int, Kappa]]:
     last = trace[trace["step"] == trace["step"].max()].tail(UNSETTLED_ITERATIONS)
     if len(last) < UNSETTLED_ITERATIONS:
         return []
-    return [
-        (int(last["step"].iloc[0]), kappa)
-        for kappa in KAPPAS
-        if (_column(last, kappa.change) > SETTLED).all()
-    ]
+    step = int(last["step"].iloc[0])
+    return [(step, kappa) for kappa in KAPPAS if (_column(last, kappa.change) > SETTLED).all()]
 
 
 @dataclass(frozen=True)
@@ -104,11 +99,9 @@ def _same_time(records: Records, run: str, step: int, runs: pd.DataFrame) -> dic
 
 def _time(records: Records, run: str, step: int) -> str:
     spans = step_spans(records, run)
-    return (
-        f"{spans['start'][step]:.3g} to {spans['start'][step] + spans['length'][step]:.3g} s"
-        if step in spans.index
-        else f"number {step}"
-    )
+    if step not in spans.index:
+        return f"number {step}"
+    return f"{spans['start'][step]:.3g} to {spans['start'][step] + spans['length'][step]:.3g} s"
 
 
 def _found(
@@ -139,12 +132,8 @@ def _finish(axes: np.ndarray, kappa: Kappa) -> None:
         axis.set(xscale="log", xlabel="Newton iteration of the step, counted from 1")
         style.keep_span(axis)
     ends = [line.get_ydata()[-1] for line in axes[0].lines if len(line.get_ydata())]
-    style.reference_line(
-        axes[0],
-        EDGE,
-        r"half of it: below, $\kappa = m/$gap$^2$ amplifies errors",
-        below=max(ends, default=0) > EDGE,
-    )
+    words, below = r"half of it: below, $\kappa = m/$gap$^2$ amplifies errors", max(ends, default=0) > EDGE
+    style.reference_line(axes[0], EDGE, words, below=below)
     style.reference_line(axes[1], SETTLED, "1%: settled below", ":")
     axes[0].set_ylabel(kappa.gap_label)
     axes[1].set_ylabel(rf"relative change of a $\kappa$, {kappa.whose}")
@@ -162,23 +151,15 @@ def _draw(
         part = part[part["step"] == step]
         gap, change = (_column(part, key).to_numpy(dtype=float) for key in (kappa.gap, kappa.change))
         iteration = part["iteration"].to_numpy()
-        bands += [(f"gap, {kappa.whose}", band) for band in swings.draw(axes[0], 1 + iteration, gap, row)]
-        bands += [
-            (f"change, {kappa.whose}", band)
-            for band in swings.draw(axes[1], 1 + iteration[change > 0], change[change > 0], row)
-        ]
-        numbers.append(
-            pd.DataFrame(
-                {
-                    "series": row["series"],
-                    "kappa": kappa.whose,
-                    "step": step,
-                    "iteration": iteration,
-                    "gap_min_iterates_rel": gap,
-                    "kappa_change_rel": change,
-                }
-            )
-        )
+        moved = change > 0
+        for axis, what, at, values in (
+            (axes[0], "gap", iteration, gap),
+            (axes[1], "change", iteration[moved], change[moved]),
+        ):
+            drawn = swings.draw(axis, 1 + at, values, row)
+            bands += [(f"{what}, {kappa.whose}", band) for band in drawn]
+        about = {"series": row["series"], "kappa": kappa.whose, "step": step, "iteration": iteration}
+        numbers.append(pd.DataFrame(about | {"gap_min_iterates_rel": gap, "kappa_change_rel": change}))
     _finish(axes, kappa)
     return pd.concat(numbers), bands
 
@@ -196,35 +177,18 @@ def _other_lengths(records: Records, cycle: Cycle, some: pd.DataFrame) -> list[s
     return found
 
 
-def _caption(
-    records: Records,
-    group: str,
-    cycles: list[Cycle],
-    some: pd.DataFrame,
-    bands: list[tuple[str, swings.Band]],
-) -> str:
-    letters = "abcd"
-    said = [
-        SHOWN.format(
-            group=group,
-            time=_time(records, c.run, c.step()),
-            whose=c.kappa.whose,
-            left=letters[2 * k],
-            right=letters[2 * k + 1],
-        )
-        for k, c in enumerate(cycles)
+def _caption(records: Records, group: str, cycles: list[Cycle], some: pd.DataFrame, bands: list) -> str:
+    """bands: what swings, by name."""
+    words = []
+    for left, right, c in zip("ac", "bd", cycles):
+        time = _time(records, c.run, c.step())
+        words.append(SHOWN.format(group=group, time=time, whose=c.kappa.whose, left=left, right=right))
+    others = dict.fromkeys(name for cycle in cycles for name in _other_lengths(records, cycle, some))
+    words += [
+        swings.sentence(bands, "iteration {:g}"),
+        OTHER.format(names=", ".join(others)) if others else "",
     ]
-    others = list(dict.fromkeys(name for cycle in cycles for name in _other_lengths(records, cycle, some)))
-    return " ".join(
-        filter(
-            None,
-            [
-                *said,
-                swings.sentence(bands, "iteration {:g}"),
-                OTHER.format(names=", ".join(others)) if others else "",
-            ],
-        )
-    )
+    return " ".join(filter(None, words))
 
 
 def figure(records: Records, group: str, out: Path) -> list[Path]:
@@ -232,21 +196,13 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     where both do.
     """
     runs = style.runs_of(records.runs, group)
-    traces = (
-        {row["run"]: records.trace[records.trace["run"] == row["run"]] for _, row in runs.iterrows()}
-        if not records.trace.empty
-        else {}
-    )
+    trace = records.trace
+    traces = {} if trace.empty else {run: trace[trace["run"] == run] for run in runs["run"]}
     cycles, cycling = _found(records, runs, traces)
     paths, name = [], f"kappa_cycle_{group}"
     for part, some in series.parts_of_runs(runs, name, cycling) if cycles else []:
-        fig, axes = plt.subplots(
-            len(cycles),
-            2,
-            figsize=(style.WIDE_IN, 2.6 * len(cycles) + 0.8),
-            layout="constrained",
-            squeeze=False,
-        )
+        size = (style.WIDE_IN, 2.6 * len(cycles) + 0.8)
+        fig, axes = plt.subplots(len(cycles), 2, figsize=size, layout="constrained", squeeze=False)
         drawn = [_draw(of_kappa, cycle, some, traces) for of_kappa, cycle in zip(axes, cycles)]
         style.letter_panels(axes.flatten())
         whose = " and ".join(cycle.kappa.whose for cycle in cycles)
@@ -254,13 +210,8 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
             f"{group}: kappa of the {whose}, refreshed in every iteration, does not settle", fontsize=8
         )
         style.legend_below(fig, axes[0, 0], runs)
-        said = _caption(records, group, cycles, some, [band for _, bands in drawn for band in bands])
+        text = _caption(records, group, cycles, some, [band for _, bands in drawn for band in bands])
         table = pd.concat([numbers for numbers, _ in drawn]).assign(group=group)
-        paths += style.save(
-            fig,
-            out / f"{name}{part.suffix}",
-            table,
-            " ".join(filter(None, [said, part.says, style.marker_sentence(runs)])),
-            some,
-        )
+        words = " ".join(filter(None, [text, part.says, style.marker_sentence(runs)]))
+        paths += style.save(fig, out / f"{name}{part.suffix}", table, words, some)
     return paths

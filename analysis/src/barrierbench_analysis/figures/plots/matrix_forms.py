@@ -2,8 +2,6 @@
 what is factorised.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -49,24 +47,10 @@ def _draw(records: Records, group: str, row: pd.Series, both: dict, out: Path) -
             part.loc[part["status"] == "singular", "cond"] = LARGEST_COND
             bound = part[part["status"].isin(BOUNDS) & part["cond"].notna()]
             part = part[part["status"] == "ok"]
-            axis.plot(
-                part["at"],
-                part["cond"],
-                dash,
-                color=color if form == "clamped" else "#000000",
-                marker="o",
-                markersize=2.5,
-                linewidth=0.9,
-                label=name,
-            )
-            axis.plot(
-                bound["at"],
-                bound["cond"],
-                "2",
-                color=color if form == "clamped" else "#000000",
-                markersize=5,
-                markeredgewidth=0.9,
-            )
+            own = color if form == "clamped" else "#000000"
+            line = {"color": own, "marker": "o", "markersize": 2.5, "linewidth": 0.9}
+            axis.plot(part["at"], part["cond"], dash, **line, label=name)
+            axis.plot(bound["at"], bound["cond"], "2", color=own, markersize=5, markeredgewidth=0.9)
             numbers.append(part)
         axis.set(xlabel="time (s)", ylabel="condition number")
         axis.set_title(title)
@@ -74,10 +58,9 @@ def _draw(records: Records, group: str, row: pd.Series, both: dict, out: Path) -
     fig.suptitle(f"{group}, run {row['series']}: the Newton matrix, clamped and as it was solved", fontsize=8)
     style.letter_panels(axes)
     style.legend_below(fig, axes[0])
-    table = pd.concat(numbers)[
-        ["run", "matrix", "scaling", "step", "iteration", "cond", "lambda_min", "lambda_max"]
-    ]
-    runs = records.runs[records.runs["run"] == row["run"]]
-    return style.save(
-        fig, out / f"matrix_forms_{group}", table, SHOWN.format(group=group, series=row["series"]), runs
+    columns = "run matrix scaling step iteration cond lambda_min lambda_max".split()
+    runs, shown = (
+        records.runs[records.runs["run"] == row["run"]],
+        SHOWN.format(group=group, series=row["series"]),
     )
+    return style.save(fig, out / f"matrix_forms_{group}", pd.concat(numbers)[columns], shown, runs)

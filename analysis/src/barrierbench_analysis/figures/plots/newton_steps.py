@@ -2,8 +2,6 @@
 --out` writes.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -82,20 +80,13 @@ def read_steps(path: Path) -> dict:
 
 def numbers(data: dict) -> pd.DataFrame:
     """One row an iteration."""
-    rows = []
-    for trial in data["trials"]:
-        for k, dx in enumerate(trial["dx_inf_m"]):
-            rows.append(
-                {
-                    "step": trial["step"],
-                    "hessian": trial["hessian"],
-                    "iteration": k + 1,
-                    "dx_inf_m": dx,
-                    "status": trial["status"],
-                    "tolerance_m": trial["tolerance_m"],
-                }
-            )
-    return pd.DataFrame(rows)
+    columns = ["step", "hessian", "iteration", "dx_inf_m", "status", "tolerance_m"]
+    rows = [
+        {**trial, "iteration": k, "dx_inf_m": dx}
+        for trial in data["trials"]
+        for k, dx in enumerate(trial["dx_inf_m"], 1)
+    ]
+    return pd.DataFrame(rows, columns=columns)
 
 
 def jumps(table: pd.DataFrame) -> pd.DataFrame:
@@ -150,16 +141,8 @@ def figure(data: dict, stem: Path) -> list[Path]:
             if part["status"].iloc[0] != "converged":
                 axis.plot(part["iteration"].iloc[-1:], part["dx_inf_m"].iloc[-1:], "x", color=color)
             ring = found[(found["step"] == step) & (found["hessian"] == hessian)]
-            axis.plot(
-                ring["iteration"],
-                ring["dx_inf_m"],
-                linestyle="none",
-                marker="o",
-                markersize=7,
-                markerfacecolor="none",
-                color=color,
-                gid=RING,
-            )
+            hollow = {"markersize": 7, "markerfacecolor": "none", "color": color, "gid": RING}
+            axis.plot(ring["iteration"], ring["dx_inf_m"], "o", **hollow)
         axis.set(xscale="log", yscale="log", xlabel=f"Newton iteration of step {step}, counted from 1")
     for axis in axes[0]:  # the axes share y: its limits are set when all lines are there
         style.reference_line(axis, table["tolerance_m"].iloc[0], "tolerance", "--")

@@ -1,19 +1,16 @@
 """What a run spends its time on: stacked bars of phases."""
 
-from __future__ import annotations
-
+import itertools
 from pathlib import Path
 
-import matplotlib.pyplot as plt
+import numpy as np
 import pandas as pd
 
 from barrierbench_analysis.figures.captions import Facts
 
-from .drawing import Drawing, common, formulations, outcomes
-from .subjects import SweepRecords
+from .drawing import Drawing, SweepRecords, common, formulations, outcomes
 
 OPTIONS = {"level": "/scene/n", "per": "newton_iterations"}
-SLICE = {"scene": "scene", "scene_free_dofs": "unknowns", "steps": "steps"}
 PHASES = {  # name -> columns of a record without `time_` and `_s`, colour (Okabe-Ito), hatch
     "elasticity": (("elastic",), "#56B4E9", ""),
     "strain limit": (("strain_limit", "strain_bound"), "#F0E442", ""),
@@ -33,17 +30,14 @@ SHOWN = (
 )
 
 
-def _seconds(value) -> float:
-    """0 where a run has no such phase."""
-    return 0.0 if pd.isna(value) else float(value)
-
-
 def table(runs: pd.DataFrame) -> pd.DataFrame:
     """A row a run and phase: ms a Newton iteration."""
     rows = []
     for _, row in runs.iterrows():
         for phase, (columns, _, _) in PHASES.items():
-            seconds = sum(_seconds(row[f"time_{column}_s"]) for column in columns)
+            seconds = pd.to_numeric(
+                row[[f"time_{column}_s" for column in columns]]
+            ).sum()  # nan: no such phase
             rows.append(
                 {"formulation": row["formulation"], "solver": row["linear_solver"], "phase": phase}
                 | {"outcome": row["outcome"], "unknowns": row["scene_free_dofs"], "seconds": seconds}
@@ -53,29 +47,17 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(axis, found: pd.DataFrame) -> None:
-    bars = [
-        (name, solver)
-        for name in formulations(found)
-        for solver in dict.fromkeys(found["solver"])
-        if ((found["formulation"] == name) & (found["solver"] == solver)).any()
-    ]
-    left = [0.0] * len(bars)
+    solvers = list(dict.fromkeys(found["solver"]))
+    keys = ["formulation", "solver"]
+    there = set(found[keys].itertuples(index=False, name=None))
+    bars = [bar for bar in itertools.product(formulations(found), solvers) if bar in there]
+    left = np.zeros(len(bars))
     for phase, (_, color, hatch) in PHASES.items():
-        of = found[found["phase"] == phase].set_index(["formulation", "solver"])["ms_an_iteration"]
-        widths = [float(of.loc[bar]) for bar in bars]
-        axis.barh(
-            range(len(bars)),
-            widths,
-            left=left,
-            color=color,
-            hatch=hatch,
-            edgecolor="white",
-            linewidth=0.3,
-            height=0.75,
-            label=phase,
-        )
-        left = [a + b for a, b in zip(left, widths)]
-    outcome = found.drop_duplicates(["formulation", "solver"]).set_index(["formulation", "solver"])["outcome"]
+        widths = found[found["phase"] == phase].set_index(keys)["ms_an_iteration"].loc[bars].to_numpy(float)
+        how = {"color": color, "hatch": hatch, "edgecolor": "white", "linewidth": 0.3, "height": 0.75}
+        axis.barh(range(len(bars)), widths, left=left, label=phase, **how)
+        left = left + widths
+    outcome = found.drop_duplicates(keys).set_index(keys)["outcome"]
     for k, bar in enumerate(bars):
         if outcome.loc[bar] != "ok":
             axis.text(left[k], k, f"  {outcome.loc[bar]}", va="center", fontsize=6)
@@ -94,15 +76,14 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     if largest.empty:
         raise drawing.nothing(f"no run with {level} {runs[level].max():g} was timed (/passes/time)")
     numbers = table(largest)
-    fig, axis = plt.subplots(figsize=(drawing.width_in, 0.9 + 0.24 * largest.shape[0]), layout="constrained")
+    fig, (axis,) = drawing.panels(1, 0.9 + 0.24 * largest.shape[0])
     draw(axis, numbers)
     axis.set_xlabel("ms a Newton iteration")
-    handles, labels = axis.get_legend_handles_labels()
-    fig.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
+    fig.legend(*axis.get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False)
     facts = Facts(
         f"1 repetition of {outcomes(largest)}",
         "sum of a phase over the run / its Newton iterations",
         "none",
-        f"{level} {largest[level].iloc[0]:g}, {common(largest, SLICE)}",
+        f"{level} {largest[level].iloc[0]:g}, {common(largest, 'scene scene_free_dofs steps')}",
     )
     return drawing.save(fig, numbers, SHOWN, facts, largest)

@@ -1,19 +1,15 @@
 """Float against double, from the origin outwards: how far the end of a run is from that in double."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.figures.captions import Facts
 
-from .drawing import OF_RUNS, Drawing, common, formulations, outcomes
-from .subjects import SweepRecords
+from .drawing import OF_RUNS, Drawing, SweepRecords, common, each, failed_words, outcomes
 
 REFERENCE = "double"
 DASHES = {"float": "-", "mixed": "--"}
@@ -71,17 +67,16 @@ def _numbers(place) -> list[float]:
 def draw(axis, found: pd.DataFrame, column: str) -> None:
     """Places side by side, since the first is 0."""
     places = sorted(found["offset_m"].unique())
-    for name in formulations(found):
+    for k, name, of, look in each(found, "offset_m"):
         for precision, dash in DASHES.items():
-            mine = found[(found["formulation"] == name) & (found["precision"] == precision)]
-            mine, look = mine.sort_values("offset_m"), style.look(name)
+            mine = of[of["precision"] == precision]
             if mine.empty:
                 continue
             at = [places.index(offset) for offset in mine["offset_m"]]
-            label = name if precision == mine["precision"].iloc[0] == "float" else f"{name}, {precision}"
-            axis.plot(at, mine[column], color=look.color, linestyle=dash, marker=look.marker, label=label)
-            failed = [k for k, outcome in zip(at, mine["outcome"]) if outcome != "ok"]
-            style.failures_above(axis, failed, look.color, formulations(found).index(name))
+            label = name if precision == "float" else f"{name}, {precision}"
+            axis.plot(at, mine[column], **look.line(linestyle=dash, label=label))
+            failed = [place for place, outcome in zip(at, mine["outcome"]) if outcome != "ok"]
+            style.failures_above(axis, failed, look.color, k)
     axis.set(yscale="log", xlabel="distance from the origin (m)")
     axis.set_xticks(range(len(places)), [f"{place:g}" for place in places])
 
@@ -93,27 +88,23 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     found = table(subject, offset)
     if found.empty or found["error"].isna().all():
         raise drawing.nothing(f"no run beside one in double, both with a last frame ({outcomes(runs)})")
-    fig, axes = plt.subplots(1, 2, figsize=(drawing.width_in, 2.8), layout="constrained")
-    draw(axes[0], found, "error")
-    draw(axes[1], found, "gap_ulps")
+    fig, axes = drawing.panels(2, 2.8)
+    for axis, column in zip(axes, ("error", "gap_ulps")):
+        draw(axis, found, column)
     ulps = found.drop_duplicates("offset_m").sort_values("offset_m")
-    axes[0].plot(
-        range(len(ulps)), ulps["ulp"] / ulps["extent_m"], color="#888888", linewidth=0.8, gid=style.REFERENCE
-    )
+    half, grey = ulps["ulp"] / ulps["extent_m"], {"color": "#888888", "linewidth": 0.8}
+    axes[0].plot(range(len(ulps)), half, **grey, gid=style.REFERENCE)
     style.reference_line(axes[1], FEW_ULPS, f"{FEW_ULPS:g} ulps")
     axes[0].set(ylabel="distance from double / size")
     axes[1].set(ylabel="smallest gap (ulps)")
     for axis in axes:
         low, high = axis.get_ylim()
         axis.set_ylim(low, high * (high / low) ** 0.2)
-    style.letter_panels(axes)
-    style.legend_below(fig, axes[0])
-    failed = found[found["outcome"] != "ok"]
-    words = ", ".join(f"{n} {word}" for word, n in failed["outcome"].value_counts().sort_index().items())
     facts = Facts(
         outcomes(runs),
         "largest distance of a vertex; smallest gap",
         "the run in double at the same place",
-        common(runs, {**OF_RUNS, "steps": "steps"}),
+        common(runs, f"{OF_RUNS} steps"),
     )
-    return drawing.save(fig, found, SHOWN.format(few=FEW_ULPS, failed=words or "none"), facts, runs)
+    shown = SHOWN.format(few=FEW_ULPS, failed=failed_words(found) or "none")
+    return drawing.finish(fig, axes, found, shown, facts, runs=runs)

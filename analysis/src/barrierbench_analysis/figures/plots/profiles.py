@@ -2,8 +2,6 @@
 and Wild 2009), and ratios of costs pair by pair.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -16,8 +14,7 @@ from barrierbench_analysis.tables.robustness import Trial, profile
 from barrierbench_analysis.tables.statistics import spread
 from barrierbench_analysis.tables.words import reservations
 
-from .drawing import Drawing, common, formulations, outcomes
-from .subjects import SweepRecords
+from .drawing import Drawing, SweepRecords, common, formulations, outcomes
 
 COSTS = {
     "newton_iterations": "Newton iterations",
@@ -100,19 +97,10 @@ def pairwise(found: pd.DataFrame) -> pd.DataFrame:
 
 def draw_steps(axis, points: list[tuple[float, float]], formulation: str, most: float) -> None:
     """A staircase from the first solved problem on to the edge of the panel."""
-    look = style.look(formulation)
     label = formulation if points else f"{formulation} (solves none)"
-    x, y = [p[0] for p in points], [p[1] for p in points]
-    axis.plot(
-        [*x, most] if x else [],
-        [*y, y[-1]] if y else [],
-        color=look.color,
-        linestyle=look.dash,
-        drawstyle="steps-post",
-        marker=look.marker,
-        markevery=style.marks(len(x) + 1, 6),
-        label=label,
-    )
+    line = style.look(formulation).line(markevery=style.marks(len(points) + 1, 6), label=label)
+    corners = [*points, (most, points[-1][1])] if points else []
+    axis.plot(*zip(*corners) if corners else ([], []), drawstyle="steps-post", **line)
 
 
 def draw_pairs(axis, pairs: pd.DataFrame) -> None:
@@ -124,18 +112,11 @@ def draw_pairs(axis, pairs: pd.DataFrame) -> None:
     limit = max(np.nanmax(np.abs(shade), initial=0.0), math.log(1.1))
     axis.imshow(shade, cmap="cividis", vmin=-limit, vmax=limit, aspect="auto")
     for (i, j), ratio in np.ndenumerate(table.to_numpy()):
-        axis.text(
-            j,
-            i,
-            f"{ratio:.2f}\n{counts.iat[i, j]}" if counts.iat[i, j] else "none",
-            ha="center",
-            va="center",
-            fontsize=5.5,
-            color="black" if shade[i, j] > 0 else "white",
-        )
-    short = [name.replace("_", "\n") for name in names]
-    axis.set_xticks(range(len(names)), short, fontsize=5)
-    axis.set_yticks(range(len(names)), short, fontsize=5)
+        words = f"{ratio:.2f}\n{counts.iat[i, j]}" if counts.iat[i, j] else "none"
+        color = "black" if shade[i, j] > 0 else "white"
+        axis.text(j, i, words, ha="center", va="center", fontsize=5.5, color=color)
+    for ticks in (axis.set_xticks, axis.set_yticks):
+        ticks(range(len(names)), [name.replace("_", "\n") for name in names], fontsize=5)
     axis.grid(False)
 
 
@@ -162,14 +143,14 @@ def _facts(runs: pd.DataFrame, left_out: str, found: pd.DataFrame, statistic: st
         statistic,
         "the cheapest formulation of each problem" if "ratio" in statistic else "none",
         f"problems {', '.join(dict.fromkeys(found['problem']))};"
-        f" {common(runs, {'scene_free_dofs': 'unknowns'})};"
+        f" {common(runs, 'scene_free_dofs')};"
         f" {SOLVED.format(apart=int(found['apart'].sum()), solved=int(found['solved'].sum()))}"
         + (f"; {len(held)} solved runs are ok with a reservation: {reserved}" if held else "")
         + (f"; {left_out}" if left_out else ""),
     )
 
 
-def _draw(subject: SweepRecords, drawing: Drawing, points_of, more: int):
+def _draw(subject: SweepRecords, drawing: Drawing, points_of, more: int, axis_words: str):
     """Figure, its panels, the runs and what is left out of them, the trials of every cost, and the numbers
     that were drawn.
     """
@@ -185,33 +166,25 @@ def _draw(subject: SweepRecords, drawing: Drawing, points_of, more: int):
         for name, points in lines.items():
             draw_steps(axis, points, name, most)
             rows += [{"cost": cost, "formulation": name, "at": x, "share": y} for x, y in points]
-        axis.set(xscale="log", ylim=(0, 1.04))
+        axis.set(xscale="log", ylim=(0, 1.04), xlabel=axis_words.format(COSTS[cost]))
     axes[0].set_ylabel("share of problems")
-    style.letter_panels(axes)
     return fig, axes, (runs, left_out), of, pd.DataFrame(rows)
 
 
 def performance_profile(subject: SweepRecords, drawing: Drawing) -> list[Path]:
-    fig, axes, runs, of, numbers = _draw(subject, drawing, performance, 1)
-    costs = [COSTS[cost] for cost in of]
-    for axis, cost in zip(axes, costs):
-        axis.set_xlabel(f"{cost} / least")
-    first = next(iter(of.values()))
+    fig, axes, runs, of, numbers = _draw(subject, drawing, performance, 1, "{} / least")
+    costs, (cost, first) = [COSTS[cost] for cost in of], next(iter(of.items()))
     pairs = pairwise(first)
     draw_pairs(axes[-1], pairs)
     axes[-1].set_xlabel(f"{costs[0]}: row / column")
-    style.legend_below(fig, axes[0])
     statistic = "ratio to the least cost of a problem; cells: geometric mean of the ratio, and n"
-    numbers = pd.concat([numbers, pairs.assign(cost=next(iter(of)))], ignore_index=True)
-    shown = PERFORMANCE.format(costs=", ".join(costs))
-    return drawing.save(fig, numbers, shown, _facts(*runs, first, statistic), runs[0])
+    numbers = pd.concat([numbers, pairs.assign(cost=cost)], ignore_index=True)
+    shown, facts = PERFORMANCE.format(costs=", ".join(costs)), _facts(*runs, first, statistic)
+    return drawing.finish(fig, axes, numbers, shown, facts, runs=runs[0])
 
 
 def data_profile(subject: SweepRecords, drawing: Drawing) -> list[Path]:
-    fig, axes, runs, of, numbers = _draw(subject, drawing, data, 0)
-    costs = [COSTS[cost] for cost in of]
-    for axis, cost in zip(axes, costs):
-        axis.set_xlabel(f"budget: {cost}")
-    style.legend_below(fig, axes[0])
+    fig, axes, runs, of, numbers = _draw(subject, drawing, data, 0, "budget: {}")
     facts = _facts(*runs, next(iter(of.values())), "share of all problems, failed ones among them")
-    return drawing.save(fig, numbers, DATA.format(costs=", ".join(costs)), facts, runs[0])
+    shown = DATA.format(costs=", ".join(COSTS[cost] for cost in of))
+    return drawing.finish(fig, axes, numbers, shown, facts, runs=runs[0])

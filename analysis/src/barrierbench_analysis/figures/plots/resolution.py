@@ -1,11 +1,8 @@
 """Error against mesh size: how far the centre of mass is from where it is on the finest mesh."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
@@ -14,8 +11,7 @@ from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.tables.run import Run
 
 from . import slopes
-from .drawing import Drawing, common, formulations, outcomes
-from .subjects import SweepRecords
+from .drawing import Drawing, SweepRecords, common, outcomes
 
 SHOWN = (
     "Height of the centre of mass at the end of the run (gravity_J of its last step over m g): distance from"
@@ -29,14 +25,9 @@ SHOWN = (
 
 def weight(config: dict) -> float:
     """m g (N) of a scene of one shell whose mesh is a grid. Errors: KeyError, IndexError for another."""
-    body = config["scene"]["bodies"][0]
-    mesh = body["mesh"]
-    area = mesh["size_x_m"] * mesh["size_y_m"]
-    return (
-        body["material"]["density_kg_per_m2"]
-        * area
-        * float(np.linalg.norm(config["scene"]["gravity_m_per_s2"]))
-    )
+    body, gravity = config["scene"]["bodies"][0], config["scene"]["gravity_m_per_s2"]
+    area = body["mesh"]["size_x_m"] * body["mesh"]["size_y_m"]
+    return body["material"]["density_kg_per_m2"] * area * float(np.linalg.norm(gravity))
 
 
 def cell_m(config: dict) -> float:
@@ -86,48 +77,25 @@ def heights(runs: list[tuple[pd.Series, Run]]) -> Heights:
     return Heights(pd.DataFrame(rows))
 
 
-def draw(axis, found: pd.DataFrame, column: str) -> dict[str, float | None]:
-    of = {}
-    for row, name in enumerate(formulations(found)):
-        mine = found[found["formulation"] == name].sort_values("cell_m")
-        good = mine[mine[column] > 0]
-        failed = mine.loc[mine["outcome"] != "ok", "cell_m"]
-        slopes.draw(axis, good["cell_m"], good[column], name, failed, row)
-        of[name] = slopes.slope(good["cell_m"], good[column])
-    axis.set(xscale="log", yscale="log", xlabel="side of a cell (m)")
-    style.keep_span(axis)
-    return of
-
-
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     runs = subject.records.runs
-    found, band = heights([(row, subject.run(row)) for _, row in runs.iterrows()]).errors()
+    found, band = heights(subject.each_run()).errors()
     if not (found["own"] > 0).any():
         raise drawing.nothing(f"no run beside one on the finest mesh ({outcomes(runs)})")
-    fig, axes = plt.subplots(1, 2, figsize=(drawing.width_in, 2.8), layout="constrained")
-    of = draw(axes[0], found, "own")
-    draw(axes[1], found, "common")
-    slopes.note(axes[0], of)
+    fig, axes = drawing.panels(2, 2.8)
+    slopes.note(axes[0], slopes.draw(axes[0], found, "cell_m", "own"))
+    slopes.draw(axes[1], found, "cell_m", "common")
     low, high = axes[1].get_ylim()
     axes[1].axhspan(low / 10, band, color="#bbbbbb", alpha=0.5, linewidth=0, zorder=0, gid=style.REFERENCE)
     axes[1].set_ylim(min(low, band / 3), high)
     axes[0].set(ylabel="error of the height / size", title="reference: own finest mesh")
     axes[1].set_title("reference: middle of the finest")
-    style.letter_panels(axes)
-    style.legend_below(fig, axes[0])
+    for axis in axes:
+        axis.set_xlabel("side of a cell (m)")
     facts = Facts(
         f"{outcomes(runs)}; {found['cell_m'].nunique()} meshes",
         "absolute difference at the end of the run; slopes: least squares of logarithms",
         f"finest mesh, cells of {found['cell_m'].min():.4g} m; band {band:.2g}",
-        common(
-            runs,
-            {
-                "scene": "scene",
-                "scene_free_dofs": "unknowns",
-                "steps": "steps",
-                "dt_s": "dt (s)",
-                "d_hat_m": "d_hat (m)",
-            },
-        ),
+        common(runs, "scene scene_free_dofs steps dt_s d_hat_m"),
     )
-    return drawing.save(fig, found.assign(band=band), SHOWN, facts, runs)
+    return drawing.finish(fig, axes, found.assign(band=band), SHOWN, facts, runs=runs)

@@ -1,18 +1,14 @@
 """Time and iterations of conjugate gradients against the number of unknowns."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
-from barrierbench_analysis.figures import panels, style
+from barrierbench_analysis.figures import panels
 from barrierbench_analysis.figures.captions import Facts
 
 from . import slopes
-from .drawing import Drawing, common, formulations, outcomes
-from .subjects import SweepRecords
+from .drawing import Drawing, SweepRecords, common, outcomes
 
 PANELS = (  # solver, column of table(), label
     ("cholmod", "ms_an_iteration", "ms a Newton iteration, direct"),
@@ -51,23 +47,6 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
     ).reset_index(drop=True)
 
 
-def draw(axis, found: pd.DataFrame, column: str) -> dict[str, float | None]:
-    """The lines of one solver; their slopes."""
-    found_slopes = {}
-    for row, name in enumerate(formulations(found)):
-        mine = found[found["formulation"] == name].sort_values("unknowns")
-        good = mine[np.isfinite(mine[column]) & (mine[column] > 0)]
-        failed = mine.loc[mine["outcome"] != "ok", "unknowns"]
-        slopes.draw(axis, good["unknowns"], good[column], name, failed, row)
-        found_slopes[name] = slopes.slope(good["unknowns"], good[column])
-    axis.set(xscale="log", yscale="log")
-    style.keep_span(axis)
-    low, high = axis.get_ylim()
-    axis.set_ylim(low, high * (high / low) ** 0.45)  # room for the slopes
-    slopes.note(axis, found_slopes)
-    return found_slopes
-
-
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     runs = subject.records.runs
     numbers = table(runs)
@@ -77,17 +56,19 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     fig, axes = panels.grid(len(shown), drawing.width_in, 2.4, most=2)
     rows = []
     for axis, (solver, column, label) in zip(axes, shown):
-        found = draw(axis, numbers[numbers["solver"] == solver], column)
-        axis.set(xlabel="unknowns", title=label)
-        rows += [{"panel": label, "formulation": name, "slope": value} for name, value in found.items()]
-    style.letter_panels(axes)
-    style.legend_below(fig, axes[0])
+        of = slopes.draw(axis, numbers[numbers["solver"] == solver], "unknowns", column)
+        low, high = axis.get_ylim()
+        axis.set(
+            xlabel="unknowns", title=label, ylim=(low, high * (high / low) ** 0.45)
+        )  # room for the slopes
+        slopes.note(axis, of)
+        rows += [{"panel": label, "formulation": name, "slope": value} for name, value in of.items()]
     facts = Facts(
         f"1 repetition of {outcomes(runs)}; {numbers['unknowns'].nunique()} sizes",
         "means over the iterations, solves or steps of a run; slopes: least squares of logarithms",
         "none",
-        common(runs, {"scene": "scene", "scene_free_dofs": "unknowns", "steps": "steps", "dt_s": "dt (s)"}),
+        common(runs, "scene scene_free_dofs steps dt_s"),
     )
     both = pd.concat([numbers, pd.DataFrame(rows)], ignore_index=True)
-    said = SHOWN.format(panels=", ".join(label for _, _, label in shown))
-    return drawing.save(fig, both, said, facts, runs)
+    words = SHOWN.format(panels=", ".join(label for _, _, label in shown))
+    return drawing.finish(fig, axes, both, words, facts, runs=runs)

@@ -1,11 +1,12 @@
 """Lines through points on two logarithmic axes, and their slopes."""
 
-from __future__ import annotations
-
 import numpy as np
+import pandas as pd
 
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.tables import statistics
+
+from .drawing import each
 
 
 def slope(x, y) -> float | None:
@@ -15,30 +16,24 @@ def slope(x, y) -> float | None:
     return statistics.slope(zip(np.log(x[good]), np.log(y[good])))
 
 
-def words(of: dict[str, float | None]) -> str:
-    """`name 1.20`, a line each."""
-    return "\n".join(f"{name}: {'-' if value is None else f'{value:.2f}'}" for name, value in of.items())
-
-
-def draw(axis, x, y, formulation: str, failed=(), row: int = 0) -> None:
-    """Points of one formulation with a line through them, in order. failed: x of runs without a y, crosses
-    in this row at the upper edge.
+def draw(axis, found: pd.DataFrame, x: str, y: str) -> dict[str, float | None]:
+    """A line and its slope for each formulation of a table with `outcome`; failed runs are crosses at the
+    upper edge.
     """
-    look = style.look(formulation)
-    axis.plot(x, y, color=look.color, linestyle=look.dash, marker=look.marker, label=formulation)
-    style.failures_above(axis, failed, look.color, row)
+    of = {}
+    for row, name, mine, look in each(found, x):
+        good = mine[np.isfinite(mine[y]) & (mine[y] > 0)]
+        axis.plot(good[x], good[y], **look.line(label=name))
+        style.failures_above(axis, mine.loc[mine["outcome"] != "ok", x], look.color, row)
+        of[name] = slope(good[x], good[y])
+    axis.set(xscale="log", yscale="log")
+    style.keep_span(axis)
+    return of
 
 
-def note(axis, of: dict[str, float | None], corner: str = "upper left") -> None:
-    """The slopes, in a corner that the lines leave free."""
-    up, left = corner.split()
-    axis.text(
-        0.03 if left == "left" else 0.97,
-        0.9 if up == "upper" else 0.03,
-        "slopes\n" + words(of),
-        transform=axis.transAxes,
-        ha=left,
-        va="top" if up == "upper" else "bottom",
-        fontsize=5.5,
-        bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1},
-    )
+def note(axis, of: dict[str, float | None]) -> None:
+    """The slopes, in the upper left corner, which the lines leave free."""
+    words = [f"{name}: {'-' if value is None else f'{value:.2f}'}" for name, value in of.items()]
+    box = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1}
+    text = "\n".join(["slopes", *words])
+    axis.text(0.03, 0.9, text, transform=axis.transAxes, ha="left", va="top", fontsize=5.5, bbox=box)

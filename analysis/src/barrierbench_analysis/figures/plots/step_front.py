@@ -1,10 +1,7 @@
 """Error against work over the time step: each formulation against its own run at the smallest step."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
@@ -14,9 +11,7 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.frames import frame_of, frame_paths, points_of_bodies, read_scene
 from barrierbench_analysis.tables.run import Run
 
-from . import slopes
-from .drawing import Drawing, common, formulations, outcomes
-from .subjects import SweepRecords
+from .drawing import Drawing, SweepRecords, common, each, outcomes
 
 SHOWN = (
     "Distance of vertices at the end of the run from the same formulation at the smallest time step, root"
@@ -64,12 +59,10 @@ def table(runs: list[tuple[pd.Series, Run]]) -> pd.DataFrame:
 
 
 def draw(axis, found: pd.DataFrame) -> None:
-    for row, name in enumerate(formulations(found)):
-        mine = found[found["formulation"] == name].sort_values("dt_s")
-        slopes.draw(axis, mine["newton_iterations"], mine["error"], name, (), row)
-        for _, one in mine.iterrows():
-            at, label = (one["newton_iterations"], one["error"]), f"{1e3 * one['dt_s']:g}"
-            axis.annotate(label, at, (2, 2), textcoords="offset points", fontsize=5)
+    for _, name, mine, look in each(found, "dt_s"):
+        axis.plot(mine["newton_iterations"], mine["error"], **look.line(label=name))
+        for at in mine[["newton_iterations", "error", "dt_s"]].itertuples(index=False):
+            axis.annotate(f"{1e3 * at.dt_s:g}", at[:2], (2, 2), textcoords="offset points", fontsize=5)
     axis.set(xscale="log", yscale="log", xlabel="Newton iterations", ylabel="error / size")
     style.keep_span(axis)
 
@@ -88,16 +81,15 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     runs = subject.records.runs
     if runs["dt_s"].nunique() < 3:
         raise drawing.nothing(f"fewer than three time steps ({outcomes(runs)})")
-    found = table([(row, subject.run(row)) for _, row in runs.iterrows()])
+    found = table(subject.each_run())
     if not (found["error"] > 0).any():
         raise drawing.nothing(f"no run beside one at the smallest time step ({outcomes(runs)})")
-    fig, axis = plt.subplots(figsize=(drawing.width_in, 2.8), layout="constrained")
-    draw(axis, found[found["error"] > 0])
-    style.legend_below(fig, axis)
+    fig, axes = drawing.panels(1, 2.8)
+    draw(axes[0], found[found["error"] > 0])
     facts = Facts(
         f"1 repetition of {outcomes(runs)}; {found['dt_s'].nunique()} time steps",
         "root mean square over vertices",
         f"each formulation at a time step of {1e3 * found['dt_s'].min():.4g} ms",
-        common(runs, {"scene": "scene", "scene_free_dofs": "unknowns", "d_hat_m": "d_hat (m)"}),
+        common(runs, "scene scene_free_dofs d_hat_m"),
     )
-    return drawing.save(fig, found, SHOWN + left_out(found), facts, runs)
+    return drawing.finish(fig, axes, found, SHOWN + left_out(found), facts, runs=runs)

@@ -1,7 +1,5 @@
 """Where a series goes up and down in turns, and the band that it does so in."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,7 +64,7 @@ def draw(
     start = since + found
     style.draw(axis, x[: start + 1], y[: start + 1], row, end_mark=False)
     low, high = band(y[start:])
-    color = style.look(row["formulation"], int(row.get("variant", 0))).color
+    color = style.look_of(row).color
     axis.fill_between(x[start:], low, high, color=color, alpha=0.25, linewidth=0)
     for edge in (low, high):
         axis.plot(x[start:], edge, color=color, linewidth=0.5, gid=BAND)

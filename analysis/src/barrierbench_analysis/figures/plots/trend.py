@@ -1,7 +1,5 @@
 """The numbers of the gate over the commits that accepted new ones."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -66,17 +64,10 @@ def draw(axis, found: pd.DataFrame) -> None:
     scenes = list(dict.fromkeys(case.rpartition("-")[0] for case in cases))
     for k, case in enumerate(cases):
         mine, look = found[found["case"] == case], style.look(formulation_of(case))
-        axis.errorbar(
-            mine["at"] + APART * (k - (len(cases) - 1) / 2),
-            mine["value"],
-            yerr=np.clip([mine["value"] - mine["lower"], mine["upper"] - mine["value"]], 0, None),
-            color=look.color,
-            marker=look.marker,
-            linestyle=DASHES[scenes.index(case.rpartition("-")[0]) % len(DASHES)],
-            linewidth=0.8,
-            elinewidth=0.5,
-            label=case,
-        )
+        bars = np.clip([mine["value"] - mine["lower"], mine["upper"] - mine["value"]], 0, None)
+        dash = DASHES[scenes.index(case.rpartition("-")[0]) % len(DASHES)]
+        line = look.line(linestyle=dash, linewidth=0.8, elinewidth=0.5, label=case)
+        axis.errorbar(mine["at"] + APART * (k - (len(cases) - 1) / 2), mine["value"], yerr=bars, **line)
     low, high = min(found["lower"].min(), 1 / LEAST), max(found["upper"].max(), LEAST)
     axis.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
 
@@ -91,9 +82,8 @@ def figure(subject: pd.DataFrame, drawing: Drawing) -> list[Path]:
     for axis, (metric, found) in zip(axes, of.items()):
         draw(axis, found)
         axis.set_title(LABELS.get(metric, metric))
-        axis.set_xticks(
-            days["at"], [f"{c[:7]}\n{d[5:]}" for c, d in zip(days["commit"], days["day"])], fontsize=5
-        )
+        names = [f"{c[:7]}\n{d[5:]}" for c, d in zip(days["commit"], days["day"])]
+        axis.set_xticks(days["at"], names, fontsize=5)
         if axis.get_subplotspec().is_first_col():
             axis.set_ylabel("over the first")
         if axis.get_subplotspec().is_last_row():

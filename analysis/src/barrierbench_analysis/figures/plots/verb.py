@@ -1,12 +1,10 @@
 """The verb figures: those of the records below a folder, in an archive of one, or of ./bench data steps
 --out."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import tells
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.tables.archive import beside, is_archive, study
 
 from . import demo, newton_steps
@@ -15,16 +13,10 @@ from . import demo, newton_steps
 @tells("draw figures")
 def main(argv: list[str]) -> int:
     parser = parser_of("draw figures")
-    parser.add_argument(
-        "runs", type=Path, metavar="RUNS", help="a folder with records, an archive of one, or that file"
-    )
-    parser.add_argument(
-        "out",
-        type=Path,
-        nargs="?",
-        metavar="OUT",
-        help="default: RUNS/figures, NAME.figures beside an archive, or the folder of the file",
-    )
+    text = """
+runs RUNS: a folder with records, an archive of one, or that file
+out OUT: default: RUNS/figures, NAME.figures beside an archive, or the folder of the file"""
+    options(parser, text, runs=Path, out={"type": Path, "nargs": "?"})
     given = parser.parse_args(argv)
     if given.runs.is_file() and not is_archive(given.runs):
         return newton_steps.make(given.runs, given.out)

@@ -4,8 +4,6 @@ A bound point is a barycentric point of a triangle and a signed offset along its
 from a file (bound_mesh) or from the triangles of the frame (refined).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

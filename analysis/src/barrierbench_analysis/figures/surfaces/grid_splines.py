@@ -2,8 +2,6 @@
 through its vertices, as the animation of jaxls's cloth has them (45 x 45 points of 15 x 15).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

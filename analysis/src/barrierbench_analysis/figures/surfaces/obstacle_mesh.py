@@ -4,8 +4,6 @@ A sphere or a cylinder is a polyhedron inside it, so that what touches the obsta
 of one that bodies are inside of, the polyhedron is round it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 AROUND = 96  # sides of a circle; a chord is within 1 - cos(pi/96) = 0.054% of the radius

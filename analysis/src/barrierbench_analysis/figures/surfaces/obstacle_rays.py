@@ -2,8 +2,6 @@
 narrower than it is.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ A general toolkit would do, but VTK is 565 MB and needs OpenGL of the system, Mi
 forty thousand triangles takes this file about a second.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

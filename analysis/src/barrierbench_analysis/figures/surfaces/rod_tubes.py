@@ -1,7 +1,5 @@
 """Rods as round tubes, so that they have pixels and a shade."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .rasterizer import unit

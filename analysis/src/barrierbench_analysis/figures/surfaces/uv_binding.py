@@ -1,7 +1,5 @@
 """A mesh bound by its texture coordinates: each vertex is where the surface of a body has the same ones."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

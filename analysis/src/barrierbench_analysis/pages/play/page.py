@@ -5,8 +5,6 @@ K3D's own snapshot draws one plot and has no colour choice, no captions and no s
 page makes two of its plots itself. The page forbids every connection (Content-Security-Policy).
 """
 
-from __future__ import annotations
-
 import base64
 import importlib.metadata
 import importlib.util

@@ -2,8 +2,6 @@
 films of a page, so that equal colours are equal values.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import matplotlib

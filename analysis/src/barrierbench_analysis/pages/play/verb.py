@@ -2,19 +2,19 @@
 player RUN [RUN2].
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from barrierbench_analysis.figures.pictures.film import Film, Source, filmed, kept, opened
+from barrierbench_analysis.figures.pictures.film import Film, filmed, kept, opened
+from barrierbench_analysis.figures.surfaces.sequence import Run
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import (
     bicubic_argument,
     color_argument,
     count_from_1,
+    options,
     parser_of,
     positive_number,
 )
@@ -31,11 +31,11 @@ def _megabytes(count: float) -> str:
     return f"{count / 1e6:.1f} MB"
 
 
-def _film_bytes(sources: list[Source], every: int) -> int:
+def _film_bytes(sources: list[Run], every: int) -> int:
     return sum(len(kept(source.steps, every)) * source.frame_bytes for source in sources)
 
 
-def every_within(sources: list[Source], fits: Callable[[int], bool]) -> int:
+def every_within(sources: list[Run], fits: Callable[[int], bool]) -> int:
     """The first of every 1, 2, 3, ... frames whose bytes fit; if none does only the first and the last frame
     are left.
     """
@@ -45,7 +45,7 @@ def every_within(sources: list[Source], fits: Callable[[int], bool]) -> int:
     return every
 
 
-def chosen_every(sources: list[Source], asked: int | None, limit_mb: float) -> tuple[int, str]:
+def chosen_every(sources: list[Run], asked: int | None, limit_mb: float) -> tuple[int, str]:
     """Every how many frames a page keeps, and a sentence where the limit decides. Errors: UserError: not even
     the first and the last frame fit.
     """
@@ -118,22 +118,14 @@ def play(
 
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = parser_of("draw player", "Frames are written by runs with --set /output/frames_every=1.")
-    parser.add_argument("runs", type=Path, nargs="+", metavar="RUN", help="folder of run.json; one or two")
-    parser.add_argument("--out", type=Path, help="the HTML file (default: play.html in the folder of RUN)")
+    text = f"""
+runs RUN: folder of run.json; one or two
+--out: the HTML file (default: play.html in the folder of RUN)
+--every N: one of every N frames, and the last one (default: 1, or what --limit-mb needs)
+--limit-mb MB: most that the file may take where --every is not given (default: {LIMIT_MB})"""
+    kinds = {"runs": {"type": Path, "nargs": "+"}, "limit_mb": {"type": positive_number, "default": LIMIT_MB}}
+    options(parser, text, out=Path, every=count_from_1, **kinds)
     color_argument(parser, COLOURS, "gap", "what colors mean at first; the page can change it")
-    parser.add_argument(
-        "--every",
-        type=count_from_1,
-        metavar="N",
-        help="one of every N frames, and the last one (default: 1, or what --limit-mb needs)",
-    )
-    parser.add_argument(
-        "--limit-mb",
-        type=positive_number,
-        default=LIMIT_MB,
-        metavar="MB",
-        help=f"most that the file may take where --every is not given (default: {LIMIT_MB})",
-    )
     bicubic_argument(parser)
     args = parser.parse_args(arguments)
     if len(args.runs) > 2:

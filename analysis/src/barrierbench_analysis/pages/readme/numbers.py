@@ -2,8 +2,6 @@
 in results/demo.json.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections import Counter
@@ -23,28 +21,13 @@ FILE = ROOT / "results" / "demo.json"
 RUNS = ROOT / "results" / "runs" / "demo"
 NAME = "barrierbench.demo_numbers/1"
 REMEDY = "; ./bench demo, then ./bench dev readme --write, makes it"
-SUMMED = (  # columns of the summary table that a row keeps
-    "group",
-    "series",
-    "cond_raw_median",
-    "cond_raw_max",
-    "cond_bj_median",
-    "cond_bj_max",
-    "newton_iterations",
-    "probe_pcg",
-    "gap_min_rel",
-)
-OF_RUN = (  # name in a row, column of the runs
-    ("outcome", "outcome"),
-    ("verdict", "comparability_verdict"),
-    ("step_solver", "step_solver"),
-    ("crossings", "audit_crossings"),
-    ("violations", "audit_violations"),
-    ("unproven", "audit_unproven"),
-    ("judged", "audit_judged"),
-    ("steps", "summary_steps"),
-    ("run", "run_id"),
-)
+# columns of the summary table that a row keeps
+SUMMED = ["group", "series", *(f"cond_{of}_{what}" for of in ("raw", "bj") for what in ("median", "max"))]
+SUMMED += ["newton_iterations", "probe_pcg", "gap_min_rel"]
+AUDITED = ("crossings", "violations", "unproven", "judged")
+# name in a row -> column of the runs
+OF_RUN = {"outcome": "outcome", "verdict": "comparability_verdict", "step_solver": "step_solver"}
+OF_RUN |= {name: f"audit_{name}" for name in AUDITED} | {"steps": "summary_steps", "run": "run_id"}
 GROUPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article", "demo_equal_gap")
 
 
@@ -80,7 +63,7 @@ def _rows(records: Records, table: pd.DataFrame) -> list[dict]:
         steps = records.steps[records.steps["run"] == run["run"]]
         rows.append(
             {key: _plain(line[key]) for key in SUMMED}
-            | {key: _plain(run.get(column)) for key, column in OF_RUN}
+            | {key: _plain(run.get(column)) for key, column in OF_RUN.items()}
             | {
                 "steps": len(steps),
                 "scale": _plain(run.get("matching_scale")),

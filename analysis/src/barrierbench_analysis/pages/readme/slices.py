@@ -3,8 +3,6 @@ docs/results/which-barrier.md, from claims.jsonl and gap_map.jsonl of results/st
 the strongest evidence there is.
 """
 
-from __future__ import annotations
-
 import textwrap
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Every snippet of a page is run, or parsed by the program that it is for: what a reader copies works."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import importlib

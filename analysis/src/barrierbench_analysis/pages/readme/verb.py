@@ -6,8 +6,6 @@ Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 th
 from.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 
@@ -19,7 +17,7 @@ from barrierbench_analysis.pages.reference import make as reference
 from barrierbench_analysis.pages.stated import several
 from barrierbench_analysis.pages.stated.check import faults as disagreements
 from barrierbench_analysis.pages.stated.cost import gather as gather_cost
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.studies.claims import table as claims_table
 from barrierbench_analysis.studies.kit.study import page as study_page
@@ -27,11 +25,11 @@ from barrierbench_analysis.studies.kit.study.spec import read_study
 from barrierbench_analysis.studies.rules.gap_map.table import kept_map
 
 from . import figures
-from .map import gather as gather_map
 from .numbers import FILE, RUNS, gather, read, write
 from .slices import gather as gather_slices
 from .snippets import faults
 from .templates import PARTS, filled, lacking
+from .templates import gather as gather_map
 
 PAGES = tuple(PARTS)
 # Pages whose snippets are checked and which have no generated numbers.
@@ -91,43 +89,17 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "./bench study claims && ./bench dev readme --fill",
     )
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument(
-        "--write",
-        action="store_true",
-        help=(
-            "keep the numbers of the records in results/demo.json, fill the pages with them, and copy the"
-            " figures that they show"
-        ),
-    )
-    what.add_argument(
-        "--fill",
-        action="store_true",
-        help=(
-            "fill the pages with the numbers that are kept in results/: after ./bench study claims, without"
-            " records"
-            " of the demo"
-        ),
-    )
-    what.add_argument(
-        "--check",
-        action="store_true",
-        help=(
-            "run or parse every snippet, compare the pages with the kept numbers, and look for two statements"
-            " on one thing that disagree"
-        ),
-    )
-    what.add_argument(
-        "--reference",
-        action="store_true",
-        help="write the pages of docs/reference that are made from what the program prints of itself",
-    )
-    parser.add_argument(
-        "--runs",
-        type=Path,
-        default=RUNS,
-        metavar="DIR",
-        help="folder of the demo's records (default: results/runs/demo)",
-    )
+    text = """
+--write: keep the numbers of the records in results/demo.json, fill the pages with them, and copy the figures
+    that they show
+--fill: fill the pages with the numbers that are kept in results/: after ./bench study claims, without records
+    of the demo
+--check: run or parse every snippet, compare the pages with the kept numbers, and look for two statements on
+    one thing that disagree
+--reference: write the pages of docs/reference that are made from what the program prints of itself"""
+    options(what, text)
+    text = "--runs DIR: folder of the demo's records (default: results/runs/demo)"
+    options(parser, text, runs={"type": Path, "default": RUNS})
     return parser.parse_args(argv)
 
 

@@ -1,7 +1,5 @@
 """The fields of a record or of a line of a trace, read from what `bench help record` prints."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from barrierbench_analysis.io.errors import UserError

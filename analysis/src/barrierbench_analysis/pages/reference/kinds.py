@@ -1,7 +1,5 @@
 """The kinds of `bench eval`, read from its JSON Schema: each with the fields of a query and of its answer."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 EVERY = ("kind", "id", "precision", "status")  # of every query or answer; told once

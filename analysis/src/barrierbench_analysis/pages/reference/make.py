@@ -1,7 +1,5 @@
 """Makes the pages of docs/reference from what the program prints now, and finds those that are not so."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from itertools import groupby

@@ -1,7 +1,5 @@
 """The settings of a config or a sweep, read from what `bench help config` prints."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 

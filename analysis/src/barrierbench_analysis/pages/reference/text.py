@@ -1,7 +1,5 @@
 """The pages as Markdown."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """The answer of a folder (tables/answer.py) as a table of the page, and as lines for a terminal."""
 
-from __future__ import annotations
-
 import textwrap
 
 from barrierbench_analysis.figures.style import look

@@ -1,7 +1,5 @@
 """How a demonstration ends on the terminal: the answer, the failures that were expected, what to open."""
 
-from __future__ import annotations
-
 import textwrap
 from pathlib import Path
 

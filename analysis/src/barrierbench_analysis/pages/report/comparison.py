@@ -3,8 +3,6 @@ many are comparable, and by which factor their numbers differ. Only pairs that t
 have a factor.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -30,32 +28,21 @@ def _at(column: str) -> Callable[[Entry], float | None]:
     return lambda entry: entry.row.get(column)
 
 
+RAW_MEANS = (
+    "median over the diagnosed Newton iterations of the condition number of the clamped matrix, as it is"
+)
+SCALED_MEANS, PCG_MEANS = (
+    "the same after block-Jacobi scaling",
+    "median of block-Jacobi PCG on the diagnosed matrices, to 1e-6",
+)
+TIME_MEANS = "seconds of the pass `time`, one repetition a record"
+BJ = "median block-Jacobi-scaled condition number"
 METRICS = (
-    Metric(
-        "cond_raw",
-        "cond raw",
-        "median condition number",
-        "median over the diagnosed Newton iterations of the condition number of the clamped matrix, as it is",
-        lambda entry: entry.cond(RAW),
-    ),
-    Metric(
-        "cond_bj",
-        "cond bJ",
-        "median block-Jacobi-scaled condition number",
-        "the same after block-Jacobi scaling",
-        lambda entry: entry.cond(SCALED),
-    ),
+    Metric("cond_raw", "cond raw", "median condition number", RAW_MEANS, lambda entry: entry.cond(RAW)),
+    Metric("cond_bj", "cond bJ", BJ, SCALED_MEANS, lambda entry: entry.cond(SCALED)),
     Metric("newton", "Newton", "Newton iterations", "over all steps", _at("newton_iterations")),
-    Metric(
-        "pcg",
-        "PCG",
-        "PCG iterations",
-        "median of block-Jacobi PCG on the diagnosed matrices, to 1e-6",
-        _at("probe_pcg_median"),
-    ),
-    Metric(
-        "wall", "time s", "time", "seconds of the pass `time`, one repetition a record", lambda e: e.wall_s
-    ),
+    Metric("pcg", "PCG", "PCG iterations", PCG_MEANS, _at("probe_pcg_median")),
+    Metric("wall", "time s", "time", TIME_MEANS, lambda entry: entry.wall_s),
 )
 
 

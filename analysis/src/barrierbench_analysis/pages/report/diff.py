@@ -2,8 +2,6 @@
 rules of ./bench gate compare (studies/gate/compare.py), the first folder being the reference.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -144,19 +142,9 @@ def _change(name: str, having: list[Pair]) -> Change:
     far = max(factors, key=lambda item: abs(math.log(item[0])), default=(None, None))
     red = sum(f.metric == name for pair in having for f in pair.red)
     kind = PHYSICS if metric.direction == TWO_SIDED and metric.gate_class == "III" else COST
-    return Change(
-        name,
-        kind,
-        metric.unit,
-        len(having),
-        words.count("same"),
-        words.count("lower"),
-        words.count("higher"),
-        mean,
-        far[1] if far[0] not in (None, 1.0) else None,
-        far[0],
-        red,
-    )
+    counts = [words.count(word) for word in ("same", "lower", "higher")]
+    farthest = far[1] if far[0] not in (None, 1.0) else None
+    return Change(name, kind, metric.unit, len(having), *counts, mean, farthest, far[0], red)
 
 
 def changes(diff: Diff) -> Iterator[Change]:

@@ -1,26 +1,49 @@
 """The page of two folders: verdict, what regressed, outcomes, metrics, pairs, and what only one side has."""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 
-from barrierbench_analysis.figures.style import look
 from barrierbench_analysis.tables.words import counted, listed, number
 
-from .comparison import METRICS, Metric
-from .diff import Diff, Pair, changes
+from .comparison import METRICS
+from .diff import Change, Diff, Pair, changes
 from .gather import Entry, Folder
 from .page import filled, title
-from .tables import RECORD, Cell, Column, Table, command_cell, numeric, outcome, record_cell, shown_path
+from .tables import (
+    NONE,
+    Cell,
+    Column,
+    Table,
+    command_cell,
+    formulation,
+    numeric,
+    outcome,
+    record,
+    record_cell,
+    shown_path,
+    table_of,
+)
 from .verdict import BAD, GOOD, PLAIN, Sentence
 
 MOST_REDS = 1000  # rows of the table of what regressed
-NO_NUMBER = Cell("-")
+COUNTS = ("pairs", "same", "lower", "higher")
+SAME_BITS = {None: "not asked", True: "same", False: "differs"}
 
 
 def _head(entry: Entry) -> Cell:
-    return Cell(entry.name, colour=look(entry.row["formulation"]).color)
+    return formulation(entry.name, entry.row["formulation"])
+
+
+def _number(heading: str, of, meaning: str = "") -> Column:
+    return Column(heading, meaning, of, is_number=True)
+
+
+def _run(pair: Pair) -> Cell:
+    return _head(pair.new)
+
+
+def _command(pair: Pair) -> Cell:
+    return command_cell(pair.new)
 
 
 def verdict(diff: Diff) -> list[Sentence]:
@@ -103,41 +126,25 @@ def limits(diff: Diff) -> list[str]:
 
 def regressed(diff: Diff) -> tuple[Table, int]:
     """What is red, and how many more rows there would be."""
-    table = Table(
-        "regressed",
-        "What regressed, by the rules of ./bench gate compare",
-        [
-            Column("run"),
-            Column("kind", "invariant, physics or cost", filtered=True),
-            Column("metric", filtered=True),
-            Column("before", is_number=True),
-            Column("now", is_number=True),
-            Column("allowed"),
-            Column("note"),
-            Column("command"),
-        ],
-        is_filtered=True,
-    )
+    columns = [
+        Column("run", of=lambda pair, _: _run(pair)),
+        Column("kind", "invariant, physics or cost", lambda pair, f: Cell(pair.kind(f)), filtered=True),
+        Column("metric", of=lambda _, f: Cell(f.metric), filtered=True),
+        _number("before", lambda _, f: _value(f.reference)),
+        _number("now", lambda _, f: _value(f.value)),
+        Column("allowed", of=lambda _, f: Cell(_allowed(f.lower, f.upper))),
+        Column("note", of=lambda _, f: Cell(f.note or "-")),
+        Column("command", of=lambda pair, _: _command(pair)),
+    ]
+    rows = []
     for pair in diff.pairs:
-        for f in pair.red:
-            table.rows.append(
-                [
-                    _head(pair.new),
-                    Cell(pair.kind(f)),
-                    Cell(f.metric),
-                    _value(f.reference),
-                    _value(f.value),
-                    Cell(_allowed(f.lower, f.upper)),
-                    Cell(f.note or "-"),
-                    command_cell(pair.new),
-                ]
-            )
+        rows += [[column.of(pair, finding) for column in columns] for finding in pair.red]
         if pair.fault:
-            lead = [_head(pair.new), Cell("not compared", tone="bad"), NO_NUMBER, NO_NUMBER, NO_NUMBER]
-            table.rows.append([*lead, NO_NUMBER, Cell(pair.fault), command_cell(pair.new)])
-    left = max(0, len(table.rows) - MOST_REDS)
-    del table.rows[MOST_REDS:]
-    return table, left
+            lead = [_run(pair), Cell("not compared", tone="bad"), NONE, NONE, NONE, NONE]
+            rows.append([*lead, Cell(pair.fault), _command(pair)])
+    caption = "What regressed, by the rules of ./bench gate compare"
+    table = Table("regressed", caption, columns, rows[:MOST_REDS], is_filtered=True)
+    return table, max(0, len(rows) - MOST_REDS)
 
 
 def _value(value) -> Cell:
@@ -151,105 +158,79 @@ def _allowed(lower: float | None, upper: float | None) -> str:
 
 
 def metrics(diff: Diff) -> Table:
-    table = Table(
-        "metrics",
-        "Every number of the pairs, second over first",
-        [
-            Column("metric"),
-            Column("kind", "cost, or physics", filtered=True),
-            Column("unit"),
-            Column("pairs", is_number=True),
-            Column("same", is_number=True),
-            Column("lower", is_number=True),
-            Column("higher", is_number=True),
-            Column(
-                "factor",
-                "geometric mean; of log10 numbers that of what they are the logarithm of",
-                is_number=True,
-            ),
-            Column("farthest", "factor of the pair that moved most", is_number=True),
-            Column("its run"),
-            Column("red", "pairs in which it regressed", is_number=True),
-        ],
-        is_filtered=True,
-    )
-    for c in changes(diff):
-        counts = [numeric(n, 9) for n in (c.pairs, c.same, c.lower, c.higher)]
-        far = [numeric(c.farthest_factor), Cell(c.farthest.new.run)] if c.farthest else [NO_NUMBER, NO_NUMBER]
-        red = Cell(str(c.red), c.red, "bad" if c.red else "")
-        table.rows.append([Cell(c.metric), Cell(c.kind), Cell(c.unit), *counts, numeric(c.factor), *far, red])
-    return table
+    def red(change: Change) -> Cell:
+        return Cell(str(change.red), change.red, "bad" if change.red else "")
 
-
-def _two(old: float | None, new: float | None) -> list[Cell]:
-    quotient = new / old if old and new else None
-    return [numeric(old, 5), numeric(new, 5), numeric(quotient)]
-
-
-SAME_BITS = {None: "not asked", True: "same", False: "differs"}
-
-
-def _pair(pair: Pair, shown: list[Metric], page: Path) -> list[Cell]:
-    red = Cell("?" if pair.fault else str(len(pair.red)), len(pair.red), "bad" if pair.red else "")
-    return [
-        _head(pair.new),
-        Cell(pair.new.group),
-        outcome(pair.old),
-        outcome(pair.new),
-        Cell(SAME_BITS[pair.same_bits], tone="bad" if pair.same_bits is False else ""),
-        red,
-        *(cell for metric in shown for cell in _two(metric.of(pair.old), metric.of(pair.new))),
-        record_cell(pair.old, page),
-        record_cell(pair.new, page),
-        command_cell(pair.new),
+    mean = "geometric mean; of log10 numbers that of what they are the logarithm of"
+    columns = [
+        Column("metric", of=lambda c: Cell(c.metric)),
+        Column("kind", "cost, or physics", lambda c: Cell(c.kind), filtered=True),
+        Column("unit", of=lambda c: Cell(c.unit)),
+        *(_number(name, lambda c, name=name: numeric(getattr(c, name), 9)) for name in COUNTS),
+        _number("factor", lambda c: numeric(c.factor), mean),
+        _number(
+            "farthest",
+            lambda c: numeric(c.farthest_factor) if c.farthest else NONE,
+            "factor of the pair that moved most",
+        ),
+        Column("its run", of=lambda c: Cell(c.farthest.new.run) if c.farthest else NONE),
+        _number("red", red, "pairs in which it regressed"),
     ]
+    caption = "Every number of the pairs, second over first"
+    return table_of("metrics", caption, columns, changes(diff), is_filtered=True)
 
 
 def pairs(diff: Diff, page: Path) -> Table:
     shown = [metric for metric in METRICS if any(metric.of(p.old) and metric.of(p.new) for p in diff.pairs)]
-    table = Table(
-        "pairs",
-        "Every pair of runs",
-        [
-            Column("run"),
-            Column("group", filtered=True),
-            Column("outcome before", filtered=True),
-            Column("outcome now", filtered=True),
-            Column(
-                "state", "equal bits of the final state, where build and machine are the same", filtered=True
-            ),
-            Column("red", "numbers that regressed", is_number=True),
-            *(
-                Column(f"{metric.heading} {which}", metric.meaning, is_number=True)
-                for metric in shown
-                for which in ("before", "now", "x")
-            ),
-            Column("record before"),
-            Column("record now"),
-            Column("command"),
-        ],
-        is_filtered=True,
-    )
-    table.rows.extend(_pair(pair, shown, page) for pair in diff.pairs)
-    return table
+
+    def red(pair: Pair) -> Cell:
+        return Cell("?" if pair.fault else str(len(pair.red)), len(pair.red), "bad" if pair.red else "")
+
+    def state(pair: Pair) -> Cell:
+        return Cell(SAME_BITS[pair.same_bits], tone="bad" if pair.same_bits is False else "")
+
+    def quotient(pair: Pair, metric) -> Cell:
+        old, new = metric.of(pair.old), metric.of(pair.new)
+        return numeric(new / old if old and new else None)
+
+    numbers = [
+        _number(
+            f"{metric.heading} {which}", lambda pair, of=of, metric=metric: of(pair, metric), metric.meaning
+        )
+        for metric in shown
+        for which, of in (
+            ("before", lambda pair, metric: numeric(metric.of(pair.old), 5)),
+            ("now", lambda pair, metric: numeric(metric.of(pair.new), 5)),
+            ("x", quotient),
+        )
+    ]
+    bits = "equal bits of the final state, where build and machine are the same"
+    columns = [
+        Column("run", of=_run),
+        Column("group", of=lambda pair: Cell(pair.new.group), filtered=True),
+        Column("outcome before", of=lambda pair: outcome(pair.old), filtered=True),
+        Column("outcome now", of=lambda pair: outcome(pair.new), filtered=True),
+        Column("state", bits, state, filtered=True),
+        _number("red", red, "numbers that regressed"),
+        *numbers,
+        Column("record before", of=lambda pair: record_cell(pair.old, page)),
+        Column("record now", of=lambda pair: record_cell(pair.new, page)),
+        Column("command", of=_command),
+    ]
+    return table_of("pairs", "Every pair of runs", columns, diff.pairs, is_filtered=True)
 
 
 def lonely(diff: Diff, page: Path) -> Table:
-    table = Table(
-        "lonely",
-        "Runs without a counterpart, and files that cannot be read",
-        [Column("run"), Column("only in", filtered=True), Column("outcome"), RECORD, Column("command")],
-    )
+    rows, link = [], record(page)
     for folder, some in ((diff.a, diff.only_a), (diff.b, diff.only_b)):
-        name = str(shown_path(folder.place))
-        for entry in some:
-            lead = [_head(entry), Cell(name), outcome(entry)]
-            table.rows.append([*lead, record_cell(entry, page), command_cell(entry)])
-        for fault in folder.unreadable:
-            table.rows.append(
-                [Cell("a file"), Cell(name), Cell("unreadable", tone="bad"), Cell(fault), NO_NUMBER]
-            )
-    return table
+        name = Cell(str(shown_path(folder.place)))
+        rows += [[_head(e), name, outcome(e), link.of(e), command_cell(e)] for e in some]
+        rows += [
+            [Cell("a file"), name, Cell("unreadable", tone="bad"), Cell(fault), NONE]
+            for fault in folder.unreadable
+        ]
+    columns = [Column("run"), Column("only in", filtered=True), Column("outcome"), link, Column("command")]
+    return Table("lonely", "Runs without a counterpart, and files that cannot be read", columns, rows)
 
 
 def _provenance(folder: Folder) -> str:
@@ -264,16 +245,11 @@ def _provenance(folder: Folder) -> str:
 def page(diff: Diff, out: Path) -> str:
     table, left = regressed(diff)
     a, b = shown_path(diff.a.place), shown_path(diff.b.place)
+    commands = [f"./bench gate compare {a} {b} --common", f"./bench report {a} {b}"]
+    parts = {"regressed": table, "left": left, "metrics": metrics(diff), "commands": commands}
+    parts |= {"pairs": pairs(diff, out), "lonely": lonely(diff, out)}
+    about = [_provenance(diff.a), _provenance(diff.b)]
+    heading = f"{title(diff.b)} against {title(diff.a)}"
     return filled(
-        "diff.html",
-        title=f"{title(diff.b)} against {title(diff.a)}",
-        about=[_provenance(diff.a), _provenance(diff.b)],
-        verdict=verdict(diff),
-        limits=limits(diff),
-        regressed=table,
-        left=left,
-        metrics=metrics(diff),
-        pairs=pairs(diff, out),
-        lonely=lonely(diff, out),
-        commands=[f"./bench gate compare {a} {b} --common", f"./bench report {a} {b}"],
+        "diff.html", title=heading, about=about, verdict=verdict(diff), limits=limits(diff), **parts
     )

@@ -2,8 +2,6 @@
 expectation leaves `ok` out. Both are read from the specs of this repository, not from the records.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache

@@ -2,8 +2,6 @@
 hold, and for larger groups one that puts a mark for each run.
 """
 
-from __future__ import annotations
-
 import base64
 import glob
 import struct
@@ -12,7 +10,7 @@ import textwrap
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.figures.plots import answer, condition, gaps, iterations
+from barrierbench_analysis.figures.plots import answer, condition, over_time
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.tables import series
@@ -22,7 +20,7 @@ from barrierbench_analysis.tables.words import counted, listed
 from . import marks
 from .gather import Folder
 
-OVER_TIME = (condition, iterations, gaps)
+OVER_TIME = {"condition": condition.figure, "iterations": over_time.iterations, "gaps": over_time.gaps}
 MOST_RUNS = 12  # of a group whose runs are drawn over time: three figures of series.MOST
 MOST_GROUPS = 6
 
@@ -68,12 +66,12 @@ def _pictures(paths: list[Path]) -> list[Path]:
 
 
 def _over_time(records: Records, group: str, out: Path) -> list[Path]:
-    return _pictures([path for module in OVER_TIME for path in module.figure(records, group, out)])
+    return _pictures([path for draw in OVER_TIME.values() for path in draw(records, group, out)])
 
 
 def _kept(group: str, where: Path) -> list[Path]:
     """What ./bench draw figures has drawn of a group, in the order of OVER_TIME."""
-    names = [f"{module.__name__.rsplit('.', 1)[1]}_{group}" for module in OVER_TIME]
+    names = [f"{name}_{group}" for name in OVER_TIME]
     return _pictures(
         [
             path

@@ -2,8 +2,6 @@
 sweeps that have no record.
 """
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from dataclasses import dataclass, field

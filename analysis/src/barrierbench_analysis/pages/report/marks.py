@@ -1,7 +1,5 @@
 """What the runs of a large group cost against the gap that their contacts reach: a mark for each run."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -24,17 +22,12 @@ COSTS = ("cond_bj", "newton", "pcg")
 
 def _table(entries: list[Entry], group: str) -> pd.DataFrame:
     costs = [metric for metric in METRICS if metric.key in COSTS]
+    columns = ("formulation", "outcome", "comparability_verdict")
     return pd.DataFrame(
         [
-            {
-                "group": group,
-                "run": entry.run,
-                "formulation": entry.row["formulation"],
-                "outcome": entry.row["outcome"],
-                "comparability_verdict": entry.row.get("comparability_verdict"),
-                "gap_min_rel": entry.row.get("gap_min_rel_min"),
-                **{metric.key: metric.of(entry) for metric in costs},
-            }
+            {"group": group, "run": entry.run, **{name: entry.row.get(name) for name in columns}}
+            | {"gap_min_rel": entry.row.get("gap_min_rel_min")}
+            | {metric.key: metric.of(entry) for metric in costs}
             for entry in entries
         ]
     )
@@ -44,17 +37,12 @@ def _draw(axis, table: pd.DataFrame, cost: str) -> None:
     for formulation, rows in table.groupby("formulation", sort=False):
         look = style.look(formulation)
         for is_solid, some in rows.groupby([not run_words.verdict_word(row) for _, row in rows.iterrows()]):
-            axis.plot(
-                some["gap_min_rel"].astype(float),
-                some[cost].astype(float),
-                linestyle="none",
-                marker=look.marker,
-                color=look.color,
-                markerfacecolor=look.color if is_solid else "none",
-                markeredgewidth=0.8,
-                alpha=0.75,
-                label=formulation if is_solid or rows["outcome"].ne("ok").all() else "_",
+            label = formulation if is_solid or rows["outcome"].ne("ok").all() else "_"
+            face = look.color if is_solid else "none"
+            mark = look.line(
+                linestyle="none", markerfacecolor=face, markeredgewidth=0.8, alpha=0.75, label=label
             )
+            axis.plot(some["gap_min_rel"].astype(float), some[cost].astype(float), **mark)
 
 
 def figure(entries: list[Entry], group: str, out: Path) -> list[Path]:

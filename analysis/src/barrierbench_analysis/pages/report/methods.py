@@ -1,7 +1,5 @@
 """The methods text of a report: sentences for a paper, made of what the records say of themselves."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections import Counter

@@ -1,7 +1,5 @@
 """A report as the text of one HTML file: templates of this folder, filled; nothing in it is fetched."""
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 
@@ -16,16 +14,16 @@ from .gather import Folder
 from .players import Players
 
 HERE = Path(__file__).resolve().parent
-SECTIONS = (
-    ("answer", "Answer"),
-    ("verdict", "Verdict"),
-    ("players", "Scenes in motion"),
-    ("failures", "Failures"),
-    ("comparison", "Comparison"),
-    ("figures", "Figures"),
-    ("runs", "Runs"),
-    ("methods", "Methods"),
-)
+SECTIONS = [
+    (name.lower().replace("scenes in motion", "players"), name)
+    for name in "Answer;Verdict;Scenes in motion;Failures;Comparison;Figures;Runs;Methods".split(";")
+]
+TABLES = {
+    "failures": apart.failures,
+    "reserved": apart.reserved,
+    "apart": apart.not_compared,
+    "runs": tables.runs,
+}
 
 
 @cache
@@ -69,33 +67,17 @@ def commands(folder: Folder) -> list[str]:
 
 def page(folder: Folder, out: Path, figures: Figures, players: Players) -> str:
     """out: where it will lie; links to records are from there."""
-    found = answer.of(folder)
-    said = verdict.verdict(folder)
-    there = {
-        "figures": figures.shown or figures.notes,
-        "players": players.shown or players.notes,
-    }
+    found, verdicts = answer.of(folder), verdict.verdict(folder)
+    there = {"figures": figures.shown or figures.notes, "players": players.shown or players.notes}
     return filled(
         "page.html",
-        title=title(folder),
-        about=about(folder),
+        **{key: make(folder, out) for key, make in TABLES.items()},
+        title=title(folder), about=about(folder),
         sections=[(key, name) for key, name in SECTIONS if there.get(key, True)],
-        answer=answer.table(found),
-        answer_notes=found.notes(),
-        badges=tables.badges(folder),
-        is_loud=any(one.tone == verdict.BAD for one in said),
-        verdict=said,
-        limits=verdict.limits(folder),
-        failures=apart.failures(folder, out),
-        reserved=apart.reserved(folder, out),
-        apart=apart.not_compared(folder, out),
-        comparison=tables.comparison(folder),
+        answer=answer.table(found), answer_notes=found.notes(),
+        badges=tables.badges(folder), is_loud=any(one.tone == verdict.BAD for one in verdicts),
+        verdict=verdicts, limits=verdict.limits(folder), comparison=tables.comparison(folder),
         figures=figures,
-        players=players.shown,
-        player_notes=players.notes,
-        library=players.library,
-        runs=tables.runs(folder, out),
-        methods=methods.text(folder),
-        commands=commands(folder),
-        count=counted(len(folder.entries), "record"),
-    )
+        players=players.shown, player_notes=players.notes, library=players.library,
+        methods=methods.text(folder), commands=commands(folder), count=counted(len(folder.entries), "record"),
+    )  # fmt: skip

@@ -2,8 +2,6 @@
 some. The library that draws stands in the page once.
 """
 
-from __future__ import annotations
-
 import base64
 import importlib.util
 import zlib

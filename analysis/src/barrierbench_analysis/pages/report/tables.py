@@ -1,10 +1,9 @@
 """The tables of a report as rows of cells; page.html draws them, page.js sorts and filters them."""
 
-from __future__ import annotations
-
 import os
 import shlex
 from collections import Counter
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from urllib.parse import quote
@@ -17,14 +16,6 @@ from .comparison import METRICS, RAW, SCALED, Beside, Factor, compared
 from .gather import Entry, Folder
 
 MOST_POINTERS = 6  # swept settings that get a column
-
-
-@dataclass(frozen=True)
-class Column:
-    heading: str
-    meaning: str = ""
-    is_number: bool = False
-    filtered: bool = False  # has a choice of its values above the table
 
 
 @dataclass(frozen=True)
@@ -42,6 +33,17 @@ class Cell:
 
 
 @dataclass(frozen=True)
+class Column:
+    """of: the cell of what a row is about."""
+
+    heading: str
+    meaning: str = ""
+    of: Callable[..., Cell] | None = None
+    is_number: bool = False
+    filtered: bool = False  # has a choice of its values above the table
+
+
+@dataclass(frozen=True)
 class Table:
     """The first cell of a row is its head."""
 
@@ -56,7 +58,22 @@ class Table:
         return sorted({row[index].text for row in self.rows})
 
 
+def table_of(key: str, caption: str, columns: list[Column], things: Iterable, **how) -> Table:
+    """A row for each of the things, by what its columns say of it."""
+    return Table(key, caption, columns, [[column.of(thing) for column in columns] for thing in things], **how)
+
+
 NONE = Cell("-")
+
+
+def text(value) -> Cell:
+    """`-` where there is none."""
+    return Cell(str(value)) if value not in (None, "") else NONE
+
+
+def formulation(name: str, formulation: str) -> Cell:
+    """In the colour of the formulation."""
+    return Cell(name, colour=look(formulation).color)
 
 
 def numeric(value: float | None, digits: int = 3) -> Cell:
@@ -77,9 +94,8 @@ def command_of(entry: Entry) -> str:
 
 
 def command_cell(entry: Entry) -> Cell:
-    if not (command := command_of(entry)):
-        return NONE
-    return Cell("", command=command, copies=f"Copy the command of {entry.run}")
+    command = command_of(entry)
+    return Cell("", command=command, copies=f"Copy the command of {entry.run}") if command else NONE
 
 
 def link_to(path: Path, page: Path) -> str:
@@ -95,7 +111,7 @@ def record_cell(entry: Entry, page: Path) -> Cell:
 
 
 def head(entry: Entry) -> Cell:
-    return Cell(entry.row["series"], colour=look(entry.row["formulation"]).color)
+    return formulation(entry.row["series"], entry.row["formulation"])
 
 
 def outcome(entry: Entry) -> Cell:
@@ -117,15 +133,26 @@ def badges(folder: Folder) -> list[Cell]:
     return [replace(cell, text=f"{n} {cell.text}") for cell, n in ends.most_common()]
 
 
-RECORD = Column(
-    "record",
-    "folder of its run.json, with a link that works while the page lies beside the records; of an archive the"
-    " path of run.json in it",
-)
+def group(entry: Entry) -> Cell:
+    return Cell(entry.group)
+
+
+def record(page: Path) -> Column:
+    meaning = (
+        "folder of its run.json, with a link that works while the page lies beside the records; of an archive"
+        " the path of run.json in it"
+    )
+    return Column("record", meaning, lambda entry: record_cell(entry, page))
+
+
+RUN = Column("run", of=head)
+GROUP = Column("group", "its sweep, or its scene", group, filtered=True)
+OUTCOME = Column("outcome", "the one word that a run ends with", outcome, filtered=True)
 COMMAND = Column(
     "command",
     "makes the record again in a folder of its own and says whether it is the same; -: the record is in an"
     " archive, which has to be unpacked for that",
+    command_cell,
 )
 
 
@@ -139,44 +166,39 @@ def _factor(factor: Factor | None) -> Cell:
 def _good(one: Beside) -> Cell:
     """How many count; it is no plain success where some of them count with a reservation."""
     kept = sum(bool(run.reserved) for run in one.runs)
-    with_all = "" if kept else "good"
     text = f"{one.good} of {len(one.runs)}" + (f", {kept} with reservations" if kept else "")
-    return Cell(text, one.good, with_all if one.good == len(one.runs) else "bad")
-
-
-def _beside(one: Beside) -> list[Cell]:
-    reference = one.reference or ("is the reference" if one.is_reference else "none in this folder")
-    return [
-        Cell(one.contender, colour=look(one.runs[0].row["formulation"]).color),
-        Cell(one.group),
-        Cell(reference),
-        _good(one),
-        Cell(str(one.count("comparable")), one.count("comparable")),
-        *(_factor(one.factors.get(metric.key)) for metric in METRICS),
-    ]
+    tone = "bad" if one.good < len(one.runs) else "" if kept else "good"
+    return Cell(text, one.good, tone)
 
 
 def comparison(folder: Folder) -> Table:
-    return Table(
-        "comparison",
-        "Numbers over those of the reference: geometric mean over the comparable pairs, smallest and"
-        " largest of"
-        " them; above 1 is more",
-        [
-            Column("formulation"),
-            Column("group", filtered=True),
-            Column("reference"),
-            Column(
-                "ok",
-                "ended ok and valid, of all runs; with reservations: surfaces may be in obstacles or in each"
-                " other, see Failures",
-                is_number=True,
-            ),
-            Column("comparable", "runs that the program calls comparable", is_number=True),
-            *(Column(f"{metric.heading}, x", metric.meaning, is_number=True) for metric in METRICS),
-        ],
-        [_beside(one) for one in compared(folder)],
+    def reference(one: Beside) -> Cell:
+        return Cell(one.reference or ("is the reference" if one.is_reference else "none in this folder"))
+
+    def comparable(one: Beside) -> Cell:
+        return Cell(str(one.count("comparable")), one.count("comparable"))
+
+    ok = (
+        "ended ok and valid, of all runs; with reservations: surfaces may be in obstacles or in each"
+        " other, see Failures"
     )
+    factors = [
+        Column(f"{m.heading}, x", m.meaning, lambda one, m=m: _factor(one.factors.get(m.key)), is_number=True)
+        for m in METRICS
+    ]
+    columns = [
+        Column("formulation", of=lambda one: formulation(one.contender, one.runs[0].row["formulation"])),
+        Column("group", of=group, filtered=True),
+        Column("reference", of=reference),
+        Column("ok", ok, _good, is_number=True),
+        Column("comparable", "runs that the program calls comparable", comparable, is_number=True),
+        *factors,
+    ]
+    caption = (
+        "Numbers over those of the reference: geometric mean over the comparable pairs, smallest and"
+        " largest of them; above 1 is more"
+    )
+    return table_of("comparison", caption, columns, compared(folder))
 
 
 def pointers(entries: list[Entry]) -> list[str]:
@@ -189,60 +211,47 @@ def pointers(entries: list[Entry]) -> list[str]:
 def _setting(value) -> Cell:
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return Cell(f"{value:g}", float(value))
-    return Cell("-" if value is None else str(value))
+    return NONE if value is None else Cell(str(value))
 
 
-def _run(entry: Entry, swept: list[str], page: Path) -> list[Cell]:
-    row, faults = entry.row, entry.faults
-    word = row.get("comparability_verdict") or ""
-    return [
-        head(entry),
-        Cell(entry.group),
-        Cell(row["formulation"]),
-        outcome(entry),
-        Cell(COMPARED.get(word, word or "-")),
-        numeric(entry.cond(RAW)),
-        numeric(entry.cond(RAW, "max")),
-        numeric(entry.cond(SCALED)),
-        numeric(row.get("newton_iterations"), 6),
-        numeric(row.get("probe_pcg_median"), 4),
-        numeric(row.get("gap_min_rel_min")),
-        Cell("-" if faults is None else str(faults), faults, "bad" if faults else ""),
-        numeric(entry.wall_s),
-        numeric(row.get("scene_free_dofs"), 9),
-        *(_setting(row.get(name)) for name in swept),
-        record_cell(entry, page),
-        command_cell(entry),
-    ]
+def _compared(entry: Entry) -> Cell:
+    word = entry.row.get("comparability_verdict") or ""
+    return Cell(COMPARED.get(word, word or "-"))
+
+
+def _crossings(entry: Entry) -> Cell:
+    faults = entry.faults
+    return Cell("-" if faults is None else str(faults), faults, "bad" if faults else "")
+
+
+def _of_row(column: str, digits: int = 3) -> Callable[[Entry], Cell]:
+    return lambda entry: numeric(entry.row.get(column), digits)
 
 
 def runs(folder: Folder, page: Path) -> Table:
-    swept = pointers(folder.entries)
-    table = Table(
-        "runs",
-        "Every run, failures included",
-        [
-            Column("run"),
-            Column("group", "its sweep, or its scene", filtered=True),
-            Column("formulation", filtered=True),
-            Column("outcome", "the one word that a run ends with", filtered=True),
-            Column("compared", "with the reference that its record names", filtered=True),
-            Column("cond raw", METRICS[0].meaning, is_number=True),
-            Column("largest", "largest of the same", is_number=True),
-            Column("cond bJ", METRICS[1].meaning, is_number=True),
-            Column("Newton", "iterations over all steps", is_number=True),
-            Column("PCG", METRICS[3].meaning, is_number=True),
-            Column("gap / d_hat", "smallest gap at the end of a converged step", is_number=True),
-            Column(
-                "crossings", "and motions through each other, by the audit; -: not audited", is_number=True
-            ),
-            Column("time s", METRICS[4].meaning, is_number=True),
-            Column("unknowns", is_number=True),
-            *(Column(name, "swept setting") for name in swept),
-            RECORD,
-            COMMAND,
-        ],
-        is_filtered=True,
-    )
-    table.rows.extend(_run(entry, swept, page) for entry in folder.entries)
-    return table
+    def numbers(heading: str, meaning: str, of: Callable[[Entry], Cell]) -> Column:
+        return Column(heading, meaning, of, is_number=True)
+
+    columns = [
+        RUN,
+        GROUP,
+        Column("formulation", of=lambda entry: Cell(entry.row["formulation"]), filtered=True),
+        OUTCOME,
+        Column("compared", "with the reference that its record names", _compared, filtered=True),
+        numbers("cond raw", METRICS[0].meaning, lambda entry: numeric(entry.cond(RAW))),
+        numbers("largest", "largest of the same", lambda entry: numeric(entry.cond(RAW, "max"))),
+        numbers("cond bJ", METRICS[1].meaning, lambda entry: numeric(entry.cond(SCALED))),
+        numbers("Newton", "iterations over all steps", _of_row("newton_iterations", 6)),
+        numbers("PCG", METRICS[3].meaning, _of_row("probe_pcg_median", 4)),
+        numbers("gap / d_hat", "smallest gap at the end of a converged step", _of_row("gap_min_rel_min")),
+        numbers("crossings", "and motions through each other, by the audit; -: not audited", _crossings),
+        numbers("time s", METRICS[4].meaning, lambda entry: numeric(entry.wall_s)),
+        numbers("unknowns", "", _of_row("scene_free_dofs", 9)),
+        *(
+            Column(name, "swept setting", lambda entry, name=name: _setting(entry.row.get(name)))
+            for name in pointers(folder.entries)
+        ),
+        record(page),
+        COMMAND,
+    ]
+    return table_of("runs", "Every run, failures included", columns, folder.entries, is_filtered=True)

@@ -6,13 +6,11 @@ folders: what differs between them.
 Exit codes: 0 written, 2 no record can be read, or the file cannot be written.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, code_of, tells
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import count_from_0, parser_of
+from barrierbench_analysis.program.arguments import count_from_0, options, parser_of
 from barrierbench_analysis.tables.archive import beside, study
 
 from . import figures, players
@@ -64,23 +62,13 @@ def report_of_two(a: Folder, b: Folder, out: Path) -> str:
 @tells("report")
 def main(argv: list[str]) -> int:
     parser = parser_of("report", __doc__, "./bench report results/runs/before results/runs/after")
-    parser.add_argument(
-        "folder", type=Path, metavar="DIR", help="a folder with records below it, or an archive"
-    )
-    parser.add_argument("other", type=Path, nargs="?", metavar="DIR2", help="a second one: what differs")
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="FILE",
-        help=f"the page (default: {NAME} in DIR, or beside an archive; of two, in DIR2)",
-    )
-    parser.add_argument(
-        "--players",
-        type=count_from_0,
-        default=players.MOST,
-        metavar="N",
-        help=f"scenes in motion at most; each takes up to 3 MB (default: {players.MOST})",
-    )
+    text = f"""
+folder DIR: a folder with records below it, or an archive
+other DIR2: a second one: what differs
+--out FILE: the page (default: {NAME} in DIR, or beside an archive; of two, in DIR2)
+--players N: scenes in motion at most; each takes up to 3 MB (default: {players.MOST})"""
+    most = {"type": count_from_0, "default": players.MOST}
+    options(parser, text, folder=Path, other={"type": Path, "nargs": "?"}, out=Path, players=most)
     args = parser.parse_args(argv)
     if args.other is None:
         with study(args.folder) as (folder,):

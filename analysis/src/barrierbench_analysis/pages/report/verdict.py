@@ -1,7 +1,5 @@
 """What the records say in plain words, and what they do not say. Every sentence is computed from them."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 

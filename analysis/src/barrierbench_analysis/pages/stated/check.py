@@ -2,8 +2,6 @@
 which readers are made on any page, and these against the kept data.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a study takes, from the seconds that kept results have: the table of docs/guides/cluster.md."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 

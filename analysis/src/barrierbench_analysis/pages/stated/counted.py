@@ -2,8 +2,6 @@
 Each side is a statement, so that they are compared like two pages.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -13,15 +11,9 @@ from barrierbench_analysis.io.errors import UserError
 
 from .statement import Statement, cells_of, section, tables
 
-STUDIES = {  # study in the table of costs -> what its runs are called
-    "claims": "claims runs",
-    "gap map": "gap map runs",
-    "Pareto fronts": "Pareto runs",
-    "work-precision": "work-precision runs",
-    "catalogue": "catalogue runs",
-    "stress suite": "stress runs",
-    "ablation": "ablation runs",
-}
+# study in the table of costs -> what its runs are called
+STUDIES = {name: f"{name} runs" for name in ("claims", "gap map", "work-precision", "catalogue", "ablation")}
+STUDIES |= {"Pareto fronts": "Pareto runs", "stress suite": "stress runs"}
 SAID = "as it is said"
 SHOWN = "as its tables add up"
 
@@ -51,19 +43,14 @@ def _outcomes(cell: str) -> int:
 
 def stress(text: str, page: str) -> Iterator[Statement]:
     """Runs, relations and counts of the stress suite."""
-    yield from _said(
-        r"(\d+) of (\d+) runs ended as .*?; (\d+) of (\d+) relations .*?; (\d+) of (\d+) counts of geometry"
-        r" \((\d+) subjects\)",
-        text,
-        page,
-        "stress runs as expected",
-        "stress runs",
-        "stress relations that hold",
-        "stress relations",
-        "stress counts as expected",
-        "stress counts",
-        "stress subjects",
+    parts = (
+        r"(\d+) of (\d+) runs ended as .*?",
+        r"(\d+) of (\d+) relations .*?",
+        r"(\d+) of (\d+) counts of geometry",
     )
+    what = "runs as expected;runs;relations that hold;relations;counts as expected;counts;subjects".split(";")
+    said = "; ".join(parts) + r" \((\d+) subjects\)"
+    yield from _said(said, text, page, *(f"stress {quantity}" for quantity in what))
     relations, geometry = _rows(text, "Relations between runs"), _rows(text, "Geometry")
     outcomes = [cells_of(line)[1:] for line in _rows(text, "Outcomes")]
     outcomes += [cells[1:2] for title, _, cells in tables(text) if re.match(r"[SM]\d\d ", title)]
@@ -85,14 +72,8 @@ def stress(text: str, page: str) -> Iterator[Statement]:
 
 def catalogue(text: str, page: str) -> Iterator[Statement]:
     """Scenes and runs of the catalogue, and the outcome of each run that is not as expected."""
-    yield from _said(
-        r"(\d+) of \d+; (\d+) runs, (\d+) of which end as expected",
-        text,
-        page,
-        "catalogue scenes",
-        "catalogue runs",
-        "catalogue runs as expected",
-    )
+    quantities = ("catalogue scenes", "catalogue runs", "catalogue runs as expected")
+    yield from _said(r"(\d+) of \d+; (\d+) runs, (\d+) of which end as expected", text, page, *quantities)
     heads, runs = [], []
     for title, heads, cells in tables(text):
         if title == "Outcomes":
@@ -176,15 +157,11 @@ def engines(text: str, page: str) -> Iterator[Statement]:
                 yield Statement(f"{page}, {SAID}", f"{study}{engine} {variant}: {quantity}", starts, number)
     ends = _ends_of_tables(text)
     for starts in () if study else ("own start", "jittered starts"):
-        mujoco = sum(
+        mine = [
             n for (label, *of), n in ends.items() if label.startswith("mujoco ") and of == [starts, "runs"]
-        )
-        yield Statement(
-            f"{page}, {SHOWN}",
-            f"mujoco, all variants: runs of {'the ' * (starts == 'own start')}{starts}",
-            "",
-            str(mujoco),
-        )
+        ]
+        quantity = f"mujoco, all variants: runs of {'the ' * (starts == 'own start')}{starts}"
+        yield Statement(f"{page}, {SHOWN}", quantity, "", str(sum(mine)))
     for (label, starts, quantity), number in ends.items():
         if not label.startswith("barrierbench"):  # nothing is promised of ours
             yield Statement(f"{page}, {SHOWN}", f"{study}{label}: {quantity}", starts, str(number))

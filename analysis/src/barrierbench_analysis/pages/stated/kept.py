@@ -2,8 +2,6 @@
 of the gap map, and its tables by size.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A number with its identity: what is measured, under which conditions, and by which evidence."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

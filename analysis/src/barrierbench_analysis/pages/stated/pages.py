@@ -3,8 +3,6 @@ which number, and what its study decides of it. A number that stands on two page
 there, whatever made it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,17 +11,7 @@ from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.pages.reference import MARK
 
-from .counted import (
-    catalogue,
-    cluster,
-    engines,
-    engines_in_words,
-    gap_map,
-    mentions,
-    stress,
-    work_precision,
-    work_precision_caption,
-)
+from . import counted
 from .statement import Statement, tables
 from .whole_page import everything
 
@@ -126,33 +114,26 @@ def _firsts(text: str, page: str) -> Iterator[Statement]:
 
 
 # Page -> its readers. Each has to find something: a page that is written otherwise would be read as silent.
-READERS: dict[str, tuple[Callable[[str, str], Iterator[Statement]], ...]] = {
+Reader = Callable[[str, str], Iterator[Statement]]
+READERS: dict[str, tuple[Reader, ...]] = {
     "results/CLAIMS.md": (_claims, _firsts, _verdicts),
-    "results/GAP_MAP.md": (_map, pair, _law, gap_map),
+    "results/GAP_MAP.md": (_map, pair, _law, counted.gap_map),
     "results/PARETO.md": (_pareto,),
     "results/ABLATION.md": (_ablation,),
-    "results/STRESS.md": (stress,),
-    "results/CATALOGUE.md": (catalogue,),
-    "results/WORK_PRECISION.md": (work_precision,),
-    "results/ENGINES.md": (engines,),
-    "results/ENGINES_SIZE.md": (engines,),
+    **{f"results/{of.__name__.upper()}.md": (of,) for of in (counted.stress, counted.catalogue)},
+    "results/WORK_PRECISION.md": (counted.work_precision,),
+    **dict.fromkeys(("results/ENGINES.md", "results/ENGINES_SIZE.md"), (counted.engines,)),
     "docs/results/claims.md": (_verdicts,),
-    "docs/results/which-barrier.md": (gap_map,),
-    "docs/results/engines.md": (engines_in_words,),
-    "docs/guides/verbs.md": (mentions,),
-    "docs/guides/cluster.md": (cluster,),
-    "docs/gap_law.txt": (_law, gap_map),
-    "docs/gap_law_more.txt": (_law, gap_map),
-    "docs/gap_map.txt": (gap_map,),
-    "docs/gap_map_more.txt": (gap_map,),
+    "docs/results/which-barrier.md": (counted.gap_map,),
+    "docs/results/engines.md": (counted.engines_in_words,),
+    "docs/guides/verbs.md": (counted.mentions,),
+    "docs/guides/cluster.md": (counted.cluster,),
+    **dict.fromkeys(("docs/gap_law.txt", "docs/gap_law_more.txt"), (_law, counted.gap_map)),
+    **dict.fromkeys(("docs/gap_map.txt", "docs/gap_map_more.txt"), (counted.gap_map,)),
 }
-CAPTIONS = {"docs/work_precision_*.txt": work_precision_caption}
-NO_NUMBERS = (
-    "docs/guides/index.md",
-    "docs/reference/index.md",
-    "docs/results/method/index.md",
-    "docs/theory/index.md",
-)  # pages that state none, so that nothing can be read in them
+CAPTIONS = {"docs/work_precision_*.txt": counted.work_precision_caption}
+# pages that state none, so that nothing can be read in them
+NO_NUMBERS = [f"docs/{of}/index.md" for of in ("guides", "reference", "results/method", "theory")]
 EVERY = ("README.md", "docs/**/*.md", "docs/*.txt", "results/*.md")
 
 
@@ -164,7 +145,7 @@ def pages_of(root: Path) -> list[str]:
     return [path.relative_to(root).as_posix() for path in every if MARK not in input_file.read_text(path)]
 
 
-def _readers(page: str) -> list[Callable[[str, str], Iterator[Statement]]]:
+def _readers(page: str) -> list[Reader]:
     return [*READERS.get(page, ()), *(reader for of, reader in CAPTIONS.items() if Path(page).match(of))]
 
 

@@ -2,8 +2,6 @@
 log over another shape stands there with its conditions; `apart` finds what studies decide differently.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from dataclasses import replace

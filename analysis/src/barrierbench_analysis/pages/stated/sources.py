@@ -1,7 +1,5 @@
 """Numbers of the log over another shape that the kept results have: of claims, gap map and ablation."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator
@@ -50,24 +48,17 @@ def _of_part(claim: Claim, part: dict, judged: Judged, table: Table, confirmed: 
     few = judged.lower is None or judged.missing.startswith("indication")
     which = "" if part.get("counts") == "valid" else "comparable runs alone"
     scenes = part.get("scenes")
+    places = "; ".join(filter(None, [which, f"scenes {', '.join(scenes)}" if scenes else ""]))
     return Number(
-        OF_CLAIMS[part["metric"]],
-        part["case"],
-        BOTH.get(part["over"], part["over"]),
-        float(theta[1]) if theta else None,
-        OWN if own else OFF if limit and limit[1] == "off" else SAME,
-        claim.id,
-        confirmed,
-        judged.scenes,
-        _span(table.sweeps[part["sweep"]].about["unknowns"]),
-        judged.value,
-        judged.lower,
-        judged.upper,
-        not few and not judged.lower <= 1 <= judged.upper,
-        "; ".join(filter(None, [which, f"scenes {', '.join(scenes)}" if scenes else ""])),
-        part["sweep"],
-        sum(1 / ALIKE < value < ALIKE for _, value, *_ in judged.per_scene),
-    )
+        metric=OF_CLAIMS[part["metric"]], case=part["case"], over=BOTH.get(part["over"], part["over"]),
+        theta=float(theta[1]) if theta else None,
+        limit=OWN if own else OFF if limit and limit[1] == "off" else SAME,
+        study=claim.id, confirmed=confirmed, scenes=judged.scenes,
+        unknowns=_span(table.sweeps[part["sweep"]].about["unknowns"]),
+        value=judged.value, lower=judged.lower, upper=judged.upper,
+        decided=not few and not judged.lower <= 1 <= judged.upper, places=places, sweep=part["sweep"],
+        alike=sum(1 / ALIKE < value < ALIKE for _, value, *_ in judged.per_scene),
+    )  # fmt: skip
 
 
 def confirmation(claim: Claim, table: Table) -> list[dict]:
@@ -111,24 +102,9 @@ def of_map(found: Map, shape: str, limit: str, theta: float) -> list[Number]:
     for metric in METRICS:
         ratio = here.ratios[shape][metric].turned()
         decided = ratio.lower is not None and not ratio.lower <= 1 <= ratio.upper
-        numbers.append(
-            Number(
-                metric,
-                REFERENCE,
-                shape,
-                theta,
-                LIMITS[limit],
-                "gap map",
-                False,
-                ratio.scenes,
-                (min(sizes), max(sizes)),
-                ratio.value,
-                ratio.lower,
-                ratio.upper,
-                decided,
-                here.cut.words,
-            )
-        )
+        what = (metric, REFERENCE, shape, theta, LIMITS[limit], "gap map", False)
+        value = (ratio.value, ratio.lower, ratio.upper, decided, here.cut.words)
+        numbers.append(Number(*what, ratio.scenes, (min(sizes), max(sizes)), *value))
     return numbers
 
 
@@ -142,22 +118,7 @@ def of_ablation(study: Study) -> list[Number]:
             labels = factorial.factors[factor].labels
             if labels[0] == REFERENCE and effect.low is not None:
                 mean, low, high = (math.exp(-x) for x in (effect.mean, effect.high, effect.low))
-                numbers.append(
-                    Number(
-                        name,
-                        REFERENCE,
-                        labels[level],
-                        THETA,
-                        OFF,
-                        "ablation",
-                        False,
-                        len(effect.scenes),
-                        (min(sizes), max(sizes)),
-                        mean,
-                        low,
-                        high,
-                        effect.decided,
-                        "all other factors varied",
-                    )
-                )
+                what = (name, REFERENCE, labels[level], THETA, OFF, "ablation", False, len(effect.scenes))
+                value = (mean, low, high, effect.decided, "all other factors varied")
+                numbers.append(Number(*what, (min(sizes), max(sizes)), *value))
     return numbers

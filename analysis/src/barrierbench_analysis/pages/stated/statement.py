@@ -1,7 +1,5 @@
 """What a page states, and the tables and sentences that it states it in."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ that stands on one page twice, with the same words under the same heading, is th
 What is said in other words, or elsewhere, needs a reader of its own (pages.py).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

@@ -5,8 +5,6 @@ slope_error_rel. Of kind device, which is requested with a layout, the kernel of
 ptx_sha256. Or found and allowed of what is wrong.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 

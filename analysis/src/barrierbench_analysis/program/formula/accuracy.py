@@ -1,7 +1,5 @@
 """The compiled library beside 40 digits: how much of b, b', b'' double precision keeps."""
 
-from __future__ import annotations
-
 import ctypes
 from pathlib import Path
 
@@ -45,33 +43,12 @@ def check(library: Path, terms: Terms) -> dict[str, float]:
 
 def _call(library: Path):
     """b, b', b'' of the library at one gap, for d_hat = 1."""
-    number = ctypes.POINTER(ctypes.c_double)
-
-    class Shape(ctypes.Structure):  # bb_plugin_shape
-        _fields_ = [
-            ("name", ctypes.c_char_p),
-            ("doc", ctypes.c_char_p),
-            ("smoothness_at_d_hat", ctypes.c_int32),
-            ("infinite_at_zero", ctypes.c_int32),
-            ("self", ctypes.c_void_p),
-            ("eval_double", ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t, *([number] * 5))),
-        ]
-
-    class Plugin(ctypes.Structure):  # bb_plugin
-        _fields_ = [
-            ("abi_version", ctypes.c_uint32),
-            ("name", ctypes.c_char_p),
-            ("n_shapes", ctypes.c_size_t),
-            ("shapes", ctypes.POINTER(Shape)),
-        ]
-
-    entry = ctypes.CDLL(str(library)).barrierbench_plugin
-    entry.restype = ctypes.POINTER(Plugin)
-    evaluate = entry().contents.shapes[0].eval_double
+    terms = (ctypes.c_double * 3)()
+    evaluate = ctypes.CDLL(str(library)).barrierbench_formula_shape
+    evaluate.argtypes, evaluate.restype = [ctypes.c_double, ctypes.c_double * 3], None
 
     def at(u: float) -> list[float]:
-        columns = [ctypes.c_double(x) for x in (u, 1.0, 0.0, 0.0, 0.0)]
-        evaluate(None, 1, *(ctypes.byref(x) for x in columns))
-        return [x.value for x in columns[2:]]
+        evaluate(u, terms)
+        return list(terms)
 
     return at

@@ -2,8 +2,6 @@
 in place by renaming, and its JSON, which says that it is whole, after it.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shlex
@@ -19,26 +17,16 @@ from barrierbench_analysis.io.places import ROOT
 
 from .grammar import Formula, FormulaError
 
-HEADERS = (
-    "barriers/shapes/builtin_shape.hpp",
-    "core/barrier/shape_potential.hpp",
-    "barriers/shapes/lane_batch.hpp",
-    "core/barrier/normalized_gap.hpp",
-    "barriers/shapes/shape_family.hpp",
-    "core/barrier/shape.hpp",
-    "core/barrier/stiffness_sums.hpp",
-    "core/math/atan2.hpp",
-    "core/math/device_code.hpp",
-    "core/math/exp.hpp",
-    "core/math/host_device.hpp",
-    "core/math/lanes.hpp",
-    "core/math/lanes_log.hpp",
-    "core/math/log.hpp",
-    "core/math/scale.hpp",
-    "core/math/select.hpp",
-    "core/math/types.hpp",
+HEADERS = [
+    *(f"barriers/shapes/{name}.hpp" for name in ("builtin_shape", "lane_batch", "shape_family")),
+    *(
+        f"core/barrier/{name}.hpp"
+        for name in ("shape_potential", "normalized_gap", "shape", "stiffness_sums")
+    ),
+    *(f"core/math/{name}.hpp" for name in "atan2 device_code exp host_device lanes lanes_log log".split()),
+    *(f"core/math/{name}.hpp" for name in ("scale", "select", "types")),
     "core/model/plugin/barrierbench_plugin.h",
-)
+]
 EIGEN = "/usr/include/eigen3"
 SECONDS_TO_COMPILE = 120
 HOST_COMPILER = "a C++ compiler as c++, or named by the variable CXX (Debian: apt-get install g++)"
@@ -94,10 +82,9 @@ def key_of(formula: Formula, words: list[str]) -> str:
 
 
 def version_of(compiler: str, allowed: str = HOST_COMPILER) -> str:
+    how = {"check": True, "capture_output": True, "text": True, "timeout": 30}
     try:
-        return subprocess.run(
-            [compiler, "--version"], check=True, capture_output=True, text=True, timeout=30
-        ).stdout
+        return subprocess.run([compiler, "--version"], **how).stdout
     except (OSError, subprocess.SubprocessError) as error:
         raise FormulaError(f'no compiler "{compiler}" ({error})', allowed) from None
 
@@ -117,50 +104,49 @@ def make(key: str, words: list[str], source: str, about: dict, judge: Callable[[
     """Compiles and keeps, with all that `judge` says of the library. Errors: FormulaError with what the
     compiler reported, where nothing can be written, and of `judge`.
     """
-    place = folder()
+
+    def made(there: Path) -> dict:
+        refusal = f"a compiler of C++20 ({shlex.join(words)})"
+        compile_there([*words, "-o", "formula.so", "formula.cpp"], there, refusal)
+        library = there / "formula.so"
+        return {**about, **judge(library), "library_sha256": digests.of_file(library)}
+
+    place = folder() / f"{key}.so"
+    return Compiled(place, put(place, source, ("cpp", "so", "json"), made))
+
+
+def put(place: Path, source: str, suffixes: tuple[str, str, str], make: Callable[[Path], dict]) -> dict:
+    """What `make` says of the files that it has made in a folder, in which formula.SUFFIX is the source; they
+    are renamed to their place. suffixes: of source, product and JSON, which is the last since it says that
+    the others are there. Errors: FormulaError where nothing can be written.
+    """
     try:
-        place.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=place, prefix="making-") as name:
-            there = Path(name)
-            (there / "formula.cpp").write_text(source)
-            refusal = f"a compiler of C++20 ({shlex.join(words)})"
-            compile_there([*words, "-o", "formula.so", "formula.cpp"], there, refusal)
-            about = {
-                **about,
-                **judge(there / "formula.so"),
-                "library_sha256": digests.of_file(there / "formula.so"),
-            }
-            (there / "formula.json").write_text(json.dumps(about, indent=1) + "\n")
-            for suffix in ("cpp", "so", "json"):  # the JSON last: it says that the others are there
-                (there / f"formula.{suffix}").replace(place / f"{key}.{suffix}")
+        place.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=place.parent, prefix="making-") as name:
+            files = [Path(name) / f"formula.{suffix}" for suffix in suffixes]
+            files[0].write_text(source)
+            known = make(Path(name))
+            files[-1].write_text(json.dumps(known, indent=1) + "\n")
+            for suffix, file in zip(suffixes, files, strict=True):
+                file.replace(place.with_suffix(f".{suffix}"))
     except OSError as error:
-        raise not_written(place, error) from None
-    return Compiled(place / f"{key}.so", about)
+        raise not_written(place.parent, error) from None
+    return known
 
 
 def not_written(place: Path, error: OSError) -> FormulaError:
-    return FormulaError(
-        f"the folder {place} ({error.strerror})",
-        "a folder to write to, or another in BARRIERBENCH_CACHE",
-        code_of(error),
-    )
+    allowed = "a folder to write to, or another in BARRIERBENCH_CACHE"
+    return FormulaError(f"the folder {place} ({error.strerror})", allowed, code_of(error))
 
 
 def compile_there(words: list[str], there: Path, allowed: str) -> None:
     """Runs a compiler in a folder. allowed: what would do. Errors: FormulaError with the compiler's words."""
     try:
-        done = subprocess.run(
-            words,
-            check=False,
-            cwd=there,
-            capture_output=True,
-            text=True,
-            timeout=SECONDS_TO_COMPILE,
-        )
+        how = {"capture_output": True, "text": True, "timeout": SECONDS_TO_COMPILE}
+        done = subprocess.run(words, check=False, cwd=there, **how)
     except subprocess.TimeoutExpired:
-        raise FormulaError(
-            f"a compiler that takes more than {SECONDS_TO_COMPILE} s", "a shorter formula"
-        ) from None
+        found = f"a compiler that takes more than {SECONDS_TO_COMPILE} s"
+        raise FormulaError(found, "a shorter formula") from None
     if done.returncode != 0:
         first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[:200])
         raise FormulaError(f"a compiler that refuses the formula: {first}", allowed)

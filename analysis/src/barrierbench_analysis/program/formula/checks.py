@@ -4,8 +4,6 @@ rational parts by exact roots. Signs are looked for on a grid in 40 digits and p
 (signs.py).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple, NoReturn

@@ -1,7 +1,5 @@
 """From the text of a formula to a library that the program loads."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import signal
@@ -49,15 +47,9 @@ def _made_policy(formula: Formula, key: str, words: list[str]) -> cache.Compiled
     with _within(SECONDS_TO_CHECK):
         kappa = policy.kappa_of(formula)
         points = policy.check(kappa)
-    label = cache.label_of(formula)
-    symbols = policy.symbols_of(kappa)
-    about = {
-        "formula": formula.text,
-        "label": label,
-        "points": points,
-        "symbols": symbols,
-        "reads_gap": "d" in symbols,
-    }
+    label, symbols = cache.label_of(formula), policy.symbols_of(kappa)
+    about = {"formula": formula.text, "label": label, "points": points, "symbols": symbols}
+    about["reads_gap"] = "d" in symbols
     text = policy.cpp(label.replace("-", "_"), formula.text, kappa)
     return cache.make(key, words, text, about, lambda library: policy.judge(library, kappa))
 

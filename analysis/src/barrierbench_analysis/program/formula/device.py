@@ -2,12 +2,9 @@
 the compiled formulas. It is good as long as every header that it was made from is as it was.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
-import tempfile
 import time
 from pathlib import Path
 
@@ -80,36 +77,21 @@ def _answer(known: dict, place: Path) -> dict:
 def _make(formula: Formula, layout: int, words: list[str], place: Path) -> dict:
     from . import checks, source, symbolic  # they import sympy, which what is kept does not need
 
-    terms = symbolic.terms_of(formula)
+    terms, begun = symbolic.terms_of(formula), time.time()
+
+    def made(there: Path) -> dict:
+        plain = ["env", *(word for name in CHANGES_NVCC for word in ("-u", name)), *words]
+        arguments = ["-MD", "-MF", "headers.d", "-o", "formula.ptx", "formula.cu"]
+        cache.compile_there([*plain, *arguments], there, f"{REMEDY} ({words[0]} was requested)")
+        headers = _headers(input_file.read_text(there / "headers.d"))
+        if any((ROOT / header).stat().st_mtime > begun for header in headers):
+            allowed = "sources that nobody edits meanwhile"
+            raise FormulaError("headers that changed while nvcc read them", allowed)
+        sha256 = digests.of_file(there / "formula.ptx")
+        return {"entry": source.ENTRY, "formula": formula.text, "ptx_sha256": sha256, "headers": headers}
+
     text = source.cu(formula.text, terms, checks.check(terms, None), layout)
-    begun = time.time()
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=place.parent, prefix="making-") as name:
-            there = Path(name)
-            (there / "formula.cu").write_text(text)
-            plain = ["env", *(word for name in CHANGES_NVCC for word in ("-u", name)), *words]
-            cache.compile_there(
-                [*plain, "-MD", "-MF", "headers.d", "-o", "formula.ptx", "formula.cu"],
-                there,
-                f"{REMEDY} ({words[0]} was requested)",
-            )
-            known = {
-                "entry": source.ENTRY,
-                "formula": formula.text,
-                "ptx_sha256": digests.of_file(there / "formula.ptx"),
-                "headers": _headers(input_file.read_text(there / "headers.d")),
-            }
-            if any((ROOT / header).stat().st_mtime > begun for header in known["headers"]):
-                raise FormulaError(
-                    "headers that changed while nvcc read them", "sources that nobody edits meanwhile"
-                )
-            (there / "formula.ptx.json").write_text(json.dumps(known, indent=1) + "\n")
-            for suffix in ("cu", "ptx", "ptx.json"):  # the JSON last: it says that the others are there
-                (there / f"formula.{suffix}").replace(place.with_suffix(f".{suffix}"))
-    except OSError as error:
-        raise cache.not_written(place.parent, error) from None
-    return _answer(known, place)
+    return _answer(cache.put(place, text, ("cu", "ptx", "ptx.json"), made), place)
 
 
 def _headers(rule: str) -> dict[str, str]:

@@ -3,8 +3,6 @@ and the functions named here. Nothing of the text is ever evaluated. Imports no 
 one, so that a formula of the cache costs none.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from fractions import Fraction

@@ -2,8 +2,6 @@
 as C++ (a plugin with one policy) and compared with 40 digits.
 """
 
-from __future__ import annotations
-
 import ctypes
 import itertools
 import math
@@ -164,17 +162,10 @@ def cpp(name: str, formula: str, kappa: sp.Expr) -> str:
     common, value = _statements(kappa)
     slope = slope_of(kappa)
     slope_common, slope_value = _statements(slope)
-    return TEMPLATE.format(
-        formula=formula,
-        name=name,
-        arguments=_arguments(kappa),
-        common=common,
-        kappa=value,
-        slope_arguments=_arguments(slope),
-        slope_common=slope_common,
-        slope=slope_value,
-        hessian=int("k" in symbols_of(kappa)),
-    )
+    of_slope = {"slope_arguments": _arguments(slope), "slope_common": slope_common, "slope": slope_value}
+    of_kappa = {"arguments": _arguments(kappa), "common": common, "kappa": value}
+    hessian = int("k" in symbols_of(kappa))
+    return TEMPLATE.format(formula=formula, name=name, hessian=hessian, **of_kappa, **of_slope)
 
 
 def _arguments(x: sp.Expr) -> str:
@@ -192,107 +183,43 @@ def _statements(x: sp.Expr) -> tuple[str, str]:
 
 def judge(library: Path, kappa: sp.Expr) -> dict[str, float]:
     """Largest errors of the library at points of the grid: error_rel of kappa, and slope_error_rel of d
-    kappa/dd as a part of kappa/d, which a derived potential requires. Errors: FormulaError where the
-    first is above MOST_ERROR.
+    kappa/dd as a part of kappa/d, below d_hat, where a slope may be infinite. Errors: FormulaError where
+    the first is above MOST_ERROR, or a slope is not finite.
     """
-    call, value = _call(library), sp.lambdify(list(SYMBOLS.values()), kappa, "mpmath")
-    worst = 0.0
+    at, worst, worst_slope = _call(library), 0.0, 0.0
+    exact = [sp.lambdify(list(SYMBOLS.values()), x, "mpmath") for x in (kappa, slope_of(kappa))]
     with mpmath.workdps(DIGITS):
         for point in itertools.islice(points(kappa), 0, None, EVERY):
             numbers = {name: float(x) for name, x in point.items()}
-            exact = value(*(mpmath.mpf(x) for x in numbers.values()))
-            found = call(numbers)
-            error = float(abs((mpmath.mpf(found) - exact) / exact)) if exact != 0 else abs(found)
+            digits, (found, slope) = list(map(mpmath.mpf, numbers.values())), at(**numbers)
+            value = exact[0](*digits)
+            error = float(abs((mpmath.mpf(found) - value) / value)) if value != 0 else abs(found)
             worst = max(worst, error)
             if not error <= MOST_ERROR:
                 raise FormulaError(
                     f"kappa off by a factor of {error:.1g} in double precision at {numbers}",
                     f"a formula that keeps {MOST_ERROR:g}: without differences of near numbers",
                 )
-    return {"error_rel": worst, "slope_error_rel": _slope_error(library, kappa)}
-
-
-def _slope_error(library: Path, kappa: sp.Expr) -> float:
-    """Below d_hat, where a slope may be infinite."""
-    in_gap = ctypes.CDLL(str(library)).barrierbench_formula_in_gap
-    in_gap.restype = None
-    numbers = [ctypes.c_double] * 5 + [ctypes.c_size_t] + [ctypes.POINTER(ctypes.c_double)] * 3
-    in_gap.argtypes = numbers
-    symbols = list(SYMBOLS.values())
-    value, slope = (sp.lambdify(symbols, x, "mpmath") for x in (kappa, slope_of(kappa)))
-    worst = 0.0
-    with mpmath.workdps(DIGITS):
-        for point in itertools.islice(points(kappa), 0, None, EVERY):
-            m, k, h, c, d, d_hat = (float(x) for x in point.values())
+            d, d_hat = numbers["d"], numbers["d_hat"]
             if d >= d_hat:
                 continue
-            exact = [f(*map(mpmath.mpf, (m, k, h, c, d, d_hat))) for f in (value, slope)]
-            found = [ctypes.c_double(), ctypes.c_double()]
-            in_gap(m, k, h, c, d_hat, 1, ctypes.c_double(d), *found)
-            scale = max(abs(exact[0]) / d, abs(exact[1]))
-            if not math.isfinite(found[1].value):
-                raise FormulaError(
-                    f"d kappa/dd = {found[1].value} at d = {d / d_hat:.6g} d_hat", "a finite number"
-                )
-            error = float(abs(found[1].value - exact[1]) / scale) if scale != 0 else abs(found[1].value)
-            worst = max(worst, error)
-    return worst
-
-
-class _Rows(ctypes.Structure):  # bb_plugin_rows
-    _fields_ = [
-        ("n", ctypes.c_size_t),
-        ("n_free", ctypes.POINTER(ctypes.c_int32)),
-        *(
-            (name, ctypes.POINTER(ctypes.c_double))
-            for name in ("weight", "normal", "d", "d_hat", "mass", "hessian")
-        ),
-        ("h", ctypes.c_double),
-        ("c", ctypes.c_double),
-    ]
-
-
-class _Policy(ctypes.Structure):  # bb_plugin_policy
-    _fields_ = [
-        ("name", ctypes.c_char_p),
-        ("doc", ctypes.c_char_p),
-        ("needs_hessian", ctypes.c_int32),
-        ("self", ctypes.c_void_p),
-        (
-            "fill",
-            ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.POINTER(_Rows), ctypes.POINTER(ctypes.c_double)),
-        ),
-    ]
-
-
-class _Plugin(ctypes.Structure):  # bb_plugin
-    _fields_ = [
-        ("abi_version", ctypes.c_uint32),
-        ("name", ctypes.c_char_p),
-        ("n_shapes", ctypes.c_size_t),
-        ("shapes", ctypes.c_void_p),
-        ("n_policies", ctypes.c_size_t),
-        ("policies", ctypes.POINTER(_Policy)),
-    ]
+            if not math.isfinite(slope):
+                raise FormulaError(f"d kappa/dd = {slope} at d = {d / d_hat:.6g} d_hat", "a finite number")
+            wanted = exact[1](*digits)
+            scale = max(abs(value) / d, abs(wanted))
+            worst_slope = max(worst_slope, float(abs(slope - wanted) / scale) if scale != 0 else abs(slope))
+    return {"error_rel": worst, "slope_error_rel": worst_slope}
 
 
 def _call(library: Path):
-    """kappa for one free vertex of weight 1: m is its mass, k the first number of its Hessian."""
-    entry = ctypes.CDLL(str(library)).barrierbench_plugin
-    entry.restype = ctypes.POINTER(_Plugin)
-    policy = entry().contents.policies[0]
+    """kappa and d kappa/dd of the library at one point."""
+    number, pointer = ctypes.c_double, ctypes.POINTER(ctypes.c_double)
+    in_gap = ctypes.CDLL(str(library)).barrierbench_formula_in_gap
+    in_gap.argtypes, in_gap.restype = [number] * 5 + [ctypes.c_size_t] + [pointer] * 3, None
 
-    def at(numbers: dict[str, float]) -> float:
-        def column(*values: float):
-            return (ctypes.c_double * len(values))(*values)
-
-        hessian = column(numbers["k"], *([0.0] * 143))
-        free, kappa = (ctypes.c_int32 * 1)(1), column(0.0)
-        rows = _Rows(
-            1, free, column(1, 0, 0, 0), column(1, 0, 0), column(numbers["d"]), column(numbers["d_hat"]),
-            column(numbers["m"], 0, 0, 0), hessian, numbers["h"], numbers["c"],
-        )  # fmt: skip
-        policy.fill(policy.self, ctypes.byref(rows), kappa)
-        return kappa[0]
+    def at(m: float, k: float, h: float, c: float, d: float, d_hat: float) -> tuple[float, float]:
+        kappa, slope = number(), number()
+        in_gap(m, k, h, c, d_hat, 1, number(d), kappa, slope)
+        return kappa.value, slope.value
 
     return at

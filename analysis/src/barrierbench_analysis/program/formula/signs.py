@@ -2,8 +2,6 @@
 until bounds of the value prove its sign, its middle fails, or the work that is allowed is done.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 

@@ -2,8 +2,6 @@
 e = 1 - u and l = -ln u, which keep full precision at both ends of (0, d_hat) and become C++.
 """
 
-from __future__ import annotations
-
 import ast
 from fractions import Fraction
 from typing import NamedTuple

@@ -1,13 +1,11 @@
 """`bench formula`: what a formula is as a barrier."""
 
-from __future__ import annotations
-
 import argparse
 import json
 
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError, tells
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import options, parser_of
 
 from .compiled import compiled, compiled_policy, signs_of
 from .grammar import POLICY, SHAPE, FormulaError
@@ -28,10 +26,12 @@ In a config: "stiffness_policy": {{"name": "formula", "formula": "m/h^2 + k"}}. 
 def parse(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("formula", DOC)
     parser.formula_argument("formula", "TEXT")
-    parser.add_argument("--at-zero", choices=("infinite", "finite"), help="what it is meant to do as d -> 0")
-    parser.add_argument("--policy", action="store_true", help="the formula is a stiffness, kappa in N/m")
-    parser.add_argument("--json", action="store_true", help="the answer as JSON")
-    parser.add_argument("--source", action="store_true", help="the C++ that was made of it instead")
+    text = """
+--at-zero: what it is meant to do as d -> 0
+--policy: the formula is a stiffness, kappa in N/m
+--json: the answer as JSON
+--source: the C++ that was made of it instead"""
+    options(parser, text, at_zero=("infinite", "finite"))
     args = parser.parse_args(argv)
     if args.policy and args.at_zero:
         raise UserError("--at-zero is of shapes, not of --policy")
@@ -58,30 +58,25 @@ def main(argv: list[str]) -> int:
 
 def policy_card(about: dict) -> str:
     """What there is to say of a stiffness."""
-    reads = f"reads {', '.join(about['symbols']) or 'nothing'}"
-    return "\n".join(
-        [
-            f"formula     {about['formula']}",
-            f"label       {about['label']}",
-            f"kappa       {reads}; finite and not negative at all {about['points']} points of the check",
-            f"            relative error {about['error_rel']:.1e}",
-            _potential_line(about),
-        ]
-    )
-
-
-def _potential_line(about: dict) -> str:
-    if not about["reads_gap"]:
-        return "potential   kappa b, since kappa does not depend on d"
+    reads, potential = ", ".join(about["symbols"]) or "nothing", "kappa b, since kappa does not depend on d"
+    if about["reads_gap"]:
+        error = f"{about['slope_error_rel']:.1e} of kappa/d"
+        derived = '"potential": "derived" in a config'
+        potential = f"-int kappa(s) b'(s) ds, with {derived}; d kappa/dd to {error}"
     return (
-        "potential   -int kappa(s) b'(s) ds, with \"potential\": \"derived\" in a config; d kappa/dd to"
-        f" {about['slope_error_rel']:.1e} of kappa/d"
+        f"formula     {about['formula']}\n"
+        f"label       {about['label']}\n"
+        f"kappa       reads {reads}; finite and not negative at all {about['points']} points of the"
+        " check\n"
+        f"            relative error {about['error_rel']:.1e}\n"
+        f"potential   {potential}"
     )
 
 
 def card(about: dict) -> str:
     """What there is to say of a formula, a line each."""
     terms, error = about["terms"], about["error_rel"]
+    units = ("d_hat^2 ", "d_hat ", "")
     lines = [
         f"formula     {about['formula']}",
         f"name        formula:{about['formula']}",
@@ -93,7 +88,7 @@ def card(about: dict) -> str:
         "with u = d/d_hat, e = 1 - u, l = -ln u:",
         *(
             f"  {name:<4}= {unit}({terms[name].replace('**', '^')})   relative error {error[name]:.1e}"
-            for name, unit in zip(terms, ("d_hat^2 ", "d_hat ", ""), strict=True)
+            for name, unit in zip(terms, units, strict=True)
         ),
     ]
     return "\n".join(lines)

@@ -1,7 +1,5 @@
 """Trajectories of a NumPy file (.npz): positions, cells and times under the names that programs give them."""
 
-from __future__ import annotations
-
 import difflib
 from pathlib import Path
 from typing import BinaryIO
@@ -11,8 +9,7 @@ import numpy as np
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import TRAJECTORY, opened
 
-from .times import increasing
-from .trajectory import Topology, Trajectory, no_cells
+from .trajectory import Topology, Trajectory, increasing, no_cells
 
 # What is read, and the other names that it goes by (BEDLAM, SMPL, Newton, libigl, meshes of FEM programs).
 NAMES = {

@@ -2,8 +2,6 @@
 itself where points rest and a field has a usual name.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -12,9 +10,8 @@ import numpy as np
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.program.mesh_arrays import MeshArrays
 
-from .meshes import read_mesh
 from .sequence import Notes, read_parts
-from .trajectory import Trajectory
+from .trajectory import Trajectory, read_mesh
 
 # As PolyFEM (solution), FEniCS and sfepy (u), MOOSE (disp_x, disp_y, disp_z) and others write it.
 USUAL = ("displacement", "displacements", "displacement_field", "disp", "displ", "u", "solution", "depl")

@@ -1,7 +1,5 @@
 """Trajectories of one file for all frames and no cells: PC2 of Blender, MDD of LightWave."""
 
-from __future__ import annotations
-
 import struct
 from pathlib import Path
 
@@ -10,8 +8,7 @@ import numpy as np
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import TRAJECTORY, opened
 
-from .times import increasing
-from .trajectory import Topology, Trajectory, no_cells
+from .trajectory import Topology, Trajectory, increasing, no_cells
 
 PC2_HEADER = struct.Struct("<12siiffi")
 MDD_HEADER = struct.Struct(">ii")

@@ -2,8 +2,6 @@
 time (.vtm, .pvtu, .pvtp). Several parts of one time are one frame.
 """
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,8 +10,7 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import SMALL, read_bytes
 
 from .sequence import no_frames, of_obstacles, of_parts
-from .times import increasing
-from .trajectory import Trajectory
+from .trajectory import Trajectory, increasing
 
 PartName = tuple[int, str]  # part and group
 

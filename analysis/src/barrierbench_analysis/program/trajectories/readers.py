@@ -2,8 +2,6 @@
 run of barrierbench.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
@@ -17,12 +15,10 @@ from barrierbench_analysis.program.mesh_arrays import SUFFIXES
 
 from .arrays import of_npz
 from .displacement import displaced
-from .meshes import read_mesh, topology_of_mesh
 from .packed import of_mdd, of_pc2
 from .pvd import LISTS, of_list, of_pvd
 from .sequence import no_frames, numbered, of_files, of_obstacles
-from .times import increasing
-from .trajectory import Topology, Trajectory, has_cells, no_cells
+from .trajectory import Topology, Trajectory, has_cells, increasing, no_cells, read_mesh, topology_of_mesh
 
 CACHES = {".pc2": of_pc2, ".mdd": of_mdd}  # one file for all frames, without cells
 

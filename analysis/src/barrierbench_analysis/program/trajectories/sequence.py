@@ -3,8 +3,6 @@
 The topology is that of the first frame; one of another topology is refused by name.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,8 +12,7 @@ import numpy as np
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.program.mesh_arrays import MeshArrays
 
-from .meshes import read_mesh, same_topology, topology_of_mesh
-from .trajectory import Topology, Trajectory
+from .trajectory import Topology, Trajectory, read_mesh, same_topology, topology_of_mesh
 
 Place = Callable[[MeshArrays], np.ndarray]  # of a part: where its vertices are
 

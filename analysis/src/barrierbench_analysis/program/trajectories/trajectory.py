@@ -1,8 +1,6 @@
 """A trajectory as it is judged: topology once, positions frame after frame."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -11,6 +9,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.program.mesh_arrays import SUFFIXES, MeshArrays, read_frame_file
 
 MOST_METRES = 1e15  # that the program takes of reach, thickness and obstacles
 
@@ -117,3 +116,51 @@ def checked(trajectory: Trajectory) -> Trajectory:
             "nothing can be judged (topology from another file: --topology; from JSON: --about)"
         )
     return trajectory
+
+
+# --- times
+
+
+def increasing(times_s: Sequence[float], place: Callable[[int], str]) -> list[float]:
+    """The times. place: file and place of the k-th. Errors: UserError for the first that is not finite or not
+    above the one before.
+    """
+    times = [float(t) for t in times_s]
+    for k, t in enumerate(times):
+        if not np.isfinite(t):
+            raise UserError(f"{place(k)}: found the time {t}; a finite number is needed")
+        if k and t <= times[k - 1]:
+            raise UserError(
+                f"{place(k)}: found the time {t!r} s after {times[k - 1]!r} s; a later one is needed"
+            )
+    return times
+
+
+# --- meshes
+
+
+def read_mesh(path: Path, fields: tuple[str, ...] = ()) -> MeshArrays:
+    """Errors: UserError for a file that is not there, of another format, or broken."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise UserError(f"{path}: extension {path.suffix!r}; allowed: {', '.join(SUFFIXES)}")
+    return read_frame_file(path, fields)
+
+
+def topology_of_mesh(mesh: MeshArrays) -> Topology:
+    polygons = int((mesh.sizes > 3).sum())
+    return Topology(len(mesh.points), mesh.triangles, mesh.segments, mesh.tetrahedra, polygons)
+
+
+def same_topology(path: Path, first: MeshArrays, other: MeshArrays) -> None:
+    """Errors: UserError with the first difference."""
+    if len(first.points) != len(other.points):
+        raise UserError(f"{path}: {len(other.points)} vertices; the first frame has {len(first.points)}")
+    for names, what in (
+        (("sizes", "corners"), "faces"),
+        (("segments",), "segments"),
+        (("tetrahedra",), "tetrahedra"),
+    ):
+        if not all(np.array_equal(getattr(first, name), getattr(other, name)) for name in names):
+            raise UserError(
+                f"{path}: {what} are others than those of the first frame; one topology is needed"
+            )

@@ -17,8 +17,7 @@ import sys
 import time
 from pathlib import Path
 
-from barrierbench_analysis.figures.plots.drawing import Drawing
-from barrierbench_analysis.figures.plots.subjects import Place
+from barrierbench_analysis.figures.plots.drawing import Drawing, Place
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import fitted

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from barrierbench_analysis.figures.plots.subjects import Place, Spectrum, SweepRecords, Wanted
+from barrierbench_analysis.figures.plots.drawing import Place, Spectrum, SweepRecords, Wanted
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.cases import has_list, read_cases
 from barrierbench_analysis.io.digests import of_text

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from barrierbench_analysis.figures.plots.subjects import SOURCES, Wanted
+from barrierbench_analysis.figures.plots.drawing import SOURCES, Wanted
 from barrierbench_analysis.figures.style import NARROW_IN, WIDE_IN
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
