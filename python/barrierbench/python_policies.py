@@ -20,7 +20,7 @@ Doubles = NDArray[np.float64]
 
 @dataclass
 class ContactRows:
-    """The n contacts at which a policy is evaluated. Of the four places of a contact the first n_free are free vertices;
+    """The n contacts at which a policy is evaluated. Of its four places the first n_free are free vertices;
     what the others hold has no meaning. Arrays belong to the run and are gone when the call is over.
     """
 
@@ -104,9 +104,9 @@ def register_policy(policy: Any) -> str:
     """Makes a Python object a stiffness policy that configs name, until the process ends; returns the name.
 
     policy: has `name` (snake_case) and `kappa(rows)`, which gets ContactRows and returns kappa in N/m, [n] or one
-    number; and `needs_hessian` = True where it reads `rows.k` or `rows.hessian`. When it is evaluated (every iteration, or
-    once a step) is the config's `refresh`. What it raises ends the step that called it, and the run is where it was before
-    that step. The same name again replaces the object. Errors: ConfigError that names what does not hold; what `kappa`
+    number; and `needs_hessian` = True where it reads `rows.k` or `rows.hessian`. When it is evaluated (every iteration,
+    or once a step) is the config's `refresh`. What it raises ends the step that called it, and the run is where it was
+    before that step. The same name again replaces the object. Errors: ConfigError that names what does not hold; what `kappa`
     raises for a first contact of one vertex that it is tried with.
 
     >>> class Inertia:

@@ -54,7 +54,7 @@ def judge(trajectory: str | os.PathLike, about: str | os.PathLike | None = None,
 
 
 def claims(*ids: str) -> int:
-    """`bench study claims`: runs what is missing and computes the verdicts on claims; the exit code. All of them: hours."""
+    """`bench study claims`: runs what is missing and judges claims; the exit code. All of them: hours."""
     try:
         from barrierbench_analysis.pages.claims import verb
     except ImportError as error:

@@ -77,8 +77,8 @@ def tidy(argv: list[str]) -> int:
 def modules(argv: list[str]) -> int:
     """The graph of the modules as CMake knows it, checked against the #include lines."""
     regenerate("release")
-    known = (f"-DROOMS={folder('release') / 'rooms.txt'}", f"-DSOURCE_DIR={ROOT}", "-DPRINT=ON")
-    return _ran("cmake", *known, "-P", ROOT / "cmake/RoomCheck.cmake")
+    known = (f"-DMODULES={folder('release') / 'modules.txt'}", f"-DSOURCE_DIR={ROOT}", "-DPRINT=ON")
+    return _ran("cmake", *known, "-P", ROOT / "cmake/ModuleCheck.cmake")
 
 
 def mutate(argv: list[str]) -> int:

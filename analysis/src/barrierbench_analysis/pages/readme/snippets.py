@@ -108,7 +108,7 @@ def _helped(row: verbs.Verb) -> subprocess.CompletedProcess:
 
 
 @functools.cache
-def _tested_rooms() -> set[str]:
+def _tested_modules() -> set[str]:
     """The labels of ctest: what `bench test -L` takes."""
     files = (ROOT / "tests").rglob("CMakeLists.txt")
     return {
@@ -122,8 +122,8 @@ def _test_fault(rest: list[str]) -> str:
     """Of `./bench test ...`: a module is named by -L, and there."""
     if "-R" in rest:
         return "-R takes names of test cases, which change; -L takes a module"
-    rooms = [rest[k + 1] for k, word in enumerate(rest[:-1]) if word == "-L"]
-    unknown = [room for room in rooms if room not in _tested_rooms()]
+    modules = [rest[k + 1] for k, word in enumerate(rest[:-1]) if word == "-L"]
+    unknown = [module for module in modules if module not in _tested_modules()]
     return f"no tests of a module {unknown[0]}" if unknown else ""
 
 
