@@ -106,8 +106,8 @@ def register_policy(policy: Any) -> str:
     policy: has `name` (snake_case) and `kappa(rows)`, which gets ContactRows and returns kappa in N/m, [n] or one
     number; and `needs_hessian` = True where it reads `rows.k` or `rows.hessian`. When it is evaluated (every iteration,
     or once a step) is the config's `refresh`. What it raises ends the step that called it, and the run is where it was
-    before that step. The same name again replaces the object. Errors: ConfigError that names what does not hold; what `kappa`
-    raises for a first contact of one vertex that it is tried with.
+    before that step. The same name again replaces the object. Errors: ConfigError that names what does not hold;
+    what `kappa` raises for a first contact of one vertex that it is tried with.
 
     >>> class Inertia:
     ...     name = "inertia_of_python"

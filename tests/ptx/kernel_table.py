@@ -88,9 +88,9 @@ def kernels_of_room(path: Path) -> tuple[dict[str, dict], str]:
 def built(build: Path) -> dict:
     """{"nvcc": version, "kernels": {name: row}} of the object files."""
     folders = [p.parent for p in (ROOT / "core").rglob("kernels.inc")]
-    modules = sorted((f.parent if f.name == "executor" else f).name for f in folders)  # cmake/KernelLists.cmake
+    rooms = sorted((f.parent if f.name == "executor" else f).name for f in folders)  # cmake/KernelLists.cmake
     versions, out = set(), {}
-    for module in modules:
+    for room in rooms:
         rows, version = kernels_of_room(object_file(build, room))
         versions.add(version)
         for mangled, name in zip(rows, demangled(list(rows)), strict=True):

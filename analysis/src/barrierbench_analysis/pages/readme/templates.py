@@ -4,17 +4,13 @@
 
 import re
 import textwrap
-from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.pages.stated.cost import table
 from barrierbench_analysis.pages.stated.several import table_lines as several_lines
-from barrierbench_analysis.studies.gap_map.judge import counts
-from barrierbench_analysis.studies.gap_map.report import sentences
-from barrierbench_analysis.studies.gap_map.rows import NOT_RUN
-from barrierbench_analysis.studies.gap_map.table import read
+from barrierbench_analysis.studies.rules.gap_map.page import sentences
+from barrierbench_analysis.studies.rules.gap_map.table import NOT_RUN, Map
 
 from . import slices
 
@@ -258,18 +254,11 @@ def filled(text: str, numbers: dict, page: str) -> str:
 # --- map
 
 
-FILE = ROOT / "results" / "gap_map.json"
-
-
-def gather(file: Path = FILE) -> list[str]:
-    """Errors: UserError where the kept map cannot be read."""
-    try:
-        found = read(file)
-    except (UserError, OSError) as error:
-        raise UserError(f"{file}: {error}; ./bench study gap-map --quick makes one") from error
-    n, (low, high) = counts(found.rows), found.about["unknowns"]
+def gather_map(found: Map) -> list[str]:
+    """The sentences of the gap map that the pages show."""
+    n, (low, high) = found.counts(), found.unknowns
     of = (
-        f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {found.about['runs']} runs of"
+        f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {len(found.made)} runs of"
         f" {low} to {high} unknowns"
     )
     return [

@@ -28,8 +28,7 @@ from . import figures
 from .numbers import FILE, RUNS, gather, read, write
 from .slices import gather as gather_slices
 from .snippets import faults
-from .templates import PARTS, filled, lacking
-from .templates import gather as gather_map
+from .templates import PARTS, filled, gather_map, lacking
 
 PAGES = tuple(PARTS)
 # Pages whose snippets are checked and which have no generated numbers.
