@@ -73,14 +73,13 @@ def test_a_count_that_is_not_the_stated_one_is_told(capsys, monkeypatch):
 SHORT = {"/time/steps": 25}  # without its end
 
 
-def test_jittered_starts_pass_and_are_kept(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(collect, "RUNS", tmp_path / "runs")
+def test_jittered_starts_pass_and_are_kept(tmp_path, capsys):
     study = written(tmp_path, "robust", ["domino", "intersect-2"], seeds=[1, 2], **SHORT)
-    assert verb.main([str(study.file)]) == 0
+    assert verb.main([str(study.file), "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().out.count("2/2") == 2
     assert "| domino | log | 2 of 2 | 5e-05 | |" in study.page.read_text() and "4 runs of 2 of 32 scenes" in study.page.read_text()
     assert {row.outcome for row in page.rows_of(study)} == {"ok", "initial_intersection"}
-    starts = {json.loads(file.read_text())["summary"]["state_hash"] for file in (tmp_path / "runs").glob("mine/domino*/run.json")}
+    starts = {json.loads(file.read_text())["summary"]["state_hash"] for file in (tmp_path / "runs").glob("domino*/run.json")}
     assert len(starts) == 2  # the seeds differ
 
 
@@ -102,8 +101,7 @@ def test_the_run_of_a_cell_is_that_of_the_config_of_the_scene(tmp_path):
     assert json.loads((tmp_path / "alone/run.json").read_text())["ids"]["run_id"].startswith(row.run)
 
 
-def test_the_picture_is_of_the_runs_whose_records_are_there(tmp_path, monkeypatch):
-    monkeypatch.setattr(collect, "RUNS", tmp_path / "runs")
+def test_the_picture_is_of_the_runs_whose_records_are_there(tmp_path):
     study = written(tmp_path, "catalogue", ["intersect-2", "two-points"], **{"/time/steps": 3})
     assert catalogue.draw(study, [], {}, tmp_path) == []
     collect.run_cells(study, study.cells)

@@ -6,7 +6,6 @@ should start does not end `ok`.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
@@ -102,7 +101,7 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "of": len(names()),
         "runs": len(rows),
         "expected": sum(not row.values["red"] for row in rows),
-        "picture": os.path.relpath(picture, study.page.parent) if picture.is_file() else "",
+        "picture": picture.name if picture.is_file() else "",
         "outcomes": "\n".join(_outcomes(study, of_scene)),
         "red": "\n".join(_red(rows)),
         "described": "\n".join(_described(of_scene)).rstrip(),
