@@ -23,7 +23,6 @@ from barrierbench_analysis.tables.words import counted
 PARTIAL = True
 SHOWN = "log"  # the formulation of the picture, and of what was seen in each scene
 MEASURED = {
-    "detail": "/status/detail",
     "red": "expectations of the scene that do not hold or have no subject, and what was seen",
     "seen": "expectations of the scene that hold, and what was seen",
 }
@@ -34,7 +33,6 @@ def measure(study: Study, cell: Cell, record: dict) -> dict:
     found = judge(record, entry.data["expect"])
     ends = [] if outcome == OK or entry.is_rejected else [f"ends_ok: {outcome}"]
     return {
-        "detail": record["status"]["detail"],
         "red": [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
         "seen": [f"{name}: {finding.saw}" for name, finding in found if not finding.red],
     }
