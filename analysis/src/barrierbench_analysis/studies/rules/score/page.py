@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from pathlib import Path
 
-from jinja2 import Environment, StrictUndefined
-
 from barrierbench_analysis.figures.style import WIDE_IN, plt
-from barrierbench_analysis.io import input_file
+from barrierbench_analysis.figures.web import filled, png
 
 from .candidate import RIVALS
 from .judge import METRICS, at_equal_gap, comparisons, row_times, value
@@ -25,8 +21,8 @@ def page(score: dict) -> str:
     label, rows = score["candidate"]["label"], score["rows"]
     methods = [label, *RIVALS]
     ordered = sorted(rows, key=lambda r: (r["scene"], -r["theta"], methods.index(r["shape"])))
-    environment = Environment(autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True)
-    return environment.from_string(input_file.read_text(TEMPLATE)).render(
+    return filled(
+        TEMPLATE,
         **score,
         label=label,
         methods=methods,
@@ -83,7 +79,4 @@ def _figure(rows: list[dict], methods: list[str]) -> str:
         axis.set_xlabel("reached gap over d_hat")
         axis.set_title(METRICS[metric].split(",")[0], fontsize=8)
     axes[0].legend(fontsize=7)
-    bytes_of = io.BytesIO()
-    figure.savefig(bytes_of, format="png", dpi=130)
-    plt.close(figure)
-    return base64.b64encode(bytes_of.getvalue()).decode()
+    return png(figure, dpi=130)
