@@ -406,6 +406,8 @@ def test_a_row_whose_seconds_were_not_kept_is_no_estimate(tmp_path):
     ]
     rows[study.cells[0].key] = replace(rows[study.cells[0].key], seconds=2.0)
     assert cost.plan(study, rows, study.cells[4:])[1] == "4 runs without a kept row whose labels are alike: not estimated"
+
+
 def test_a_call_whose_runs_do_not_pass_ends_with_1(tmp_path, rule_of_small, capsys):
     """The rule judges the cells of the call alone."""
     study = written(tmp_path)
@@ -418,6 +420,8 @@ def test_a_call_whose_runs_do_not_pass_ends_with_1(tmp_path, rule_of_small, caps
     capsys.readouterr()
     assert verb.main(call) == 1 and capsys.readouterr().out.splitlines()[-1] == "8 runs"
     assert verb.main([*call, "--only", "level=a"]) == 0 and capsys.readouterr().out.splitlines()[-1] == "4 runs"
+
+
 def test_a_template_that_asks_for_more_is_refused(tmp_path):
     study = written(tmp_path)
     rows = [row(cell) for cell in study.cells]
