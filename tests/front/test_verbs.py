@@ -270,7 +270,7 @@ def test_which_row_a_command_line_is_for(words, name, rest):
 
 
 @pytest.mark.parametrize(("words", "allowed"), [
-    ("study catalogue plan", "run or page"), ("study score plan", "FORMULA|PLUGIN|NAME"), ("study gpu-report run", "page"), ("study condition-table page", "run")])
+    ("study score plan", "FORMULA|PLUGIN|NAME"), ("study matrix-corpus plan", "run or page"), ("study gpu-report run", "page"), ("study condition-table page", "run")])
 def test_a_mode_that_a_study_has_not_is_refused_by_name(words, allowed, capsys, tmp_path, monkeypatch):
     assert door.main(words.split()) == 2
     verb, _, mode = words.rpartition(" ")
