@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, passed_on
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import read_spec
-from barrierbench_analysis.program.start import started
+from barrierbench_analysis.program.start import settings_words, started
 
 from .records import Run, read_run
 
@@ -78,9 +77,8 @@ def read_set(name: str) -> list[Case]:
 def words_of(case: Case, out: Path, threads: int, more: dict) -> list[str]:
     """The words of the program for a run of a case."""
     settings = {**case.set, "/threads": threads, **more}
-    sets = [word for at, value in settings.items() for word in ("--set", f"{at}={json.dumps(value)}")]
     # --replace: the folder is the gate's, whatever an earlier call left there.
-    return ["run", str(case.config), "--out", str(out), "--replace", *sets]
+    return ["run", str(case.config), "--out", str(out), "--replace", *settings_words(settings)]
 
 
 def run_case(case: Case, out: Path, threads: int = 1, more: dict | None = None) -> Run:

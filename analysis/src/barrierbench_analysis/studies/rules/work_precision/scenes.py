@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.spec_file import refused, require_base
+from barrierbench_analysis.io.spec_file import refused, require_base, require_names_once
 from barrierbench_analysis.studies.kit.study.spec import Case, Study
 
 from .gravity import gravity_of
@@ -153,8 +153,7 @@ def scenes_of(study: Study) -> list[Scene]:
         ("formulations", [one.get("label", one["name"]) for one in formulations_of(study)]),
         ("scenes", [scene.name for scene in scenes]),
     ):
-        if len(set(names)) != len(names):
-            raise refused(study.file, f"about/{key}", names, "every name once")
+        require_names_once(study.file, f"about/{key}", names)
     return scenes
 
 
