@@ -6,10 +6,10 @@ import argparse
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import read_spec
-from barrierbench_analysis.program.start import settings_words, started
+from barrierbench_analysis.program.start import finished, settings_words
 
 from .records import Run, read_run
 
@@ -87,13 +87,7 @@ def run_case(case: Case, out: Path, threads: int = 1, more: dict | None = None) 
     """
     # A record of an earlier call must not stand in for one that this program fails to write.
     (out / "run.json").unlink(missing_ok=True)
-    done = started(*words_of(case, out, threads, more or {}))
-    if done.returncode != 0:
-        raise UserError(
-            f"{case.name}: the program ended with {done.returncode}:"
-            f" {done.stderr.strip() or done.stdout.strip()}",
-            passed_on(done.returncode),
-        )
+    finished(*words_of(case, out, threads, more or {}), what=f"{case.name}: ")
     return read_run(out, allow_not_finite=True)
 
 
