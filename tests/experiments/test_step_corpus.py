@@ -183,7 +183,7 @@ def test_the_halves_alternate_in_alphabetical_order():
 
 @pytest.mark.parametrize("edit, message", [
     (lambda spec: spec["states"][0].update(base="x.json", catalogue="twist"), "either base (a config) or catalogue"),
-    (lambda spec: spec["states"].append(spec["states"][0]), "a name twice"),
+    (lambda spec: spec["states"].append(spec["states"][0]), "; every name once is needed"),
     (lambda spec: spec["states"][0].pop("hard_for"), "states/0/hard_for: is missing"),
 ])
 def test_a_bad_list_is_refused(tmp_path, edit, message):

@@ -47,7 +47,7 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
     *((f"{words} out", file, 1000) for words, file in (  # and what they begin with, which names the first of hours of runs
         ("study causes config.json --out", "out/probe"), ("gate run --case drape --out", "out/"), ("gate calibrate --copies 1 --out", "out/"),
         ("study matrix-corpus --out", "probe"), ("study step-corpus --results", "out/"),
-        ("draw figure work_precision --quick --out out --runs", "out/"), ("study claims K3 --runs", "out/"),
+        ("draw figure work_precision --quick --out out --runs", "a temporary file"), ("study claims K3 --runs", "out/"),
         ("draw pictures --runs", "out/"), ("study gpu-report --results", "out/GPU.md"),
         ("study condition-table --out", "a temporary file"))),
     ("study own.json", "a temporary file", 0),

@@ -18,7 +18,7 @@ def row(formulation, axis, factor, newton, error, outcome="ok", solver="direct")
 
 def markdown(*scenes) -> str:
     """The page of scenes."""
-    made = SimpleNamespace(origin=scenes[0]["about"], unknowns=9)
+    made = SimpleNamespace(origin=scenes[0]["about"], unknowns=9, run="r", key="k")
     return study_page.text_of(read_study("work_precision"), [made], {"doc": "made up", **numbers(list(scenes))})
 
 

@@ -87,6 +87,12 @@ def refused(path: Path, place: str, found, needed: str) -> UserError:
     return UserError(f"{path}#/{place}: found {found!r}; {needed} is needed")
 
 
+def require_names_once(path: Path, place: str, names: list[str]) -> None:
+    """Errors: UserError for a name that is there twice."""
+    if len(set(names)) != len(names):
+        raise refused(path, place, names, "every name once")
+
+
 def require_base(data: dict, path: Path, above: str = "") -> Path:
     """The config that a spec, or the part of one at `above`, names relative to its file. Errors: UserError
     where it is not there.

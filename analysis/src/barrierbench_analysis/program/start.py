@@ -139,6 +139,20 @@ def shape_names(plugins: list[str] = ()) -> list[str]:
     return [line.split()[0] for line in done.stdout.splitlines() if line[:1] == " " and line.split()]
 
 
+def settings_words(settings: dict) -> list[str]:
+    """The arguments of the program that place settings (pointer -> value) over a config."""
+    return [
+        word for pointer, value in settings.items() for word in ("--set", f"{pointer}={json.dumps(value)}")
+    ]
+
+
+def finished(*words: str, what: str = "") -> subprocess.CompletedProcess:
+    """The program with these words, which ended with 0. Errors: as `started`, and check_ended."""
+    done = started(*words)
+    check_ended(done, what)
+    return done
+
+
 def evaluated(queries: list[dict], plugins: list[str] = ()) -> list[dict]:
     """Answers of one process of `eval`, in order. Errors: UserError with the first one that is an error."""
     done = started("eval", plugins=plugins, input="".join(json.dumps(query) + "\n" for query in queries))

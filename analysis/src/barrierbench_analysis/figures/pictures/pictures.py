@@ -4,18 +4,17 @@ captions.
 Exit codes: 0 all are made, 2 a run did not end ok, a picture is too large, or README has no place for them.
 """
 
-import json
 import re
 from pathlib import Path
 from typing import NamedTuple
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, passed_on, tells
+from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import options, parser_of
-from barrierbench_analysis.program.start import started
+from barrierbench_analysis.program.start import finished, settings_words
 
 from .frame_pixels import Look
 from .still_picture import render
@@ -58,7 +57,7 @@ PICTURES = (
 
 def command_of(picture: Picture, folder: Path) -> list[str]:
     """The words of the run."""
-    sets = [word for key, value in picture.sets.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+    sets = settings_words(picture.sets)
     config = ROOT / "configs/scenes" / f"{picture.scene}.json"
     return ["run", str(config), "--out", str(folder), *FIXED, *sets, "--progress", "none"]
 
@@ -77,9 +76,7 @@ def make(picture: Picture, runs: Path, docs: Path) -> str:
     ok, a picture that is too large.
     """
     folder = runs / picture.name
-    done = started(*command_of(picture, folder), "--replace")
-    if done.returncode != 0:
-        raise UserError(f"{picture.name}: {done.stderr.strip()}", passed_on(done.returncode))
+    finished(*command_of(picture, folder), "--replace", what=f"{picture.name}: ")
     record = read_record(folder / "run.json")
     if record["status"]["outcome"] != "ok":
         raise UserError(f"{folder}: found the outcome {record['status']['outcome']}; allowed: ok")

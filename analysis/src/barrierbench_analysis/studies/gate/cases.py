@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import read_spec
-from barrierbench_analysis.program.start import started
+from barrierbench_analysis.program.start import finished, settings_words
 
 from .records import Run, read_run
 
@@ -78,9 +77,8 @@ def read_set(name: str) -> list[Case]:
 def words_of(case: Case, out: Path, threads: int, more: dict) -> list[str]:
     """The words of the program for a run of a case."""
     settings = {**case.set, "/threads": threads, **more}
-    sets = [word for at, value in settings.items() for word in ("--set", f"{at}={json.dumps(value)}")]
     # --replace: the folder is the gate's, whatever an earlier call left there.
-    return ["run", str(case.config), "--out", str(out), "--replace", *sets]
+    return ["run", str(case.config), "--out", str(out), "--replace", *settings_words(settings)]
 
 
 def run_case(case: Case, out: Path, threads: int = 1, more: dict | None = None) -> Run:
@@ -89,13 +87,7 @@ def run_case(case: Case, out: Path, threads: int = 1, more: dict | None = None) 
     """
     # A record of an earlier call must not stand in for one that this program fails to write.
     (out / "run.json").unlink(missing_ok=True)
-    done = started(*words_of(case, out, threads, more or {}))
-    if done.returncode != 0:
-        raise UserError(
-            f"{case.name}: the program ended with {done.returncode}:"
-            f" {done.stderr.strip() or done.stdout.strip()}",
-            passed_on(done.returncode),
-        )
+    finished(*words_of(case, out, threads, more or {}), what=f"{case.name}: ")
     return read_run(out, allow_not_finite=True)
 
 

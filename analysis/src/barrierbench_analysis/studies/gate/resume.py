@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 
 from barrierbench_analysis.io.cases import CHECKPOINT
-from barrierbench_analysis.io.errors import UserError, passed_on
-from barrierbench_analysis.program.start import begun, started
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.program.start import begun, finished
 
 from .cases import Case, run_case, words_of
 from .finding import Finding, exact
@@ -51,12 +51,7 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
         (out / name).unlink(missing_ok=True)
     words = [*words_of(case, out, 1, every_step), "--progress", "none"]
     killed = kill_after_checkpoint(words, out)
-    done = started(*words, "--resume")
-    if done.returncode != 0:
-        raise UserError(
-            f"{case.name}: --resume ended with {done.returncode}: {done.stderr.strip()}",
-            passed_on(done.returncode),
-        )
+    finished(*words, "--resume", what=f"{case.name}: --resume: ")
     resumed = read_run(out, allow_not_finite=True)
     from_step = resumed.section("status").get("resumed_from_step")
     steps, wanted = resumed.record["steps"], alone.record["steps"]

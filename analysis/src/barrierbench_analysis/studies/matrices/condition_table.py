@@ -15,17 +15,24 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, passed_on, tells
+from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.input_file import below
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
-from barrierbench_analysis.program.start import started
+from barrierbench_analysis.program.start import finished, settings_words
 
 SWEEPS = ("demo_strip", "demo_pinned", "demo_article", "demo_drape")
 TIERS = (2, 4)
+DIAGNOSED = {
+    "/passes/time": False,
+    "/passes/audit": False,
+    "/passes/diagnose": True,
+    "/diagnose/pcg": False,
+}
 
 
 @dataclass
@@ -38,9 +45,7 @@ class Pair:
 
 
 def run(words: list[str]) -> None:
-    done = started(*words)
-    if done.returncode != 0:
-        raise UserError(f"{' '.join(words)}: {done.stderr.strip()}", passed_on(done.returncode))
+    finished(*words, what=f"{' '.join(words)}: ")
 
 
 def samples(folder: Path) -> dict[tuple, dict]:
@@ -109,26 +114,8 @@ def of_sweep(name: str, cases: list[str], work: Path) -> list[Pair]:
     by_tier = {}
     for tier in TIERS:
         out = work / f"{name}_{tier}"
-        run(
-            [
-                "sweep",
-                str(file),
-                "--out",
-                str(out),
-                "--progress",
-                "none",
-                "--set",
-                f"/diagnose/tier={tier}",
-                "--set",
-                "/passes/time=false",
-                "--set",
-                "/passes/audit=false",
-                "--set",
-                "/passes/diagnose=true",
-                "--set",
-                "/diagnose/pcg=false",
-            ]
-        )
+        settings = settings_words({"/diagnose/tier": tier, **DIAGNOSED})
+        run(["sweep", str(file), "--out", str(out), "--progress", "none", *settings])
         by_tier[tier] = samples(out)
     return pair_up(name, by_tier)
 
@@ -190,46 +177,18 @@ COLUMNS = [
     "an end by Lanczos",
     "an end shifted to",
     "both ends proven",
-    "solves: Spectra",
-    "Lanczos",
-    "products: Spectra",
-    "Lanczos",
-    "ms: Spectra",
-    "Lanczos",
+    *("solves: Spectra", "Lanczos", "products: Spectra", "Lanczos", "ms: Spectra", "Lanczos"),
     "largest difference of cond",
     "other status",
 ]
+PAGE = ROOT / "configs" / "matrices" / "condition.md"  # template of results/CONDITION.md
 
 
 def page(groups: dict[str, list[Pair]], note: str) -> str:
-    lines = [
-        "# Condition numbers by Spectra and by Lanczos",
-        "",
-        f"{datetime.date.today()}, {processor()}. Made by `./bench study condition-table`{note}.",
-        "",
-        (
-            "Every line compares the estimators spectra and lanczos on the same matrices, in every scaling"
-            " that their run requests. *By Spectra*: spectra had a factor to"
-        ),
-        (
-            "invert round, so that Spectra's solvers ran; without one the matrix is not positive definite."
-            " *An end by Lanczos*: Spectra was not done in its"
-        ),
-        (
-            "budget. *An end shifted to*: a factor disproved what was found, or it stayed open, and our"
-            " Lanczos looked round a factor of its own. Solves and"
-        ),
-        (
-            "products: mean / largest. Times are those of one estimate with its proofs, the first of a matrix"
-            " with its factorisation; they are no times of"
-        ),
-        "the method. *Largest difference*: relative, over the pairs that both call ok.",
-        "",
-    ]
     every = [pair for pairs in groups.values() for pair in pairs]
     rows = [row(name, pairs) for name, pairs in [*groups.items(), ("all", every)]]
-    lines += [*table_lines(list(COLUMNS), rows), ""]
-    return "\n".join(lines)
+    about = {"date": datetime.date.today(), "processor": processor(), "note": note}
+    return filled(PAGE, {**about, "table": "\n".join(table_lines(COLUMNS, rows))})
 
 
 def processor() -> str:

@@ -15,44 +15,28 @@ import sys
 import tempfile
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on, tells
+from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
-from barrierbench_analysis.io.spec_file import read_spec
+from barrierbench_analysis.io.spec_file import read_spec, require_names_once
+from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.io.whole_file import copy_whole, write_whole
 from barrierbench_analysis.program.arguments import parser_of
-from barrierbench_analysis.program.start import started
+from barrierbench_analysis.program.start import finished, settings_words
 
 MOST_BYTES = 8 << 20
 DIRECT = ["cholmod", "lagged_cholesky"]
 PCG = ["none", "jacobi", "block_jacobi", "ic0", "schwarz", "mas"]
 RESIDENT = ["pcg_resident block_jacobi", "pcg_resident multilevel_schwarz"]
 SOLVERS = DIRECT + PCG + RESIDENT
-HEAD = """# Hard systems as data
-
-Linear systems A x = b of Newton's method that are hard for different reasons, from small runs of this program. `NAME.mtx` is the matrix (Matrix
-Market, symmetric, lower triangle, every double exact); `NAME.json` beside it has the right-hand side, the blocks (the degrees of freedom of a vertex),
-the vertex coordinates, where the system comes from, the condition numbers that the run estimated, and the cause. `scipy.io.mmread` reads
-the matrices.
-
-```sh
-./bench data matrices results/matrices/*.mtx --json replay.json   # every solver, preconditioner and estimator, with times
-./bench study matrix-corpus                                      # makes all of this folder again, this page included
-./bench study matrix-corpus --table                              # this page alone, from the files that are here
-```
-
-A dump of a run of your own: `--set /passes/diagnose=true --set /output/matrices=true`, then `./bench data matrices results/runs/NAME/matrices/*.mtx`. A matrix
-without a side-car will do: blocks of 3 if that divides its rows, and b = A * ones.
-"""
+PAGE = ROOT / "configs" / "matrices" / "page.md"  # template of README.md
 
 
 def read_corpus(path: Path) -> dict:
     """Errors: UserError, also for two systems of one name."""
     spec = read_spec(path, "matrix_corpus")
-    names = [system["name"] for system in spec["systems"]]
-    if len(set(names)) != len(names):
-        raise UserError(f"{path}#/systems: a name twice in {', '.join(sorted(names))}")
+    require_names_once(path, "systems", [system["name"] for system in spec["systems"]])
     return spec
 
 
@@ -62,23 +46,14 @@ def run(system: dict, common: dict, folder: Path, out: Path) -> None:
     if "config" in system:
         config.write_text(json.dumps(system["config"]))
     words = ["run", str(config), "--out", str(out), "--progress", "none"]
-    for pointer, value in {**common, **system.get("set", {})}.items():
-        words += ["--set", f"{pointer}={json.dumps(value)}"]
-    done = started(*words)
-    if done.returncode != 0:
-        raise UserError(f"{system['name']}: {done.stderr.strip()}", passed_on(done.returncode))
+    settings = {**common, **system.get("set", {})}
+    finished(*words, *settings_words(settings), what=f"{system['name']}: ")
 
 
 def unscaled_cond(side_car: dict) -> float:
     """1e14 where there is none: singular or not positive definite."""
-    return next(
-        (
-            1e14 if c["cond"] is None else c["cond"]
-            for c in side_car.get("cond", [])
-            if c["scaling"] == "none"
-        ),
-        -math.inf,
-    )
+    found = [one["cond"] for one in side_car.get("cond", []) if one["scaling"] == "none"]
+    return -math.inf if not found else 1e14 if found[0] is None else found[0]
 
 
 def pick(system: dict, matrices: Path) -> Path:
@@ -116,11 +91,10 @@ def make(spec_file: Path, out: Path) -> None:
             keep(system, side_car, out)
             shutil.rmtree(folder)
             print(f"{system['name']}: {side_car.stem}", file=sys.stderr)
-    for stale in out.iterdir():
-        if stale.suffix in (".mtx", ".json") and stale.stem not in {
-            system["name"] for system in spec["systems"]
-        }:
-            stale.unlink()
+    names = {system["name"] for system in spec["systems"]}
+    for file in out.iterdir():
+        if file.suffix in (".mtx", ".json") and file.stem not in names:
+            file.unlink()
 
 
 def replay(out: Path) -> list[dict]:
@@ -130,9 +104,7 @@ def replay(out: Path) -> list[dict]:
         raise UserError(f"{out}: no matrices")
     with tempfile.TemporaryDirectory() as scratch:
         answer = Path(scratch) / "replay.json"
-        done = started("matrix", *map(str, files), "--json", str(answer))
-        if done.returncode != 0:
-            raise UserError(done.stderr.strip(), passed_on(done.returncode))
+        finished("matrix", *map(str, files), "--json", str(answer))
         return read_object(answer)["matrices"]
 
 
@@ -153,13 +125,10 @@ def solve_text(solve: dict) -> str:
 
 def solver_name(solve: dict) -> str:
     """As the table names it: pcg by its preconditioner, a direct solver by itself, another one by both."""
-    if solve["solver"] == "pcg":
-        return solve["preconditioner"]
-    return (
-        solve["solver"]
-        if solve["preconditioner"] == "none"
-        else f"{solve['solver']} {solve['preconditioner']}"
-    )
+    solver, preconditioner = solve["solver"], solve["preconditioner"]
+    if solver == "pcg":
+        return preconditioner
+    return solver if preconditioner == "none" else f"{solver} {preconditioner}"
 
 
 def table(matrices: list[dict]) -> str:
@@ -168,16 +137,9 @@ def table(matrices: list[dict]) -> str:
         by_spectra = {e["scaling"]: cond_text(e) for e in one["estimates"] if e["tier"] == 2}
         solves = {solver_name(s): solve_text(s) for s in one["solves"]}
         cause, _, why = one["cause"].partition(": ")
-        rows.append(
-            [
-                f"`{Path(one['file']).stem}`",
-                f"**{cause}**: {why}",
-                f"{one['rows']}",
-                f"{one['entries']}",
-                *(by_spectra[s] for s in ("none", "jacobi", "block_jacobi")),
-                *(solves[s] for s in SOLVERS),
-            ]
-        )
+        about = [f"`{Path(one['file']).stem}`", f"**{cause}**: {why}", f"{one['rows']}", f"{one['entries']}"]
+        conds = [by_spectra[s] for s in ("none", "jacobi", "block_jacobi")]
+        rows.append([*about, *conds, *(solves[s] for s in SOLVERS)])
     head = ["system", "cause", "rows", "entries", "cond", "Jacobi", "block Jacobi"]
     head += [f"pcg {s}" if s in PCG else s for s in SOLVERS]
     return "\n".join(table_lines(head, rows))
@@ -188,12 +150,8 @@ def write_readme(out: Path) -> None:
     size = sum(path.stat().st_size for path in out.iterdir() if path.suffix in (".mtx", ".json"))
     if size > MOST_BYTES:
         raise UserError(f"{out}: {size} bytes; at most {MOST_BYTES} go into the repository")
-    notes = (
-        f"\n{len(matrices)} systems, {size / 2**20:.1f} MiB. cond: by spectra, unscaled and scaled; `>` is a"
-        " lower bound. Solvers: PCG iterations to a residual of 1e-8, at most 10000, `ok` for none, or how"
-        " the solve ended.\n"
-    )
-    write_whole(out / "README.md", f"{HEAD}{notes}\n{table(matrices)}\n")
+    numbers = {"systems": len(matrices), "mebibytes": size / 2**20, "table": table(matrices)}
+    write_whole(out / "README.md", filled(PAGE, numbers))
 
 
 @tells("study matrix-corpus")

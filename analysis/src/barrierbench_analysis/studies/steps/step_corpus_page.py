@@ -5,6 +5,8 @@ from __future__ import annotations
 from itertools import groupby
 
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.tables.numbers import significant
 
@@ -13,46 +15,8 @@ from .step_corpus_states import HALVES
 SOLVER = "line_search"
 OWN = "blend"  # the rule that a run has by itself
 EXACT = ", exact friction"  # beside a rule: without the secant of friction
-HEAD = """# Hard time steps
-
-Single time steps of runs that take many iterations for different reasons, each from a state that is kept in
-`results/steps`: `NAME.state` is the run in front of the step (an archive of its simulation, compressed),
-`NAME.json` its config, calibration, step, scene hash and what it is hard for.
-
-```sh
-./bench data steps --corpus results/steps             # every step solver and Hessian, as tables
-./bench data steps --corpus results/steps --split tune # the half that options are tuned on
-./bench data steps CONFIG --at 12 --keep out/mine     # a state of your own: two files
-./bench study step-corpus                              # states, record, page and figure anew
-./bench study step-corpus --make                       # the states alone
-./bench study step-corpus --table                      # page and figure, from results/steps.json
-```
-
-Halves: in alphabetical order every other state belongs to the half `tune`, beginning with the first, and
-the others to `report`.
-
-Every trial begins in one state and is judged by one reference: `line_search` with the Hessian `blend` at a
-thousandth of the run's tolerance, whose end is the minimum A. A trial that converges farther than ten
-tolerances from all known minima is continued to a thousandth of the tolerance, and its end is the next
-letter. Where that does not confirm its end, its distance from A is stated instead. *To tol* counts
-iterations until the true error, the largest coordinate of x - x_min, was first below the tolerance; `-`: it
-never was. Step solvers other than `line_search` have their own Hessian and settings; multipliers begin at
-0, `xpbd` and `projection` sweep and have no iterations, and solvers with multipliers minimise another
-function, so that few of them end near a letter. `accumulated_toi` may end its step earlier in time than
-asked, which counts as an error here.
-
-Why an iteration was short or many (one cause each, so that they add up): *full*: the whole direction of the
-first matrix that the Hessian rule made; *indefinite*: the whole direction of a regularised matrix, since
-the first one was not positive definite, or a move along negative curvature; *contact* and *limit*: the
-smaller bound, of ACCD or of the strain limit, held it; *Armijo*: less was taken than the bound allows;
-*noise*: the change of E was below rounding; *failed*: no usable direction. *Regularised* counts all
-iterations with a regularised matrix, whatever held them then.
-
-*Exact friction*: without the secant that friction's matrix has after a shortened step (`/friction/hessian`);
-`-`: the state has no friction.
-
-![iterations by cause, and by Hessian rule](../docs/steps.png)
-"""
+WORK = ("linear_solves", "factorizations", "linear_iterations")
+PAGE = ROOT / "configs" / "steps" / "page.md"  # template of results/STEPS.md
 
 
 def taken_states(record: dict) -> list[dict]:
@@ -102,20 +66,13 @@ def _cell(state: dict, trial: dict) -> str:
 
 def _states(record: dict) -> list[str]:
     head = ["state", "hard for", "half", "step", "vertices", "contacts", "linear solver", "reference"]
-    rows = [
-        [
-            f"`{s['name']}`",
-            s["hard_for"],
-            s["split"],
-            str(s["step"]),
-            str(s["vertices"]),
-            str(s["contacts"]),
-            s["linear_solver"],
-            f"{s['reference_iterations']}"
-            + ("" if s["reference_status"] == "converged" else f", {s['reference_status']}"),
+    rows = []
+    for s in record["states"]:
+        status = "" if s["reference_status"] == "converged" else f", {s['reference_status']}"
+        about = [
+            str(s[key]) for key in ("hard_for", "split", "step", "vertices", "contacts", "linear_solver")
         ]
-        for s in record["states"]
-    ]
+        rows.append([f"`{s['name']}`", *about, f"{s['reference_iterations']}{status}"])
     return markdown(head, rows)
 
 
@@ -143,18 +100,10 @@ def _sums(name: str, trials: list[dict]) -> list[str]:
     done = [t for t in taken if t["status"] == "converged"]
     reached = [t["iterations_to_tolerance"] for t in taken if t["iterations_to_tolerance"] is not None]
     other = sum(t["minimum"] not in (None, "A") for t in done)
-    work = (
-        sum(t[key] for t in taken)
-        for key in ("iterations", "linear_solves", "factorizations", "linear_iterations")
-    )
-    return [
-        name,
-        f"{len(done)} of {len(trials)}",
-        f"{len(reached)}, {sum(reached)}",
-        str(other),
-        *(str(n) for n in work),
-        f"{sum(t['seconds'] for t in taken):.1f}",
-    ]
+    work = [str(sum(t[key] for t in taken)) for key in ("iterations", *WORK)]
+    seconds = f"{sum(t['seconds'] for t in taken):.1f}"
+    counts = [f"{len(done)} of {len(trials)}", f"{len(reached)}, {sum(reached)}", str(other)]
+    return [name, *counts, *work, seconds]
 
 
 def _totals(record: dict, half: str) -> list[str]:
@@ -174,24 +123,15 @@ def _solvers(record: dict) -> list[str]:
     head += ["error, tolerances", "minimum", "status"]
     rows = []
     for state in record["states"]:
-        for t in state["trials"]:
-            if t["step_solver"] == SOLVER or "refused" in t:
-                continue
+        for t in (t for t in state["trials"] if t["step_solver"] != SOLVER and "refused" not in t):
             far = None if t["error_m"] is None else t["error_m"] / state["tolerance_m"]
-            work = (t["linear_solves"], t["factorizations"], t["linear_iterations"])
-            rows.append(
-                [
-                    f"`{state['name']}`",
-                    t["step_solver"],
-                    str(t["iterations"]),
-                    _count(t["iterations_to_tolerance"]),
-                    *(str(n) for n in work),
-                    f"{t['seconds']:.2f}",
-                    significant(far, 2),
-                    t["minimum"] or "-",
-                    t["status"].replace("_", " "),
-                ]
-            )
+            work = [
+                str(t["iterations"]),
+                _count(t["iterations_to_tolerance"]),
+                *(str(t[key]) for key in WORK),
+            ]
+            end = [significant(far, 2), t["minimum"] or "-", t["status"].replace("_", " ")]
+            rows.append([f"`{state['name']}`", t["step_solver"], *work, f"{t['seconds']:.2f}", *end])
     return markdown(head, rows)
 
 
@@ -212,33 +152,28 @@ def _refusals(record: dict) -> list[str]:
 
 
 def _refused_states(states: list[dict]) -> list[str]:
-    if not states:
-        return []
     rows = [[f"`{s['name']}`", s["hard_for"], s["split"], s["refused"]] for s in states]
-    head = ["state", "hard for", "half", f"why {SOLVER} cannot take it"]
-    return ["\n## States without trials\n", *markdown(head, rows)]
+    return markdown(["state", "hard for", "half", f"why {SOLVER} cannot take it"], rows) if rows else []
 
 
 def page(record: dict) -> str:
-    refused = [s for s in record["states"] if "refused" in s]
-    record = {**record, "states": taken_states(record)}
-    states = record["states"]
-    taken = [t for s in states for t in s["trials"] if "refused" not in t]
-    minutes = sum(s["seconds"] for s in states) / 60
-    parts = [
-        HEAD,
-        f"{len(states)} states, {len(taken)} trials, {minutes:.1f} minutes of one processor with the"
-        f" references ({record['cpu']}).",
-        "\n## States\n",
-        *_states(record),
-        "\n## Hessian rules of line_search\n",
-        "Iterations (to tol), and the minimum where it is not A.\n",
-        *_rules(record),
-        f"\n## Why: line_search, {OWN}\n",
-        *_causes(record),
-    ]
-    for half in HALVES:
-        parts += [f"\n## Totals of the half {half}\n", *_totals(record, half)]
-    parts += ["\n## Other step solvers\n", *_solvers(record), "\n## Refused\n", *_refusals(record)]
-    parts += _refused_states(refused)
-    return "\n".join(parts) + "\n"
+    """results/STEPS.md. Errors: UserError where no state has trials."""
+    states, refused = taken_states(record), [s for s in record["states"] if "refused" in s]
+    taken = {**record, "states": states}
+    tables = {
+        "table": _states(taken),
+        "rules": _rules(taken),
+        "causes": _causes(taken),
+        "solvers": _solvers(taken),
+        "refusals": _refusals(taken),
+        "without": _refused_states(refused),
+    }
+    numbers = {
+        "states": len(states),
+        "trials": sum("refused" not in t for s in states for t in s["trials"]),
+        "minutes": sum(s["seconds"] for s in states) / 60,
+        "cpu": record["cpu"],
+        "own": OWN,
+        "halves": {half: "\n".join(_totals(taken, half)) for half in HALVES},
+    }
+    return filled(PAGE, {**numbers, **{name: "\n".join(lines) for name, lines in tables.items()}})

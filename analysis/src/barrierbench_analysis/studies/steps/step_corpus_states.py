@@ -9,11 +9,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
-from barrierbench_analysis.io.spec_file import read_spec, refused, require_base
+from barrierbench_analysis.io.spec_file import read_spec, refused, require_base, require_names_once
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.start import started
+from barrierbench_analysis.program.start import finished, settings_words
 from barrierbench_analysis.studies.catalogue.entry import read_entry, write_config
 
 SCHEMA = "barrierbench.step_state/1"
@@ -25,9 +25,7 @@ MOST_OF_ONE = 800 << 10
 def read_corpus(path: Path) -> dict:
     """Errors: UserError, also for two states of one name, and for one with two bases or none."""
     spec = read_spec(path, "step_corpus")
-    names = [state["name"] for state in spec["states"]]
-    if len(set(names)) != len(names):
-        raise UserError(f"{path}#/states: a name twice in {', '.join(sorted(names))}")
+    require_names_once(path, "states", [state["name"] for state in spec["states"]])
     for k, state in enumerate(spec["states"]):
         if ("base" in state) == ("catalogue" in state):
             raise refused(
@@ -51,11 +49,8 @@ def _base(state: dict, k: int, spec_file: Path, scratch: Path) -> Path:
 
 def _keep(state: dict, base: Path, common: dict, stem: Path) -> None:
     words = ["steps", str(base), "--at", str(state["step"]), "--keep", str(stem), "--progress", "none"]
-    for pointer, value in {**common, **state.get("set", {})}.items():
-        words += ["--set", f"{pointer}={json.dumps(value)}"]
-    done = started(*words)
-    if done.returncode != 0:
-        raise UserError(f"{state['name']}: {done.stderr.strip()}", passed_on(done.returncode))
+    settings = {**common, **state.get("set", {})}
+    finished(*words, *settings_words(settings), what=f"{state['name']}: ")
 
 
 def _name(file: Path, hard_for: str, half: str) -> None:

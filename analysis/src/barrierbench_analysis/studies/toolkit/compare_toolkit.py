@@ -158,33 +158,20 @@ def compare(ours: Ours, toolkit: Toolkit, rounds: int) -> dict[str, dict[str, li
 def rows_of_table(answers) -> list[dict]:
     out = []
     for stage, sides in answers.items():
-        least = {name: min(a["s"] for a in side) for name, side in sides.items()}
-        out.append(
-            {
-                "stage": stage,
-                "ours_s": least["ours"],
-                "toolkit_s": least["toolkit"],
-                "ratio": least["toolkit"] / least["ours"],
-                "ours_items": sides["ours"][-1]["items"],
-                "toolkit_items": sides["toolkit"][-1]["items"],
-                "ours_value": sides["ours"][-1]["value"],
-                "toolkit_value": sides["toolkit"][-1]["value"],
-            }
-        )
+        row = {"stage": stage}
+        for name, side in sides.items():
+            row[f"{name}_s"] = min(answer["s"] for answer in side)
+            row |= {f"{name}_{key}": side[-1][key] for key in ("items", "value")}
+        out.append({**row, "ratio": row["toolkit_s"] / row["ours_s"]})
     return out
 
 
 def table_text(rows: list[dict]) -> str:
-    cells = [
-        [
-            STAGES[row["stage"]],
-            f"{row['ours_s']:.3g} s",
-            f"{row['toolkit_s']:.3g} s",
-            f"{row['ratio']:.1f}x",
-            f"{row['ours_items']}, {row['toolkit_items']}",
-        ]
-        for row in rows
-    ]
+    cells = []
+    for row in rows:
+        times = [f"{row[side]:.3g} s" for side in ("ours_s", "toolkit_s")]
+        items = f"{row['ours_items']}, {row['toolkit_items']}"
+        cells.append([STAGES[row["stage"]], *times, f"{row['ratio']:.1f}x", items])
     return "\n".join(markdown(["stage", "ours", "toolkit", "ratio", "items: ours, toolkit"], cells))
 
 
@@ -247,11 +234,9 @@ def main(argv: list[str]) -> int:
     try:
         import ipctk
     except ImportError:
-        print(
-            "compare-toolkit: the Python package ipctk is not installed (analysis/requirements-oracle.txt)",
-            file=sys.stderr,
-        )
-        return 2
+        raise UserError(
+            "the Python package ipctk is not installed (analysis/requirements-oracle.txt)"
+        ) from None
     name, x0, x1, faces = load_mesh(args.mesh, args.size, args.d_hat)
     answers, load = measured(args, x0, x1, faces)
     rows = rows_of_table(answers)

@@ -14,7 +14,7 @@ import pandas as pd
 from barrierbench_analysis.figures import panels, style
 from barrierbench_analysis.tables import series
 
-from .judge import COSTS, Point, band_of, formulations, front, points, profile
+from .judge import COSTS, Point, band_of, formulations, front, levels, points, profile
 
 ERRORS = {
     "e_traj": "largest distance of a vertex / scene",
@@ -51,14 +51,11 @@ def by_rank(scenes: list[dict]) -> list[str]:
     """The formulations, what the project compares first, then those that solve most problems at all targets
     together.
     """
-    solved = {
-        name: sum(
-            len(profile(scenes, "newton", name, level)[0])
-            for level in range(max(len(scene["targets"]) for scene in scenes))
-        )
-        for name in formulations(scenes[0])
-    }
-    return series.ranked(sorted(solved, key=lambda name: -solved[name]))
+
+    def solved(name: str) -> int:
+        return sum(len(profile(scenes, "newton", name, level)[0]) for level in levels(scenes))
+
+    return series.ranked(sorted(formulations(scenes[0]), key=lambda name: -solved(name)))
 
 
 def _costs(scenes: list[dict], cost: str, names: tuple[str, ...]) -> panels.Panel:
@@ -69,11 +66,10 @@ def _costs(scenes: list[dict], cost: str, names: tuple[str, ...]) -> panels.Pane
         for p in (*points(scene, cost), *points(scene, cost, ranked=False))
         if p.formulation in names
     }
+    both = [(p.cost, p.error) for p in found.values()]
     index = pd.Index(list(found), tupleize_cols=False)
-    errors = pd.Series([p.error for p in found.values()], index=index, dtype=float)
-    return panels.Panel(
-        COSTS[cost][1], pd.Series([p.cost for p in found.values()], index=index, dtype=float), errors
-    )
+    drawn = pd.DataFrame(both, index=index, columns=["cost", "error"], dtype=float)
+    return panels.Panel(COSTS[cost][1], drawn["cost"], drawn["error"])
 
 
 def _chosen(scenes: list[dict], costs: tuple[str, ...], names: tuple[str, ...]) -> tuple[list[str], str]:
@@ -227,15 +223,15 @@ def _largest(scenes: list[dict], cost: str) -> float:
 
 def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
     """Data profiles over all scenes: one row a target level, one column a cost; and the supplement."""
-    names, paths, levels = formulations(scenes[0]), [], range(max(len(scene["targets"]) for scene in scenes))
+    names, paths, rows_of_panels = formulations(scenes[0]), [], levels(scenes)
     problems = profile(scenes, "newton", names[0], 0)[1]
     for part in series.parts(names, by_rank(scenes), stem.name):
         costs, left_out = _chosen(scenes, ("newton", "factorizations", "products"), part.names)
-        size = (style.WIDE_IN, 0.8 + 1.7 * len(levels))
+        size = (style.WIDE_IN, 0.8 + 1.7 * len(rows_of_panels))
         how = {"sharex": "col", "sharey": "row", "layout": "constrained", "squeeze": False}
-        fig, axes = plt.subplots(len(levels), len(costs), figsize=size, **how)
+        fig, axes = plt.subplots(len(rows_of_panels), len(costs), figsize=size, **how)
         rows = []
-        for level in levels:
+        for level in rows_of_panels:
             for axis, cost in zip(axes[level], costs):
                 rows += _profile_panel(axis, scenes, cost, level, part.names, _largest(scenes, cost))
             axes[level, 0].set_ylabel(f"share solved, target {level + 1}")

@@ -132,6 +132,11 @@ def standing(all_points: list[Point], names: list[str], formulation: str) -> Sta
     )
 
 
+def levels(scenes: list[dict]) -> range:
+    """Numbers of the targets."""
+    return range(max(len(scene["targets"]) for scene in scenes))
+
+
 def profile(scenes: list[dict], cost: str, formulation: str, level: int) -> tuple[list[float], int]:
     """Data profile: the costs at which problems (scene, variation) were solved, sorted, and the number of all
     problems. A problem is solved when its run counts, has this cost, and its error is at most target number

@@ -13,13 +13,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from barrierbench_analysis.io.spec_file import refused, require_base
+from barrierbench_analysis.io.spec_file import refused, require_base, require_names_once
 from barrierbench_analysis.studies.kit.study.spec import Case, Study
 
 from .gravity import gravity_of
 
 AXES = ("tolerance", "dt_s", "d_hat_m", "kappa")
 ANCHOR = AXES[:3]
+PLACE = ("scene", "formulation", "axis", "factor", "solver")
 AT_ANCHOR, REFERENCE = "anchor", "reference"  # on the axis of a cell, beside AXES
 REFERENCE_D_HAT, REFERENCE_TOLERANCE = 1 / 16, 1e-3  # of a refined reference, in units of the anchor
 # A direct solver has factorisations and no products; the same run by conjugate gradients has products.
@@ -82,33 +83,22 @@ class Scene:
         relative, dt, d_hat = (self.anchor[name] * of(name) for name in ANCHOR)
         preset = {"name": formulation["name"], "d_hat_m": d_hat, "stiffness_policy": {"scale": of("kappa")}}
         settings = {"/formulation": preset, **formulation.get("set", {})}
-        tolerance = self.tolerance(relative, d_hat, dt)
-        return Case(
-            self.place(formulation.get("label", formulation["name"]), axis, factor, solver),
-            self._settings(settings, of("dt_s"), tolerance, solver),
-            self.base,
-            against={**self.reference, "runs": [run.settings for run in self.references(of("dt_s"))]},
-        )
+        made = self._settings(settings, of("dt_s"), self.tolerance(relative, d_hat, dt), solver)
+        against = {**self.reference, "runs": [run.settings for run in self.references(of("dt_s"))]}
+        place = self._place(formulation.get("label", formulation["name"]), axis, factor, solver)
+        return Case(place, made, self.base, against=against)
 
     def _reference(self, name: str, dt_factor: float) -> Case:
         relative, dt, d_hat = (self.anchor[axis] for axis in ANCHOR)
         settings = {"/formulation": {"name": name, "d_hat_m": d_hat * REFERENCE_D_HAT}}
         tolerance = REFERENCE_TOLERANCE * self.tolerance(relative, d_hat, dt * dt_factor)
+        made = self._settings(settings, dt_factor, tolerance, "direct")
         return Case(
-            self.place(name, REFERENCE, dt_factor, "direct"),
-            self._settings(settings, dt_factor, tolerance, "direct"),
-            self.base,
-            against=self.reference,
+            self._place(name, REFERENCE, dt_factor, "direct"), made, self.base, against=self.reference
         )
 
-    def place(self, formulation: str, axis: str, factor: float, solver: str) -> dict[str, str]:
-        return {
-            "scene": self.name,
-            "formulation": formulation,
-            "axis": axis,
-            "factor": f"{factor:.12g}",
-            "solver": solver,
-        }
+    def _place(self, formulation: str, axis: str, factor: float, solver: str) -> dict[str, str]:
+        return dict(zip(PLACE, (self.name, formulation, axis, f"{factor:.12g}", solver)))
 
     def references(self, dt_factor: float) -> list[Case]:
         """The two runs from which others with this time step are measured; none beside a closed form."""
@@ -149,12 +139,9 @@ def _scene(study: Study, data: dict, place: str) -> Scene:
 def scenes_of(study: Study) -> list[Scene]:
     """Errors: UserError with file, place, what was found and what is allowed."""
     scenes = [_scene(study, one, f"about/scenes/{k}") for k, one in enumerate(study.about["scenes"])]
-    for key, names in (
-        ("formulations", [one.get("label", one["name"]) for one in formulations_of(study)]),
-        ("scenes", [scene.name for scene in scenes]),
-    ):
-        if len(set(names)) != len(names):
-            raise refused(study.file, f"about/{key}", names, "every name once")
+    labels = [one.get("label", one["name"]) for one in formulations_of(study)]
+    require_names_once(study.file, "about/formulations", labels)
+    require_names_once(study.file, "about/scenes", [scene.name for scene in scenes])
     return scenes
 
 

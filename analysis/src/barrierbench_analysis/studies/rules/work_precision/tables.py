@@ -139,8 +139,7 @@ def _profiles(scenes: list[dict]) -> list[str]:
     """How many problems each formulation solves within a budget, at each target."""
     rows = []
     for name in judge.formulations(scenes[0]):
-        levels = range(max(len(scene["targets"]) for scene in scenes))
-        found = [judge.profile(scenes, "factorizations", name, level) for level in levels]
+        found = [judge.profile(scenes, "factorizations", name, level) for level in judge.levels(scenes)]
         cells = [", ".join(str(sum(c <= budget for c in costs)) for costs, _ in found) for budget in BUDGETS]
         rows.append([name, f"{found[0][1]}", *cells])
     words = [f"{budget} factorisations" for budget in BUDGETS[:-1]]
