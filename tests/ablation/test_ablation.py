@@ -80,7 +80,7 @@ def test_the_fraction_determines_every_main_effect(whole):
 
 
 def test_main_effects_are_ratios_with_the_other_factors_equal(small):
-    found = effects.effects_of(small, made(small, lambda k, v: (10 + k) * 2.0 ** (v[0] == 1) * 3.0 ** v[1] * (1 + 0.001 * k) ** v[1])).main["newton"]
+    found = effects.main_effects(small, made(small, lambda k, v: (10 + k) * 2.0 ** (v[0] == 1) * 3.0 ** v[1] * (1 + 0.001 * k) ** v[1]), "newton")
     b, y, single = (effect(found, small, name) for name in ("b", "y", "float"))
     assert np.exp(b.mean) == pytest.approx(2) and np.exp(y.mean) == pytest.approx(3, rel=0.01) and single.mean == pytest.approx(0, abs=1e-12)
     assert y.decided and y.signs == (10, 0) and y.sign_p == y.p == pytest.approx(2 / 1024)
@@ -89,14 +89,14 @@ def test_main_effects_are_ratios_with_the_other_factors_equal(small):
 
 def test_scenes_are_the_samples(small):
     """An effect that one scene has sixfold and nine have not is not decided, however many runs each has."""
-    found = effects.effects_of(small, made(small, lambda k, v: 10 * (6.0 if k == 0 else 1.0 + 0.01 * k * (-1) ** k) ** v[1])).main["newton"]
+    found = effects.main_effects(small, made(small, lambda k, v: 10 * (6.0 if k == 0 else 1.0 + 0.01 * k * (-1) ** k) ** v[1]), "newton")
     y = effect(found, small, "y")
     assert y.mean > 0 and not y.decided and y.low < 0 < y.high
 
 
 def test_a_scene_that_is_far_out_does_not_hide_what_all_scenes_have(small):
     """Its interval reaches over nothing, the sign-flip test does not require one spread."""
-    found = effects.effects_of(small, made(small, lambda k, v: 10 * (50.0 if k == 0 else 1.02 + 0.01 * k) ** v[1])).main["newton"]
+    found = effects.main_effects(small, made(small, lambda k, v: 10 * (50.0 if k == 0 else 1.02 + 0.01 * k) ** v[1]), "newton")
     y = effect(found, small, "y")
     assert y.low < 0 < y.high and y.decided and y.p == pytest.approx(2 / 1024)
 
@@ -105,21 +105,21 @@ def test_a_scene_with_too_few_runs_has_no_value(small):
     """Eight parameters and 17 runs leave nine degrees of freedom."""
     every = made(small, lambda k, v: (10 + k) * 3.0 ** v[1])
     few = [row for row in every if row.place["scene"] != "one"] + [row for row in every if row.place["scene"] == "one"][-17:]
-    y = effect(effects.effects_of(small, few).main["newton"], small, "y")
+    y = effect(effects.main_effects(small, few, "newton"), small, "y")
     assert set(y.scenes) == set(SCENES) - {"one"} and y.p is None and not y.decided and report.verdict_of(small, y) == "9 scenes"
 
 
 def test_failures_are_counted_in_the_share_and_in_no_ratio(small):
     """b fails with three of five precisions, so that it fails whichever two of them are left out."""
     fails = lambda v: v[0] == 1 and v[2] in (1, 2, 3)
-    found = effects.effects_of(small, made(small, lambda k, v: 1000.0 if fails(v) else 10.0 + k, lambda v: not fails(v)))
-    share = effect(found.main["ok"], small, "b")
-    assert share.mean < -0.4 and share.decided and all(abs(e.mean) < 1e-9 and not e.decided for e in found.main["newton"])
+    rows = made(small, lambda k, v: 1000.0 if fails(v) else 10.0 + k, lambda v: not fails(v))
+    share, newton = effect(effects.main_effects(small, rows, "ok"), small, "b"), effects.main_effects(small, rows, "newton")
+    assert share.mean < -0.4 and share.decided and all(abs(e.mean) < 1e-9 and not e.decided for e in newton)
 
 
 def test_a_main_effect_that_is_one_interaction_is_taken_back(small):
     """b fails with y alone, where it always fails: without y every run of it gets through, as of a."""
-    found = effects.effects_of(small, made(small, lambda k, v: 10.0 + k, lambda v: v[:2] != (1, 1))).main["ok"]
+    found = effects.main_effects(small, made(small, lambda k, v: 10.0 + k, lambda v: v[:2] != (1, 1)), "ok")
     b = effect(found, small, "b")
     assert b.mean < -0.2 and b.passes and not b.decided
     assert b.without == ((1, 1),) and b.direct.mean == 0.0
@@ -128,7 +128,7 @@ def test_a_main_effect_that_is_one_interaction_is_taken_back(small):
 
 def test_two_levels_left_out_take_back_what_one_does_not(small):
     """b fails with y or with float: each alone leaves failures, without both there is none."""
-    found = effects.effects_of(small, made(small, lambda k, v: 10.0 + k, lambda v: not (v[0] == 1 and (v[1] == 1 or v[2] == 1)))).main["ok"]
+    found = effects.main_effects(small, made(small, lambda k, v: 10.0 + k, lambda v: not (v[0] == 1 and (v[1] == 1 or v[2] == 1))), "ok")
     b = effect(found, small, "b")
     assert b.passes and not b.decided and set(b.without) == {(1, 1), (2, 1)} and b.direct.mean == 0.0
 
@@ -151,7 +151,7 @@ def test_an_effect_that_exclusions_make_of_an_interaction_is_taken_back(small):
     """c stands with x alone, and with x all shapes are alike; b with y costs nine times as much. Additive effects
     put the others lower at x than they are, so c seems to cost more.
     """
-    found = effects.effects_of(small, made(small, lambda k, v: (10.0 + k) * 9.0 ** (v[:2] == (1, 1)) * (1 + 0.001 * k * (-1) ** k) ** v[2])).main["newton"]
+    found = effects.main_effects(small, made(small, lambda k, v: (10.0 + k) * 9.0 ** (v[:2] == (1, 1)) * (1 + 0.001 * k * (-1) ** k) ** v[2]), "newton")
     c, y = (effect(found, small, name) for name in ("c", "y"))
     assert c.mean > 0.4 and c.passes and not c.decided and c.without == () and abs(c.direct.mean) < 1e-9
     assert report.verdict_of(small, c).startswith("taken back: 1 [") and report.verdict_of(small, c).endswith("] directly")
@@ -194,7 +194,7 @@ def test_an_interaction_is_no_main_effect():
 def test_what_no_run_distinguishes_has_no_value(small):
     made_of_x = made(small, lambda k, v: 10.0 + k)
     only = [row for row in made_of_x if row.place["solver"] != "y"]
-    y = effect(effects.effects_of(small, only).main["newton"], small, "y")
+    y = effect(effects.main_effects(small, only, "newton"), small, "y")
     assert y.mean is None and y.scenes == {} and report.value_of(y) == "no scene has it"
 
 

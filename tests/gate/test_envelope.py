@@ -7,10 +7,11 @@ from barrierbench_analysis.studies.gate import baseline, invariants, judge, metr
 from barrierbench_analysis.studies.gate import calibrate as calibration
 from barrierbench_analysis.studies.gate.baseline import Kept
 from barrierbench_analysis.studies.gate.drift import First
-from barrierbench_analysis.studies.gate.envelope import Envelope, calibrate, holm, ks_p_value
+from barrierbench_analysis.studies.gate.envelope import KS_LEVEL, Envelope, calibrate, ks_p_value
 from barrierbench_analysis.studies.gate.finding import without_subject
 from barrierbench_analysis.studies.gate.metrics import COND, COST, GAP, LOWER_BETTER, NEWTON, PCG, PHYSICS, TWO_SIDED, Metric
 from barrierbench_analysis.studies.gate.records import Run
+from barrierbench_analysis.tables.statistics import holm
 
 COND_METRIC = Metric("log10_cond full/none median", "III", "log10", LOWER_BETTER, COND)
 ITERATIONS = Metric("newton_iterations", "III", "1", LOWER_BETTER, NEWTON)
@@ -111,8 +112,9 @@ def test_a_chaotic_metric_is_judged_by_its_distribution():
 
 
 def test_holm():
-    assert holm([0.0004, 0.0004, 0.5]) == [False, False, False]  # each below 1e-3, none below a third of it
-    assert holm([0.0003, 0.0004, 0.5]) == [True, True, False]
+    assert [p < KS_LEVEL for p in holm([0.0004, 0.0004, 0.5])] == [False, False, False]  # each below 1e-3, none below a third of it
+    assert [p < KS_LEVEL for p in holm([0.0003, 0.0004, 0.5])] == [True, True, False]
+    assert holm([0.2, 0.01, 0.02]) == pytest.approx([0.2, 0.03, 0.04]) and holm([0.5, 0.9]) == [1.0, 1.0] and holm([]) == []
 
 
 def test_costs_are_judged_one_by_one_and_together():

@@ -79,6 +79,17 @@ def spread(logs: Sequence[float]) -> tuple[float, float, float]:
     return math.exp(math.fsum(logs) / len(logs)), math.exp(min(logs)), math.exp(max(logs))
 
 
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Each p times Holm's factor, at most 1: the tests below a level may all together give one false alarm
+    in 1/level.
+    """
+    found, least = [0.0] * len(p_values), 0.0
+    for rank, k in enumerate(np.argsort(p_values, kind="stable")):
+        least = max(least, min(1.0, p_values[k] * (len(p_values) - rank)))
+        found[k] = least
+    return found
+
+
 def slope(points: Iterable[tuple[float, float]]) -> float | None:
     """Of the least-squares line through (x, y), with the same bits on every machine; None with fewer than two
     different x.

@@ -63,16 +63,3 @@ def scatter_above(values) -> float:
 def ks_p_value(old, new) -> float:
     """Of the two-sample Kolmogorov-Smirnov test, exact for samples of this size."""
     return float(ks_2samp(old, new, method="exact").pvalue)
-
-
-def holm(p_values: list[float], level: float = KS_LEVEL) -> list[bool]:
-    """Which of a family of tests are significant when all of them together may give one false alarm in
-    1/level.
-    """
-    order = np.argsort(p_values)
-    significant = [False] * len(p_values)
-    for rank, k in enumerate(order):
-        if p_values[k] >= level / (len(p_values) - rank):
-            break
-        significant[k] = True
-    return significant

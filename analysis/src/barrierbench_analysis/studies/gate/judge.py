@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from barrierbench_analysis.tables.statistics import geometric
+from barrierbench_analysis.tables.statistics import geometric, holm
 
 from . import drift, shares
 from .baseline import Kept, keep
-from .envelope import calibrate, holm, ks_p_value
+from .envelope import KS_LEVEL, calibrate, ks_p_value
 from .finding import RED, Finding, moved
 from .metrics import LOWER_BETTER, UPPER_BETTER, Metric
 
@@ -181,10 +181,10 @@ def distributions(samples: list[tuple[str, str, Kept, list[float]]]) -> list[Fin
     """Chaotic metrics of all cases as one family: (case, metric, kept, values of copies of the run)."""
     p_values = [ks_p_value(kept.envelope.sample, values) for _, _, kept, values in samples]
     findings = []
-    for (case, name, kept, values), p, red in zip(samples, p_values, holm(p_values)):
+    for (case, name, kept, values), p, of_all in zip(samples, p_values, holm(p_values)):
         note = f"chaotic: {len(values)} copies against {len(kept.envelope.sample)}, KS p = {p:.2g}"
         e, middle = kept.envelope, float(np.median(values))
-        verdict, more = _held(kept, middle, "FAIL" if red else "pass")
+        verdict, more = _held(kept, middle, "FAIL" if of_all < KS_LEVEL else "pass")
         note = "; ".join(text for text in (note, more) if text)
         findings.append(_finding(case, name, kept, middle, verdict, (e.lower, e.upper), note))
     return findings

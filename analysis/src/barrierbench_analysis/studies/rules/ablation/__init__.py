@@ -14,7 +14,7 @@ from barrierbench_analysis.studies.kit.success import FAILURES
 
 from . import figure
 from .design import drawn, seldom
-from .effects import LEAST_SCENES, LEVEL, SHARES, effects_of
+from .effects import LEAST_SCENES, LEVEL, METRICS, SHARES, main_effects, pair_effects
 from .factors import Factorial, read_factorial
 from .report import texts
 
@@ -60,7 +60,10 @@ def _design(factorial: Factorial, rows: list[Row]) -> dict:
 def rule(study: Study, rows: list[Row]) -> dict:
     """Counts, sentences and tables of the page, and the effects for its figure."""
     factorial = read_factorial(study)
-    effects = effects_of(factorial, rows)
+    mains, pairs = (
+        {metric: of(factorial, rows, metric) for metric in (*METRICS, *SHARES)}
+        for of in (main_effects, pair_effects)
+    )
     counts = {
         "runs": len(rows),
         "ok": sum(map(SHARES["ok"], rows)),
@@ -70,9 +73,10 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "where": WHERE,
         "level": f"{LEVEL:g}",
         "least_scenes": LEAST_SCENES,
-        "effects": effects,
+        "main_effects": mains,
+        "pair_effects": pairs,
     }
-    return counts | _design(factorial, rows) | texts(factorial, rows, effects)
+    return counts | _design(factorial, rows) | texts(factorial, rows, mains, pairs)
 
 
 def draw(study: Study, _rows: list[Row], numbers: dict, folder: Path) -> list[Path]:

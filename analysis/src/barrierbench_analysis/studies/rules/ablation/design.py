@@ -7,7 +7,7 @@ pairs of levels, each times the number of level pairs: least where every pair of
 equally often (the J2 criterion of Xu 2002, Technometrics 44(4), without weights). It is an integer, so the
 draw is the same on every machine. A pair of factors of which exclusions forbid a pair of levels counts as
 often as there are pairs of factors: otherwise the balance of single levels wins, all runs with implicit Euler
-take the step solver that only implicit Euler has, and the two are not told apart.
+take the step solver that only implicit Euler has, and no run distinguishes the two.
 
 Scenes have arrays of their own, so that the interactions that an array mixes into a main effect differ
 from scene to scene: they widen the interval over scenes and do not shift its middle in one direction.

@@ -15,7 +15,7 @@ import numpy as np
 from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.estimate import sign_test
 from barrierbench_analysis.tables.outcomes import OK
-from barrierbench_analysis.tables.statistics import mean_over
+from barrierbench_analysis.tables.statistics import holm, mean_over
 
 from .bound import Contexts, Part, compared, contexts, direct, is_bound, left_out
 from .factors import Combination, Factorial
@@ -28,6 +28,7 @@ METRICS = ("newton", "bj_p95", "pcg", "gap")  # of runs that ended ok and valid
 SHARES = {"ok": lambda row: row.outcome == OK, "common": lambda row: not row.values["failed"]}
 TESTED = 1e-8  # of a column: how much of it the rows may leave undetermined
 NOTHING = 1e-9  # an effect below is the rounding of a fit, and no sign of anything
+Samples = dict[str, tuple[list[Combination], list[float]]]  # scene -> levels and value of its runs
 
 
 @dataclass(frozen=True)
@@ -83,14 +84,6 @@ class Effect:
         return sign_test(*self.signs)
 
 
-@dataclass(frozen=True)
-class Effects:
-    """main and pairs: metric -> effects, in the order of the factors."""
-
-    main: dict[str, list[Effect]]
-    pairs: dict[str, list[Effect]]
-
-
 def main_terms(factorial: Factorial) -> list[Term]:
     return [Term(((f, level),)) for f, n in enumerate(factorial.sizes) for level in range(1, n)]
 
@@ -100,18 +93,18 @@ def pair_terms(factorial: Factorial, a: int, b: int) -> list[Term]:
     return [Term(((a, i), (b, j))) for i in range(1, sizes[a]) for j in range(1, sizes[b])]
 
 
-def values_of(
-    factorial: Factorial, rows: list[Row], scene: str, metric: str
-) -> tuple[list[Combination], list[float]]:
-    """Levels and value of the runs of a scene that have the number: its logarithm; of a share 0 or 1, of
-    every run."""
-    mine = [row for row in rows if row.place["scene"] == scene]
-    if metric in SHARES:
-        values = [float(SHARES[metric](row)) for row in mine]
-    else:
-        mine = [row for row in mine if row.outcome == OK and row.values[metric]]
-        values = [float(np.log(row.values[metric])) for row in mine]
-    return list(map(factorial.levels_of, mine)), values
+def samples(factorial: Factorial, rows: list[Row], metric: str) -> Samples:
+    """Of the runs that have the number: its logarithm; of a share 0 or 1, of every run."""
+    found: Samples = {scene: ([], []) for scene in factorial.scenes.labels}
+    for row in rows:
+        levels, values = found[row.place["scene"]]
+        if metric in SHARES:
+            values.append(float(SHARES[metric](row)))
+        elif row.outcome == OK and row.values[metric]:
+            values.append(float(np.log(row.values[metric])))
+        if len(values) > len(levels):
+            levels.append(factorial.levels_of(row))
+    return found
 
 
 def fitted(
@@ -151,25 +144,20 @@ def over_scenes(metric: str, term: Term, scenes: dict[str, float]) -> Effect:
 
 
 def with_holm(effects: list[Effect]) -> list[Effect]:
-    """p times the number of effects not yet passed, from the smallest one on, never falling."""
-    tested = sorted((e for e in effects if e.p is not None), key=lambda e: e.p)
-    holm, least = {}, 0.0
-    for k, effect in enumerate(tested):
-        least = max(least, min(1.0, effect.p * (len(tested) - k)))
-        holm[effect.term] = least
-    return [replace(effect, holm=holm.get(effect.term)) for effect in effects]
+    of = iter(holm([effect.p for effect in effects if effect.p is not None]))
+    return [effect if effect.p is None else replace(effect, holm=next(of)) for effect in effects]
 
 
-def _of(factorial: Factorial, rows: list[Row], metric: str, wanted: list[Term]) -> list[Effect]:
-    terms = list(dict.fromkeys([*main_terms(factorial), *wanted]))
+def _of(metric: str, of: Samples, mains: list[Term], wanted: list[Term]) -> list[Effect]:
+    terms = list(dict.fromkeys([*mains, *wanted]))
     found: dict[Term, dict[str, float]] = {term: {} for term in wanted}
-    for scene in factorial.scenes.labels:
-        for term, value in fitted(*values_of(factorial, rows, scene, metric), terms, wanted).items():
+    for scene, sample in of.items():
+        for term, value in fitted(*sample, terms, wanted).items():
             found[term][scene] = value
     return [over_scenes(metric, term, scenes) for term, scenes in found.items()]
 
 
-def _beside(factorial: Factorial, rows: list[Row], allowed: Contexts, effect: Effect) -> Effect:
+def _beside(factorial: Factorial, of: Samples, allowed: Contexts, effect: Effect) -> Effect:
     """With the first direct effect that does not agree. Without some levels fewer scenes have it: fewer than
     LEAST_SCENES decide nothing, but where nothing is left out, and exclusions bind the level, they do not
     agree.
@@ -177,11 +165,10 @@ def _beside(factorial: Factorial, rows: list[Row], allowed: Contexts, effect: Ef
     part, mains = effect.term.parts[0], main_terms(factorial)
     scenes = {}
     for scene in effect.scenes:
-        levels, y = values_of(factorial, rows, scene, effect.metric)
-        others = {term.parts[0]: value for term, value in fitted(levels, y, mains, mains).items()}
-        scenes[scene] = compared(allowed, part, levels, y, None if effect.metric in SHARES else others)
+        others = {term.parts[0]: value for term, value in fitted(*of[scene], mains, mains).items()}
+        scenes[scene] = compared(allowed, part, *of[scene], None if effect.metric in SHARES else others)
     for out in left_out(factorial, part[0], is_bound(allowed, part)):
-        found = {scene: direct(part, of, out) for scene, of in scenes.items()}
+        found = {scene: direct(part, runs, out) for scene, runs in scenes.items()}
         known = {scene: value for scene, value in found.items() if value is not None}
         one = over_scenes(effect.metric, effect.term, known)
         if not effect.same(one) and (one.p is not None or not out):
@@ -191,19 +178,13 @@ def _beside(factorial: Factorial, rows: list[Row], allowed: Contexts, effect: Ef
 
 def main_effects(factorial: Factorial, rows: list[Row], metric: str) -> list[Effect]:
     """In the order of the factors; of those that pass the test, what takes them back beside them."""
-    mains, allowed = with_holm(_of(factorial, rows, metric, main_terms(factorial))), contexts(factorial)
-    return [_beside(factorial, rows, allowed, effect) if effect.passes else effect for effect in mains]
+    of, mains, allowed = samples(factorial, rows, metric), main_terms(factorial), contexts(factorial)
+    found = with_holm(_of(metric, of, mains, mains))
+    return [_beside(factorial, of, allowed, effect) if effect.passes else effect for effect in found]
 
 
-def _pairs(factorial: Factorial, rows: list[Row], metric: str) -> list[Effect]:
+def pair_effects(factorial: Factorial, rows: list[Row], metric: str) -> list[Effect]:
     """Interactions, fitted for one pair of factors at a time."""
-    pairs = combinations(range(len(factorial.factors)), 2)
-    return with_holm([e for a, b in pairs for e in _of(factorial, rows, metric, pair_terms(factorial, a, b))])
-
-
-def effects_of(factorial: Factorial, rows: list[Row]) -> Effects:
-    numbers = (*METRICS, *SHARES)
-    return Effects(
-        {metric: main_effects(factorial, rows, metric) for metric in numbers},
-        {metric: _pairs(factorial, rows, metric) for metric in numbers},
-    )
+    of, mains = samples(factorial, rows, metric), main_terms(factorial)
+    pairs = (pair_terms(factorial, a, b) for a, b in combinations(range(len(factorial.factors)), 2))
+    return with_holm([effect for terms in pairs for effect in _of(metric, of, mains, terms)])

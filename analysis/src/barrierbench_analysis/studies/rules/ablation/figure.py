@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.io.whole_file import write_figure, write_whole
 
-from .effects import SHARES, Effects
+from .effects import SHARES, Effect
 from .factors import Factorial
 from .report import by_construction, name_of
 
@@ -41,8 +41,8 @@ def _both_ways(limits, least: float) -> tuple[float, float]:
     return -far, far
 
 
-def _panel(axis, factorial: Factorial, effects: Effects, metric: str) -> None:
-    for k, effect in enumerate(effects.main[metric]):
+def _panel(axis, factorial: Factorial, metric: str, effects: list[Effect]) -> None:
+    for k, effect in enumerate(effects):
         if effect.mean is None:
             continue
         value = (lambda v: v) if metric in SHARES else math.exp
@@ -65,13 +65,13 @@ def _panel(axis, factorial: Factorial, effects: Effects, metric: str) -> None:
         axis.xaxis.set_minor_locator(NullLocator())
         axis.axvline(1, color="black", linewidth=0.5)
     axis.set_title(TITLES[metric])
-    axis.set_ylim(len(effects.main[metric]) - 0.5, -0.5)
+    axis.set_ylim(len(effects) - 0.5, -0.5)
 
 
-def _matrix(axis, factorial: Factorial, effects: Effects) -> None:
+def _matrix(axis, factorial: Factorial, effects: list[Effect]) -> None:
     n = len(factorial.factors)
     size, decided = np.full((n, n), np.nan), np.zeros((n, n), bool)
-    for effect in effects.pairs["newton"]:
+    for effect in effects:
         (a, _), (b, _) = effect.term.parts
         if effect.p is not None:
             size[b, a] = np.fmax(size[b, a], abs(effect.mean))
@@ -90,19 +90,19 @@ def _matrix(axis, factorial: Factorial, effects: Effects) -> None:
 
 def draw(factorial: Factorial, numbers: dict, path: Path) -> list[Path]:
     """The PNG, and its caption beside it. numbers: of the rule."""
-    effects: Effects = numbers["effects"]
-    tested = any(effect.p is not None for effect in effects.pairs["newton"])
+    mains, pairs = numbers["main_effects"], numbers["pair_effects"]["newton"]
+    tested = any(effect.p is not None for effect in pairs)
     widths = [1] * len(TITLES) + [1.5] * tested
     size, grid = (0.33 * style.WIDE_IN * sum(widths), 4.2), {"width_ratios": widths}
     fig, axes = plt.subplots(1, len(widths), figsize=size, gridspec_kw=grid, layout="constrained")
     for axis, metric in zip(axes, TITLES):
-        _panel(axis, factorial, effects, metric)
-    labels = [name_of(factorial, effect.term) for effect in effects.main["ok"]]
+        _panel(axis, factorial, metric, mains[metric])
+    labels = [name_of(factorial, effect.term) for effect in mains["ok"]]
     axes[0].set_yticks(range(len(labels)), labels)
     for axis in axes[1 : len(TITLES)]:
         axis.set_yticks(range(len(labels)), [""] * len(labels))
     if tested:
-        _matrix(axes[-1], factorial, effects)
+        _matrix(axes[-1], factorial, pairs)
     write_figure(fig, path, metadata={"Software": None})
     plt.close(fig)
     caption = path.with_suffix(".txt")

@@ -9,7 +9,7 @@ from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.numbers import interval, significant
 
-from .effects import LEAST_SCENES, SHARES, Effect, Effects, Term
+from .effects import LEAST_SCENES, SHARES, Effect, Term
 from .factors import Factorial
 
 WORDS = {
@@ -145,13 +145,13 @@ def _interactions(factorial: Factorial, decided: list[Effect]) -> list[str]:
     )
 
 
-def texts(factorial: Factorial, rows: list[Row], effects: Effects) -> dict:
-    """Of the page, without what was run."""
-    pairs = [e for metric in WORDS for e in effects.pairs[metric]]
+def texts(factorial: Factorial, rows: list[Row], of: dict, of_pairs: dict) -> dict:
+    """Of the page, without what was run. of, of_pairs: metric -> main effects, and interactions."""
+    pairs = [e for metric in WORDS for e in of_pairs[metric]]
     decided = [e for e in pairs if e.decided]
-    mains = [line for m in WORDS for line in _main_table(factorial, m, effects.main[m])]
+    mains = [line for m in WORDS for line in _main_table(factorial, m, of[m])]
     return {
-        "sentences": [sentence(factorial, effects.main[m], words) for m, words in WORDS.items()],
+        "sentences": [sentence(factorial, of[m], words) for m, words in WORDS.items()],
         "tested_pairs": sum(e.p is not None for e in pairs),
         "decided_pairs": len(decided),
         "outcomes": "\n".join(_outcomes(rows)),

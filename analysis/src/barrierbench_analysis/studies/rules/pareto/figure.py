@@ -108,7 +108,7 @@ def _draw_panel(axis, runs: Runs, scene: str, name: str, formulations: tuple[str
     for formulation in formulations:
         rows, look = runs.of(scene, formulation), style.look(formulation)
         for seed in runs.seeds:
-            of_start = _means(runs, [row for row in rows if row.place["seed"] == str(seed)], name)
+            of_start = _means(runs, [row for row in rows if row.place["seed"] == seed], name)
             _path(axis, of_start, color=look.color, linewidth=0.5, alpha=0.35)
         how = {"linestyle": look.dash, "marker": look.marker, "label": formulation}
         _path(axis, _means(runs, rows, name), color=look.color, **how)

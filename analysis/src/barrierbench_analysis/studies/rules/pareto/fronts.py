@@ -29,17 +29,20 @@ class Runs:
             found[row.place["scene"], row.place["formulation"]].append(row)
         return found
 
+    def labels(self, axis: str) -> list[str]:
+        return list(dict.fromkeys(row.place[axis] for row in self.rows))
+
     @cached_property
     def scenes(self) -> list[str]:
-        return list(dict.fromkeys(scene for scene, _ in self._groups))
+        return self.labels("scene")
 
     @cached_property
     def formulations(self) -> list[str]:
-        return list(dict.fromkeys(formulation for _, formulation in self._groups))
+        return self.labels("formulation")
 
     @cached_property
-    def seeds(self) -> list[int]:
-        return sorted({int(row.place["seed"]) for row in self.rows})
+    def seeds(self) -> list[str]:
+        return self.labels("seed")
 
     @cached_property
     def scales(self) -> list[float]:
@@ -66,9 +69,9 @@ class Runs:
     def of(self, scene: str, formulation: str) -> list[Row]:
         return self._groups[scene, formulation]
 
-    def path(self, scene: str, formulation: str, seed: int, name: str) -> list[Point]:
+    def path(self, scene: str, formulation: str, seed: str, name: str) -> list[Point]:
         """Of the runs from one start; one that failed has no gap, and breaks it."""
-        rows = [row for row in self.of(scene, formulation) if row.place["seed"] == str(seed)]
+        rows = [row for row in self.of(scene, formulation) if row.place["seed"] == seed]
         return [Point(self.scale(row), self.gap(row), self.value(row, name)) for row in rows]
 
 
