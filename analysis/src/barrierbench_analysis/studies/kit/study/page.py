@@ -7,12 +7,9 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from jinja2 import Environment, StrictUndefined
-from jinja2.exceptions import TemplateError
-
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.tables.words import counted
 

@@ -6,10 +6,8 @@ import base64
 import io
 from pathlib import Path
 
-from jinja2 import Environment, StrictUndefined
-
 from barrierbench_analysis.figures.style import WIDE_IN, plt
-from barrierbench_analysis.io import input_file
+from barrierbench_analysis.io.template import filled
 
 from .candidate import RIVALS
 from .judge import METRICS, at_equal_gap, comparisons, row_times, value
@@ -25,23 +23,24 @@ def page(score: dict) -> str:
     label, rows = score["candidate"]["label"], score["rows"]
     methods = [label, *RIVALS]
     ordered = sorted(rows, key=lambda r: (r["scene"], -r["theta"], methods.index(r["shape"])))
-    environment = Environment(autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True)
-    return environment.from_string(input_file.read_text(TEMPLATE)).render(
-        **score,
-        label=label,
-        methods=methods,
-        over=[f"over {rival}" for rival in RIVALS],
-        figure=_figure(rows, methods),
-        compared=_compared(rows, label),
-        equal=[[METRICS[m], f"{gap:g}", str(r), f"{r.scenes}"] for m, gap, r in at_equal_gap(rows, label)],
-        times=[[method, ns, runs] for method, (ns, runs) in row_times(rows).items()],
-        matched=[[r["scene"], f"{r['theta']:g}", *(r[name] for name in OF_RUN)] for r in ordered],
-        jittered=[
-            [s["method"], f"{s['ok']} of {s['of']}", ", ".join(s["others"]), " ".join(map(str, s["newton"]))]
-            for s in score["starts"]
-        ],
-        cases=_cases(score["hard_cases"], methods),
-    )
+    equal = [[METRICS[m], f"{gap:g}", str(r), f"{r.scenes}"] for m, gap, r in at_equal_gap(rows, label)]
+    starts = [
+        [s["method"], f"{s['ok']} of {s['of']}", ", ".join(s["others"]), " ".join(map(str, s["newton"]))]
+        for s in score["starts"]
+    ]
+    found = {
+        "label": label,
+        "methods": methods,
+        "over": [f"over {rival}" for rival in RIVALS],
+        "figure": _figure(rows, methods),
+        "compared": _compared(rows, label),
+        "equal": equal,
+        "times": [[method, ns, runs] for method, (ns, runs) in row_times(rows).items()],
+        "matched": [[r["scene"], f"{r['theta']:g}", *(r[name] for name in OF_RUN)] for r in ordered],
+        "jittered": starts,
+        "cases": _cases(score["hard_cases"], methods),
+    }
+    return filled(TEMPLATE, score | found, html=True)
 
 
 def _compared(rows: list[dict], label: str) -> list[list]:
