@@ -1,4 +1,4 @@
-"""Templates of pages (Jinja), filled with what they ask for."""
+"""Templates of pages (Jinja), filled with values."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .errors import UserError
 
 
 def filled(path: Path, values: dict, html: bool = False) -> str:
-    """html: texts are escaped. Errors: UserError for a template that asks for what is not among the values,
+    """html: texts are escaped. Errors: UserError for a template that needs what is not among the values,
     or cannot be read.
     """
     environment = Environment(undefined=StrictUndefined, keep_trailing_newline=True, autoescape=html)

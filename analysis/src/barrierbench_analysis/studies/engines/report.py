@@ -41,7 +41,7 @@ def _contacts_of(one: dict) -> int | None:
 
 
 def _seen_of(record: dict, engine: str) -> list[tuple[str, dict, dict]]:
-    """Variant, what the judge found in all its runs, and in those from jittered starts where there are any."""
+    """Variant, what the judge found in all of its runs, and in those from jittered starts (if any)."""
     rows = [row for one in record["scenes"] for row in one["rows"] if row["engine"] == engine]
     out = []
     for variant in dict.fromkeys(row["variant"] for row in rows):
@@ -75,7 +75,7 @@ def _starts_of(one: dict) -> list[list[str]]:
 
 
 def text_of(record: dict) -> str:
-    """Errors: UserError for a template that asks for more than there is."""
+    """Errors: UserError for a template that needs more than there is."""
     name = record["spec"].get("name", NAME)
     values = {
         "record": record,
