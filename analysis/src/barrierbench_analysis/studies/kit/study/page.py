@@ -66,15 +66,6 @@ def checks_of(study: Study, rows: list[store.Row]) -> dict[str, int]:
     return {"left_out": len(found) - len(run), "run": len(run), "held": sum(run.values())}
 
 
-def filled(template: Path, numbers: dict) -> str:
-    """A template (Jinja) with numbers. Errors: UserError for one that asks for what is not there."""
-    environment = Environment(undefined=StrictUndefined, keep_trailing_newline=True, autoescape=False)
-    try:
-        return environment.from_string(input_file.read_text(template)).render(numbers)
-    except TemplateError as fault:
-        raise UserError(f"{template}: {fault}; allowed: {', '.join(sorted(numbers))}") from None
-
-
 def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
     """The page. Errors: UserError for a template that asks for what the rule does not give."""
     about = {
