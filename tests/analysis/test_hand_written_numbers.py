@@ -9,7 +9,6 @@ from barrierbench_analysis.studies.claims import table as claims_table
 from barrierbench_analysis.studies.claims.entry import read_claim
 from barrierbench_analysis.studies.claims.judge import judge
 from barrierbench_analysis.studies.claims.proofs import Eval
-from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.pages.stated import cost
 from barrierbench_analysis.studies.kit.study.store import read_rows

@@ -33,11 +33,16 @@ def sheet(n=4, height=1.0, steps=10, **keys):
     membrane = {"model": "corotational", "lame_mu_N_per_m": 100.0, "lame_lambda_N_per_m": 60.0}
     body = {"name": "sheet", "first_vertex": 0, "vertices": n * n, "half_thickness_m": 0.0, "d_hat_m": 0.005, "membrane": membrane, "hinge_J": 0.0}
     data = {
-        "schema": scene.SCHEMA, "name": "sheet", "dt_s": 0.01, "steps": steps, "gravity_m_s2": [0, 0, -10],
+        "schema": "barrierbench.engine_scene/1", "name": "sheet", "dt_s": 0.01, "steps": steps, "gravity_m_s2": [0, 0, -10],
         "positions_m": x.tolist(), "rest_m": x.tolist(), "velocities_m_s": np.zeros_like(x).tolist(), "mass_kg": [0.01] * (n * n),
         "triangles": triangles, "bodies": [body], "given": {"vertices": [], "positions_m": [[]]}, "obstacles": [],
     }  # fmt: skip
-    return scene.made(data | keys, "sheet")
+    return scene.made(data | keys, Path("sheet"))
+
+
+def test_the_scene_that_tries_an_installation_is_whole():
+    data = scene.read(scene.SMALLEST)
+    assert data["obstacles"] and data["given"]["vertices"] and len(data["bodies"]) == 2 and data["steps"] == 3
 
 
 def stand_in(tmp_path, body):
@@ -89,7 +94,7 @@ def test_a_broken_card_is_refused_with_its_place(tmp_path, old, new, place):
 
 
 def test_the_scene_of_a_config_is_that_of_the_program(program):
-    found = scene.made(scene.exported(HANG, SMALL), "hang")
+    found = scene.made(scene.exported(HANG, SMALL), Path("hang"))
     x, mass = np.array(found["positions_m"]), np.array(found["mass_kg"])
     assert x.shape == (25, 3) and len(found["triangles"]) == 32 and found["given"]["vertices"] == [20, 24]
     assert np.isclose(mass.sum(), 0.15 * (1 - (1 + 2) / 3 / 32))  # all of it but that of two corners, one with two triangles
@@ -97,7 +102,7 @@ def test_the_scene_of_a_config_is_that_of_the_program(program):
     mu, lam = membrane["lame_mu_N_per_m"], membrane["lame_lambda_N_per_m"]
     assert np.isclose(4 * mu * (lam + mu) / (lam + 2 * mu), 8e5 * 3.18e-4) and np.isclose(lam / (lam + 2 * mu), 0.243)
     assert found["gravity_m_s2"] == [0, 0, -9.81] and found["steps"] == 6
-    twist = scene.made(scene.exported(ROOT / "configs/scenes/twist_cloth.json", ["/time/steps=3"]), "twist")
+    twist = scene.made(scene.exported(ROOT / "configs/scenes/twist_cloth.json", ["/time/steps=3"]), Path("twist"))
     given = np.array(twist["given"]["positions_m"])
     assert given.shape[0] == 4 and np.abs(given[1] - given[0]).max() > 1e-3 and np.allclose(given[0], np.array(twist["positions_m"])[twist["given"]["vertices"]])
 

@@ -59,7 +59,7 @@ def test_one_scene_decides_nothing():
     assert found(few, "newton") == dict.fromkeys(RIVALS, judge.OPEN)
     ok = [{"method": "new", "ok": 5, "of": 5, "others": [], "newton": []}]
     [said] = judge.decides(few, ok, [], "new")
-    assert "Nothing here" in said
+    assert "It differs from no other" in said
 
 
 def test_off_target_counts_in_both_directions():
@@ -76,7 +76,7 @@ def test_one_slow_run_does_not_make_a_row_slow():
     assert judge.row_times(busy)["log"] == (110.0, 3) and "row_ns" not in {one.metric for one in judge.comparisons(busy, "new")}
 
 
-@pytest.mark.parametrize("text, said", [("log", "held against"), ("nothing_like_it", "none of that name"), ("d_hat - d", "the unit m")])
+@pytest.mark.parametrize("text, said", [("log", "found log; allowed: a barrier that is none of log, quadratic"), ("nothing_like_it", "none of that name"), ("d_hat - d", "the unit m")])
 def test_what_cannot_be_scored_is_said(program, monkeypatch, text, said):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
     with pytest.raises(UserError, match=said):

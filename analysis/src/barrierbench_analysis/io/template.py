@@ -11,11 +11,11 @@ from . import input_file
 from .errors import UserError
 
 
-def filled(path: Path, values: dict, html: bool = False) -> str:
-    """html: texts are escaped. Errors: UserError for a template that needs what is not among the values,
-    or cannot be read.
+def filled(path: Path, values: dict) -> str:
+    """The text; nothing is escaped. Errors: UserError for a template that needs what is not among the
+    values, or cannot be read.
     """
-    environment = Environment(undefined=StrictUndefined, keep_trailing_newline=True, autoescape=html)
+    environment = Environment(undefined=StrictUndefined, keep_trailing_newline=True, autoescape=False)
     try:
         return environment.from_string(input_file.read_text(path)).render(values)
     except TemplateError as fault:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.pages.stated.sources import measured_elsewhere
 from barrierbench_analysis.program.verbs import renewed
@@ -15,7 +16,6 @@ from barrierbench_analysis.studies.claims.table import Table
 from barrierbench_analysis.studies.claims.verdict import IN_PART, ONLY_IF, OPEN, Judged
 from barrierbench_analysis.studies.claims.words import interval
 from barrierbench_analysis.studies.kit.metrics import METRICS
-from barrierbench_analysis.studies.kit.study.page import filled
 from barrierbench_analysis.tables.numbers import ratio
 
 TEMPLATE = ROOT / "configs" / "studies" / "claims.md"

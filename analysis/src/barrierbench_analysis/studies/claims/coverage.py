@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.text_table import markdown as table_lines
-from barrierbench_analysis.studies.kit.study.page import filled
 from barrierbench_analysis.tables.estimate import student
 
 SEED, RUNS = 20261123, 20000

@@ -18,10 +18,10 @@ from barrierbench_analysis.figures.figure_files import copy_to_page
 from barrierbench_analysis.io.errors import UserError, tells
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
-from barrierbench_analysis.studies.kit.study.page import filled
 
 from . import gpu_tables
 from .gpu_evidence import RECORDS, SCHEMA

@@ -46,19 +46,15 @@ def _key(axis, looks: dict[tuple, tuple[str, str]], has_starts: bool) -> None:
     """Who has which colour and mark, and what crosses, bars and the dotted line are."""
     for name, (colour, mark) in looks.items():
         axis.plot([], [], "-", marker=mark, color=colour, ms=4, lw=1, label=" ".join(name))
-    axis.plot(
-        [],
-        [],
-        "x",
-        color="#cc0000",
-        ms=8,
-        mew=1.4,
-        label="surfaces cross, or are in an obstacle",
-    )
-    if has_starts:
-        axis.plot([], [], "-", color="#666666", lw=1.6, label="jittered starts: least to most")
-    axis.plot([], [], " ", label=f"{MOST} %: that or more")
-    axis.plot([], [], ":", color="#999999", lw=0.8, label="reference, against twice its time step")
+    others = {
+        "surfaces cross, or are in an obstacle": ("x", {"color": "#cc0000", "ms": 8, "mew": 1.4}),
+        "jittered starts: least to most": ("-", {"color": "#666666", "lw": 1.6}),
+        f"{MOST} %: that or more": (" ", {}),
+        "reference, against twice its time step": (":", {"color": "#999999", "lw": 0.8}),
+    }
+    for label, (form, look) in others.items():
+        if has_starts or not label.startswith("jittered"):
+            axis.plot([], [], form, label=label, **look)
     axis.legend(loc="center", frameon=False)
 
 
@@ -78,13 +74,8 @@ def paint(record: dict, path: Path) -> None:
         known = one["reference_apart"].get("error_mean")
         if known:
             axis.axhline(100 * known, color="#999999", lw=0.8, ls=":")
-        axis.set(
-            xscale="log",
-            yscale="log",
-            title=one["scene"],
-            xlabel="seconds of steps",
-            ylabel="error, % of width",
-        )
+        names = {"xlabel": "seconds of steps", "ylabel": "error, % of width", "title": one["scene"]}
+        axis.set(xscale="log", yscale="log", **names)
     make_readable(axes.flat[: len(scenes)])
     for axis in axes.flat[len(scenes) :]:
         axis.axis("off")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.io import input_file
+from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.judge import verb
 
@@ -54,13 +54,9 @@ def judge(folder: Path, scene: dict) -> dict:
     words = [str(folder / "frames.npz"), "--about", str(file), "--out", str(out)]
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         code = verb.main(words)
-    record = (
-        json.loads(input_file.read_text(out / "judgement.json"))
-        if code in (verb.CLEAN, verb.NOT_CLEAN)
-        else None
-    )
-    if record is None:
+    if code not in (verb.CLEAN, verb.NOT_CLEAN):
         return {"verdict": "not_judged"}
+    record = read_object(out / "judgement.json")
     frames, total = record["frames"], record["total"]
     beyond = [max(-(f.get("gap_obstacles_m") or 0.0), 0.0) for f in frames]
     deep = [f.get("depth_bodies_m") or f.get("deepest_m") or 0.0 for f in frames]

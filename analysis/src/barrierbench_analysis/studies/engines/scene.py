@@ -1,4 +1,4 @@
-"""Scenes for engines: the file that `bench export-scene` writes of a config, and what the judge is told of
+"""Scenes for engines: the file that `bench export-scene` writes of a config, and what the judge reads of
 it."""
 
 from __future__ import annotations
@@ -10,10 +10,12 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
-from barrierbench_analysis.io.spec_file import checked, read_spec, refused
+from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.spec_file import checked, refused
 from barrierbench_analysis.program.start import started
 
-SCHEMA = "barrierbench.engine_scene/1"
+# Two squares that fall on a sphere in three frames, one corner held: whatever a scene may need.
+SMALLEST = ROOT / "configs" / "engines" / "smallest.json"
 
 
 def exported(config: Path, sets: list[str] = ()) -> dict:
@@ -49,47 +51,21 @@ def _check(scene: dict, path: Path) -> None:
         raise refused(path, "given/positions_m", len(given["positions_m"]), wanted)
 
 
-def read(path: Path, sets: list[str] = ()) -> dict:
-    """A scene from its own file, or of a config. Errors: UserError."""
-    if not str(read_object(path).get("schema", "")).startswith("barrierbench.engine_scene/"):
-        return exported(path, sets)
-    if sets:
-        raise UserError(f"--set: {path} is a scene, not a config")
-    scene = read_spec(path, "engine_scene")
+def made(scene: dict, path: Path) -> dict:
+    """A scene that is whole. Errors: UserError with the place in the file."""
+    checked(scene, path, "engine_scene")
     _check(scene, path)
     return scene
 
 
-def made(scene: dict, place: str) -> dict:
-    """One that this code makes, checked like a file. Errors: UserError, a mistake of this code."""
-    checked(scene, Path(place), "engine_scene")
-    _check(scene, Path(place))
-    return scene
-
-
-def smallest() -> dict:
-    """Two squares that fall on a sphere in three frames, one corner held: whatever a scene may need."""
-    square = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]]
-    x = [[*p, z] for z in (0.2, 0.22) for p in square]
-    membrane = {"model": "corotational", "lame_mu_N_per_m": 100.0, "lame_lambda_N_per_m": 50.0}
-    common = {"vertices": 4, "half_thickness_m": 0.0, "d_hat_m": 0.005, "membrane": membrane, "hinge_J": 1e-5}
-    ball = {"name": "ball", "kind": "sphere", "point_m": [0.05, 0.05, 0.09], "radius_m": 0.1, "inside": False}
-    scene = {
-        "schema": SCHEMA,
-        "name": "smallest",
-        "dt_s": 0.01,
-        "steps": 3,
-        "gravity_m_s2": [0.0, 0.0, -9.81],
-        "positions_m": x,
-        "rest_m": x,
-        "velocities_m_s": [[0.0, 0.0, 0.0]] * 8,
-        "mass_kg": [0.0, *[0.001] * 7],
-        "triangles": [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
-        "bodies": [{"name": f"square{k}", "first_vertex": 4 * k, **common} for k in (0, 1)],
-        "given": {"vertices": [0], "positions_m": [[x[0]]]},
-        "obstacles": [ball],
-    }
-    return made(scene, "smallest")
+def read(path: Path, sets: list[str] = ()) -> dict:
+    """A scene from its own file, or of a config. Errors: UserError."""
+    scene = read_object(path)
+    if not str(scene.get("schema", "")).startswith("barrierbench.engine_scene/"):
+        return exported(path, sets)
+    if sets:
+        raise UserError(f"--set: {path} is a scene, not a config")
+    return made(scene, path)
 
 
 def about(scene: dict) -> dict:

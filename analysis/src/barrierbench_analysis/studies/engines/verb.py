@@ -16,7 +16,7 @@ from barrierbench_analysis.program.arguments import finite_number, parser_of, se
 
 from . import environment, launch
 from .card import Card, names, read_card
-from .scene import read, smallest
+from .scene import SMALLEST, read
 
 OK, NOT_CLEAN, NOT_RUN = 0, 1, 3
 SPEC = ROOT / "configs/engines/compare.json"
@@ -86,7 +86,7 @@ def _setup(card: Card) -> int:
     missing = environment.why_not(card)
     print(environment.setup(card), flush=True)
     for variant in card.data["variants"] if missing else ():
-        done = launch.run(card, smallest(), environment.ENVIRONMENTS / f"{card.name}.check", variant)
+        done = launch.run(card, read(SMALLEST), environment.ENVIRONMENTS / f"{card.name}.check", variant)
         print(f"{card.name} {variant}: {done['outcome']} {done['detail']}".rstrip(), flush=True)
         if done["outcome"] != "ok":
             raise UserError(f"{card.name} is installed and does not run (log: {done['log']})")

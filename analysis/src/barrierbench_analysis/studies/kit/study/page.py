@@ -7,12 +7,9 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from jinja2 import Environment, StrictUndefined
-from jinja2.exceptions import TemplateError
-
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.tables.words import counted
 
@@ -67,15 +64,6 @@ def checks_of(study: Study, rows: list[store.Row]) -> dict[str, int]:
     found = decided(study, of)
     run = {key: of[key].outcome == outcome for key, outcome in found.items() if key in of}
     return {"left_out": len(found) - len(run), "run": len(run), "held": sum(run.values())}
-
-
-def filled(template: Path, numbers: dict) -> str:
-    """A template (Jinja) with numbers. Errors: UserError for one that asks for what is not there."""
-    environment = Environment(undefined=StrictUndefined, keep_trailing_newline=True, autoescape=False)
-    try:
-        return environment.from_string(input_file.read_text(template)).render(numbers)
-    except TemplateError as fault:
-        raise UserError(f"{template}: {fault}; allowed: {', '.join(sorted(numbers))}") from None
 
 
 def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:

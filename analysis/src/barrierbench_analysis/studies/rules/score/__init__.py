@@ -87,9 +87,9 @@ def _of_equal_capacity(formulation: dict, plugins: list[str]) -> float:
     return cubic["db"] / mine["db"] if isinstance(mine["db"], float | int) and mine["db"] < 0 else 1.0
 
 
-def run(study: Study, asked: list[Cell], folder: Path, jobs: int) -> list[Row]:
+def run(study: Study, chosen: list[Cell], folder: Path, jobs: int) -> list[Row]:
     """Each run alone, since a new barrier may hang or crash."""
-    return collect.run_each(study, asked, folder, jobs, study.about["limit_s"])
+    return collect.run_each(study, chosen, folder, jobs, study.about["limit_s"])
 
 
 def measure(_: Study, cell: Cell, record: dict) -> dict:

@@ -66,7 +66,7 @@ def _of_plugin(file: str, wanted: str) -> Candidate:
 
 def _of_name(name: str) -> Candidate:
     if name in RIVALS:
-        raise UserError(f"{name}: it is what others are held against ({', '.join(RIVALS)})")
+        raise UserError(f"found {name}; allowed: a barrier that is none of {', '.join(RIVALS)}")
     if name in known():
         return Candidate(name, {"name": name}, f"formulation {name} (configs/formulations)", (), (name,))
     if name.partition(":")[0] not in shape_names():

@@ -1,5 +1,5 @@
 """Where a barrier is better and where worse than others, from rows at equal target, starts and hard cases.
-One number decides nothing: a barrier that does not come to the end somewhere is said first.
+One number decides nothing: a barrier that does not come to the end somewhere is named first.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ METRICS = {
     "spread": "median gap over that of the deepest 5 % of the load",
 }  # the smaller the better
 COSTS = ("newton", "pcg", "cond_p95", "bj_p95")
-GAPS = (0.8, 0.5, 0.2, 0.1, 0.05)  # over d_hat, at which it is held against the log
+GAPS = (0.8, 0.5, 0.2, 0.1, 0.05)  # over d_hat, at which it is compared with the log
 BETTER, WORSE, EVEN, OPEN = "better", "worse", "even", "not judged"
-LEAST_SCENES = 2  # scenes are the samples: one of them tells nothing of others
+LEAST_SCENES = 2  # scenes are the samples: one of them decides nothing about others
 
 
 @dataclass(frozen=True)
@@ -121,25 +121,25 @@ def lost(cases: list[dict], label: str) -> dict[str, list[str]]:
 
 def decides(rows: list[dict], starts: list[dict], cases: list[dict], label: str) -> list[str]:
     """Sentences, what weighs most first: outcomes, then starts, then costs with the largest ratio."""
-    said = []
+    sentences = []
     if ends := failed(rows, label):
-        said.append(f"It does not reach every target: {'; '.join(ends)}.")
+        sentences.append(f"It does not reach every target: {'; '.join(ends)}.")
     hard = lost(cases, label)
     if hard["lost"]:
-        said.append(f"It fails where another comes to the end: {'; '.join(hard['lost'])}.")
+        sentences.append(f"It fails where another comes to the end: {'; '.join(hard['lost'])}.")
     if hard["won"]:
-        said.append(f"It comes to the end where another fails: {'; '.join(hard['won'])}.")
+        sentences.append(f"It comes to the end where another fails: {'; '.join(hard['won'])}.")
     mine = next(one for one in starts if one["method"] == label)
     if mine["ok"] < mine["of"]:
-        said.append(
+        sentences.append(
             f"{mine['of'] - mine['ok']} of {mine['of']} jittered starts do not end ok:"
             f" {', '.join(mine['others'])}."
         )
     found = [one for one in comparisons(rows, label) if one.verdict in (BETTER, WORSE)]
     for one in sorted(found, key=lambda one: -abs(math.log(one.ratio)))[:4]:
-        said.append(
+        sentences.append(
             f"{METRICS[one.metric].capitalize()}: {one.ratio:.2f} times those of {one.rival} at theta"
             f" {one.theta:g}"
             f" ({one.low:.2f} to {one.high:.2f} over {one.scenes} scenes): {one.verdict}."
         )
-    return said or ["Nothing here tells it from the others by more than 10 % in every scene."]
+    return sentences or ["It differs from no other by more than 10 % in every scene."]

@@ -78,13 +78,13 @@ def measure(_: Study, cell: Cell, record: dict) -> dict:
     }
 
 
-def run(study: Study, asked: list[Cell], folder: Path, jobs: int) -> list[Row]:
+def run(study: Study, chosen: list[Cell], folder: Path, jobs: int) -> list[Row]:
     """Rows of cells of one base: each run has its own limit of processor time, so that no verdict depends on
-    what else was run; tests of geometry ask `eval`.
+    what else was run; tests of geometry query `eval`.
     """
-    runs = [cell for cell in asked if KIND not in cell.settings]
+    runs = [cell for cell in chosen if KIND not in cell.settings]
     rows = collect.run_each(study, runs, folder, jobs, study.about["limit_s"])
-    for cell in (cell for cell in asked if KIND in cell.settings):
+    for cell in (cell for cell in chosen if KIND in cell.settings):
         begun = datetime.now(timezone.utc)
         counts = geometry.counted(cell.settings[KIND], cell.settings[PRECISION])
         record = alone.without_record("ok", "", begun, valid=True) | {"counts": counts}

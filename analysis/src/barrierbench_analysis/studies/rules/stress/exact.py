@@ -1,7 +1,7 @@
 """Distances, times of impact and barrier shapes in exact or very long arithmetic: what the answers of `eval`
-are held against. Shares nothing with the program.
+are compared with. It shares nothing with the program.
 
-Points are tuples of three Fractions; the numbers that the program was given are exactly representable.
+Points are tuples of three Fractions; the numbers that the program gets are exactly representable.
 """
 
 from __future__ import annotations

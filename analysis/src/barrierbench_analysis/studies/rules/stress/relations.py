@@ -15,10 +15,10 @@ from .entry import Test
 class Relation:
     """One relation of a test over all its formulations."""
 
-    says: str
+    sentence: str
     reason: str
     judged: int = 0  # groups of runs
-    not_judged: int = 0  # groups where a run has no such number, or one is zero where quotients are asked
+    not_judged: int = 0  # groups where a run has no such number, or one is zero where quotients are needed
     numbers: list[tuple[float, str]] = field(default_factory=list)  # what the verdict is of, and whose
     broken: list[str] = field(default_factory=list)
 
@@ -36,7 +36,7 @@ class Relation:
         return " to ".join(words if ends[0][0] != ends[1][0] else words[:1])
 
 
-def _says(entry: dict) -> str:
+def _sentence(entry: dict) -> str:
     among = "; ".join(", then ".join(group) for group in entry.get("groups", [])) or "every run"
     bounds = [f"{word} {entry[word]:g}" for word in ("above", "below") if word in entry]
     rule = {
@@ -50,7 +50,7 @@ def _says(entry: dict) -> str:
 
 
 def _verdict(entry: dict, values: list) -> tuple[bool, float]:
-    """Whether it holds, and the number that says so."""
+    """Whether it holds, and the number that decides it."""
     kind = entry["kind"]
     if isinstance(values[0], str):
         same = len(set(values)) == 1
@@ -75,7 +75,7 @@ def relations(test: Test, rows: list[Row]) -> list[Relation]:
         groups = entry.get("groups") or [[case.label] for case in test.cases]
         if not (groups := [group for group in groups if set(group) <= ran]):
             continue
-        found = Relation(_says(entry), entry["reason"])
+        found = Relation(_sentence(entry), entry["reason"])
         named = test.named(entry.get("formulations", ["@all"]), f"relations/{k}/formulations")
         for label in dict.fromkeys(row.place["formulation"] for row in rows):
             if label in named:
@@ -88,7 +88,7 @@ def relations(test: Test, rows: list[Row]) -> list[Relation]:
 
 def _judge(found: Relation, entry: dict, group: list[str], rows: list[Row | None], label: str) -> None:
     values = [row.values[entry["metric"]] if row else None for row in rows]
-    # An end that did not converge is no state to compare, and what is over zero says nothing.
+    # An end that did not converge is no state to compare, and a quotient by zero is none.
     if (
         None in values
         or (entry["kind"] != "bound" and any(row.outcome != OK for row in rows))

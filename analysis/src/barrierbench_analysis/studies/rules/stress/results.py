@@ -76,7 +76,7 @@ class Result:
             for run in self.unexpected
         ]
         relations = [
-            f"{one.says}: {'; '.join(one.broken) or 'nothing was judged'}"
+            f"{one.sentence}: {'; '.join(one.broken) or 'nothing was judged'}"
             for one in self.relations
             if not one.holds
         ]
