@@ -85,15 +85,9 @@ def _defaults() -> str:
 def _filled(text: str, first: int, parts: dict[str, str]) -> str:
     """first: the number that the shell gives to the word behind ./bench."""
     studies = [verb for verb in verbs.every() if verb.modes]
-    parts = {
-        "MODES": "\n".join(
-            f'    "{first + 2}:{verb.name}") {parts["MODE"](_modes(verb))} ;;' for verb in studies
-        ),
-        "NAMES": "|".join(row.name for row in HEADINGS),
-        "DEFAULTS": _defaults(),
-        "OPTIONS": OPTIONS,
-        **parts,
-    }
+    modes = (f'    "{first + 2}:{verb.name}") {parts["MODE"](_modes(verb))} ;;' for verb in studies)
+    names = "|".join(row.name for row in HEADINGS)
+    parts = {"MODES": "\n".join(modes), "NAMES": names, "DEFAULTS": _defaults(), "OPTIONS": OPTIONS, **parts}
     for name, value in parts.items():
         if isinstance(value, str):
             text = text.replace(f"@{name}@", value)

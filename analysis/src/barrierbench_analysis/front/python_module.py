@@ -54,15 +54,5 @@ def main(argv: list[str]) -> int:
     say(f"built: PYTHONPATH={os.path.relpath(module_folder())}")
     if argv == ["--no-tests"]:
         return 0
-    words = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-c",
-        str(ROOT / "pytest.ini"),
-        "-q",
-        "-rs",
-        "-p",
-        "no:cacheprovider",
-    ]
+    words = [sys.executable, *"-m pytest -q -rs -p no:cacheprovider -c".split(), str(ROOT / "pytest.ini")]
     return subprocess.run([*words, *argv, str(ROOT / "tests/python_module")], check=False).returncode

@@ -99,14 +99,8 @@ def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
 
 def python_tests(preset: str, summary: Summary) -> int:
     log = ROOT / "build/pytest.log"
-    words = [
-        "-m",
-        "pytest",
-        "-c",
-        str(ROOT / "pytest.ini"),
-        *"-q -rsfE -p no:cacheprovider --dist loadfile".split(),
-    ]
-    words += ["-n", str(job_count()), str(ROOT / "tests")]
+    words = [*"-m pytest -q -rsfE -p no:cacheprovider --dist loadfile -n".split(), str(job_count())]
+    words += ["-c", str(ROOT / "pytest.ini"), str(ROOT / "tests")]
     program = str(folder(preset) / "experiments/barrierbench")
     environment = {**os.environ, "BARRIERBENCH_PROGRAM": program}
     code = _into(log, [sys.executable, *words], env=environment)

@@ -100,14 +100,8 @@ def microbenchmarks(argv: list[str]) -> int:
     return subprocess.run([*words, *argv], check=False).returncode
 
 
-VERBS = {
-    "build": build_preset,
-    "dev format": format_all,
-    "dev tidy": tidy,
-    "dev modules": modules,
-    "dev mutate": mutate,
-    "dev microbenchmarks": microbenchmarks,
-}
+VERBS = {"build": build_preset, "dev format": format_all}
+VERBS |= {f"dev {verb.__name__}": verb for verb in (tidy, modules, mutate, microbenchmarks)}
 
 
 def main(argv: list[str]) -> int:

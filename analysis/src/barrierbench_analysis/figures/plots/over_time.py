@@ -158,23 +158,22 @@ def _kind(draw: Callable, statistic: str, has: Callable[[Records], bool], what: 
     return figure
 
 
+def _has_estimate(records: Records) -> bool:
+    return not records.cond.empty and records.cond["cond"].notna().any()
+
+
+def _has_gap(records: Records) -> bool:
+    return _has_step(records) and records.steps["gap_min_rel"].notna().any()
+
+
+def _has_step(records: Records) -> bool:
+    return not records.steps.empty
+
+
+DISTRIBUTIONS = "empirical distributions over the steps, and over the diagnosed matrices, of a run"
+EVERY = "none: every estimate is drawn"
 KINDS = {
-    "condition": _kind(
-        of_condition.figure,
-        "none: every estimate is drawn",
-        lambda records: not records.cond.empty and records.cond["cond"].notna().any(),
-        "a condition estimate",
-    ),
-    "iterations": _kind(
-        iterations,
-        "empirical distributions over the steps, and over the diagnosed matrices, of a run",
-        lambda records: not records.steps.empty,
-        "a step",
-    ),
-    "gaps": _kind(
-        gaps,
-        "smallest gap of a step end",
-        lambda records: not records.steps.empty and records.steps["gap_min_rel"].notna().any(),
-        "a gap",
-    ),
+    "condition": _kind(of_condition.figure, EVERY, _has_estimate, "a condition estimate"),
+    "iterations": _kind(iterations, DISTRIBUTIONS, _has_step, "a step"),
+    "gaps": _kind(gaps, "smallest gap of a step end", _has_gap, "a gap"),
 }

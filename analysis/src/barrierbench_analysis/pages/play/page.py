@@ -73,21 +73,11 @@ def _film_data(film: Film) -> tuple[dict, bytes]:
         np.ascontiguousarray(array, "<f4").tobytes()
         for array in (film.positions, film.gap_rel, film.load_N, film.stretch)
     ]
-    words = {
-        "formulation": case_name(film.labels),
-        "scene": own_name(film.labels) or film.labels["scene"],
-        "run": Path(film.run).name,
-        "outcome": film.outcome,
-        "steps": film.steps,
-        "times": film.times_s,
-        "bodies": film.scene["bodies"],
-        "obstacles": film.scene["obstacles"],
-        "n_vertices": len(body),
-        "n_drawn": len(source),
-        "n_triangles": len(drawn),
-        "n_edges": len(film.start.edges),
-    }
-    return words, b"".join(parts)
+    words = {"formulation": case_name(film.labels), "scene": own_name(film.labels) or film.labels["scene"]}
+    words |= {"run": Path(film.run).name, "outcome": film.outcome, "steps": film.steps, "times": film.times_s}
+    words |= {name: film.scene[name] for name in ("bodies", "obstacles")}
+    counted = {"vertices": body, "drawn": source, "triangles": drawn, "edges": film.start.edges}
+    return words | {f"n_{name}": len(of) for name, of in counted.items()}, b"".join(parts)
 
 
 def box(films: list[Film]) -> tuple[np.ndarray, np.ndarray]:
@@ -99,11 +89,6 @@ def box(films: list[Film]) -> tuple[np.ndarray, np.ndarray]:
                 at = film.positions[:, o["vertex"]] if "vertex" in o else np.array([o["point_m"]], float)
                 points += [at - o["radius_m"], at + o["radius_m"]]
     return np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
-
-
-def _for_script(text: str) -> str:
-    """JSON that may stand in a script element."""
-    return text.replace("<", "\\u003c")
 
 
 def packed_library() -> str:
@@ -119,32 +104,19 @@ def page(films: list[Film], colour: str, notes: list[str], shared_library: str =
     low, high = box(films)
     radius = max(float(np.linalg.norm(high - low)) / 2, 1e-6)
     licences = library()[1]
-    words = {
-        "colour": colour,
-        "scales": {name: scale(films, name) for name in FIELDS},
-        "body_colours": BODY_COLORS,
-        "obstacle_colour": OBSTACLE_COLOR,
-        "not_computed": NOT_COMPUTED,
-        "low": low.tolist(),
-        "high": high.tolist(),
-        "middle": ((low + high) / 2).tolist(),
-        "radius": radius,
-        "rod_radius": ROD_SHARE * radius,
-        "planar": all(film.scene["planar"] for film in films),
-        "films": [about for about, _ in packed],
-        "notes": notes,
-    }
+    words = {"colour": colour, "scales": {name: scale(films, name) for name in FIELDS}}
+    words |= {"body_colours": BODY_COLORS, "obstacle_colour": OBSTACLE_COLOR, "not_computed": NOT_COMPUTED}
+    words |= {"low": low.tolist(), "high": high.tolist(), "middle": ((low + high) / 2).tolist()}
+    words |= {"radius": radius, "rod_radius": ROD_SHARE * radius, "notes": notes}
+    words |= {"planar": all(film.scene["planar"] for film in films), "films": [about for about, _ in packed]}
     data = "\n".join(
         f'<script type="application/octet-stream" id="film-{k}">{_packed(arrays)}</script>'
         for k, (_, arrays) in enumerate(packed)
     )
     text = input_file.read_text(HERE / "page.html")
-    values = {
-        "style": input_file.read_text(HERE / "page.css"),
-        "licences": licences.replace("&", "&amp;").replace("<", "&lt;"),
-        "words": _for_script(json.dumps(words, allow_nan=False)),
-        "films": data,
-        "library": shared_library or packed_library(),
-        "scripts": "\n".join(input_file.read_text(HERE / name) for name in SCRIPTS),
-    }
+    values = {"style": input_file.read_text(HERE / "page.css"), "films": data}
+    values |= {"licences": licences.replace("&", "&amp;").replace("<", "&lt;")}
+    values |= {"words": json.dumps(words, allow_nan=False).replace("<", "\\u003c")}  # it stands in a script
+    values |= {"library": shared_library or packed_library()}
+    values |= {"scripts": "\n".join(input_file.read_text(HERE / name) for name in SCRIPTS)}
     return re.sub(r"\{\{(\w+)\}\}", lambda slot: values[slot[1]], text)

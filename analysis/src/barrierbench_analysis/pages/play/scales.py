@@ -54,12 +54,5 @@ def scale(films: list[Film], name: str) -> dict:
     field = FIELDS[name]
     top, above = top_of(films, field)
     colours = matplotlib.colormaps[field.colour_map](np.linspace(0, 1, STOPS))
-    return {
-        "element": field.element,
-        "label": field.label,
-        "unit": field.unit,
-        "factor": field.factor,
-        "top": top,
-        "above": above,
-        "colours": [to_hex(colour) for colour in colours],
-    }
+    words = {name: getattr(field, name) for name in ("element", "label", "unit", "factor")}
+    return words | {"top": top, "above": above, "colours": [to_hex(colour) for colour in colours]}

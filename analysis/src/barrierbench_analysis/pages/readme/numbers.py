@@ -64,13 +64,9 @@ def _rows(records: Records, table: pd.DataFrame) -> list[dict]:
         rows.append(
             {key: _plain(line[key]) for key in SUMMED}
             | {key: _plain(run.get(column)) for key, column in OF_RUN.items()}
-            | {
-                "steps": len(steps),
-                "scale": _plain(run.get("matching_scale")),
-                "valid": bool(run["valid"]),
-                "cond_raw_p95": _p95(records, run["run"]),
-                "cond_steps": _last_in_contact(records, run["run"], steps),
-            }
+            | {"steps": len(steps), "scale": _plain(run.get("matching_scale")), "valid": bool(run["valid"])}
+            | {"cond_raw_p95": _p95(records, run["run"])}
+            | {"cond_steps": _last_in_contact(records, run["run"], steps)}
         )
     return rows
 

@@ -32,10 +32,6 @@ CHECKED_CONFIG = (
     "study match",
 )  # first file: a config
 SAFE = ("list", "help", "eval", "device")  # answer at once
-MADE = (
-    "results/runs",
-    "results/matrices",
-)  # what commands leave; `*` in a name: of a run of the reader's own
 SECONDS = 120
 TOOLS = tuple("apt-get cd cp docker echo g++ git mkdir module pip python3 sbatch snakemake source".split())
 
@@ -59,27 +55,24 @@ def snippets(text: str, page: str) -> list[Snippet]:
     ]
 
 
-def _told(done: subprocess.CompletedProcess) -> str:
-    return (
-        (done.stderr.strip() or done.stdout.strip()).splitlines()[-1]
-        if (done.stderr or done.stdout).strip()
-        else "it said nothing"
-    )
+def _message(done: subprocess.CompletedProcess) -> str:
+    """The last line that it printed."""
+    return ["it printed nothing", *(done.stderr.strip() or done.stdout.strip()).splitlines()][-1]
+
+
+def _fault(done: subprocess.CompletedProcess, good: tuple[int, ...] = (0,)) -> str:
+    """Empty where it ended well."""
+    return "" if done.returncode in good else _message(done)
 
 
 def _settings(words: list[str]) -> list[str]:
-    return [
-        word for k, value in enumerate(words[:-1]) if value == "--set" for word in ("--set", words[k + 1])
-    ]
+    values = [words[k + 1] for k, word in enumerate(words[:-1]) if word == "--set"]
+    return [word for value in values for word in ("--set", value)]
 
 
 def _missing_files(words: list[str]) -> list[str]:
-    named = [
-        word
-        for word in words
-        if re.match(r"(configs|examples|tests|core|experiments|claims|docs)/", word) and "=" not in word
-    ]
-    return [word for word in named if not any(ROOT.glob(word))]
+    named = re.compile(r"(configs|examples|tests|core|experiments|claims|docs)/[^=]*")
+    return [word for word in words if named.fullmatch(word) and not any(ROOT.glob(word))]
 
 
 @functools.cache
@@ -148,13 +141,12 @@ def _command_fault(words: list[str]) -> str:
         return ""  # a list of sub-commands, of the script itself, or of a target that is built for it alone
     helped = _helped(row)
     if helped.returncode != 0:
-        return _told(helped)
+        return _message(helped)
     flags = [word.split("=")[0] for word in rest if word.startswith("--")]
     if unknown := [flag for flag in flags if not re.search(rf"{flag}\b", helped.stdout)]:
         return f"{row.name} has no {unknown[0]}"
     if row.word in SAFE:
-        done = started(row.word, *rest, timeout=SECONDS)
-        return "" if done.returncode in (0, 5) else _told(done)
+        return _fault(started(row.word, *rest, timeout=SECONDS), (0, 5))
     return ""
 
 
@@ -162,20 +154,14 @@ def _config_fault(words: list[str]) -> str:
     asked = verbs.asked(words[1:])
     verb, files = asked.row.name if asked else "", [word for word in words[2:] if word.startswith("configs/")]
     if verb in CHECKED_CONFIG and files:
-        verify = [
-            "explain" if any("/device" in word for word in words) else "check",
-            str(ROOT / files[0]),
-            *_settings(words),
-        ]
         if "--plugin" in words:
             return ""  # of a library that the lines before it build
         if any("cudss" in word or '"cuda"' in word or "dense_8m" in word for word in words):
             return ""  # needs a card, or minutes
-        done = started(*verify, timeout=SECONDS)
-        return "" if done.returncode == 0 else _told(done)
+        how = "explain" if any("/device" in word for word in words) else "check"
+        return _fault(started(how, str(ROOT / files[0]), *_settings(words), timeout=SECONDS))
     if verb == "sweep" and files:
-        done = started("sweep", str(ROOT / files[0]), "--dry-run", *_settings(words), timeout=SECONDS)
-        return "" if done.returncode == 0 else _told(done)
+        return _fault(started("sweep", str(ROOT / files[0]), "--dry-run", *_settings(words), timeout=SECONDS))
     return ""
 
 
@@ -195,8 +181,7 @@ def _shell_faults(snippet: Snippet) -> list[str]:
             if not words:
                 continue
             if "|" in words and "./bench" in words:
-                done = in_shell(command, cwd=ROOT, timeout=SECONDS)
-                fault = "" if done.returncode == 0 else _told(done)
+                fault = _fault(in_shell(command, cwd=ROOT, timeout=SECONDS))
             elif words[0].endswith("bench") and len(words) > 1:
                 fault = _command_fault(words) or _config_fault(words)
             elif words[0] == "python3" and words[1:] and (ROOT / words[1]).is_file():
@@ -231,7 +216,7 @@ def _json_faults(snippet: Snippet) -> list[str]:
             return _spec_faults(snippet, file, kind)
         words = ["sweep", str(file), "--dry-run"] if kind == "sweep" else ["check", str(file)]
         done = started(*words, timeout=SECONDS)
-    return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
+    return [] if done.returncode == 0 else [f"{snippet.place}: {_message(done)}"]
 
 
 def _python_faults(snippet: Snippet, before: str) -> list[str]:
@@ -241,17 +226,12 @@ def _python_faults(snippet: Snippet, before: str) -> list[str]:
         words += ["--set", "/time/steps=2", "--set", "/passes/diagnose=true"]
         made = started(*words, cwd=folder, timeout=SECONDS)
         if made.returncode != 0:
-            return [f"{snippet.place}: {_told(made)}"]
-        done = subprocess.run(
-            [sys.executable, "-c", before + snippet.text],
-            cwd=folder,
-            env={**os.environ, "PYTHONPATH": f"{ROOT / 'analysis/src'}:{ROOT / 'build/release/python'}"},
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=SECONDS,
-        )
-    return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
+            return [f"{snippet.place}: {_message(made)}"]
+        path = f"{ROOT / 'analysis/src'}:{ROOT / 'build/release/python'}"
+        how = {"cwd": folder, "env": {**os.environ, "PYTHONPATH": path}, "capture_output": True, "text": True}
+        words = [sys.executable, "-c", before + snippet.text]
+        done = subprocess.run(words, check=False, timeout=SECONDS, **how)
+    return [] if done.returncode == 0 else [f"{snippet.place}: {_message(done)}"]
 
 
 def faults(text: str, page: str) -> list[str]:

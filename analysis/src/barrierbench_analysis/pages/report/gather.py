@@ -220,20 +220,12 @@ def gathered(root: Path, archive: Path | None = None) -> Folder:
         read = [_entry(path, found) for path in paths]
     else:
         with processes.pool(workers) as pool:
-            read = list(
-                pool.map(partial(_entry, found=Folder(root, [], archive=archive)), paths, chunksize=32)
-            )
+            one = partial(_entry, found=Folder(root, [], archive=archive))
+            read = list(pool.map(one, paths, chunksize=32))
     found.entries = [one for one in read if isinstance(one, Entry)]
     found.unreadable += [one for one in read if isinstance(one, str)]
     found.unreadable += map(found.told, _half_written(root))
     if not found.entries:
-        faults = found.unreadable[:SHOWN_FAULTS]
-        raise UserError(
-            "\n".join(
-                [
-                    f"{found.place}: no record that can be read; allowed: a folder with run.json below it",
-                    *faults,
-                ]
-            )
-        )
+        message = f"{found.place}: no record that can be read; allowed: a folder with run.json below it"
+        raise UserError("\n".join([message, *found.unreadable[:SHOWN_FAULTS]]))
     return found

@@ -45,16 +45,13 @@ def headline(folder: Folder) -> Sentence:
     words = Counter(run.row["outcome"] if run.row["outcome"] != "ok" else "ok but not valid" for run in bad)
     if bad:
         text += "; " + listed([f"{n} ended {word}" for word, n in words.most_common()])
-    parts = [
-        f"{counted(len(folder.absent), 'run')} of the sweeps"
-        f" {'has' if len(folder.absent) == 1 else 'have'} no"
-        " record yet"
-    ] * bool(folder.absent)
-    parts += [f"{counted(len(folder.lost), 'file')} cannot be read"] * bool(folder.lost)
-    parts += [f"{counted(len(folder.earlier), 'record')} of an earlier sweep file left out"] * bool(
-        folder.earlier
-    )
-    return Sentence("; ".join([text, *parts]) + ".", BAD if bad or lost else GOOD)
+    if absent := len(folder.absent):
+        text += f"; {counted(absent, 'run')} of the sweeps {'has' if absent == 1 else 'have'} no record yet"
+    if folder.lost:
+        text += f"; {counted(len(folder.lost), 'file')} cannot be read"
+    if folder.earlier:
+        text += f"; {counted(len(folder.earlier), 'record')} of an earlier sweep file left out"
+    return Sentence(f"{text}.", BAD if bad or lost else GOOD)
 
 
 def expectations(folder: Folder) -> list[Sentence]:
@@ -76,13 +73,9 @@ def reserved(folder: Folder) -> list[Sentence]:
     if not runs:
         return []
     names = listed([f"{run.name} ({', '.join(run.reserved)})" for run in runs])
-    return [
-        Sentence(
-            f"{counted(len(runs), 'run').capitalize()} of these {_are(len(runs))} ok with a reservation:"
-            f" {names}. What each of them means stands under Failures.",
-            BAD,
-        )
-    ]
+    count = f"{counted(len(runs), 'run').capitalize()} of these {_are(len(runs))}"
+    text = f"{count} ok with a reservation: {names}. What each of them means stands under Failures."
+    return [Sentence(text, BAD)]
 
 
 def crossings(folder: Folder) -> list[Sentence]:
@@ -92,32 +85,24 @@ def crossings(folder: Folder) -> list[Sentence]:
     unproven = [run for run in audited if not run.faults and run.row.get("audit_unproven")]
     said = []
     if through:
-        said.append(
-            Sentence(
-                f"In {len(through)} of {counted(len(audited), 'audited run')} a surface passes through"
-                f" another:"
-                f" {listed([f'{run.name} ({run.faults})' for run in through])}"
-                f"{', which is expected' if is_expected else ''}.",
-                EXPECTED if is_expected else BAD,
-            )
-        )
+        names = listed([f"{run.name} ({run.faults})" for run in through])
+        count = f"In {len(through)} of {counted(len(audited), 'audited run')}"
+        text = f"{count} a surface passes through another: {names}"
+        expected = Sentence(f"{text}, which is expected.", EXPECTED)
+        said.append(expected if is_expected else Sentence(f"{text}.", BAD))
     elif audited:
         judged = sum(run.row["audit_judged"] for run in audited)
         all_of = "the audited run" if len(audited) == 1 else f"all {len(audited)} audited runs"
-        said.append(
-            Sentence(
-                f"In {all_of} no surface passes through another: {judged:.3g} primitives were compared, in"
-                " every accepted state and along every motion.",
-                GOOD,
-            )
+        text = (
+            f"In {all_of} no surface passes through another: {judged:.3g} primitives were compared, in every"
         )
+        said.append(Sentence(f"{text} accepted state and along every motion.", GOOD))
     if unproven:
         names = listed([run.name for run in unproven])
         said.append(Sentence(f"Not every motion could be certified in {names}.", BAD))
     if dark := len(folder.entries) - len(audited):
-        said.append(
-            Sentence(f"Of {counted(dark, 'run')} nothing is known about crossings: not audited.", BAD)
-        )
+        text = f"Of {counted(dark, 'run')} nothing is known about crossings: not audited."
+        said.append(Sentence(text, BAD))
     return said
 
 
@@ -126,12 +111,8 @@ def comparability(folder: Folder) -> list[Sentence]:
     words = Counter(run.row.get("comparability_verdict") for run in others)
     judged = words["comparable"] + words["not_comparable"]
     if not judged:
-        return [
-            Sentence(
-                "No record names a reference, so nothing here is compared with anything: a sweep names it"
-                " when it ends."
-            )
-        ]
+        text = "No record names a reference, so nothing here is compared with anything"
+        return [Sentence(f"{text}: a sweep names it when it ends.")]
     ratios = {run.row["comparability_max_ratio"] for run in others if run.row.get("comparability_max_ratio")}
     within = listed([f"{ratio:g}" for ratio in sorted(ratios)])
     text = (
@@ -280,11 +261,5 @@ def limits(folder: Folder) -> list[str]:
 
 def verdict(folder: Folder) -> list[Sentence]:
     """The headline first."""
-    return [
-        headline(folder),
-        *expectations(folder),
-        *reserved(folder),
-        *crossings(folder),
-        *comparability(folder),
-        *ratios(folder),
-    ]
+    parts = (expectations, reserved, crossings, comparability, ratios)
+    return [headline(folder), *(sentence for part in parts for sentence in part(folder))]

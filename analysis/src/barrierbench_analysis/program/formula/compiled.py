@@ -72,16 +72,12 @@ def _made(formula: Formula, key: str, words: list[str]) -> cache.Compiled:
         ends = checks.check(terms, None)
         label = cache.label_of(formula)
         text = source.cpp(label.replace("-", "_"), formula.text, terms, ends)
-    about = {
-        "formula": formula.text,
-        "label": label,
-        "at_zero": ends.kind,
-        "b_at_zero": "infinity" if ends.kind == checks.INFINITE else f"{ends.at_zero[0]:.6g} d_hat^2",
-        "capacity": None if ends.kind == checks.INFINITE else f"{-ends.at_zero[1]:.6g} kappa d_hat",
-        "smoothness_at_d_hat": ends.smoothness,
-        "unproven": list(ends.unproven),
-        "terms": {name: str(x) for name, x in zip(checks.NAMES, terms.precise, strict=True)},
-    }
+    b_at_zero, capacity = f"{ends.at_zero[0]:.6g} d_hat^2", f"{-ends.at_zero[1]:.6g} kappa d_hat"
+    if ends.kind == checks.INFINITE:
+        b_at_zero, capacity = "infinity", None
+    about = {"formula": formula.text, "label": label, "at_zero": ends.kind, "b_at_zero": b_at_zero}
+    about |= {"capacity": capacity, "smoothness_at_d_hat": ends.smoothness, "unproven": list(ends.unproven)}
+    about["terms"] = {name: str(x) for name, x in zip(checks.NAMES, terms.precise, strict=True)}
     return cache.make(key, words, text, about, lambda library: {"error_rel": accuracy.check(library, terms)})
 
 

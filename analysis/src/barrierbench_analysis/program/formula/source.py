@@ -165,15 +165,10 @@ def cpp(name: str, formula: str, terms: Terms, ends: Ends) -> str:
     """The source of the plugin whose shape is called `name`."""
     parts = _parts(terms, ends)
     batch = "lane_batch" if parts["lanes"] else "shape_batch"
-    return HEAD.format(formula=formula) + PLUGIN.format(
-        formula=formula,
-        name=name,
-        struct=STRUCT.format(**parts),
-        batch=batch,
-        of_double="" if parts["lanes"] else ", double",
-        smoothness=ends.smoothness,
-        infinite=parts["infinite"],
-    )
+    of_double = "" if parts["lanes"] else ", double"
+    shape = {"struct": STRUCT.format(**parts), "smoothness": ends.smoothness, "infinite": parts["infinite"]}
+    plugin = PLUGIN.format(formula=formula, name=name, batch=batch, of_double=of_double, **shape)
+    return HEAD.format(formula=formula) + plugin
 
 
 def cu(formula: str, terms: Terms, ends: Ends, layout: int) -> str:
@@ -192,18 +187,12 @@ def _parts(terms: Terms, ends: Ends) -> dict:
     simple = all(_is_rational(x) for x in [*last, *(y for _, y in common)])
     printer = Printer()
     lanes = simple and L in used  # without a logarithm the compiler does as well by itself
-    return {
-        "zero": [_literal(x) for x in ends.at_zero],
-        "terms": "terms" if lanes else "scalar_terms",
-        "minus_log": "gap.minus_log()" if L in used else "T(0)",
-        "inverse": "    const T r = T(1.0) / u;\n" if INVERSE in used else "",
-        "common": "".join(f"    const T {symbol} = {printer.doprint(x)};\n" for symbol, x in common),
-        "b": printer.doprint(last[0]),
-        "db": printer.doprint(last[1]),
-        "d2b": printer.doprint(last[2]),
-        "infinite": int(math.isinf(ends.at_zero[0])),
-        "lanes": lanes,
-    }
+    inverse = "    const T r = T(1.0) / u;\n" if INVERSE in used else ""
+    lines = "".join(f"    const T {symbol} = {printer.doprint(x)};\n" for symbol, x in common)
+    parts = dict(zip(("b", "db", "d2b"), map(printer.doprint, last), strict=True))
+    parts |= {"terms": "terms" if lanes else "scalar_terms", "inverse": inverse, "common": lines}
+    parts |= {"zero": [_literal(x) for x in ends.at_zero], "infinite": int(math.isinf(ends.at_zero[0]))}
+    return parts | {"minus_log": "gap.minus_log()" if L in used else "T(0)", "lanes": lanes}
 
 
 def with_constants(terms: list[sp.Expr]) -> list[sp.Expr]:

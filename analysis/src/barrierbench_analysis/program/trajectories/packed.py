@@ -73,12 +73,6 @@ def of_mdd(path: Path) -> Trajectory:
         )
     times = np.frombuffer(data, ">f4", frames, MDD_HEADER.size).astype(float)
     states = np.frombuffer(data, ">f4", offset=MDD_HEADER.size + 4 * frames).reshape(frames, points, 3)
-    return Trajectory(
-        _bare(points),
-        lambda: map(np.float64, states),
-        [f"frame {k}" for k in range(frames)],
-        str(path),
-        "mdd",
-        increasing(times.tolist(), lambda k: f"{path}: time {k}"),
-        notes=(ROUNDED,),
-    )
+    labels, times_s = [f"frame {k}" for k in range(frames)], increasing(times, lambda k: f"{path}: time {k}")
+    read = (_bare(points), lambda: map(np.float64, states))
+    return Trajectory(*read, labels, str(path), "mdd", times_s, notes=(ROUNDED,))

@@ -97,31 +97,19 @@ def of_run(folder: Path) -> Trajectory:
     body = start.of_vertices["body"]
     own = len(body) - sum("vertex" in o for o in scene["obstacles"])
     first = np.flatnonzero(np.diff(body[:own], prepend=-1))
-    topology = Topology(
-        len(start.vertices),
-        np.asarray(start.triangles, np.int64),
-        np.asarray(start.edges, np.int64),
-        no_cells(4),
-        names=tuple(scene["bodies"][k] for k in body[first]),
-        first_vertex=tuple(first.tolist()),
-    )
-    obstacles = [
-        {
-            key: o[key]
-            for key in ("name", "kind", "point_m", "axis", "radius_m", "inside", "vertex")
-            if key in o
-        }
-        for o in scene["obstacles"]
-    ]
+    cells = *(np.asarray(of, np.int64) for of in (start.triangles, start.edges)), no_cells(4)
+    names = tuple(scene["bodies"][k] for k in body[first])
+    topology = Topology(len(start.vertices), *cells, names=names, first_vertex=tuple(first.tolist()))
+    kept = "name kind point_m axis radius_m inside vertex".split()
+    obstacles = [{key: o[key] for key in kept if key in o} for o in scene["obstacles"]]
+    place = f"{folder}/run.json#/steps of "
     return Trajectory(
         topology,
         lambda: (frame.vertices.astype(float) for frame in frames_of(record, folder, steps)),
         [paths[step].name for step in steps],
         str(folder),
         "run of barrierbench",
-        increasing(
-            times_of(record, steps, folder), lambda k: f"{folder}/run.json#/steps of {paths[steps[k]].name}"
-        ),
+        increasing(times_of(record, steps, folder), lambda k: f"{place}{paths[steps[k]].name}"),
         obstacles,
         scene["planar"],
         half_thickness_m=_half_thickness(record, topology),
