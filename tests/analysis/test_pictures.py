@@ -8,6 +8,7 @@ import pytest
 
 from barrierbench_analysis.figures.pictures import pictures
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.program import start
 
 ROOT = Path(__file__).resolve().parents[2]
 RECORD = {"labels": {"formulation": "cubic"}, "scene": {"vertices": 42}}
@@ -50,7 +51,7 @@ def test_the_row_goes_between_its_marks_and_nowhere_else():
 
 def test_a_run_that_fails_makes_no_picture(monkeypatch, tmp_path):
     failed = subprocess.CompletedProcess([], 2, "", "no such scene")
-    monkeypatch.setattr(pictures, "started", lambda *words: failed)
-    with pytest.raises(UserError, match="picture_noodle: no such scene"):
+    monkeypatch.setattr(start, "started", lambda *words: failed)
+    with pytest.raises(UserError, match="picture_noodle: the program ended with 2: no such scene"):
         pictures.make(pictures.PICTURES[1], tmp_path, tmp_path / "docs")
     assert not (tmp_path / "docs").exists()
