@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import colorsys
+import io
 import logging
 import zlib
 from dataclasses import dataclass
@@ -258,3 +260,11 @@ def save(fig, stem: Path, numbers: pd.DataFrame, shown: str, runs: pd.DataFrame 
     write_whole(paths[5], pgfplots.text(numbers))
     plt.close(fig)
     return paths
+
+
+def png(figure: plt.Figure, dpi: int) -> str:
+    """A figure for a page of one file: PNG in base64. It is closed."""
+    out = io.BytesIO()
+    figure.savefig(out, format="png", dpi=dpi)
+    plt.close(figure)
+    return base64.b64encode(out.getvalue()).decode()

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.figures.style import NARROW_IN, WIDE_IN, plt
-from barrierbench_analysis.figures.web import filled, png
+from barrierbench_analysis.figures.style import NARROW_IN, WIDE_IN, plt, png
+from barrierbench_analysis.io.template import filled
 
 from .verdict import meaning
 
@@ -55,5 +55,5 @@ def figure_of(record: dict) -> str:
 def page_of(record: dict) -> str:
     keys = ("frame", "what", "count", "pair", "depth_m")
     shown = [[row[key] for key in keys] for row in record["findings"][:MOST_ROWS]]
-    figure, words = figure_of(record), meaning(record)
-    return filled(TEMPLATE, **record, meaning=words, figure=figure, shown=shown, most=MOST_ROWS)
+    more = {"meaning": meaning(record), "figure": figure_of(record), "shown": shown, "most": MOST_ROWS}
+    return filled(TEMPLATE, record | more)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from barrierbench_analysis.figures.style import WIDE_IN, plt
-from barrierbench_analysis.figures.web import filled, png
+from barrierbench_analysis.figures.style import WIDE_IN, plt, png
+from barrierbench_analysis.io.template import filled
 
 from .candidate import RIVALS
 from .judge import METRICS, at_equal_gap, comparisons, row_times, value
@@ -21,9 +21,7 @@ def page(score: dict) -> str:
     label, rows = score["candidate"]["label"], score["rows"]
     methods = [label, *RIVALS]
     ordered = sorted(rows, key=lambda r: (r["scene"], -r["theta"], methods.index(r["shape"])))
-    return filled(
-        TEMPLATE,
-        **score,
+    made = dict(
         label=label,
         methods=methods,
         over=[f"over {rival}" for rival in RIVALS],
@@ -38,6 +36,7 @@ def page(score: dict) -> str:
         ],
         cases=_cases(score["hard_cases"], methods),
     )
+    return filled(TEMPLATE, score | made)
 
 
 def _compared(rows: list[dict], label: str) -> list[list]:
