@@ -159,7 +159,7 @@ def test_a_failure_that_is_expected_is_a_label_and_any_other_stays_loud(runs, mo
     folder = gathered(runs)
     assert tables.outcome(quadratic()) == tables.Cell("newton_stall, expected", tone="expected", badge=True)
     assert verdict.headline(folder) == verdict.Sentence("3 of 4 runs ended ok and are valid; 1 was expected to fail and did.", verdict.GOOD)
-    assert verdict.expectations(folder) == [verdict.Sentence("1 run was expected to fail and did: strip: quadratic (newton_stall).", verdict.EXPECTED)]
+    assert list(verdict.expectations(folder)) == [verdict.Sentence("1 run was expected to fail and did: strip: quadratic (newton_stall).", verdict.EXPECTED)]
     assert apart.failures(folder, runs / "report.html").rows[0][3].text == "expected: it cycles"
     assert [(cell.text, cell.tone) for cell in tables.badges(folder)] == [("3 ok", "good"), ("1 newton_stall, expected", "expected")]
     changed(runs / "quadratic", status={"outcome": "nan", "valid": False})
@@ -177,12 +177,12 @@ def test_a_run_that_ends_ok_and_is_not_valid_can_be_expected_too(runs, monkeypat
     assert verdict.headline(folder).text == "2 of 4 runs ended ok and are valid; 2 were expected to fail and did."
     changed(runs / "cubic", status={"outcome": "nan", "valid": False}, audit={"crossings": 2})
     assert verdict.headline(gathered(runs)).text == "1 of 4 runs ended ok and is valid; 2 were expected to fail and did; 1 ended nan."
-    assert verdict.crossings(gathered(runs))[0].tone == verdict.BAD
+    assert list(verdict.crossings(gathered(runs)))[0].tone == verdict.BAD
     changed(runs / "cubic", audit={"crossings": 0})
     changed(runs / "quadratic", audit={"crossings": 2})
-    assert verdict.crossings(gathered(runs))[0].tone == verdict.BAD  # a stall was expected, no crossing
+    assert list(verdict.crossings(gathered(runs)))[0].tone == verdict.BAD  # a stall was expected, no crossing
     expecting(monkeypatch, log=expected.End(("not_valid",), "past its limit"), quadratic=expected.End(("newton_stall", "penetration"), "it lets surfaces through"))
-    assert verdict.crossings(gathered(runs))[0].tone == verdict.EXPECTED
+    assert list(verdict.crossings(gathered(runs)))[0].tone == verdict.EXPECTED
 
 
 def test_every_expected_end_is_of_a_case_of_a_committed_sweep():

@@ -75,7 +75,7 @@ def test_factors_are_of_comparable_pairs_and_name_slice_and_reference(runs):
         "strip (scene drape2d, stiffness by equal_force at theta 0.2, strain limit on), over the reference log: cubic: median condition"
         " number 2.5 times, Newton iterations 1 times, PCG iterations 1 times.")
     changed(runs / "cubic", comparability={"verdict": "not_comparable"})
-    assert verdict.ratios(gathered(runs)) == []
+    assert list(verdict.ratios(gathered(runs))) == []
 
 
 def test_a_reference_that_is_another_run_or_failed_gives_no_factor(runs):
@@ -102,7 +102,7 @@ def test_without_a_reference_nothing_is_compared_and_that_is_said(runs):
     for name in ("log", "cubic", "cubic_dynamic", "quadratic"):
         changed(runs / name, comparability={"verdict": "no_reference", "reference_run": "", "reference_run_id": ""})
     assert texts(verdict.comparability(gathered(runs))).startswith("No record names a reference")
-    assert verdict.ratios(gathered(runs)) == []
+    assert list(verdict.ratios(gathered(runs))) == []
 
 
 def test_what_it_does_not_say_follows_the_records(runs):

@@ -45,7 +45,7 @@ def test_a_run_that_does_not_count_has_its_own_word(runs):
     changed(runs / "quadratic", audit={"overlaps": 3})
     changed(runs / "cubic", audit={"overlaps": 3}, status={"valid": False})
     assert outcomes(runs)["quadratic"].text == "newton_stall" and outcomes(runs)["cubic"].text == "ok, not valid"
-    assert verdict.reserved(gathered(runs)) == []
+    assert list(verdict.reserved(gathered(runs))) == []
 
 
 def test_the_page_has_them_with_the_detail_of_their_status(reserved, without_figures):

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.figures.surfaces.binding import Binding, Fit, bound_mesh, refined
+from barrierbench_analysis.figures.surfaces.binding import Binding, Fit, bound_mesh
 from barrierbench_analysis.figures.surfaces.sequence import (
     Run,
     bodies,
+    finer,
     obstacles,
     on_splines,
     opened,
@@ -95,13 +96,7 @@ def with_mesh(
 def with_finer(run: Run, times: int, name: str | None, smooth: bool) -> list[Binding]:
     """Bindings of all bodies, those of one or of all with triangles refined. Errors: UserError."""
     only = None if name is None else _body_with_surface(run, name)[0]
-    parts = []
-    for body, _ in enumerate(run.scene["bodies"]):
-        part = simulated(run.start, body)
-        if len(part.source) and only in (None, body):
-            part = refined(run.start.vertices, run.start.triangles, part.source, times, smooth)
-        parts.append(part)
-    return parts
+    return finer(run.start, len(run.scene["bodies"]), times, only, smooth)
 
 
 def in_new_folder(out: Path, fill: Callable[[Path], None]) -> None:
@@ -144,14 +139,14 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "./bench data frames results/runs/duck out/duck --format pc2 --render-mesh fine.obj --body duck"
         " --smooth",
     )
-    finer = parser.add_mutually_exclusive_group()
+    one_of = parser.add_mutually_exclusive_group()
     text = f"""
 --render-mesh FILE: a mesh of triangles ({", ".join(SUFFIXES)}) in the place that --body has at the start: it
     follows the surface of the body and is written in its place
 --subdivide N: cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})"""
     times = number_type(f"a number from 1 to {MOST_TIMES}", lambda n: 1 <= n <= MOST_TIMES, int)
-    options(finer, text, render_mesh=Path, subdivide=times)
-    bicubic_argument(finer)
+    options(one_of, text, render_mesh=Path, subdivide=times)
+    bicubic_argument(one_of)
     text = f"""
 run RUN: folder of run.json
 out OUT: a folder that is not there yet

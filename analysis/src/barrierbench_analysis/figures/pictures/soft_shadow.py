@@ -117,14 +117,8 @@ def shadow_map(
     pixels: int = MOST_PIXELS,
 ) -> ShadowMap:
     """Of triangles and of what `others` draws: depths [pixels, pixels] by a camera. to_light: unit vector."""
-    camera = Camera(
-        center + 10 * reach * to_light,
-        center,
-        np.array([0.0, 1.0, 0.0]),
-        pixels / (SPAN * reach),
-        (pixels / 2, pixels / 2),
-        False,
-    )
+    eye, up, middle = center + 10 * reach * to_light, np.array([0.0, 1.0, 0.0]), (pixels / 2, pixels / 2)
+    camera = Camera(eye, center, up, pixels / (SPAN * reach), middle, False)
     buffer = DepthBuffer(pixels, pixels)
     buffer.draw(camera.project(points), triangles)
     for depth in others(camera, pixels):

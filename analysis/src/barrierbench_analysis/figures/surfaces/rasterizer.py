@@ -36,19 +36,9 @@ class Camera:
         is nearer (1/m in perspective)."""
         local = (x - self.eye) @ self.axes().T
         z = local[:, 2]
-        if self.perspective:
-            near = 1 / np.maximum(z, 1e-9)
-            return np.stack(
-                [
-                    self.center[0] + self.scale * local[:, 0] * near,
-                    self.center[1] + self.scale * local[:, 1] * near,
-                    near,
-                ],
-                axis=1,
-            )
-        return np.stack(
-            [self.center[0] + self.scale * local[:, 0], self.center[1] + self.scale * local[:, 1], -z], axis=1
-        )
+        near = 1 / np.maximum(z, 1e-9) if self.perspective else np.ones(len(z))
+        on_screen = [self.center[k] + self.scale * local[:, k] * near for k in (0, 1)]
+        return np.stack([*on_screen, near if self.perspective else -z], axis=1)
 
     def rays(self, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
         """Of the middles of all pixels: origins [3] or [height, width, 3] and ways [height, width, 3] (m),

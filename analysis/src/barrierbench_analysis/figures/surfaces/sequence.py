@@ -129,14 +129,17 @@ def simulated(frame: Frame, body: int) -> Binding:
     used = np.unique(np.concatenate([frame.triangles[chosen].ravel(), rods.ravel()]).astype(int))
     used = used if len(used) else np.flatnonzero(of == body)
     itself = whole(len(frame.vertices))
-    return Binding(
-        np.searchsorted(used, frame.triangles[chosen]),
-        chosen,
-        itself.corners[used],
-        itself.weights[used],
-        itself.owner[used],
-        itself.offset_m[used],
-    )
+    of_points = (of[used] for of in (itself.corners, itself.weights, itself.owner, itself.offset_m))
+    return Binding(np.searchsorted(used, frame.triangles[chosen]), chosen, *of_points)
+
+
+def finer(start: Frame, n_bodies: int, times: int, only: int | None, smooth: bool) -> list[Binding]:
+    """Bindings of all bodies, those of one or of all with every triangle cut into 4, `times` times."""
+    parts = [simulated(start, body) for body in range(n_bodies)]
+    for body, part in enumerate(parts):
+        if len(part.source) and only in (None, body):
+            parts[body] = refined(start.vertices, start.triangles, part.source, times, smooth)
+    return parts
 
 
 def _edges_of(frame: Frame, bound: Binding) -> np.ndarray:
@@ -154,9 +157,7 @@ def _field(values: dict[str, np.ndarray], name: str, count: int) -> np.ndarray:
 def _names_of_fields(run: Run) -> tuple[list[str], list[str]]:
     """Of points and of triangles, as the last frame has them: the first has fewer."""
     last = frame_of(run.record, run.folder, run.steps[-1])
-    return [n for n in last.of_vertices if n not in COUNTED], [
-        n for n in last.of_triangles if n not in COUNTED
-    ]
+    return tuple([n for n in of if n not in COUNTED] for of in (last.of_vertices, last.of_triangles))
 
 
 def bodies(run: Run, parts: list[Binding]) -> Sequence:
@@ -186,13 +187,7 @@ def bodies(run: Run, parts: list[Binding]) -> Sequence:
 def finer_frame(start: Frame, frame: Frame, n_bodies: int, times: int) -> Frame:
     """A frame with every triangle cut into 4, `times` times, on a surface that is curved between the
     vertices, smooth where the start is."""
-    parts = []
-    for body in range(n_bodies):
-        part = simulated(start, body)
-        if len(part.source):
-            part = refined(start.vertices, start.triangles, part.source, times, True)
-        parts.append(part)
-    bound = joined(parts)
+    bound = joined(finer(start, n_bodies, times, None, True))
     of_vertices = {name: bound.values(values) for name, values in frame.of_vertices.items()}
     of_vertices["body"] = np.asarray(frame.of_vertices["body"])[bound.corners[:, 0]]
     of_triangles = {name: np.asarray(v)[bound.source] for name, v in frame.of_triangles.items()}

@@ -72,13 +72,9 @@ def _over_time(records: Records, group: str, out: Path) -> list[Path]:
 def _kept(group: str, where: Path) -> list[Path]:
     """What ./bench draw figures has drawn of a group, in the order of OVER_TIME."""
     names = [f"{name}_{group}" for name in OVER_TIME]
+    there = [(name, path) for name in names for path in sorted(where.glob(f"{glob.escape(name)}*.png"))]
     return _pictures(
-        [
-            path
-            for name in names
-            for path in sorted(where.glob(f"{glob.escape(name)}*.png"))
-            if path.stem == name or path.stem.startswith(name + series.MORE)
-        ]
+        [path for name, path in there if f"{path.stem}{series.MORE}".startswith(name + series.MORE)]
     )
 
 
@@ -105,9 +101,8 @@ def drawn(folder: Folder, kept: Path | None = None) -> Figures:
                     files = [entry.path for entry in folder.groups[group]]
                     paths = _over_time(load(folder.root, files), group, Path(scratch))
             except UserError as error:
-                found.notes.append(
-                    f"{group} has no figures: {textwrap.shorten(folder.told(str(error)), 300)}"
-                )
+                why = textwrap.shorten(folder.told(str(error)), 300)
+                found.notes.append(f"{group} has no figures: {why}")
                 continue
             found.shown += [figure_of(group, path) for path in paths]
         for group in large[:MOST_GROUPS]:
@@ -120,9 +115,6 @@ def drawn(folder: Folder, kept: Path | None = None) -> Figures:
                 f" ({listed(left)}); ./bench draw figures draws them."
             )
     if large:
-        found.notes.append(
-            f"Groups of more than {MOST_RUNS} runs ({listed(large)}) have a mark for each run instead of"
-            f" lines"
-            " over time."
-        )
+        which = f"Groups of more than {MOST_RUNS} runs ({listed(large)})"
+        found.notes.append(f"{which} have a mark for each run instead of lines over time.")
     return found

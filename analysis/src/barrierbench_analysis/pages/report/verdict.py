@@ -1,6 +1,7 @@
 """What the records say in plain words, and what they do not say. Every sentence is computed from them."""
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from barrierbench_analysis.tables.run_words import earlier_rule
@@ -54,65 +55,61 @@ def headline(folder: Folder) -> Sentence:
     return Sentence(f"{text}.", BAD if bad or lost else GOOD)
 
 
-def expectations(folder: Folder) -> list[Sentence]:
+def expectations(folder: Folder) -> Iterator[Sentence]:
     """Runs that were expected to fail: those that did, and those that ended ok nevertheless."""
-    said, did = [], [run for run in folder.entries if run.failed_as_expected]
-    names = [f"{run.name} ({word_of(run.row)})" for run in did]
+    did = [f"{run.name} ({word_of(run.row)})" for run in folder.entries if run.failed_as_expected]
     if did:
         count = f"{counted(len(did), 'run')} {_were(len(did))}"
-        said.append(Sentence(f"{count} expected to fail and did: {listed(names)}.", EXPECTED))
+        yield Sentence(f"{count} expected to fail and did: {listed(did)}.", EXPECTED)
     if ended := [run.name for run in folder.entries if run.good and run.expected]:
         count = f"{counted(len(ended), 'run')} {_were(len(ended))}"
-        said.append(Sentence(f"{count} expected to fail and ended ok: {listed(ended)}.", BAD))
-    return said
+        yield Sentence(f"{count} expected to fail and ended ok: {listed(ended)}.", BAD)
 
 
-def reserved(folder: Folder) -> list[Sentence]:
+def reserved(folder: Folder) -> Iterator[Sentence]:
     """Runs that ended ok with less than others promise."""
     runs = [run for run in folder.entries if run.reserved]
-    if not runs:
-        return []
-    names = listed([f"{run.name} ({', '.join(run.reserved)})" for run in runs])
-    count = f"{counted(len(runs), 'run').capitalize()} of these {_are(len(runs))}"
-    text = f"{count} ok with a reservation: {names}. What each of them means stands under Failures."
-    return [Sentence(text, BAD)]
+    if runs:
+        names = listed([f"{run.name} ({', '.join(run.reserved)})" for run in runs])
+        count = f"{counted(len(runs), 'run').capitalize()} of these {_are(len(runs))}"
+        text = f"{count} ok with a reservation: {names}. What each of them means stands under Failures."
+        yield Sentence(text, BAD)
 
 
-def crossings(folder: Folder) -> list[Sentence]:
+def crossings(folder: Folder) -> Iterator[Sentence]:
     audited = [run for run in folder.entries if run.faults is not None]
     through = [run for run in audited if run.faults]
     is_expected = all(run.failed_as_expected for run in through)
     unproven = [run for run in audited if not run.faults and run.row.get("audit_unproven")]
-    said = []
     if through:
         names = listed([f"{run.name} ({run.faults})" for run in through])
         count = f"In {len(through)} of {counted(len(audited), 'audited run')}"
         text = f"{count} a surface passes through another: {names}"
         expected = Sentence(f"{text}, which is expected.", EXPECTED)
-        said.append(expected if is_expected else Sentence(f"{text}.", BAD))
+        yield expected if is_expected else Sentence(f"{text}.", BAD)
     elif audited:
         judged = sum(run.row["audit_judged"] for run in audited)
         all_of = "the audited run" if len(audited) == 1 else f"all {len(audited)} audited runs"
         text = (
             f"In {all_of} no surface passes through another: {judged:.3g} primitives were compared, in every"
         )
-        said.append(Sentence(f"{text} accepted state and along every motion.", GOOD))
+        yield Sentence(f"{text} accepted state and along every motion.", GOOD)
     if unproven:
         names = listed([run.name for run in unproven])
-        said.append(Sentence(f"Not every motion could be certified in {names}.", BAD))
+        yield Sentence(f"Not every motion could be certified in {names}.", BAD)
     if dark := len(folder.entries) - len(audited):
         text = f"Of {counted(dark, 'run')} nothing is known about crossings: not audited."
-        said.append(Sentence(text, BAD))
-    return said
+        yield Sentence(text, BAD)
 
 
-def comparability(folder: Folder) -> list[Sentence]:
+def comparability(folder: Folder) -> Iterator[Sentence]:
     others = [run for run in folder.entries if folder.reference_of(run) is not run]
     words = Counter(run.row.get("comparability_verdict") for run in others)
     judged = words["comparable"] + words["not_comparable"]
     if not judged:
         text = "No record names a reference, so nothing here is compared with anything"
-        return [Sentence(f"{text}: a sweep names it when it ends.")]
+        yield Sentence(f"{text}: a sweep names it when it ends.")
+        return
     ratios = {run.row["comparability_max_ratio"] for run in others if run.row.get("comparability_max_ratio")}
     within = listed([f"{ratio:g}" for ratio in sorted(ratios)])
     text = (
@@ -127,7 +124,7 @@ def comparability(folder: Folder) -> list[Sentence]:
     rules = [rule for run in others if (rule := earlier_rule(run.row))]
     if rules:
         text += f"; {len(rules)} were judged by the rule before {rules[0]['since']}"
-    return [Sentence(f"{text}.")]
+    yield Sentence(f"{text}.")
 
 
 def _times(factor: Factor) -> str:
@@ -164,94 +161,74 @@ def _beside_words(one: Beside) -> str:
     return f"{one.contender}: {', '.join(parts)}" if parts else ""
 
 
-def ratios(folder: Folder) -> list[Sentence]:
+def ratios(folder: Folder) -> Iterator[Sentence]:
     """A sentence a group: its slice, its reference, and the factors of who may be compared with it."""
-    said, rows = [], compared(folder)
+    found, rows = [], compared(folder)
     for group, entries in folder.groups.items():
         mine = [one for one in rows if one.group == group and one.factors]
         for reference in dict.fromkeys(one.reference for one in mine):
             words = [text for one in mine if one.reference == reference and (text := _beside_words(one))]
             if words:
-                said.append(
-                    Sentence(
-                        f"{group} ({_slice(entries)}), over the reference {reference}: {'; '.join(words)}."
-                    )
-                )
-    if len(said) > MOST_GROUPS:
-        rest = len(said) - MOST_GROUPS
-        said = [*said[:MOST_GROUPS], Sentence(f"{counted(rest, 'more group')} of factors: in Comparison.")]
-    return said
+                where = f"{group} ({_slice(entries)}), over the reference {reference}"
+                found.append(Sentence(f"{where}: {'; '.join(words)}."))
+    yield from found[:MOST_GROUPS]
+    if rest := len(found[MOST_GROUPS:]):
+        yield Sentence(f"{counted(rest, 'more group')} of factors: in Comparison.")
 
 
 def _one_of(folder: Folder, what: str) -> list:
     return list(dict.fromkeys(value for run in folder.entries if (value := run.row.get(what)) is not None))
 
 
-def _about_scenes(folder: Folder) -> list[str]:
+def _about_scenes(folder: Folder) -> Iterator[str]:
     scenes: dict[str, set] = {}
     for run in folder.entries:
         scenes.setdefault(run.row["scene"], set()).add(run.row.get("scene_vertices"))
-    said = []
     if len(scenes) < CLAIM_SCENES:
-        count = "One scene" if len(scenes) == 1 else f"{len(scenes)} scenes"
-        said.append(
-            f"{count} ({listed(list(scenes))}): nothing is said about others; a claim of this project needs"
-            f" {CLAIM_SCENES} (./bench study claims)."
-        )
-    single = [
-        f"{name}: {next(iter(sizes))} vertices"
-        for name, sizes in scenes.items()
-        if len(sizes) == 1 and None not in sizes
-    ]
-    if single:
-        said.append(f"One mesh a scene ({listed(single)}): nothing is said about finer or coarser ones.")
-    return said
+        count = f"{'One scene' if len(scenes) == 1 else f'{len(scenes)} scenes'} ({listed(list(scenes))})"
+        needed = f"a claim of this project needs {CLAIM_SCENES} (./bench study claims)"
+        yield f"{count}: nothing is said about others; {needed}."
+    one_mesh = {name: sizes for name, sizes in scenes.items() if len(sizes) == 1 and None not in sizes}
+    if single := [f"{name}: {next(iter(sizes))} vertices" for name, sizes in one_mesh.items()]:
+        yield f"One mesh a scene ({listed(single)}): nothing is said about finer or coarser ones."
 
 
-def _about_slices(folder: Folder) -> list[str]:
-    said = []
+def _about_slices(folder: Folder) -> Iterator[str]:
+    one = []
     for column, what in (("matching_theta", "theta"), ("dt_s", "time step (s)"), ("d_hat_m", "d_hat (m)")):
         values = _one_of(folder, column)
         if len(values) == 1:
-            said.append(f"{what} {values[0]:g}")
-    text = [f"One slice: {listed(said)}; at others the factors may be other ones."] if said else []
-    starts = {
-        (run.settings.get("/seeds/main"), run.settings.get("/seeds/jitter_m")) for run in folder.entries
-    }
-    if len(starts) == 1:
-        text.append("Every case ran from one start: how much its numbers scatter is not known.")
+            one.append(f"{what} {values[0]:g}")
+    if one:
+        yield f"One slice: {listed(one)}; at others the factors may be other ones."
+    seeds = ("/seeds/main", "/seeds/jitter_m")
+    if len({tuple(map(run.settings.get, seeds)) for run in folder.entries}) == 1:
+        yield "Every case ran from one start: how much its numbers scatter is not known."
     friction = {run.settings.get("/friction/mu") for run in folder.entries}
     if friction == {0.0} or friction == {0}:
-        text.append("The coefficient of friction is 0 in every config.")
-    return text
+        yield "The coefficient of friction is 0 in every config."
 
 
-def _about_costs(folder: Folder) -> list[str]:
-    said = ["A condition number or a count of iterations says nothing about seconds."]
+def _about_costs(folder: Folder) -> Iterator[str]:
+    yield "A condition number or a count of iterations says nothing about seconds."
     timed = [run for run in folder.entries if run.wall_s is not None]
     machines, builds = (len(_one_of(folder, name)) for name in ("machine_id", "build_id"))
     if timed:
         most = Counter(run.row["config_id"] for run in timed).most_common(1)[0][1]
-        said.append(
-            f"Times are of {counted(most, 'repetition')} a case on {counted(machines, 'machine')}: they are"
-            " shown and not judged."
-        )
+        of = f"{counted(most, 'repetition')} a case on {counted(machines, 'machine')}"
+        yield f"Times are of {of}: they are shown and not judged."
     else:
-        said.append("Nothing was timed in a run that counts.")
+        yield "Nothing was timed in a run that counts."
     if machines == 1:
-        said.append("One class of processors: on another rounding differs, and counts of iterations with it.")
+        yield "One class of processors: on another rounding differs, and counts of iterations with it."
     if machines > 1 or builds > 1:
-        said.append(
-            f"Records of {counted(builds, 'build')} and {counted(machines, 'machine')} are side by side."
-        )
+        yield f"Records of {counted(builds, 'build')} and {counted(machines, 'machine')} are side by side."
     loose = [run for run in folder.entries if run.row.get("convergence") == "not_asked"]
     if loose:
-        said.append(
-            f"{counted(len(loose), 'run').capitalize()} {_are(len(loose))} not asked to converge in a"
-            f" step, so"
-            f" fewer iterations there are not the same work: {listed([run.name for run in loose])}."
-        )
-    return said
+        count = f"{counted(len(loose), 'run').capitalize()} {_are(len(loose))}"
+        names = listed([run.name for run in loose])
+        words = "not asked to converge in a step, so fewer iterations there are not the same work"
+        yield f"{count} {words}: {names}."
 
 
 def limits(folder: Folder) -> list[str]:
