@@ -1,16 +1,14 @@
-"""Readers and writers that many verbs share: JSON of a schema and its rows, digests, where numbers come from, figures beside a page."""
+"""Readers and writers that many verbs share: JSON of a schema, digests, where numbers come from, figures beside a page."""
 
 import hashlib
-import json
 
 import pytest
 
 from barrierbench_analysis.io.digests import BLOCK, of_file, of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io.json_file import is_number, number_at, read_object, read_of_schema, rows_of
-from barrierbench_analysis.io.store import a_line_each, in_columns
-from barrierbench_analysis.io.origin import machine_of, origin, seconds_of_run, stamp
+from barrierbench_analysis.io.json_file import is_number, number_at, read_of_schema
+from barrierbench_analysis.io.origin import origin, seconds_of_run, stamp
 
 REMEDY = "; ./bench made makes it"
 
@@ -36,28 +34,15 @@ def test_what_is_no_file_of_the_schema_is_told_with_what_makes_one(tmp_path, tex
     assert str(told.value).startswith(f"{file}{said}") and str(told.value).endswith(REMEDY)
 
 
-def test_rows_survive_writing_and_other_columns_are_refused(tmp_path):
-    columns, rows = ("a", "b"), [{"b": 0.1, "a": "x", "left out": 1}, {"a": None, "b": 1e-300}]
-    file = tmp_path / "made.json"
-    file.write_text(f'{{"schema": "made/1", "columns": {json.dumps(columns)}, "rows": {a_line_each(in_columns(rows, columns), 1)}}}')
-    data = read_of_schema(file, "made/1")
-    assert rows_of(data, columns, file) == [{"a": "x", "b": 0.1}, {"a": None, "b": 1e-300}]
-    assert read_object(file) == data
-    with pytest.raises(UserError, match=r"made.json#/columns: found \['a', 'b'\]; \['b', 'a'\] are needed; ./bench made"):
-        rows_of(data, ("b", "a"), file, REMEDY)
-    with pytest.raises(ValueError):
-        in_columns([{"a": 1, "b": float("nan")}], columns)
-
-
 def test_the_origin_of_numbers_names_every_day_machine_and_program_once():
     def record(day: str, build: str) -> dict:
         return {"status": {"started_utc": f"{day}T23:59:59Z", "ended_utc": "2024-01-03T00:00:01.5Z"}, "machine": {"cpu_model": "a cpu", "cores": 2},
                 "provenance": {"git_commit": "0123456789abcdef"}, "ids": {"build_id": build * 32}}
 
     records = [record("2024-01-02", "f"), record("2024-01-01", "e"), record("2024-01-02", "f")]
-    assert origin(records) == {"date": "2024-01-01, 2024-01-02", "machine": machine_of(records[0]), "commit": "0123456789", "build": f"{'e' * 16}, {'f' * 16}"}
+    assert origin(records) == {"date": "2024-01-01, 2024-01-02", "machine": "a cpu, 2 cores, 1 thread a run", "commit": "0123456789", "build": f"{'e' * 16}, {'f' * 16}"}
     assert stamp(records[0], "commit", "machine") == {"commit": "0123456789", "machine": "a cpu, 2 cores"}
-    assert machine_of(records[0]) == "a cpu, 2 cores, 1 thread a run" and seconds_of_run(records[0]) == 2.5
+    assert seconds_of_run(records[0]) == 2.5
 
 
 def test_a_page_gets_picture_and_caption_alone(tmp_path):

@@ -66,10 +66,3 @@ def read_of_schema(path: Path, schema: str, remedy: str = "") -> dict:
     if data.get("schema") != schema:
         raise UserError(f"{path}#/schema: found {data.get('schema')!r}; {schema!r} is needed{remedy}")
     return data
-
-
-def rows_of(data: dict, columns: tuple[str, ...], path: Path, remedy: str = "") -> list[dict]:
-    """The rows of an object that has `columns` and `rows`. Errors: UserError where the columns are others."""
-    if data.get("columns") != list(columns):
-        raise UserError(f"{path}#/columns: found {data.get('columns')!r}; {list(columns)} are needed{remedy}")
-    return [dict(zip(columns, row)) for row in data["rows"]]

@@ -30,10 +30,6 @@ def run_of(record: dict) -> str:
     return record["ids"]["run_id"][:ID_DIGITS]
 
 
-def machine_of(record: dict) -> str:
-    return stamp(record, "machine", threads=ONE_THREAD)["machine"]
-
-
 def origin(records: list[dict]) -> dict[str, str]:
     """date, machine, commit and build of all records of a sweep, every value once."""
     keys = ("date", "machine", "commit", "build")
