@@ -1,7 +1,5 @@
 """The list of cases that a sweep keeps in its folder (cases.json), and what each of them is doing."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

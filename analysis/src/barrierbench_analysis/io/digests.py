@@ -1,7 +1,5 @@
 """sha256 in hexadecimal digits. Imports nothing but the standard library."""
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 

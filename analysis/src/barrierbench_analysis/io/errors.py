@@ -2,8 +2,6 @@
 Everything else is a mistake of this code.
 """
 
-from __future__ import annotations
-
 import errno
 import functools
 import os

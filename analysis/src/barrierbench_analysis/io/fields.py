@@ -1,8 +1,6 @@
 """Columns of the tables. They come from the schemas, which the program makes from its lists of record
 fields."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from functools import cache

@@ -4,8 +4,6 @@ there.
 A frame is the binary PLY file that `bench run --set /output/frames_every=N` leaves in `frames/`.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace

@@ -3,8 +3,6 @@ Only a regular file is opened, since a FIFO or a device can be waited for, or re
 is larger than its kind.
 """
 
-from __future__ import annotations
-
 import os
 import stat
 from pathlib import Path

@@ -1,7 +1,5 @@
 """JSON from files, and tables in them: columns once, one line a row."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Symmetric matrices from Matrix Market files, whoever wrote them."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

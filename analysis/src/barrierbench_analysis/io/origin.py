@@ -1,7 +1,5 @@
 """Where kept numbers come from: day, machine and program of their records."""
 
-from __future__ import annotations
-
 from datetime import datetime
 
 ID_DIGITS = 16  # of run_id and build_id, in tables

@@ -6,8 +6,6 @@ schema says. The files beside it are read when they are those that the record na
 `artifacts` has the sha256 of each. Whatever else is refused with file, place, value and what is allowed.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os

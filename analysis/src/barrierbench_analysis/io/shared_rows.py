@@ -2,8 +2,6 @@
 it share, and an array is a row.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Stores of results: how rows are laid out, and how rows are added to those that are there."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 from .errors import UserError

@@ -1,7 +1,5 @@
 """Templates of pages (Jinja), filled with values."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined

@@ -1,7 +1,5 @@
 """The one printer of tables, as plain text and as Markdown."""
 
-from __future__ import annotations
-
 import shutil
 import sys
 import textwrap

@@ -1,7 +1,5 @@
 """Parsers of the verbs in Python, made of their rows in the table."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import re

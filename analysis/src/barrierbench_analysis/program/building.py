@@ -1,7 +1,5 @@
 """Builds: presets of CMakePresets.json, their targets, and the program."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

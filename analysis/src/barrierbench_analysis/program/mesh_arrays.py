@@ -1,7 +1,5 @@
 """Mesh files as the program reads them: its verb `meshes`, one process for all files."""
 
-from __future__ import annotations
-
 import atexit
 import contextlib
 import json

@@ -2,8 +2,6 @@
 The program reads the file (mesh_arrays.py).
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

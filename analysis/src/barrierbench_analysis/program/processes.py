@@ -1,7 +1,5 @@
 """Processes that a verb starts for its own work."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.context import BaseContext

@@ -1,7 +1,5 @@
 """Where long work of a verb in Python is, on a terminal."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Iterator
 from typing import TypeVar

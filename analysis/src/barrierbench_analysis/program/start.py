@@ -1,7 +1,5 @@
 """The one place that starts the program: questions, queries of `eval`, runs and sweeps."""
 
-from __future__ import annotations
-
 import json
 import os
 import shlex

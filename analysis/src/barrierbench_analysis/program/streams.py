@@ -2,8 +2,6 @@
 them to the terminal, and a warning of a library is one line without the path of its source.
 """
 
-from __future__ import annotations
-
 import sys
 import warnings
 

@@ -5,8 +5,6 @@ The package `tetgen` (MIT) has TetGen within it (AGPL-3.0, or a licence of WIAS)
 project and is installed by whoever wants it: analysis/requirements-tetrahedra.txt.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import os

@@ -2,8 +2,6 @@
 the file that it names. A verb of the program has its line in experiments/cli/verbs.inc.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 ENVIRONMENT = "environment"  # the Python environment, which ./bench has made

@@ -3,8 +3,6 @@
 experiments/cli/verbs.inc, which is read here too.
 """
 
-from __future__ import annotations
-
 import difflib
 import re
 from pathlib import Path

@@ -3,8 +3,6 @@ what it takes beside the reference, when it is the one to use), and the log over
 runs. The one place of these names, sentences and numbers, for terminal, pages and studies.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

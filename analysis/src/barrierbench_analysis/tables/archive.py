@@ -3,8 +3,6 @@ version of this form and size and sha256 of every file. `study` is how verbs tak
 folder: it is unpacked, held against archive.json and read as every folder is.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json

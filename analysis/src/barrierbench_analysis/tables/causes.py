@@ -5,8 +5,6 @@ and scaling side by side, what contact, strain limit and scaling make of it, and
 both ends live: on which term, element, body and vertices.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import subprocess

@@ -1,7 +1,5 @@
 """Numbers as pages, tables and stores write them. What has no value, None or NaN, is written as `none`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import TypeVar

@@ -1,7 +1,5 @@
 """What a run is counted as in studies: one that ended ok and failed a check of its validity is not ok."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 OK, NOT_VALID = "ok", "not_valid"

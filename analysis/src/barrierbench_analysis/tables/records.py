@@ -1,8 +1,6 @@
 """Records below a folder as tidy tables. record_file.py judges every file first; unknown fields are
 ignored."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field

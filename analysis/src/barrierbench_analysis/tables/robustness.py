@@ -2,8 +2,6 @@
 failure, data profile.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

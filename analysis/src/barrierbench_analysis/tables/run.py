@@ -2,8 +2,6 @@
 are requested, and only where they are the very ones that the record names.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A record as a row of the table `runs`."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

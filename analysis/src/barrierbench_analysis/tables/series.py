@@ -1,7 +1,5 @@
 """Which series stand in a figure: at most five, the rest in supplements beside it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -2,8 +2,6 @@
 data surface-gaps RUNS...
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

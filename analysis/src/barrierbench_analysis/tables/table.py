@@ -1,7 +1,5 @@
 """The table of a set of runs: one row a run, failures included."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

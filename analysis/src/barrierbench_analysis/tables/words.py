@@ -1,7 +1,5 @@
 """The words of a record in sentences for a reader who has not seen docs/words.md."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from .numbers import number as number

@@ -1,7 +1,5 @@
 """Verdicts as text: results/CLAIMS.md, and the short table of docs/results/claims.md."""
 
-from __future__ import annotations
-
 import textwrap
 
 from barrierbench_analysis.io.places import ROOT

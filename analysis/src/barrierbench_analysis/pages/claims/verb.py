@@ -9,8 +9,6 @@ Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, wit
 a bad entry; no program), or calls itself confirmed and is not.
 """
 
-from __future__ import annotations
-
 import argparse
 import subprocess
 import sys

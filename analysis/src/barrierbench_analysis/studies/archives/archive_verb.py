@@ -6,8 +6,6 @@ byte.
 Exit codes: 0 written, 2 no record below the folder, or the file cannot be written.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

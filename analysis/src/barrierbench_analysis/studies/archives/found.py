@@ -2,8 +2,6 @@
 checks of its validity and with the counts of its audit.
 """
 
-from __future__ import annotations
-
 from barrierbench_analysis.io import fields
 
 CUT = ("oom", "kernel_failed", "timeout")  # a run that is not over stays what it is, whatever the audit found

@@ -2,8 +2,6 @@
 edited after the program wrote it.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field

@@ -2,8 +2,6 @@
 provenance that was edited afterwards has others.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path, PurePosixPath
 

@@ -10,8 +10,6 @@ holds every file against those that were packed.
 Exit codes: 0 nothing is wrong, 1 something is, or nothing was judged, 2 no folder, no archive.
 """
 
-from __future__ import annotations
-
 import argparse
 import random
 import tempfile

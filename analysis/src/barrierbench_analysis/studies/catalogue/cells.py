@@ -1,7 +1,5 @@
 """The runs of mini scenes that a study asks for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 from barrierbench_analysis.studies.kit.study.spec import Case, Study, product

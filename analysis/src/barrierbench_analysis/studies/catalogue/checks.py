@@ -3,8 +3,6 @@ says whether it holds and what it saw; without a subject (no friction in the sce
 hold. A check is one function here and a word of CHECKS.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """How large scenes are, as the program builds them."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -3,8 +3,6 @@ parameters}; the rigid motion of each copy comes after the body's own `transform
 here and a word of LAYOUTS.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Functions that a scene names in a key, with their parameters in the keys beside it."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from functools import partial

@@ -4,8 +4,6 @@ config of one, at the size mini or, with --full, at that of its source, for ./be
 Exit codes: 0, 1 a size is not the one that the scene states of its source, 2 bad input.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import os

@@ -2,8 +2,6 @@
 study claims --coverage`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np

@@ -2,8 +2,6 @@
 figures.
 """
 
-from __future__ import annotations
-
 import re
 from statistics import median
 

@@ -2,8 +2,6 @@
 for scenes that no rule was tuned on.
 """
 
-from __future__ import annotations
-
 import itertools
 import json
 import re

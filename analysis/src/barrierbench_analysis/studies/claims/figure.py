@@ -2,8 +2,6 @@
 its interval and its threshold.
 """
 
-from __future__ import annotations
-
 import textwrap
 from pathlib import Path
 

@@ -2,8 +2,6 @@
 label.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Iterable, Iterator

@@ -2,8 +2,6 @@
 table and figure of a claim.
 """
 
-from __future__ import annotations
-
 import math
 import textwrap
 from pathlib import Path

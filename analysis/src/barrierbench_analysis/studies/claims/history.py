@@ -1,7 +1,5 @@
 """When an entry of a JSON file was committed, from git. Without a history nothing is verified."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from dataclasses import dataclass

@@ -3,8 +3,6 @@ questions: are a record's settings those that these files ask for now, and are t
 a registration were made with?
 """
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

@@ -1,7 +1,5 @@
 """Claims to verdicts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from barrierbench_analysis.io.errors import UserError

@@ -1,8 +1,6 @@
 """What a sweep file asks of a run: its base with the settings of every axis, as far as claims have to
 know."""
 
-from __future__ import annotations
-
 import copy
 from pathlib import Path
 

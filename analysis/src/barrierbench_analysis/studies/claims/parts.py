@@ -2,8 +2,6 @@
 look as if it did.
 """
 
-from __future__ import annotations
-
 from barrierbench_analysis.io.errors import UserError
 
 from .entry import Sweep

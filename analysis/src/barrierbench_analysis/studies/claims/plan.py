@@ -1,7 +1,5 @@
 """What a call runs, and what that is expected to take by the kept seconds of the same sweeps."""
 
-from __future__ import annotations
-
 from barrierbench_analysis.studies.kit.study.cost import in_lines
 
 from .entry import Claim, read_sweep

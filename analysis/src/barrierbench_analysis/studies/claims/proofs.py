@@ -5,8 +5,6 @@ Each proof says its law in the claim; the numbers here show that the program's f
 interval but a range.
 """
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass, field
 

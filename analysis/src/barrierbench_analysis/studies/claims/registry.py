@@ -2,8 +2,6 @@
 files that these name (claims/confirmation/registry.json).
 """
 
-from __future__ import annotations
-
 import ast
 import inspect
 import json

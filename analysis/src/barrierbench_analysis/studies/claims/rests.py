@@ -2,8 +2,6 @@
 decides it alone.
 """
 
-from __future__ import annotations
-
 from barrierbench_analysis.studies.kit.success import COMMON, FAILURES
 
 from . import outcomes

@@ -2,8 +2,6 @@
 against what the part says.
 """
 
-from __future__ import annotations
-
 import json
 from functools import cache
 

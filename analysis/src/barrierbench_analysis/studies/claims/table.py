@@ -2,8 +2,6 @@
 of `eval`. Rows share (io/shared_rows.py) their sweep, what made them and their columns.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -3,8 +3,6 @@ with what it means, oldest first. A registered rule fixes parts, metrics and the
 the code behind these words is still the one of its day nothing else says.
 """
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Numbers of verdicts in words."""
 
-from __future__ import annotations
-
 from barrierbench_analysis.tables import numbers
 from barrierbench_analysis.tables.numbers import ratio
 

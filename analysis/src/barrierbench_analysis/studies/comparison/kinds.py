@@ -1,7 +1,5 @@
 """The registry of figures: a kind is a function that draws, what it is drawn of, and its options."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -9,8 +9,6 @@ command makes them.
 Exit codes: 0 drawn, 2 an unknown name, records missing, nothing to draw, or a file that cannot be written.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys

@@ -2,8 +2,6 @@
 sweep is run where that is allowed; else, what is missing is said with the command that makes it.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

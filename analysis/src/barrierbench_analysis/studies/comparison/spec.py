@@ -1,7 +1,5 @@
 """A figure of the comparison as data: configs/figures/NAME.json."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path

@@ -2,8 +2,6 @@
 in one column width.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.figures.captions import Facts

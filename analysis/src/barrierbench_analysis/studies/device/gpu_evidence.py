@@ -2,8 +2,6 @@
 lease (--lease): results/gpu/<card>-<day>.json.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import datetime

@@ -8,8 +8,6 @@ candidates, blocks and iterations are those of runs that are named in results/gp
         SCALE_COSTS_KERNELS=1 and errors in the same file, and prints an entry of that file
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ One row a card. Without a record the page says that nothing was timed. Prices ar
 (results/gpu/prices.json).
 """
 
-from __future__ import annotations
-
 import re
 import tempfile
 from pathlib import Path

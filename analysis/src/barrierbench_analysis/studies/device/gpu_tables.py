@@ -1,7 +1,5 @@
 """Rows of the tables of results/GPU.md, from records of cards."""
 
-from __future__ import annotations
-
 from itertools import product
 
 from barrierbench_analysis.tables.numbers import whole

@@ -1,7 +1,5 @@
 """The card of an engine: engines/NAME/card.toml, held against configs/schema/engine_card.schema.json."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -5,8 +5,6 @@ A run that is there with the same scene, settings and requirements is taken as i
 was cut off goes on.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The Python environment of an engine: a folder below build/, made by `bench engine NAME setup` alone."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

@@ -2,8 +2,6 @@
 cross, bars from the least to the most of jittered starts.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.figures.style import WIDE_IN, plt

@@ -1,7 +1,5 @@
 """What `bench judge` says of a run, and what is measured beside it: error against a reference, energy."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json

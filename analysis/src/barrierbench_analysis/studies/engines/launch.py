@@ -1,7 +1,5 @@
 """One run of an engine: its adapter in its own environment, until it ends; how it ended, in a word."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from pathlib import Path

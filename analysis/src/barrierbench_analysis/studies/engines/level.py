@@ -1,7 +1,5 @@
 """Engines at equal seconds and at equal error, between the levels that were run; nothing is extrapolated."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -9,8 +9,6 @@ L^2/(3.516 sqrt(D/rho)). Gravity is chosen for a strain of 2 % and a drop of L/5
 mean over the second of two periods, which is the static answer with and without damping.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The same scene under this program: its frames at the times of an engine's, its time and iterations."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The page of a record of ./bench engine compare: its template is configs/engines/page.md."""
 
-from __future__ import annotations
-
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.template import filled
 

@@ -1,7 +1,5 @@
 """What the starts of a scene say of each engine: median and range of errors and depths, how many cross."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from barrierbench_analysis.tables.numbers import significant

@@ -1,8 +1,6 @@
 """Scenes for engines: the file that `bench export-scene` writes of a config, and what the judge reads of
 it."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -6,8 +6,6 @@ Materials, own starts and seconds are those of the record: jittered runs may sha
 seconds are not kept.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

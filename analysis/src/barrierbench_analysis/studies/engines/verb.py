@@ -1,7 +1,5 @@
 """./bench engine list | NAME setup | NAME run SCENE --out DIR | compare [SPEC]."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import shlex

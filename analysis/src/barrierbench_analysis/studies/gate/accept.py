@@ -6,8 +6,6 @@ there is nothing to accept, and a run that breaks an invariant makes no baseline
 number is kept beside the last, and what has drifted from it stays red until --drift (drift.py).
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime
 from dataclasses import replace

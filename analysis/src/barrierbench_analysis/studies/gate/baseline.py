@@ -1,7 +1,5 @@
 """Baselines: results/baselines/CASE.json, written by `bench gate accept` alone."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from dataclasses import dataclass, field, fields

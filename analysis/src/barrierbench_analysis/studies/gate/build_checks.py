@@ -1,7 +1,5 @@
 """Class I of the program itself: its validity block (`barrierbench validity`), one line a check."""
 
-from __future__ import annotations
-
 import json
 
 from barrierbench_analysis.io.errors import UserError

@@ -5,8 +5,6 @@ Nothing of results/baselines/ is changed: the proposals stand in results/runs/ca
 `bench gate accept --reason "..."`.
 """
 
-from __future__ import annotations
-
 import datetime
 import sys
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The cases of a gate: configs/gates/SET.json, and running one."""
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import dataclass, field
 from pathlib import Path

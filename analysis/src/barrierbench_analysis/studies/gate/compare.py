@@ -6,8 +6,6 @@ kind allow (docs/results/method/gates.md). Exit codes: 0 nothing regressed, 1 so
 be compared.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, tells

@@ -1,8 +1,6 @@
 """Which settings of two configs differ. The number of threads and the jitter of the start change no
 method."""
 
-from __future__ import annotations
-
 from .records import Run, leaves
 
 NO_METHOD = ("/threads", "/seeds/main", "/seeds/jitter_m")

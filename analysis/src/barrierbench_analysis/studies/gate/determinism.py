@@ -2,8 +2,6 @@
 machine, and kept in no baseline.
 """
 
-from __future__ import annotations
-
 from .finding import Finding, exact, not_judged
 from .measure import measure
 from .records import Run

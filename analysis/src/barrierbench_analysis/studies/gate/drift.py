@@ -6,8 +6,6 @@ width of its envelope, on the side that is no better. `bench gate accept --drift
 --reason "..."` makes the last value the first one, and the baseline keeps that it was done, when, and why.
 """
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict, dataclass
 

@@ -1,8 +1,6 @@
 """How far a number may move: envelopes from perturbed copies, and distributions for numbers that are
 chaotic."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

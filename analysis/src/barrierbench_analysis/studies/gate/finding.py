@@ -1,7 +1,5 @@
 """One line of a gate's answer, and what the lines say together."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import asdict, dataclass
 

@@ -5,8 +5,6 @@ With --record or --matrix it judges what another program has written, against on
 green, 1 red, 2 nothing can be judged (no or bad baseline, unreadable file, no program).
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

@@ -2,8 +2,6 @@
 one processor with one compiler, so elsewhere it is not judged, and a machine without valgrind counts none.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -2,8 +2,6 @@
 is a failure.
 """
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 

@@ -2,8 +2,6 @@
 together, or what copies differ by.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from barrierbench_analysis.tables.statistics import geometric, holm

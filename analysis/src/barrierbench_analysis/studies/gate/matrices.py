@@ -2,8 +2,6 @@
 many iterations of PCG they ask for.
 """
 
-from __future__ import annotations
-
 import datetime
 import os
 from dataclasses import dataclass

@@ -2,8 +2,6 @@
 nothing.
 """
 
-from __future__ import annotations
-
 from barrierbench_analysis.io.record_file import other_meanings
 
 from . import shares

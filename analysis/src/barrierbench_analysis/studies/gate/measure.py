@@ -1,7 +1,5 @@
 """Every number of a record that a gate looks at: those of metrics.py, and the shares of its words."""
 
-from __future__ import annotations
-
 from . import shares
 from .metrics import LAST_STEP, ROUNDING, SUMMARY, Metric, at, cond_metric
 from .records import Run

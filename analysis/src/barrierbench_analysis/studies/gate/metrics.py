@@ -2,8 +2,6 @@
 direction and tolerance.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

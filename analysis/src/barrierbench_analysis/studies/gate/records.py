@@ -1,7 +1,5 @@
 """Records for a gate: read strictly, since what a gate overlooks counts as well."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """What a gate says: a table, how much was judged, and the same as JSON."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections import Counter

@@ -6,8 +6,6 @@ not have is 0. So half of the numbers turned to `bound` is a share that moved, a
 before is judged against 0.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 
 from .metrics import LOWER_BETTER, TWO_SIDED, UPPER_BETTER, Metric, Tolerance

@@ -7,8 +7,6 @@ plus a penalty for every step is least (L1, exact by dynamic programming). The p
 two pieces is shown. A trend never blocks: the exit code is 0, 2 for a file that cannot be read.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import sys

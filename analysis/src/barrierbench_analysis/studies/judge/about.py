@@ -1,7 +1,5 @@
 """What the frames of another program do not say: --about FILE (configs/schema/judge.schema.json)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Frames through the verb `audit` of the program: its answers, one a frame, and the total."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import tempfile

@@ -3,8 +3,6 @@ is not given, they are not computed; what overflows, or is relative to a first f
 is None.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from barrierbench_analysis.program.trajectories.trajectory import Topology, surface_of

@@ -1,7 +1,5 @@
 """./bench judge TRAJECTORY: one record (judgement.json), one page (judgement.html), exit 0 clean, 1 not."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import shlex

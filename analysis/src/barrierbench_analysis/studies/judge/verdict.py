@@ -1,7 +1,5 @@
 """What the answers of the audit mean, in words."""
 
-from __future__ import annotations
-
 VERDICTS = {  # word: what it says; the first that holds is the verdict
     "not_finite": "a frame holds numbers that are none, so that it could not be judged",
     "penetrates": (

@@ -1,7 +1,5 @@
 """Vertices that stand for one place: joined by --weld, and a note where a body is closed but for them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 

@@ -2,8 +2,6 @@
 ends, and touches no other.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import re

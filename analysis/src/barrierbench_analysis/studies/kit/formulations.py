@@ -2,8 +2,6 @@
 and which stay with the reference.
 """
 
-from __future__ import annotations
-
 import json
 from difflib import get_close_matches
 from functools import cache

@@ -4,8 +4,6 @@ A point of a path is one run: the gap it reached and what that took. The stiffne
 since the same number means different forces in different formulas (docs/results/method/pareto.md).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

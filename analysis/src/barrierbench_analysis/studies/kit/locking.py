@@ -2,8 +2,6 @@
 trace beside the record.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.record_file import read_trace

@@ -1,7 +1,5 @@
 """Sweep files that are made here, the program that runs them, and their records, read strictly."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import tempfile

@@ -8,8 +8,6 @@ Here they are requested and shown; match.json beside the records keeps the answe
 Exit codes: 0 all are comparable, 1 some are not, 2 bad input, or nothing to compare.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from pathlib import Path

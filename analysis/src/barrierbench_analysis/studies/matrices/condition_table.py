@@ -6,8 +6,6 @@ iteration of the demo's sweeps, run once with each estimator, and those of resul
 through the same states whatever is estimated, so that its samples pair up one by one.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 import tempfile

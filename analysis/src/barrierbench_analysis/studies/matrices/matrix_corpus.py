@@ -6,8 +6,6 @@ added here. The table replays all of them (`barrierbench matrix`); it has no tim
 every machine with the same libraries.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import shutil

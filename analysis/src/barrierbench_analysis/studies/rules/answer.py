@@ -8,8 +8,6 @@ over scenes with Student's interval. All intervals are at 95%. Only runs in whic
 enter a ratio.
 """
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ A run is red where an expectation is not fulfilled or has no subject, and where 
 should start does not end `ok`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path

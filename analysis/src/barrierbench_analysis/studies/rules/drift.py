@@ -7,8 +7,6 @@ number is the largest share of the kinetic energy over the levels of a scene, ge
 with Student's 95% interval.
 """
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 

@@ -4,8 +4,6 @@ within the jitter that the scene names, differently for each seed.
 A run passes when it ends `ok` without a crossing; one of a scene that must be rejected, when it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import groupby
 

@@ -2,8 +2,6 @@
 and docs/steps.png.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, passed_on, tells

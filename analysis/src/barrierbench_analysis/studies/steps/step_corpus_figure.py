@@ -1,7 +1,5 @@
 """docs/steps.png: iterations of each state by cause, and by Hessian rule."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.figures.style import WIDE_IN, plt

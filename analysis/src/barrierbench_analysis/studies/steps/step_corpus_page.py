@@ -1,7 +1,5 @@
 """results/STEPS.md of a record of ./bench data steps --corpus."""
 
-from __future__ import annotations
-
 from itertools import groupby
 
 from barrierbench_analysis.io.errors import UserError

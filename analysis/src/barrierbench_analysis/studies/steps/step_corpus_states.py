@@ -2,8 +2,6 @@
 `barrierbench steps --keep`; what it is hard for and its half are added here.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import tempfile

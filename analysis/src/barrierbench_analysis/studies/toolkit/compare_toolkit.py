@@ -5,8 +5,6 @@ else the machine does meets both. Prints a table of the shortest times and their
 only lengthen a sample; every sample is kept as JSON beside it.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime
 import json

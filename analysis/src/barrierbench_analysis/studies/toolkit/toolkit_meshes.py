@@ -1,8 +1,6 @@
 """Surfaces in motion for the comparison with the IPC Toolkit, and the file in which contact_stages and
 contact_probe read them (experiments/microbenchmarks/contact_problem.hpp)."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

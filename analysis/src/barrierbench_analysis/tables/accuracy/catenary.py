@@ -7,8 +7,6 @@ force of the first spring, are those with which the springs reach from one end t
 solved to rounding.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import root
 

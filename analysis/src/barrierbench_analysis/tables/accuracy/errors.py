@@ -5,8 +5,6 @@ Positions are [times, vertices, 3] in m. Sources: Ando and others judge contact 
 work-precision studies by trajectory.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 MEANING = {

@@ -5,8 +5,6 @@ A reference says its name, positions at the times of a run, and its own uncertai
 distance of the two runs for a refined one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

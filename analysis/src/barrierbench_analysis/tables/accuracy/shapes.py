@@ -4,8 +4,6 @@ program that they judge.
 A test compares them with `barrierbench eval`. Lengths in m, b in m^2, b' in m.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

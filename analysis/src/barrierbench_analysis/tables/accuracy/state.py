@@ -1,7 +1,5 @@
 """What a run leaves of its motion: sampled positions, masses, bodies, energies."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path

@@ -7,8 +7,6 @@ called while runs go on: the table has those that are over. Numbers read back bi
 Exit codes: 0 written, 2 no record can be read, or the file cannot be written.
 """
 
-from __future__ import annotations
-
 import argparse
 import io
 import os

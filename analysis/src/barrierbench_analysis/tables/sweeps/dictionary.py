@@ -2,8 +2,6 @@
 that the program makes.
 """
 
-from __future__ import annotations
-
 import re
 
 from barrierbench_analysis.io import fields

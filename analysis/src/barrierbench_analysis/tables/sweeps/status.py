@@ -5,8 +5,6 @@ waiting. `./bench sweep` goes on with all that are not over.
 Exit codes: 0 every run is over, 1 not every run, 2 no list of cases in the folder.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

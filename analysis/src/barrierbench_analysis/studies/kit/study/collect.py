@@ -1,7 +1,5 @@
 """Runs what a study lacks, and makes rows of the records."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor

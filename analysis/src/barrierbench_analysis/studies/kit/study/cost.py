@@ -1,7 +1,5 @@
 """What the rest of a study is expected to take: seconds of one core, by those of its kept rows."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

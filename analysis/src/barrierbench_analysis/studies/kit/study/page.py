@@ -1,7 +1,5 @@
 """The page of a study and its figures: its template, filled with what its rule makes of the rows."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A study as its spec has it, and the cells that it asks for."""
 
-from __future__ import annotations
-
 import importlib
 import itertools
 import json

@@ -4,8 +4,6 @@ elsewhere than it did. Rows share (io/shared_rows.py) the names of their axes, w
 and what made them.
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from pathlib import Path
 

@@ -8,8 +8,6 @@ Exit codes: 0 done, 1 runs of a study that judges them do not pass, 2 a spec tha
 whose cells are not all there.
 """
 
-from __future__ import annotations
-
 import argparse
 import random
 import sys

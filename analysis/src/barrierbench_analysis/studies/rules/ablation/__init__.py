@@ -2,8 +2,6 @@
 (docs/results/method/ablation.md).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from pathlib import Path

@@ -9,8 +9,6 @@ coefficient leans on the other factors having no interactions in the part that i
 direct effect has to agree with nothing left out, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations
 

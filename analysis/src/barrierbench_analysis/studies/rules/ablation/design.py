@@ -13,8 +13,6 @@ Scenes have arrays of their own, so that the interactions that an array mixes in
 from scene to scene: they widen the interval over scenes and do not shift its middle in one direction.
 """
 
-from __future__ import annotations
-
 import random
 from itertools import combinations
 

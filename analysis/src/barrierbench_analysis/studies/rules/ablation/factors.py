@@ -1,7 +1,5 @@
 """The factors of a factorial sweep, their levels, and the combinations that it allows."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product

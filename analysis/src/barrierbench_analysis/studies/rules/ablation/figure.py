@@ -1,7 +1,5 @@
 """The figure of an ablation: main effects on four numbers, and the interactions of every pair of factors."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

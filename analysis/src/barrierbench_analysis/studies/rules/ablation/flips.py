@@ -3,8 +3,6 @@ does nothing, the value of a scene is as likely above zero as below by as much, 
 likely. It assumes neither a distribution nor one spread for all scenes, and tests the mean that is reported.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the page of an ablation says (configs/studies/ablation.md): sentences and tables of the effects."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 

@@ -2,8 +2,6 @@
 gaps are not reached, and the area law against what was measured. Shapes beside each other: compare.py.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from dataclasses import dataclass

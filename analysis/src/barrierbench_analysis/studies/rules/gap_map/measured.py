@@ -1,7 +1,5 @@
 """What the map keeps of a run: the gap that it reached, what its shape costs there, and condition numbers."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What the page of a gap map is filled with (configs/studies/gap_map.md)."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 from barrierbench_analysis.io.record_file import other_meanings

@@ -1,7 +1,5 @@
 """The log beside another shape against the number of unknowns: what a finer mesh leaves of the difference."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

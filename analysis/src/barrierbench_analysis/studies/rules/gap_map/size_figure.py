@@ -1,7 +1,5 @@
 """The figure of the log beside the cubic against the number of unknowns: a row a target, a line a scene."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import matplotlib.pyplot as plt

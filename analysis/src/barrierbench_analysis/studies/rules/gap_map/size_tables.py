@@ -1,7 +1,5 @@
 """Tables and a sentence of the log beside the cubic against the number of unknowns."""
 
-from __future__ import annotations
-
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.tables.estimate import CONFIDENCE
 from barrierbench_analysis.tables.words import listed

@@ -5,8 +5,6 @@ cells of the same scene, resolution, limit and shape at smaller theta end in the
 from such a run and was run all the same checks the rule.
 """
 
-from __future__ import annotations
-
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row

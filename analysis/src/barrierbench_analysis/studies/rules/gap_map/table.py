@@ -1,7 +1,5 @@
 """The map as a table: a row for every run that the spec asks for, whether it is there or not."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path

@@ -2,8 +2,6 @@
 equal kappa (docs/results/method/pareto.md).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from pathlib import Path

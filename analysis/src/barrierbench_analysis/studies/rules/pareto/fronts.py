@@ -1,7 +1,5 @@
 """Runs over stiffness as paths, and formulations beside the log at equal reached gap."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter, defaultdict
 from dataclasses import dataclass

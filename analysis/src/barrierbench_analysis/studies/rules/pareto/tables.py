@@ -1,7 +1,5 @@
 """The tables of results/PARETO.md."""
 
-from __future__ import annotations
-
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.formulations import REFERENCE
 from barrierbench_analysis.tables.numbers import interval, ratio

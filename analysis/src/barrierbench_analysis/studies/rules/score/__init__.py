@@ -2,8 +2,6 @@
 jittered states, and put through hard cases of the stress suite.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

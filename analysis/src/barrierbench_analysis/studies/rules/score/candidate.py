@@ -1,7 +1,5 @@
 """What is scored: a formula, a shape of a plugin, a preset or a registered shape."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -2,8 +2,6 @@
 One number decides nothing: a barrier that does not come to the end somewhere is named first.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The page of a score: one HTML file that needs no network."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.figures.style import WIDE_IN, plt, png

@@ -1,7 +1,5 @@
 """`bench study score`: one page for a new barrier."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import shlex

@@ -3,8 +3,6 @@ against what was expected before the first run; relations between runs; pairs an
 A run may hang, crash or be refused: that is its outcome.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from datetime import datetime, timezone
 from pathlib import Path

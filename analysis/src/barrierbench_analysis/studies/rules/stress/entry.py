@@ -2,8 +2,6 @@
 words an outcome may be.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase

@@ -4,8 +4,6 @@ are compared with. It shares nothing with the program.
 Points are tuples of three Fractions; the numbers that the program gets are exactly representable.
 """
 
-from __future__ import annotations
-
 from decimal import Decimal, localcontext
 from fractions import Fraction
 

@@ -2,8 +2,6 @@
 exact.py. Each counts its subjects.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from decimal import Decimal

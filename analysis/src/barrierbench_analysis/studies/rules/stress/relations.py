@@ -1,8 +1,6 @@
 """What has to hold between runs of one formulation: equal, differs, ratio, rises, and bounds on single
 runs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from barrierbench_analysis.studies.kit.study.store import Row

@@ -1,7 +1,5 @@
 """Runs and counts of the suite against what was expected of them, and the tables of the page."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass, field
 

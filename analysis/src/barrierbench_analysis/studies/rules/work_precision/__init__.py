@@ -5,8 +5,6 @@ Errors are distances to a closed form, or to the middle of two runs with a much 
 whose distance is the uncertainty of that reference. Runs that fail reach nothing and stay counted.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """How far each run is from the reference of its scene: a closed form, or the middle of two refined runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError

@@ -2,8 +2,6 @@
 are solved within a budget.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The gravity that a run has: of its base config with settings placed in it."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

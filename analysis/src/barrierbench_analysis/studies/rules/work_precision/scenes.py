@@ -7,8 +7,6 @@ refined reference has two more runs for each time step: the same mesh and time s
 tolerance.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -2,8 +2,6 @@
 within which errors it is the cheapest.
 """
 
-from __future__ import annotations
-
 import math
 import os
 
