@@ -96,7 +96,9 @@ int help(const std::string& format, const std::string& pointer, bool schema) {
   const Format* known = find_named(formats, format);
   if (known == nullptr) {
     std::vector<std::string> names = names_of(formats);
-    for (const std::string& name : typed_names()) names.push_back(name);
+    for (const std::string& name : typed_names()) {
+      if (find_named(formats, name) == nullptr) names.push_back(name);
+    }
     throw unknown_name("help", format, names);
   }
   if (!pointer.empty()) {
