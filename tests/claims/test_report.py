@@ -59,7 +59,7 @@ def test_scatter_slice_and_starts_stand_in_the_text():
     a = answers()[0]
     a.parts[0].slice, a.parts[0].sweep = "theta 0.1, limit off", "s"
     page = report.markdown([a], Table())
-    assert "Slice: theta 0.1, limit off. Samples: 3 scenes; up to 5 starts at each of 9 places, intraclass correlation 1.0000." in page
+    assert "Conditions: theta 0.1, limit off. Samples: 3 scenes; up to 5 starts at each of 9 places, intraclass correlation 1.0000." in page
     assert "a 3.6 (1.8 to 7.2 at 3, n = 15)" in page and "Kind: runs." in page and f"exploratory: {len(a.claim.rule_changes)} changes after numbers were seen" in page
 
 

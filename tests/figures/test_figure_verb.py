@@ -174,7 +174,7 @@ def test_a_rebuild_has_the_same_bytes_and_the_width_of_a_journal(program, runs, 
         assert len(one) > 50 and hashlib.sha256(one).digest() == hashlib.sha256(two).digest(), file
     assert pixels(tmp_path / "a" / f"{name}.png") == inches * 200
     caption = (tmp_path / "a" / f"{name}.txt").read_text().replace("\n", " ")
-    assert all(word in caption for word in ("N: ", "Statistic: ", "Reference: ", "Slice: "))
+    assert all(word in caption for word in ("N: ", "Statistic: ", "Reference: ", "Conditions: "))
 
 
 @pytest.mark.usefixtures("unpainted")

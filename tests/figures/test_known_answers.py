@@ -247,7 +247,7 @@ def test_numbers_for_pgfplots():
 
 
 def test_a_caption_says_n_statistic_reference_and_slice():
-    assert Facts("3 runs", "mean", "none", "strip").sentence() == "N: 3 runs. Statistic: mean. Reference: none. Slice: strip."
+    assert Facts("3 runs", "mean", "none", "strip").sentence() == "N: 3 runs. Statistic: mean. Reference: none. Conditions: strip."
     with pytest.raises(ValueError, match="a caption without reference"):
         Facts("3 runs", "mean", " ", "strip")
 

@@ -98,7 +98,7 @@ def test_a_caption_with_another_scatter_than_its_page_is_told():
 def claim(sweep: str, number: str, scenes: str, verdict: str = "holds", measures: str = "95th percentile of cond over a run, raw: log / cubic") -> str:
     return (
         f"- above: **{verdict}**. {measures}: {number}, asked: above 1; 21 pairs count; `{sweep}`.\n"
-        f"  Slice: theta 0.1, limit off. Samples: 2 scenes; one start at each place.\n  By scene (least and largest of its levels): {scenes}.\n"
+        f"  Conditions: theta 0.1, limit off. Samples: 2 scenes; one start at each place.\n  By scene (least and largest of its levels): {scenes}.\n"
     )
 
 

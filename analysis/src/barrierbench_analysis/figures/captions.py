@@ -19,7 +19,7 @@ class Facts:
     n: str  # of what the numbers are, and how many
     statistic: str  # what a number is of them
     reference: str  # what they are compared with
-    slice: str  # which scenes, levels and settings they are of
+    conditions: str  # which scenes, levels and settings they are of
 
     def __post_init__(self):
         if empty := [name for name, value in self.__dict__.items() if not value.strip()]:

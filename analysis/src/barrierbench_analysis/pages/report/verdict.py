@@ -134,7 +134,7 @@ def _times(factor: Factor) -> str:
     return f"{mean} times ({number(factor.low, 2)} to {number(factor.high, 2)} in {factor.n} pairs)"
 
 
-def _slice(entries: list[Entry]) -> str:
+def _conditions(entries: list[Entry]) -> str:
     """Scene, matching and limit of these runs."""
     scenes = dict.fromkeys(run.row["scene"] for run in entries)
     rules = dict.fromkeys(
@@ -162,14 +162,14 @@ def _beside_words(one: Beside) -> str:
 
 
 def ratios(folder: Folder) -> Iterator[Sentence]:
-    """A sentence a group: its slice, its reference, and the factors of who may be compared with it."""
+    """A sentence a group: its conditions, its reference, and the factors of who may be compared with it."""
     found, rows = [], compared(folder)
     for group, entries in folder.groups.items():
         mine = [one for one in rows if one.group == group and one.factors]
         for reference in dict.fromkeys(one.reference for one in mine):
             words = [text for one in mine if one.reference == reference and (text := _beside_words(one))]
             if words:
-                where = f"{group} ({_slice(entries)}), over the reference {reference}"
+                where = f"{group} ({_conditions(entries)}), over the reference {reference}"
                 found.append(Sentence(f"{where}: {'; '.join(words)}."))
     yield from found[:MOST_GROUPS]
     if rest := len(found[MOST_GROUPS:]):
@@ -193,14 +193,14 @@ def _about_scenes(folder: Folder) -> Iterator[str]:
         yield f"One mesh a scene ({listed(single)}): nothing is said about finer or coarser ones."
 
 
-def _about_slices(folder: Folder) -> Iterator[str]:
+def _about_conditions(folder: Folder) -> Iterator[str]:
     one = []
     for column, what in (("matching_theta", "theta"), ("dt_s", "time step (s)"), ("d_hat_m", "d_hat (m)")):
         values = _one_of(folder, column)
         if len(values) == 1:
             one.append(f"{what} {values[0]:g}")
     if one:
-        yield f"One slice: {listed(one)}; at others the factors may be other ones."
+        yield f"One set of conditions: {listed(one)}; under others the factors may be other ones."
     seeds = ("/seeds/main", "/seeds/jitter_m")
     if len({tuple(map(run.settings.get, seeds)) for run in folder.entries}) == 1:
         yield "Every case ran from one start: how much its numbers scatter is not known."
@@ -233,7 +233,7 @@ def _about_costs(folder: Folder) -> Iterator[str]:
 
 def limits(folder: Folder) -> list[str]:
     """What a reader might take from the page and must not."""
-    return [*_about_scenes(folder), *_about_slices(folder), *_about_costs(folder)]
+    return [*_about_scenes(folder), *_about_conditions(folder), *_about_costs(folder)]
 
 
 def verdict(folder: Folder) -> list[Sentence]:

@@ -19,7 +19,7 @@ PART = re.compile(
     r"^- (?P<says>.+?): \*\*(?P<verdict>.+)\*\*.*?\. (?P<measures>[^.]*?(?:\d\.\d[^.]*?)?)"
     r"(?: \(depends on the machine\))?: (?P<number>[\d.e+-]+ \[[^\]]+\]), asked: [^;]*; (?P<counted>.*)\.$"
 )
-SLICE = re.compile(r"^  Slice: (.+?)\.(?: Samples:.*)?$")
+CONDITIONS = re.compile(r"^  Conditions: (.+?)\.(?: Samples:.*)?$")
 OF_SCENE = re.compile(r"[:;] ([\w-]+) [\d.e+-]+ \(")
 NUMBER = re.compile(r"(?P<number>[\d.e+-]+ \[[\d.e+inf-]+, [\d.e+inf-]+\])")
 LAW = re.compile(
@@ -29,15 +29,15 @@ LAW = re.compile(
 )
 
 
-def _slice(below: list[str]) -> str:
+def _conditions(below: list[str]) -> str:
     """Theta, limit and the scenes, of the lines below a part."""
-    theta = next((found[1] for line in below if (found := SLICE.match(line))), "")
+    theta = next((found[1] for line in below if (found := CONDITIONS.match(line))), "")
     scenes = next((line for line in below if line.startswith("  By scene ")), "")
     return "; ".join(filter(None, [theta, ", ".join(OF_SCENE.findall(scenes))]))
 
 
 def _claims(text: str, page: str) -> Iterator[Statement]:
-    """Parts of results/CLAIMS.md, each with the line of its slice below it."""
+    """Parts of results/CLAIMS.md, each with the line of its conditions below it."""
     claim, evidence, lines = "", "exploratory", text.splitlines()
     for k, line in enumerate(lines):
         if line.startswith("## "):
@@ -48,7 +48,7 @@ def _claims(text: str, page: str) -> Iterator[Statement]:
             yield Statement(
                 f"{page}, {claim}, {evidence}",
                 found["measures"],
-                f"{_slice(lines[k + 1 : k + 3])}; {found['counted']}",
+                f"{_conditions(lines[k + 1 : k + 3])}; {found['counted']}",
                 found["number"],
                 found["verdict"].partition(":")[0].partition(" (")[0],
             )
