@@ -55,7 +55,7 @@ def _child(words: list[str], cwd: Path, environment: dict[str, str], files: tupl
 def forked(words: list[str], cwd: Path, environment: dict[str, str], timeout: float, limits: Callable[[], None] = lambda: None) -> subprocess.CompletedProcess:
     """As subprocess.run of python analysis WORDS, with nothing to read. Errors: TimeoutExpired."""
     with contextlib.suppress(UserError):
-        if (found := verbs.asked(words)) and getattr(found.row, "module", ""):
+        if (found := verbs.call_of(words)) and getattr(found.row, "module", ""):
             importlib.import_module(f"barrierbench_analysis.{found.row.module}")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, open(os.devnull) as nothing:
         with warnings.catch_warnings():

@@ -59,7 +59,7 @@ IN_THE_TREE = {"demo", "engine", "gate accept", "dev readme"}  # what they write
 
 
 def verb_of(words: str) -> str:
-    return verbs.asked(words.split()).row.name
+    return verbs.call_of(words.split()).row.name
 
 
 def test_every_verb_is_run_or_named():

@@ -74,7 +74,7 @@ def test_every_row_has_a_place_and_an_example_of_itself():
         assert verb.group in verbs.GROUPS and (not second or verb.group == headings[first].group)
         assert all(mode in verbs.MODES for mode, _ in verb.modes) and (not verb.modes or first == "study")
     for heading in headings.values():
-        assert f"./bench {heading.name}" in heading.example and verbs.asked(heading.example.split()[1:])
+        assert f"./bench {heading.name}" in heading.example and verbs.call_of(heading.example.split()[1:])
 
 
 @pytest.mark.parametrize("asked", ["-h", "--help"])
@@ -265,7 +265,7 @@ def test_a_kept_text_is_shown_with_the_names_now():
     (["study", "step-corpus", "page"], "study step-corpus", ["--table"]), (["study", "gpu-report", "page"], "study gpu-report", []),
     (["study", "claims", "plan", "K3"], "study claims", ["--plan", "K3"]), (["study", "claims", "--no-run"], "study claims", ["--no-run"]), (["study", "claims", "K3", "page"], "study claims", ["K3", "page"])])
 def test_which_row_a_command_line_is_for(words, name, rest):
-    asked = verbs.asked(words)
+    asked = verbs.call_of(words)
     assert (asked.row.name, asked.rest, asked.note) == (name, rest, "")
 
 
@@ -277,7 +277,7 @@ def test_a_mode_that_a_study_has_not_is_refused_by_name(words, allowed, capsys, 
     assert capsys.readouterr() == ("", f"bench: {verb}: found {mode!r}; allowed: {allowed}\n")
     monkeypatch.chdir(tmp_path)
     (tmp_path / mode).touch()
-    assert verbs.asked(words.split()).rest == [mode]  # a file of this name
+    assert verbs.call_of(words.split()).rest == [mode]  # a file of this name
 
 
 def test_every_mode_is_an_option_of_its_study(capfd):

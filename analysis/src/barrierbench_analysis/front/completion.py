@@ -2,7 +2,7 @@
 and files. For bash: eval "$(./bench completion bash)"; for zsh: eval "$(./bench completion zsh)".
 """
 
-from barrierbench_analysis.io.errors import tells
+from barrierbench_analysis.io.errors import reported
 from barrierbench_analysis.program import verbs
 from barrierbench_analysis.program.arguments import parser_of
 from barrierbench_analysis.program.verb_table import HEADINGS, Heading
@@ -109,7 +109,7 @@ def script(shell: str) -> str:
     return _filled(ZSH, 2, {"ROWS": "\n".join(map(_row, top)), "HEADINGS": "\n".join(headings), **modes})
 
 
-@tells("completion")
+@reported("completion")
 def main(argv: list[str]) -> int:
     parser = parser_of("completion", __doc__)
     parser.add_argument("shell", choices=("bash", "zsh"), metavar="bash|zsh")

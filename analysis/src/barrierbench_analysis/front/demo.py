@@ -10,7 +10,7 @@ import importlib
 import time
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.program.building import job_count, say
@@ -36,7 +36,7 @@ def run_all(out: Path, jobs: int) -> int:
     return failed
 
 
-@tells("demo")
+@reported("demo")
 def main(argv: list[str]) -> int:
     parser = parser_of("demo", __doc__, "./bench demo --jobs 1 --out results/runs/demo_again")
     text = """

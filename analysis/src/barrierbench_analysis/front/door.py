@@ -6,7 +6,7 @@ import sys
 import textwrap
 from typing import NoReturn
 
-from barrierbench_analysis.io.errors import TRY_AGAIN, UserError, tells
+from barrierbench_analysis.io.errors import TRY_AGAIN, UserError, reported
 from barrierbench_analysis.program import verbs
 from barrierbench_analysis.program.arguments import summary, text_width
 from barrierbench_analysis.program.start import RELEASE, become, built_program, require_program
@@ -95,7 +95,7 @@ def run(verb: verbs.Verb, arguments: list[str]) -> int:
         return building.of_script(verb.name, *arguments)
     os.environ.setdefault("BARRIERBENCH_PROGRAM", str(RELEASE))
     module = f"barrierbench_analysis.{verb.module}"  # even to load it may take a temporary file
-    return tells(verb.name)(lambda words: importlib.import_module(module).main(words))(
+    return reported(verb.name)(lambda words: importlib.import_module(module).main(words))(
         [verb.subject, *arguments] if verb.subject else arguments
     )
 
@@ -127,20 +127,20 @@ def _answer(arguments: list[str]) -> int:
         print(version())
         return 0
     if arguments[0] in HELP_WORDS and arguments[1:] not in OF_PROGRAM:
-        asked = verbs.asked(arguments[1:])
-        if asked and not asked.rest:
+        call = verbs.call_of(arguments[1:])
+        if call and not call.rest:
             arguments = [*arguments[1:], "--help"]
-        elif asked is None and arguments[0] in HELP and not arguments[1].startswith("-"):
+        elif call is None and arguments[0] in HELP and not arguments[1].startswith("-"):
             arguments = arguments[1:]  # the help of a word that is no verb
-    asked = verbs.asked(arguments)
-    if asked is None:
+    call = verbs.call_of(arguments)
+    if call is None:
         if not arguments[0].startswith("-"):
             raise UserError(
                 f"found {arguments[0]!r}; allowed: one of the verbs of ./bench"
                 f" help{verbs.nearest(arguments[0])}"
             )
         return become_program(arguments)
-    row, rest, note = asked
+    row, rest, note = call
     if note:
         print(f"bench: note: {note}", file=sys.stderr, flush=True)
     if isinstance(row, Heading):
@@ -178,9 +178,9 @@ def main(arguments: list[str]) -> int:
         print(f"bench: the standard output cannot be written: {error.strerror}", file=sys.stderr)
         return TRY_AGAIN
     except KeyboardInterrupt:
-        asked = verbs.asked(arguments) if arguments else None
+        call = verbs.call_of(arguments) if arguments else None
         print(
-            f"bench {asked.row.name if asked else arguments[0]}: interrupted; it may be called again",
+            f"bench {call.row.name if call else arguments[0]}: interrupted; it may be called again",
             file=sys.stderr,
         )
         return TRY_AGAIN

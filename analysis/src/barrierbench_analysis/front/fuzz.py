@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.io.whole_file import write_whole
@@ -128,7 +128,7 @@ def prepare(names: list[str]) -> None:
     )
 
 
-@tells("dev fuzz")
+@reported("dev fuzz")
 def main(argv: list[str]) -> int:
     parser = parser_of("dev fuzz", __doc__.split("\n\n", 1)[1])
     length = parser.add_mutually_exclusive_group()

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.building import build, folder, say, setup
 
@@ -48,7 +48,7 @@ def build_module() -> None:
     build("release", *MODULE, "barrierbench", options=options())
 
 
-@tells("dev python")
+@reported("dev python")
 def main(argv: list[str]) -> int:
     build_module()
     say(f"built: PYTHONPATH={os.path.relpath(module_folder())}")

@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
@@ -88,7 +88,7 @@ def prepare() -> int:
     return sum(name.endswith(".md") for name in names)
 
 
-@tells("dev site")
+@reported("dev site")
 def main(argv: list[str]) -> int:
     parser = parser_of("dev site", __doc__)
     parser.parse_args(argv)

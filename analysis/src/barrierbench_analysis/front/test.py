@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.building import build, folder, job_count, say, setup
 
@@ -133,7 +133,7 @@ def set_up(browser: bool) -> None:
             raise UserError(f"cannot install {file.relative_to(ROOT)}: is there a network?")
 
 
-@tells("test")
+@reported("test")
 def main(argv: list[str]) -> int:
     own = {word for word in argv if word in OWN}
     arguments = [word for word in argv if word not in OWN]

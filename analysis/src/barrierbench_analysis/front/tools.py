@@ -10,7 +10,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.building import build, folder, job_count, regenerate, say, setup
 from barrierbench_analysis.program.verb_table import HELP
@@ -106,4 +106,4 @@ VERBS |= {f"dev {verb.__name__}": verb for verb in (tidy, modules, mutate, micro
 
 def main(argv: list[str]) -> int:
     name, *words = argv
-    return tells(name)(VERBS[name])(words)
+    return reported(name)(VERBS[name])(words)

@@ -72,7 +72,7 @@ def text_of(error: UserError | OSError) -> str:
     return f"{error.filename or f'a temporary file ({_temporary()}) or a stream'}: {error.strerror}"
 
 
-def tells(verb: str) -> Callable:
+def reported(verb: str) -> Callable:
     """For `main(argv)` of a verb: an error of the user, or of a file, is printed on stderr; its code is the
     exit code.
     """

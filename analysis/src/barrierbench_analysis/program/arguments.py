@@ -22,7 +22,7 @@ def text_width() -> int:
 
 
 class Parser(argparse.ArgumentParser):
-    """A wrong argument is an error of the user like any other: `tells` reports it."""
+    """A wrong argument is an error of the user like any other: `reported` reports it."""
 
     takes_formula = False
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.whole_file import write_whole_bytes
 
 from .arguments import finite_number, parser_of
@@ -89,7 +89,7 @@ def solid_of(path: Path, edge: float | None) -> MeshArrays:
     return MeshArrays(points, surface.triangles[:0], surface.segments, tetrahedra)
 
 
-@tells("data mesh")
+@reported("data mesh")
 def main(argv: list[str]) -> int:
     options = parse(argv)
     if options.target.suffix.lower() != ".ply":

@@ -45,7 +45,7 @@ _TEXT = r'"((?:[^"\\]|\\.)*)"'
 _ROW = re.compile(rf"^BB_VERB\((\w+), (\w+), {_TEXT}, {_TEXT}, {_TEXT}\)$")
 
 
-class Asked(NamedTuple):
+class Call(NamedTuple):
     """What a command line is for."""
 
     row: Verb | Heading
@@ -118,26 +118,26 @@ def find(name: str, table: tuple[Verb, ...] = TABLE) -> Verb | None:
     return next((verb for verb in table if verb.name == name), None)
 
 
-def asked(words: list[str]) -> Asked | None:
+def call_of(words: list[str]) -> Call | None:
     """The row that the words begin with, by its name now or the one before; a heading where only its name or
     an option stands. None where they begin with none. Errors: UserError for a sub-command that is none.
     """
     rows, first, second = every(), words[0], words[1] if len(words) > 1 else ""
     if heading := next((one for one in HEADINGS if one.name == first), None):
         if verb := next((verb for verb in rows if verb.name == f"{first} {second}"), None):
-            return Asked(verb, _without_mode(verb, words[2:]))
+            return Call(verb, _without_mode(verb, words[2:]))
         if first == "study" and second.endswith(".json"):
             verb = of_spec(Path(second))
-            return Asked(verb, _without_mode(verb, words[2:]))
+            return Call(verb, _without_mode(verb, words[2:]))
         if len(words) > 1 and not second.startswith("-"):
             _refuse(heading, second)
         if heading.default and second not in ("-h", "--help"):
-            return asked([first, heading.default, *words[1:]])
-        return Asked(heading, words[1:])
+            return call_of([first, heading.default, *words[1:]])
+        return Call(heading, words[1:])
     if verb := next((verb for verb in rows if verb.name == first), None):
-        return Asked(verb, words[1:])
+        return Call(verb, words[1:])
     if verb := next((verb for verb in rows if verb.was == first), None):
-        return Asked(verb, words[1:], f'"{first}" is now "./bench {verb.name}"')
+        return Call(verb, words[1:], f'"{first}" is now "./bench {verb.name}"')
     return None
 
 

@@ -10,7 +10,7 @@ import math
 import subprocess
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on, tells
+from barrierbench_analysis.io.errors import UserError, passed_on, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import read_record, read_trace
 from barrierbench_analysis.io.text_table import aligned
@@ -209,7 +209,7 @@ def run_folder(
     return folder
 
 
-@tells("study causes")
+@reported("study causes")
 def main(words: list[str]) -> int:
     parser = parser_of("study causes", __doc__.split("\n\n", 1)[1])
     parser.add_argument(

@@ -5,7 +5,7 @@ data surface-gaps RUNS...
 import sys
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import tells
+from barrierbench_analysis.io.errors import reported
 from barrierbench_analysis.io.input_file import below
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.program.arguments import parser_of
@@ -68,7 +68,7 @@ def verdict(records: list[tuple[str, dict]]) -> tuple[str, list[str]]:
     )
 
 
-@tells("data surface-gaps")
+@reported("data surface-gaps")
 def main(arguments: list[str]) -> int:
     parser = parser_of("data surface-gaps")
     parser.add_argument(

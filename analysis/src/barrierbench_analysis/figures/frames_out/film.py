@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.program.arguments import options, parser_of, positive_number
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import Trajectory, has_cells
@@ -96,7 +96,7 @@ out OUT: a folder that is not there yet
     return parser.parse_args(argv)
 
 
-@tells("data film")
+@reported("data film")
 def main(argv: list[str]) -> int:
     arguments = parse(argv)
     source = read_trajectory(arguments.source)

@@ -20,7 +20,7 @@ from barrierbench_analysis.figures.surfaces.sequence import (
     triangles_of,
 )
 from barrierbench_analysis.figures.surfaces.uv_binding import bound_by_uv
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.program.arguments import (
     bicubic_argument,
     number_type,
@@ -181,7 +181,7 @@ def _check_together(given: argparse.Namespace) -> None:
         raise UserError(f"{option}: nothing is drawn finer; allowed: with --render-mesh or --subdivide")
 
 
-@tells("data frames")
+@reported("data frames")
 def main(argv: list[str]) -> int:
     given = parse(argv)
     _check_together(given)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_whole
@@ -104,7 +104,7 @@ def placed(text: str, row: str) -> str:
     return found.sub(lambda match: f"{match[1]}{row}\n{match[2]}", text, count=1)
 
 
-@tells("draw pictures")
+@reported("draw pictures")
 def main(argv: list[str]) -> int:
     parser = parser_of("draw pictures", __doc__)
     text = "--runs DIR: folder of the records (default: results/runs/pictures)"

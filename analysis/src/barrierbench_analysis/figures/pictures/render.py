@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from barrierbench_analysis.figures.captions import caption
-from barrierbench_analysis.io.errors import UserError, passed_on, tells
+from barrierbench_analysis.io.errors import UserError, passed_on, reported
 from barrierbench_analysis.io.frames import read_frame, scene_at, without_bodies
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.whole_file import write_whole, write_whole_bytes
@@ -106,7 +106,7 @@ def written(given: argparse.Namespace) -> Path:
     return render(given.run, given.step, given.out, look)
 
 
-@tells("draw still")
+@reported("draw still")
 def main(arguments: list[str]) -> int:
     print(written(parse(arguments)))
     return 0

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.figures.titles import broken
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import write_figure
 from barrierbench_analysis.program.arguments import finite_number, options, parser_of
@@ -73,7 +73,7 @@ def sheet(stills: list[Still], out: Path, columns: int) -> Path:
     return out
 
 
-@tells("draw sheet")
+@reported("draw sheet")
 def main(argv: list[str]) -> int:
     """0: drawn; 2: a run without a record or frames."""
     parser = parser_of("draw sheet", __doc__)

@@ -3,14 +3,14 @@
 
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import tells
+from barrierbench_analysis.io.errors import reported
 from barrierbench_analysis.program.arguments import options, parser_of
 from barrierbench_analysis.tables.archive import beside, is_archive, study
 
 from . import demo, newton_steps
 
 
-@tells("draw figures")
+@reported("draw figures")
 def main(argv: list[str]) -> int:
     parser = parser_of("draw figures")
     text = """

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from barrierbench_analysis.figures.figure_files import copy_to_page
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, passed_on, tells
+from barrierbench_analysis.io.errors import UserError, passed_on, reported
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of, plugin_argument
 from barrierbench_analysis.program.start import built_program, run_sweep
@@ -95,7 +95,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells("study claims")
+@reported("study claims")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.coverage:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from barrierbench_analysis.figures.pictures.film import Film, filmed, kept, opened
 from barrierbench_analysis.figures.surfaces.sequence import Run
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import (
     bicubic_argument,
@@ -133,7 +133,7 @@ runs RUN: folder of run.json; one or two
     return args
 
 
-@tells("draw player")
+@reported("draw player")
 def main(arguments: list[str]) -> int:
     args = parse(arguments)
     out = args.out or default_out(args.runs)

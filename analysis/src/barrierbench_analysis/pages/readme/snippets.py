@@ -123,12 +123,12 @@ def _test_fault(rest: list[str]) -> str:
 def _command_fault(words: list[str]) -> str:
     """Of `./bench VERB ...`; empty when it is well."""
     try:
-        asked = verbs.asked(words[1:])
+        call = verbs.call_of(words[1:])
     except UserError as error:
         return str(error)
-    if asked is None:
+    if call is None:
         return "" if words[1].startswith("-") else f"{words[1]}: no verb"
-    row, rest, note = asked
+    row, rest, note = call
     if note:
         return note
     if row.name == "test" and (fault := _test_fault(rest)):
@@ -151,8 +151,8 @@ def _command_fault(words: list[str]) -> str:
 
 
 def _config_fault(words: list[str]) -> str:
-    asked = verbs.asked(words[1:])
-    verb, files = asked.row.name if asked else "", [word for word in words[2:] if word.startswith("configs/")]
+    call = verbs.call_of(words[1:])
+    verb, files = call.row.name if call else "", [word for word in words[2:] if word.startswith("configs/")]
     if verb in CHECKED_CONFIG and files:
         if "--plugin" in words:
             return ""  # of a library that the lines before it build

@@ -10,7 +10,7 @@ import argparse
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.pages.reference import make as reference
@@ -113,7 +113,7 @@ def keep_demo(runs: Path) -> None:
     print(f"docs: {', '.join(copied) or 'no figure'}")
 
 
-@tells("dev readme")
+@reported("dev readme")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.write:

@@ -8,7 +8,7 @@ Exit codes: 0 written, 2 no record can be read, or the file cannot be written.
 
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, code_of, tells
+from barrierbench_analysis.io.errors import UserError, code_of, reported
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import count_from_0, options, parser_of
 from barrierbench_analysis.tables.archive import beside, study
@@ -59,7 +59,7 @@ def report_of_two(a: Folder, b: Folder, out: Path) -> str:
     return f"{diff_page.verdict(diff)[0].text}\n{out} ({out.stat().st_size / 1e6:.1f} MB)"
 
 
-@tells("report")
+@reported("report")
 def main(argv: list[str]) -> int:
     parser = parser_of("report", __doc__, "./bench report results/runs/before results/runs/after")
     text = f"""

@@ -4,7 +4,7 @@ import argparse
 import json
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.program.arguments import options, parser_of
 
 from .compiled import compiled, compiled_policy, signs_of
@@ -38,7 +38,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     return args
 
 
-@tells("formula")
+@reported("formula")
 def main(argv: list[str]) -> int:
     """0: a barrier; 2: none."""
     args = parse(argv)

@@ -9,7 +9,7 @@ Exit codes: 0 written, 2 no record below the folder, or the file cannot be writt
 import sys
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.input_file import below
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.program.arguments import parser_of
@@ -32,7 +32,7 @@ def inputs_outside(folder: Path) -> list[str]:
     return list(found)
 
 
-@tells("data archive")
+@reported("data archive")
 def main(argv: list[str]) -> int:
     parser = parser_of("data archive", __doc__, "./bench report strip.zip")
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="a folder with records below it")

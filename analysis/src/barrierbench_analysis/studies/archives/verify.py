@@ -16,7 +16,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.record_file import RecordError, leaves
 from barrierbench_analysis.io.text_table import fitted
 from barrierbench_analysis.program.arguments import count_from_0, parser_of
@@ -131,7 +131,7 @@ def report(held: Held, reruns: Counter, requested: int) -> int:
     return 1 if held.wrong or idle else 0
 
 
-@tells("verify")
+@reported("verify")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
     with study(args.study) as (root,):

@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.text_table import fitted
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
@@ -87,7 +87,7 @@ def _is_written(entry: Entry, file: Path, size: str) -> bool:
     raise UserError(f"--write: {file} is there, with other contents; allowed: a name that is free")
 
 
-@tells("scenes")
+@reported("scenes")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
     chosen = entries(args.names)

@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 from barrierbench_analysis.figures.plots.drawing import Drawing, Place
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import fitted
 from barrierbench_analysis.io.whole_file import check_folder
@@ -77,7 +77,7 @@ def draw(spec: Spec, quick: bool, place: Place, out: Path) -> list[Path]:
     return spec.kind.draw(subject, drawing)
 
 
-@tells("draw figure")
+@reported("draw figure")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.list:

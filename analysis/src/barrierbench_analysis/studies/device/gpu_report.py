@@ -13,7 +13,7 @@ import pandas as pd
 
 from barrierbench_analysis.figures import style
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.template import filled
@@ -99,7 +99,7 @@ def draw(records: list[dict], stem: Path) -> list[Path]:
     )
 
 
-@tells("study gpu-report")
+@reported("study gpu-report")
 def main(arguments: list[str]) -> int:
     parser = parser_of("study gpu-report", __doc__)
     parser.add_argument(

@@ -6,7 +6,7 @@ import shlex
 import sys
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import fitted
 from barrierbench_analysis.io.whole_file import write_whole
@@ -161,7 +161,7 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
     return OK
 
 
-@tells("engine")
+@reported("engine")
 def main(argv: list[str]) -> int:
     options = parse(argv)
     match options.words:

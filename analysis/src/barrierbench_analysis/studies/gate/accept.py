@@ -11,7 +11,7 @@ import datetime
 from dataclasses import replace
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.record_file import other_meanings
 from barrierbench_analysis.program.arguments import parser_of
 
@@ -166,7 +166,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
-@tells("gate accept")
+@reported("gate accept")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     how = args.reason, args.metric, args.better, args.drift

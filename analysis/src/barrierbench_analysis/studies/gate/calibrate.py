@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.arguments import parser_of
 
@@ -102,7 +102,7 @@ def calibrate_case(case: Case, out: Path, copies: int) -> Baseline:
     return proposal
 
 
-@tells("gate calibrate")
+@reported("gate calibrate")
 def main(argv: list[str]) -> int:
     parser = parser_of("gate calibrate", __doc__)
     set_argument(parser)

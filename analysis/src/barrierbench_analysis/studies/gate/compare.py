@@ -8,7 +8,7 @@ be compared.
 
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.program.arguments import parser_of
 from barrierbench_analysis.tables.archive import study
 
@@ -60,7 +60,7 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
     return findings + not_compared + judge.numbers(case, before, now, same_kind, new_verdict)
 
 
-@tells("gate compare")
+@reported("gate compare")
 def main(argv: list[str]) -> int:
     parser = parser_of("gate compare", __doc__)
     parser.add_argument(

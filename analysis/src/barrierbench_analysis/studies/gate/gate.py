@@ -10,7 +10,7 @@ import sys
 import time
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.program.arguments import parser_of
 
@@ -181,7 +181,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
-@tells("gate run")
+@reported("gate run")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.record:

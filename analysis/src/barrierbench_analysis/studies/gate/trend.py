@@ -15,7 +15,7 @@ from pathlib import Path
 from statistics import median
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.text_table import aligned
 from barrierbench_analysis.io.whole_file import append_line
 from barrierbench_analysis.program.arguments import parser_of
@@ -126,7 +126,7 @@ def steps(rows: list[dict]) -> tuple[list[Step], int]:
     return sorted(found, key=lambda s: -abs(s.after - s.before) / (abs(s.before) or 1.0)), looked
 
 
-@tells("gate trend")
+@reported("gate trend")
 def main(argv: list[str]) -> int:
     parser = parser_of("gate trend", __doc__)
     parser.add_argument("history", type=Path, help="file of ./bench gate --history")

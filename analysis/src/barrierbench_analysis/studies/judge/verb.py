@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.whole_file import check_can_be_written, write_whole
 from barrierbench_analysis.program.arguments import number_type, parser_of, positive_number
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
@@ -237,7 +237,7 @@ def summary(record: dict) -> str:
     return "\n".join([*lines, *(f"note: {note}" for note in record["notes"])])
 
 
-@tells("judge")
+@reported("judge")
 def main(argv: list[str]) -> int:
     options = parse(argv)
     record = judged(options) | {"command": shlex.join(["./bench", "judge", *argv])}

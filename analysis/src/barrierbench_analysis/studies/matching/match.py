@@ -13,7 +13,7 @@ import json
 from pathlib import Path
 
 from barrierbench_analysis.io.digests import of_text
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import aligned
@@ -200,7 +200,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells("study match")
+@reported("study match")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if not 0 < args.theta < 1:

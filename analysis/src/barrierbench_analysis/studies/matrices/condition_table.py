@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from barrierbench_analysis.io import input_file
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.input_file import below
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
@@ -196,7 +196,7 @@ def processor() -> str:
     return "unknown processor"
 
 
-@tells("study condition-table")
+@reported("study condition-table")
 def main(words: list[str]) -> int:
     parser = parser_of("study condition-table", __doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "results/CONDITION.md")

@@ -13,7 +13,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.spec_file import read_spec, require_names_once
@@ -152,7 +152,7 @@ def write_readme(out: Path) -> None:
     write_whole(out / "README.md", filled(PAGE, numbers))
 
 
-@tells("study matrix-corpus")
+@reported("study matrix-corpus")
 def main(argv: list[str]) -> int:
     parser = parser_of("study matrix-corpus")
     parser.add_argument("--spec", type=Path, default=ROOT / "configs/matrices/corpus.json")

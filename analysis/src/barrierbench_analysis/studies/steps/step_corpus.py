@@ -4,7 +4,7 @@ and docs/steps.png.
 
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, passed_on, tells
+from barrierbench_analysis.io.errors import UserError, passed_on, reported
 from barrierbench_analysis.io.json_file import read_of_schema
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import check_folder, write_whole
@@ -37,7 +37,7 @@ def write_page(results: Path) -> None:
     paint(record, (ROOT / "docs" if results.resolve() == RESULTS.resolve() else results) / "steps.png")
 
 
-@tells("study step-corpus")
+@reported("study step-corpus")
 def main(argv: list[str]) -> int:
     parser = parser_of("study step-corpus", DOC)
     parser.add_argument(

@@ -16,7 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.io.whole_file import write_whole
@@ -226,7 +226,7 @@ def measured(args: argparse.Namespace, x0, x1, faces) -> tuple[dict, float]:
     return answers, load
 
 
-@tells("study compare-toolkit")
+@reported("study compare-toolkit")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     try:

@@ -16,7 +16,7 @@ from pathlib import Path
 import pandas as pd
 
 from barrierbench_analysis.io.cases import has_list, read_cases, records_below
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.whole_file import write_whole, write_whole_bytes
 from barrierbench_analysis.program import processes
@@ -155,7 +155,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-@tells("data collect")
+@reported("data collect")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     _check_out(args.out)

@@ -22,7 +22,7 @@ from barrierbench_analysis.io.cases import (
     read_cases,
     sighted,
 )
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.record_file import RecordError, read_record
 from barrierbench_analysis.io.text_table import fitted
 from barrierbench_analysis.program.arguments import finite_number, parser_of
@@ -139,7 +139,7 @@ def watch(args: argparse.Namespace) -> int:
         time.sleep(args.every)
 
 
-@tells("status")
+@reported("status")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     if args.watch:

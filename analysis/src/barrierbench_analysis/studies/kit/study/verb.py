@@ -14,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.program.arguments import count_from_1, parser_of, plugin_argument, positive_number
 from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.program.verbs import of_spec
@@ -168,7 +168,7 @@ def _judged(study: Study, cells: list[Cell]) -> int:
 
 def main(argv: list[str]) -> int:
     """argv: the spec, and the options."""
-    return tells(of_spec(Path(argv[0])).name)(_main)(argv)
+    return reported(of_spec(Path(argv[0])).name)(_main)(argv)
 
 
 def _main(argv: list[str]) -> int:

@@ -8,7 +8,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, tells
+from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of
@@ -53,7 +53,7 @@ def study_of(of: Candidate, out: Path) -> Study:
     return replace(study, data={**study.data, "about": about, "plugins": plugins})
 
 
-@tells("study score")
+@reported("study score")
 def main(argv: list[str]) -> int:
     """0: scored; 2: nothing that can be scored."""
     args = _arguments(argv)
