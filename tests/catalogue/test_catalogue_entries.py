@@ -148,3 +148,16 @@ def test_a_house_has_the_cards_of_the_source_and_none_touches():
     points = [a + parts * (b - a) for a, b in cards]
     least = min(np.linalg.norm(p[:, None] - q[None], axis=2).min() for k, p in enumerate(points) for q in points[:k])
     assert 0.0009 < least < 0.0021 and min(p[:, 1].min() for p in points) > 0.0009
+
+
+def test_a_scene_that_expects_something_else_makes_other_cells(tmp_path, monkeypatch):
+    """A kept verdict is one on the expectations of its day."""
+    from barrierbench_analysis.studies.catalogue import cells as mini
+    from barrierbench_analysis.studies.catalogue.entry import Entry, read_entry
+
+    study = written(tmp_path / "a", "catalogue", ["drape"])
+    before = [cell.key for cell in study.cells]
+    entry = read_entry("drape")
+    other = Entry(entry.path, {**entry.data, "expect": entry.data["expect"][:1]})
+    monkeypatch.setattr(mini, "entries", lambda names: [other])
+    assert before and not set(before) & {cell.key for cell in written(tmp_path / "b", "catalogue", ["drape"]).cells}

@@ -1,6 +1,7 @@
 """Rules of studies on rows whose numbers are known."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -9,6 +10,7 @@ from barrierbench_analysis.studies.kit.study import page
 from barrierbench_analysis.studies.kit.study.spec import read_study
 from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.studies.rules import answer, drift
+from barrierbench_analysis.studies.rules.pareto import fronts
 
 NAMES = {"fixed_log": "fixed log", "fixed_cubic": "fixed cubic"}
 STUDY = SimpleNamespace(about={"reference": "fixed_log", "large": ["n4"], "names": NAMES})
@@ -88,3 +90,22 @@ def test_drift_is_the_largest_share_of_a_scene_whatever_its_sign():
     rows += [row("b", "n1", "fixed_log", "newton_stall", settled_J=1.0, end_J=0.1, newton=30.0, gap_min=0.3)]
     cells = drift.rule(study, rows)["table"].splitlines()[2].split(" | ")
     assert cells[1] == "4 of 5" and cells[2].startswith("0.02 [") and cells[3] == "0.3" and cells[4].startswith("15")
+
+
+def test_seconds_of_a_scene_on_two_machines_are_in_no_front():
+    rows = [row("a", "x", f, seconds=2.0) for f in NAMES] + [row("b", "x", f, build=f, seconds=2.0) for f in NAMES]
+    runs = fronts.Runs(rows, ("seconds",), "smallest")
+    assert [runs.value(one, "seconds") for one in rows] == [2.0, 2.0, None, None]
+
+
+def test_a_scene_with_a_row_of_another_build_has_no_seconds_and_names_both():
+    """Rows of before have no version of their record, rows of today have."""
+    study = read_study("work_precision")
+    rows = page.rows_of(study)
+    scene = next(iter(study.module.rule(study, rows)["scenes"]))
+    assert all(run["seconds"] for run in scene["rows"] if run["outcome"] == "ok")
+    first = next(k for k, one in enumerate(rows) if one.place["scene"] == scene["name"] and one.place["axis"] != "reference")
+    rows[first] = replace(rows[first], origin={**rows[first].origin, "build": "another", "version": "9"})
+    again = next(iter(study.module.rule(study, rows)["scenes"]))
+    assert not any(run["seconds"] for run in again["rows"]) and "another" in again["about"]["build"]
+    assert [run["newton"] for run in again["rows"]] == [run["newton"] for run in scene["rows"]]

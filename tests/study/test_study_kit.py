@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from barrierbench_analysis.io.cases import read_cases
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.studies.kit import alone
@@ -332,9 +333,14 @@ def page_rows(study):
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--plan", "--spot-check", "2"], "--spot-check: found beside --plan, which runs nothing; allowed: one of the"),
-        (["--no-run", "--spot-check", "2"], "--spot-check: found beside --no-run"),
+        (["--plan", "--spot-check", "2"], "--spot-check: found beside plan, which runs nothing; allowed: with run"),
+        (["--no-run", "--spot-check", "2"], "--spot-check: found beside page"),
+        (["--no-run", "--again"], "--again: found beside page"),
+        (["--plan", "--jobs", "2"], "--jobs: found beside plan"),
+        (["--plan", "--no-run"], "--plan: found beside --no-run"),
         (["--spot-check", "-1"], "--spot-check"),
+        (["--plugin", "none.so", "--out", "x"], "--plugin: found 'none.so', which is no file"),
+        (["--plugin", __file__], "--plugin: found without --out"),
     ],
 )
 def test_options_that_do_not_go_together_are_refused(tmp_path, words, text):
@@ -350,6 +356,49 @@ def test_cells_of_one_sweep_have_the_labels_alike_that_the_rule_names(tmp_path, 
     assert [[cell.label for cell in part] for part in parts][0] == ["strip a one 1", "strip a one 2"] and len(parts) == 4
 
 
+def test_rows_that_another_call_adds_meanwhile_stay(tmp_path, monkeypatch):
+    """The other call ends while the runs of this one are made."""
+    study = written(tmp_path)
+
+    def made(study, cells, jobs, again):
+        if cells[0] is study.cells[0]:
+            store.write_rows(store.file_of(study), {study.cells[1].key: row(study.cells[1], newton=9.0)})
+        return [row(cell) for cell in cells]
+
+    monkeypatch.setattr(verb, "run_cells", made)
+    assert verb.make_rows(study, study.cells[:1]) == 1
+    rows = store.read_rows(store.file_of(study))
+    assert len(rows) == 2 and rows[study.cells[1].key].values["newton"] == 9.0
+
+
+def test_again_leaves_cells_that_others_decide(tmp_path, rule_of_small):
+    study = written(tmp_path)
+    rule_of_small.decided = lambda study, rows: {study.cells[1].key: "ok"}
+    rows = {study.cells[0].key: row(study.cells[0])}
+    wanted = collect.wanted(study, rows, again=True)
+    assert study.cells[0] in wanted and study.cells[1] not in wanted and len(wanted) == 7
+    assert study.cells[1] in collect.wanted(study, rows, every=True, again=True)
+
+
+def test_a_call_that_judges_no_row_is_refused(tmp_path, rule_of_small):
+    study = written(tmp_path)
+    store.write_rows(store.file_of(study), {study.cells[0].key: row(study.cells[0])})
+    study.file.with_suffix(".md").write_text("{{ number }}")
+    rule_of_small.PARTIAL, rule_of_small.judged = True, lambda study, rows: ([], True)
+    with pytest.raises(UserError, match="small.rows.jsonl: found no row of 4 cells of the call"):
+        verb._main([str(study.file), "--no-run", "--only", "level=b"])
+    assert verb._main([str(study.file), "--no-run"]) == 0
+
+
+def test_a_call_of_some_cells_ends_well_without_a_page(tmp_path, monkeypatch, capsys):
+    """Of a study whose page needs every cell."""
+    study = written(tmp_path)
+    monkeypatch.setattr(verb, "run_cells", lambda study, cells, jobs, again: [row(cell) for cell in cells])
+    monkeypatch.setattr(verb, "built_program", lambda: None)
+    assert verb._main([str(study.file), "--only", "level=a"]) == 0 and not study.page.exists()
+    assert f"no page yet: 4 cells without a row; ./bench study {study.file} run goes on" in capsys.readouterr().out
+
+
 # --- what a call may run, and what it is expected to take
 
 
@@ -359,6 +408,7 @@ def test_a_call_runs_the_cells_of_its_labels_alone(tmp_path):
         "strip a one 1",
         "strip a two 1",
     ]
+    assert verb.chosen(study, ["level=a", "level=b"], None) == study.cells
     assert [cell.label for cell in verb.chosen(study, [], "quick")] == ["strip a one 1", "strip a one 2"]
     assert verb.chosen(study, [], None) == study.cells
 
@@ -525,7 +575,17 @@ def test_a_study_runs_what_is_missing_and_nothing_twice(tmp_path, monkeypatch, p
     assert json.loads((folder / "run.json").read_text())["ids"]["run_id"].startswith(before[cell.key].run)
     store.write_rows(store.file_of(study), {cell.key: row(cell)})
     assert verb.make_rows(study, [cell]) == 0 and verb.make_rows(study, [cell], again=True) == 1
-    assert store.read_rows(store.file_of(study))[cell.key] == before[cell.key]
+    again = store.read_rows(store.file_of(study))[cell.key]
+    assert again.values == before[cell.key].values and again.run == before[cell.key].run
+    record, made = folder / "run.json", (folder / "run.json").stat().st_mtime_ns
+    assert verb.make_rows(study, [cell], again=True) == 1 and verb.make_rows(study, [cell]) == 0
+    assert (folder.parent.parent / folder.parent.name).is_dir() and record.is_file()
+    (alone,) = {path.parent for path in (tmp_path / "runs").rglob("run.json") if len(read_cases(path.parents[1])) == 1}
+    assert alone != folder  # the one cell is a sweep of its own, which --again runs once more
+    first = (alone / "run.json").stat().st_mtime_ns
+    assert verb.make_rows(study, [cell], again=True) == 1 and (alone / "run.json").stat().st_mtime_ns > first > made
+    for sweep in {path.parents[1] for path in (tmp_path / "runs").rglob("run.json")}:  # each by itself is whole
+        assert len(read_cases(sweep)) == len(list(sweep.glob("*/run.json")))
     brief = written(tmp_path, seeds=[1], run_s=1e-9, set={"/threads": 1, "/time/steps": 4})
     assert collect.folders(brief, brief.cells) == {}
     assert verb.make_rows(brief, brief.cells[:1]) == 1

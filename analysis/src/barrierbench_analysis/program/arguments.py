@@ -64,12 +64,15 @@ class Parser(argparse.ArgumentParser):
 def options(parser: argparse.ArgumentParser, text: str, **kinds) -> None:
     """Arguments as lines `NAME METAVAR: help`, each with the lines below it that are indented. kinds: of each
     by its name a type, what it may be (a tuple, list or range), or what add_argument takes; an option without
-    either, and without a metavar, is true where it is there.
+    either, and without a metavar, is true where it is there. Errors: ValueError for the kind of no option.
     """
+    unused = set(kinds)
     for line in re.split(r"\n(?=\S)", text.strip()):
         head, _, words = " ".join(line.split()).partition(": ")
         name, *metavar = head.split()
-        kind = kinds.get(name.lstrip("-").replace("-", "_"), {})
+        key = name.lstrip("-").replace("-", "_")
+        unused.discard(key)
+        kind = kinds.get(key, {})
         if isinstance(kind, (tuple, list, range)):
             kind = {"choices": kind}
         how = kind if isinstance(kind, dict) else {"type": kind}
@@ -77,7 +80,11 @@ def options(parser: argparse.ArgumentParser, text: str, **kinds) -> None:
             how = {"metavar": metavar[0] if len(metavar) == 1 else tuple(metavar)} | how
         elif not how and name.startswith("-"):
             how = {"action": "store_true"}
-        parser.add_argument(name, help=words or None, **how)
+        parser.add_argument(name, help=words.replace("%", "%%") or None, **how)
+    if unused:
+        raise ValueError(
+            f"options: found kinds of {', '.join(sorted(unused))}; allowed: of an option of the text"
+        )
 
 
 def _kept_lines(text: str) -> str:
@@ -86,7 +93,7 @@ def _kept_lines(text: str) -> str:
 
 def summary(row: verbs.Verb | Heading) -> str:
     """What its row says: what it does, in at most three lines of WIDTH, and an example."""
-    sentence = row.help[0].upper() + row.help[1:] + ("" if row.help.endswith("?") else ".")
+    sentence = row.help[0].upper() + row.help[1:] + ("" if row.help.endswith(("?", ".")) else ".")
     about = textwrap.fill(sentence, max(text_width(), 20))
     return f"{about}\n\nexample:\n  {row.example}"
 

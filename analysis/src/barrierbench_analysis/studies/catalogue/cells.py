@@ -17,4 +17,5 @@ def cells(study: Study, more: Callable[[Entry], dict] = lambda entry: {}) -> Ite
         }
         own |= study.data.get("set", {}) | more(entry)
         for case in product(study):
-            yield Case({"scene": entry.name, **case.place}, own | case.settings)
+            place, expect = {"scene": entry.name, **case.place}, {"expect": entry.data["expect"]}
+            yield Case(place, own | case.settings, against=expect)

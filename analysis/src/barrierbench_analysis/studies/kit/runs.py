@@ -128,15 +128,16 @@ def run(
     overrides: list[str] | None = None,
     plugins: list[str] | None = None,
     jobs: int = 1,
+    again: bool = False,
 ) -> None:
     """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file, so many runs at a
-    time. Errors: UserError with the first line of what the program said; input that it refuses leaves
-    nothing.
+    time. again: runs also what has a record. Errors: UserError with the first line of what the program said;
+    input that it refuses leaves nothing.
     """
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / f"{made.name}.json"
         file.write_text(made.text)
-        words = ["--progress", "none", "--jobs", str(jobs)]
+        words = ["--progress", "none", "--jobs", str(jobs), *(["--again"] if again else [])]
         for override in overrides or []:
             words += ["--set", override]
         done = run_sweep(file, out, *words, plugins=plugins or [])

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.spec import Study
-from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.studies.kit.study.store import Row, timed_alike
 from barrierbench_analysis.tables.answer import when_to_use
 from barrierbench_analysis.tables.estimate import Cells, wilson
 from barrierbench_analysis.tables.outcomes import OK
@@ -73,10 +73,7 @@ def _ratio(rows: list[Row], reference: dict[tuple, Row], metric: str) -> Ratio |
         other = reference.get(_run(row))
         if other is None or row.outcome != OK or other.outcome != OK:
             continue
-        if metric == "seconds" and (row.origin["build"], row.origin["machine"]) != (
-            other.origin["build"],
-            other.origin["machine"],
-        ):
+        if metric == "seconds" and not timed_alike([row, other]):
             continue
         over, under = row.values[metric], other.values[metric]
         if over and under:

@@ -1,14 +1,17 @@
 """Runs what a study lacks, and makes rows of the records."""
 
 import re
+import shutil
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from itertools import chain, groupby
 from pathlib import Path
 
+from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.origin import ONE_THREAD, run_of, seconds_of_run, stamp
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.studies.kit import alone, runs
 from barrierbench_analysis.tables.numbers import rounded
 from barrierbench_analysis.tables.outcomes import outcome_of
@@ -53,6 +56,14 @@ def missing(study: Study, rows: dict[str, store.Row], every: bool = False) -> li
     `every` cell is wanted."""
     there = {*current(study, rows), *(() if every else decided(study, rows))}
     return [cell for cell in study.cells if cell.key not in there]
+
+
+def wanted(study: Study, rows: dict[str, store.Row], every: bool = False, again: bool = False) -> list[Cell]:
+    """The cells that a call without --only would run. every: also those that others decide; again: also
+    those that have a row.
+    """
+    keys = {cell.key for cell in missing(study, rows, every)} | ({*rows} if again else set())
+    return [cell for cell in study.cells if cell.key in keys]
 
 
 def _at(record: dict, pointer: str) -> float | str | None:
@@ -111,8 +122,13 @@ def parts(study: Study, cells: list[Cell]) -> Iterator[list[Cell]]:
 
 
 def folder_of(study: Study) -> Path:
-    """Of the records of a study."""
+    """Of the sweeps of a study, each in a folder of its own."""
     return study.out / "runs" if study.out else RUNS / study.name
+
+
+def _folder(study: Study, cells: list[Cell]) -> Path:
+    """Of the records of these cells as one sweep."""
+    return folder_of(study) / of_text(" ".join(cell.key for cell in cells))[:KEY_DIGITS]
 
 
 def sweep_of(study: Study, cells: list[Cell]) -> runs.Sweep:
@@ -126,11 +142,11 @@ def sweep_of(study: Study, cells: list[Cell]) -> runs.Sweep:
 
 
 def folders(study: Study, cells: list[Cell]) -> dict[str, Path]:
-    """key -> folder of the run, of those of these cells of one base whose records are there. Errors: as
-    records_in."""
-    made = sweep_of(study, cells)
-    found = runs.records_in([folder_of(study)], made.notes)
-    return {cell.key: found[note][1] for cell, note in zip(cells, made.notes, strict=True) if note in found}
+    """key -> folder of the run, of those of these cells whose records are there, in whatever sweep."""
+    notes = dict(zip(sweep_of(study, cells).notes, (cell.key for cell in cells), strict=True))
+    paths = sorted(folder_of(study).glob("*/*/run.json"))
+    found = {read_record(path)["labels"].get("note", ""): path.parent for path in paths}
+    return {key: found[note] for note, key in notes.items() if note in found}
 
 
 def run_each(study: Study, cells: list[Cell], folder: Path, jobs: int, limit_s: float) -> list[store.Row]:
@@ -146,20 +162,22 @@ def run_each(study: Study, cells: list[Cell], folder: Path, jobs: int, limit_s: 
         return list(pool.map(one, cells))
 
 
-def run_cells(study: Study, cells: list[Cell], jobs: int = 1) -> list[store.Row]:
+def run_cells(study: Study, cells: list[Cell], jobs: int = 1, again: bool = False) -> list[store.Row]:
     """Runs these cells of one base as one sweep, so many at a time, with those of the same base whose runs
     they are measured with (function `needs` of the rule: study, cell -> cells), or as the function `run` of
-    the rule (study, cells, folder, jobs) does. Runs whose records are there already are not repeated. Errors:
-    UserError. Cost: the runs.
+    the rule (study, cells, folder, jobs) does. Runs whose records are there already are not repeated, unless
+    `again`. Errors: UserError. Cost: the runs.
     """
-    out = folder_of(study)
     if hasattr(study.module, "run"):
+        out = folder_of(study)
+        for cell in cells if again else []:
+            shutil.rmtree(out / cell.key[:KEY_DIGITS], ignore_errors=True)
         return study.module.run(study, cells, out, jobs)
     needs = getattr(study.module, "needs", lambda *_: [])
     others = {cell.key: needs(study, cell) for cell in cells}
     every = {cell.key: cell for cell in chain(*others.values(), cells)}
-    made = sweep_of(study, list(every.values()))
-    runs.run(made, out, plugins=study.plugins, jobs=jobs)
+    made, out = sweep_of(study, list(every.values())), _folder(study, cells)
+    runs.run(made, out, plugins=study.plugins, jobs=jobs, again=again)
     found = runs.collect(made, out)
     records = {key: found[note] for key, note in zip(every, made.notes, strict=True)}
     return [

@@ -8,7 +8,7 @@ from barrierbench_analysis.tables.statistics import slope
 from barrierbench_analysis.tables.words import counted
 
 from . import store
-from .collect import current, left_out, missing
+from .collect import current, left_out, wanted
 from .spec import SEED, Cell, Study
 
 # The power of the unknowns by which seconds grow where kept rows do not tell: a cloth of 192 to 2,352
@@ -46,8 +46,9 @@ def expected(cell: Cell, rows: list[store.Row], power: float) -> float | None:
         far = abs(math.log(row.unknowns / size)) if cell.unknowns else 0.0
         return round(far, 6), sum(row.place[name] != word for name, word in cell.place.items())
 
-    near = min(map(distance, rows))
-    chosen = [row for row in rows if distance(row) == near]
+    far = [distance(row) for row in rows]
+    near = min(far)
+    chosen = [row for row, one in zip(rows, far, strict=True) if one == near]
     grown = [row.seconds * ((size / row.unknowns) ** power if cell.unknowns else 1.0) for row in chosen]
     return sum(grown) / len(grown)
 
@@ -70,18 +71,20 @@ def in_lines(
     return lines
 
 
-def plan(study: Study, rows: dict[str, store.Row], chosen: list[Cell], every: bool = False) -> list[str]:
+def plan(
+    study: Study, rows: dict[str, store.Row], chosen: list[Cell], every: bool = False, again: bool = False
+) -> list[str]:
     """Lines: cells, those with a row, those that need none, and what the rest takes as far as rows tell.
-    chosen: the cells that a call would run, all that are missing or some of them. every: as missing().
+    chosen: the cells of the call. every, again: as wanted().
     """
-    lacking = {cell.key for cell in missing(study, rows, every)}
+    to_run = {cell.key for cell in wanted(study, rows, every, again)}
     kept = [
         replace(row, place=cell.place)
         for cell in study.cells
         if (row := rows.get(cell.key)) and row.seconds is not None
     ]
     power = growth(kept)
-    seconds = [expected(cell, kept, power) for cell in chosen if cell.key in lacking]
+    seconds = [expected(cell, kept, power) for cell in chosen if cell.key in to_run]
     decided = 0 if every else len(left_out(study, rows))
     there = len(current(study, rows))
     return in_lines(study.name, store.file_of(study), len(study.cells), there, seconds, decided)

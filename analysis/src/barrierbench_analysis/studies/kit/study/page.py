@@ -26,7 +26,7 @@ def rows_of(study: Study, file: Path | None = None) -> list[store.Row]:
     if lacking and not getattr(study.module, "PARTIAL", False):
         raise UserError(
             f"{file or store.file_of(study)}: {counted(len(lacking), 'cell')} of {len(study.cells)} without a"
-            f" row, the first {lacking[0].label!r}; {study.command} run makes them"
+            f" row, the first {lacking[0].label!r}; {study.call('run')} makes them"
         )
     return [replace(there[cell.key], place=cell.place) for cell in study.cells if cell.key in there]
 
@@ -35,7 +35,7 @@ def _some(study: Study) -> list[store.Row]:
     """As rows_of. Errors: UserError where there is none."""
     if rows := rows_of(study):
         return rows
-    raise UserError(f"{store.file_of(study)}: found no row; {study.command} run makes them")
+    raise UserError(f"{store.file_of(study)}: found no row; {study.call('run')} makes them")
 
 
 def numbers_of(study: Study) -> dict:
@@ -70,7 +70,7 @@ def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
         "name": study.name,
         "question": study.data["question"],
         "made": made_of(rows),
-        "command": f"{study.command} run",
+        "command": study.call("run"),
         "spec": study.file.name,
         "pictures": os.path.relpath(study.figures, study.page.parent),
         "checks": checks_of(study, rows),
@@ -83,9 +83,9 @@ def write_page(study: Study) -> Path:
     study, rows, numbers, folder -> files). Errors: UserError.
     """
     rows = _some(study)
-    numbers = study.module.rule(study, rows)
-    write_whole(study.page, text_of(study, rows, numbers))
     if hasattr(study.module, "draw"):
+        numbers = study.module.rule(study, rows)
         with tempfile.TemporaryDirectory() as scratch:
             copy_to_page(study.module.draw(study, rows, numbers, Path(scratch)), study.figures)
+    write_whole(study.page, text_of(study, rows, study.module.rule(study, rows)))  # it sees the figures
     return study.page

@@ -115,6 +115,11 @@ class Study:
         is_named = self.file.parent.resolve() == FOLDER
         return f"./bench study {self.name.replace('_', '-') if is_named else self.file}"
 
+    def call(self, mode: str) -> str:
+        """The command of a mode, with what names another folder or more plugins."""
+        more = "".join(f" --plugin {plugin}" for plugin in self.more_plugins)
+        return f"{self.command} {mode}" + (f" --out {self.out}" if self.out else "") + more
+
     @property
     def rule(self) -> str:
         return self.data.get("rule", self.name)

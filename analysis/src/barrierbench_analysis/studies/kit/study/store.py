@@ -4,6 +4,7 @@ elsewhere than it did. Rows share (io/shared_rows.py) the names of their axes, w
 and what made them.
 """
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -38,6 +39,11 @@ class Row:
     @property
     def shared(self) -> dict:
         return {"axes": list(self.place), "sources": self.sources, "origin": self.origin}
+
+
+def timed_alike(rows: Iterable[Row]) -> bool:
+    """Whether all rows are of one machine and one build, so that their seconds may be compared."""
+    return len({(row.origin["machine"], row.origin["build"]) for row in rows}) == 1
 
 
 def file_of(study: Study) -> Path:

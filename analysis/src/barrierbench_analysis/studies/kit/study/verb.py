@@ -15,13 +15,14 @@ import time
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, reported
+from barrierbench_analysis.io.whole_file import alone
 from barrierbench_analysis.program.arguments import count_from_1, parser_of, plugin_argument, positive_number
 from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.program.verbs import of_spec
 from barrierbench_analysis.tables.words import counted
 
 from . import cost, page, store
-from .collect import left_out, missing, parts, run_cells
+from .collect import left_out, missing, parts, run_cells, wanted
 from .spec import Cell, Study, read_study
 
 
@@ -32,7 +33,7 @@ def which_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="AXIS=LABEL[,LABEL]",
-        help="runs the cells with one of these labels on the axis alone; several times: on all of them",
+        help="runs the cells with one of these labels on the axis alone; of several axes: on all of them",
     )
     parser.add_argument(
         "--part", metavar="NAME", help="runs no more than the part of the spec with this name (key `parts`)"
@@ -74,10 +75,27 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     )
     plugin_argument(parser)
     args = parser.parse_args(argv[1:])
-    if args.spot_check and (args.plan or args.no_run):
-        mode = "--plan" if args.plan else "--no-run"
-        raise UserError(f"--spot-check: found beside {mode}, which runs nothing; allowed: one of the two")
+    _check_mode(parser, args)
     return args
+
+
+def _check_mode(parser: argparse.ArgumentParser, args: argparse.Namespace) -> None:
+    """Errors: UserError for an option of `run` beside a mode that runs nothing, which it would not change,
+    and for plugins where rows of this tree would be written.
+    """
+    if args.plan and args.no_run:
+        raise UserError("--plan: found beside --no-run; allowed: one of the two")
+    mode = "plan" if args.plan else "page" if args.no_run else ""
+    of_run = ["minutes", "jobs", "spot_check", "seed", *(["again", "decided"] if mode == "page" else [])]
+    for name in of_run if mode else []:
+        if getattr(args, name) != parser.get_default(name):
+            word = f"--{name.replace('_', '-')}"
+            raise UserError(f"{word}: found beside {mode}, which runs nothing; allowed: with run")
+    for plugin in args.plugin:
+        if not Path(plugin).is_file():
+            raise UserError(f"--plugin: found {plugin!r}, which is no file; allowed: a shared library")
+    if args.plugin and not args.out:
+        raise UserError("--plugin: found without --out; allowed: with a folder for what is made with it")
 
 
 def _asked(texts: list[str]) -> dict[str, list[str]]:
@@ -87,7 +105,7 @@ def _asked(texts: list[str]) -> dict[str, list[str]]:
         axis, equals, labels = text.partition("=")
         if not axis or not equals or not labels:
             raise UserError(f"--only: found {text!r}; allowed: AXIS=LABEL, several labels with commas")
-        found[axis] = labels.split(",")
+        found.setdefault(axis, []).extend(labels.split(","))
     return found
 
 
@@ -125,21 +143,24 @@ def make_rows(
     again: bool = False,
 ) -> int:
     """Runs what is missing of the cells, all without any, and keeps it, a sweep at a time. Returns how many
-    runs were made. every: also those that others decide. again: also those that have a row, unless their
-    records are there.
+    runs were made. every: also those that others decide. again: also those that have a row, whose records
+    may be there.
     """
     file, begun, made = store.file_of(study), time.monotonic(), 0
     rows = store.read_rows(file)
     keys = {cell.key for cell in (study.cells if cells is None else cells)}
-    lacking = [cell for cell in (study.cells if again else missing(study, rows, every)) if cell.key in keys]
+    lacking = [cell for cell in wanted(study, rows, every, again) if cell.key in keys]
+    there = {*rows} if again else set()
     for part in parts(study, lacking):
         if minutes is not None and time.monotonic() - begun > 60 * minutes:
             break
         left = {cell.key for cell in missing(study, rows, every)}  # fewer, where new rows decide others
-        if not (part := [cell for cell in part if again or cell.key in left]):
+        if not (part := [cell for cell in part if cell.key in left | there]):
             continue
-        rows = store.added(rows, run_cells(study, part, jobs), replace=True)  # rows without a value of today
-        store.write_rows(file, rows)
+        new = run_cells(study, part, jobs, again)
+        with alone(file):  # other calls may have added rows meanwhile
+            rows = store.added(store.read_rows(file), new, replace=True)  # rows without a value of today
+            store.write_rows(file, rows)
         made += len(part)
         print(f"{study.name}: {made} of {len(lacking)} runs", file=sys.stderr)
     return made
@@ -156,13 +177,25 @@ def spot_check(study: Study, cells: list[Cell], most: int, seed: int, jobs: int 
     return make_rows(study, sample, jobs, every=True)
 
 
-def _judged(study: Study, cells: list[Cell]) -> int:
-    """The exit code: 0 where the rule judges nothing (function `judged`), or its cells pass."""
+def _judged(study: Study, cells: list[Cell], new: int | None) -> int:
+    """The exit code: 0 where the rule judges nothing (function `judged`), or its cells pass. new: how many
+    rows the call made. Errors: UserError where no cell of the call has a row.
+    """
     if not hasattr(study.module, "judged"):
         return 0
     keys = {cell.key for cell in cells}
-    lines, passed = study.module.judged(study, [row for row in page.rows_of(study) if row.key in keys])
+    rows = [row for row in page.rows_of(study) if row.key in keys]
+    if not rows:
+        raise UserError(
+            f"{store.file_of(study)}: found no row of {counted(len(cells), 'cell')} of the call; allowed:"
+            f" some; {study.call('run')} makes them"
+        )
+    lines, passed = study.module.judged(study, rows)
     print("\n".join(lines))
+    if without := len(cells) - len(rows):
+        print(f"{counted(without, 'cell')} of the call without a row: not judged")
+    if new == 0:
+        print("no run was made: kept rows were judged; --again makes them with this build")
     return 0 if passed else 1
 
 
@@ -177,14 +210,24 @@ def _main(argv: list[str]) -> int:
     cells = chosen(study, args.only, args.part)
     file = store.file_of(study)
     if args.plan:
-        print("\n".join(cost.plan(study, store.read_rows(file), cells, args.decided)))
+        print("\n".join(cost.plan(study, store.read_rows(file), cells, args.decided, args.again)))
         return 0
-    if not args.no_run:
-        built_program()
-        made = make_rows(study, cells, args.jobs, args.minutes, args.decided, args.again)
-        if args.spot_check:
-            made += spot_check(study, cells, args.spot_check, args.seed, args.jobs)
-        left = len(missing(study, store.read_rows(file), args.decided))
-        print(f"{study.name}: {counted(made, 'new row')} in {file.name}, {left} to run")
+    made = None if args.no_run else _made(study, cells, args)
+    left = len(missing(study, store.read_rows(file), args.decided))
+    if made and left and not getattr(study.module, "PARTIAL", False):
+        print(f"no page yet: {counted(left, 'cell')} without a row; {study.call('run')} goes on")
+        return 0
     print(page.write_page(study))
-    return _judged(study, cells)
+    return _judged(study, cells, made)
+
+
+def _made(study: Study, cells: list[Cell], args: argparse.Namespace) -> int:
+    """Runs what a call wants, and says how many rows it made and how many cells are left."""
+    built_program()
+    made = make_rows(study, cells, args.jobs, args.minutes, args.decided, args.again)
+    if args.spot_check:
+        made += spot_check(study, cells, args.spot_check, args.seed, args.jobs)
+    file = store.file_of(study)
+    left = len(missing(study, store.read_rows(file), args.decided))
+    print(f"{study.name}: {counted(made, 'new row')} in {file.name}, {left} to run")
+    return made

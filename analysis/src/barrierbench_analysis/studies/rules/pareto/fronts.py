@@ -7,7 +7,7 @@ from functools import cached_property
 
 from barrierbench_analysis.studies.kit.formulations import REFERENCE
 from barrierbench_analysis.studies.kit.front import Point, log_ratio, reached, segments, value_at
-from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.studies.kit.study.store import Row, timed_alike
 from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import Ratio, ratio_over, spread
 
@@ -60,8 +60,19 @@ class Runs:
         """None where a run failed, or was never in contact at a step end."""
         return row.values["gap"] if row.outcome == OK else None
 
+    @cached_property
+    def _timed(self) -> set[str]:
+        """Scenes whose runs are of one machine and build."""
+        return {
+            scene
+            for scene in self.scenes
+            if timed_alike(row for row in self.rows if row.place["scene"] == scene)
+        }
+
     def value(self, row: Row, name: str) -> float | None:
-        """Of a metric, or of `scale`."""
+        """Of a metric, or of `scale`. No seconds in a scene whose runs are of several machines or builds."""
+        if name == "seconds" and row.place["scene"] not in self._timed:
+            return None
         return self.scale(row) if name == "scale" else row.values[name]
 
     def of(self, scene: str, formulation: str) -> list[Row]:

@@ -7,7 +7,7 @@ import os
 
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.text_table import markdown
-from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.studies.kit.study.store import Row, timed_alike
 from barrierbench_analysis.tables.accuracy.errors import MEANING
 from barrierbench_analysis.tables.accuracy.reference import CLOSED_FORMS
 from barrierbench_analysis.tables.numbers import whole
@@ -37,13 +37,15 @@ def _references(scene: Scene, rows: list[Row]) -> list[dict]:
 
 
 def _about(rows: list[Row]) -> dict:
-    origin = {key: ", ".join(sorted({row.origin[key] for row in rows})) for key in rows[0].origin}
+    keys = ("date", "machine", "commit", "build")
+    origin = {key: ", ".join(sorted({row.origin[key] for row in rows})) for key in keys}
     seconds = round(sum(row.seconds for row in rows), 1)
     return {"unknowns": rows[0].unknowns, "seconds": seconds, "runs": len(rows), **origin}
 
 
-def _run(scene: Scene, row: Row) -> dict:
-    return {
+def _run(scene: Scene, row: Row, is_timed: bool) -> dict:
+    """is_timed: whether its seconds may be compared with those of the other runs of the scene."""
+    found = {
         **{name: row.place[name] for name in ("formulation", "axis", "solver")},
         "factor": float(row.place["factor"]),
         "outcome": row.outcome,
@@ -51,12 +53,15 @@ def _run(scene: Scene, row: Row) -> dict:
         **{cost: row.values[cost] for cost in judge.COSTS},
         "run": row.run,
     }
+    return found if is_timed else found | {"seconds": None}
 
 
 def scene_of(scene: Scene, rows: list[Row]) -> dict:
     """What is judged and drawn of a scene: reference, band, targets, one row a run."""
     mine = [row for row in rows if row.place["scene"] == scene.name]
     refined = [row for row in mine if row.place["axis"] == REFERENCE]
+    others = [row for row in mine if row.place["axis"] != REFERENCE]
+    is_timed = timed_alike(others)
     return {
         "name": scene.name,
         "base": os.path.relpath(scene.base, ROOT),
@@ -66,7 +71,7 @@ def scene_of(scene: Scene, rows: list[Row]) -> dict:
         "duration_s": scene.duration_s,
         "references": _references(scene, refined),
         "about": _about(mine),
-        "rows": [_run(scene, row) for row in mine if row.place["axis"] != REFERENCE],
+        "rows": [_run(scene, row, is_timed) for row in others],
     }
 
 
