@@ -79,7 +79,7 @@ def test_jittered_starts_pass_and_are_kept(tmp_path, capsys):
     assert capsys.readouterr().out.count("2/2") == 2
     assert "| domino | log | 2 of 2 | 5e-05 | |" in study.page.read_text() and "4 runs of 2 of 32 scenes" in study.page.read_text()
     assert {row.outcome for row in page.rows_of(study)} == {"ok", "initial_intersection"}
-    starts = {json.loads(file.read_text())["summary"]["state_hash"] for file in (tmp_path / "runs").glob("domino*/run.json")}
+    starts = {json.loads(file.read_text())["summary"]["state_hash"] for file in (tmp_path / "runs").glob("*/domino*/run.json")}
     assert len(starts) == 2  # the seeds differ
 
 

@@ -154,8 +154,8 @@ def test_a_study_of_made_records(monkeypatch, tmp_path, capsys):
     assert "20 new rows in made.rows.jsonl" in capsys.readouterr().out
     text, kept = (out / "made.page.md").read_text(), (out / "made.rows.jsonl").read_bytes()
     assert "x0.01: 1 stall_overload" in text and "(equal_force, theta 0.2), from 2 jittered starts" in text and "![cost against reached gap](./made_block.png)" in text
-    assert (out / "made_block.png").stat().st_size > 10000 and len(list((out / "runs").glob("*/run.json"))) == 20
-    for record in (out / "runs").glob("*/run.json"):
+    assert (out / "made_block.png").stat().st_size > 10000 and len(list((out / "runs").glob("*/*/run.json"))) == 20
+    for record in (out / "runs").glob("*/*/run.json"):
         record.unlink()
     assert verb.main([*words, "--no-run"]) == 0  # from the kept numbers alone
     assert (out / "made.page.md").read_text() == text and (out / "made.rows.jsonl").read_bytes() == kept

@@ -113,7 +113,7 @@ def test_bad_numbers_are_named(run, draw_no_more, tmp_path, capsys):
     assert run(**small) == 0
     rows = tmp_path / "spec.rows.jsonl"
     rows.unlink()
-    frame = next((tmp_path / "runs").glob("spec/stack_log_anchor_1_direct*/frames/step_000020.ply"))
+    frame = next((tmp_path / "runs").glob("spec/*/stack_log_anchor_1_direct*/frames/step_000020.ply"))
     good = frame.read_bytes()
     frame.write_bytes(good.replace(good[good.index(b"end_header\n") + 11:][:8], b"\x00\x00\x00\x00\x00\x00\xf8\x7f", 1))
     assert run(**small) == 2 and "step_000020.ply: found sha256" in capsys.readouterr().err  # a frame of other content

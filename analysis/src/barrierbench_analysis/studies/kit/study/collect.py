@@ -13,6 +13,7 @@ from barrierbench_analysis.io.origin import ONE_THREAD, run_of, seconds_of_run, 
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.studies.kit import alone, runs
+from barrierbench_analysis.studies.kit.metrics import FOLDER
 from barrierbench_analysis.tables.numbers import rounded
 from barrierbench_analysis.tables.outcomes import outcome_of
 
@@ -22,6 +23,7 @@ from .spec import Cell, Study
 RUNS = ROOT / "results" / "runs" / "studies"
 DIGITS = 12  # of a kept number
 KEY_DIGITS = 10  # in the label of a run, so that runs of other settings may lie beside it
+RUN_FOLDER = re.compile(rf"_([0-9a-f]{{{KEY_DIGITS}}})-[0-9a-f]+$")  # of a label: that of its run
 AT_ONCE = 60  # runs of one sweep, whose rows are kept together
 ORIGIN = ("date", "machine", "commit", "build", "version")  # of a row; the last is that of its record
 
@@ -142,11 +144,11 @@ def sweep_of(study: Study, cells: list[Cell]) -> runs.Sweep:
 
 
 def folders(study: Study, cells: list[Cell]) -> dict[str, Path]:
-    """key -> folder of the run, of those of these cells whose records are there, in whatever sweep."""
-    notes = dict(zip(sweep_of(study, cells).notes, (cell.key for cell in cells), strict=True))
-    paths = sorted(folder_of(study).glob("*/*/run.json"))
-    found = {read_record(path)["labels"].get("note", ""): path.parent for path in paths}
-    return {key: found[note] for note, key in notes.items() if note in found}
+    """key -> folder of the run, of those of these cells whose records are there, in whatever sweep; the
+    newest where there are several."""
+    paths = sorted(folder_of(study).glob("*/*/run.json"), key=lambda path: path.stat().st_mtime_ns)
+    of_key = {found[1]: path.parent for path in paths if (found := RUN_FOLDER.search(path.parent.name))}
+    return {cell.key: of_key[one] for cell in cells if (one := cell.key[:KEY_DIGITS]) in of_key}
 
 
 def run_each(study: Study, cells: list[Cell], folder: Path, jobs: int, limit_s: float) -> list[store.Row]:
@@ -176,10 +178,13 @@ def run_cells(study: Study, cells: list[Cell], jobs: int = 1, again: bool = Fals
     needs = getattr(study.module, "needs", lambda *_: [])
     others = {cell.key: needs(study, cell) for cell in cells}
     every = {cell.key: cell for cell in chain(*others.values(), cells)}
-    made, out = sweep_of(study, list(every.values())), _folder(study, cells)
-    runs.run(made, out, plugins=study.plugins, jobs=jobs, again=again)
-    found = runs.collect(made, out)
-    records = {key: found[note] for key, note in zip(every, made.notes, strict=True)}
+    there = {} if again else folders(study, list(every.values()))
+    records = {key: {**read_record(path / "run.json"), FOLDER: str(path)} for key, path in there.items()}
+    if left := [cell for key, cell in every.items() if key not in there]:
+        made, out = sweep_of(study, left), _folder(study, left)
+        runs.run(made, out, plugins=study.plugins, jobs=jobs, again=again)
+        found = runs.collect(made, out)
+        records |= {cell.key: found[note] for cell, note in zip(left, made.notes, strict=True)}
     return [
         row_of(study, cell, records[cell.key], *(records[other.key] for other in others[cell.key]))
         for cell in cells
