@@ -101,9 +101,9 @@ def picture(
     surfaces: Surfaces, camera: Camera, size: tuple[int, int], planar: bool, center: np.ndarray, reach: float
 ) -> np.ndarray:
     """[height, width, 3] in 0..1. Errors: UserError where VTK is not installed, or has no OpenGL."""
+    vtk = _vtk()
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    vtk = _vtk()
     width, height = (OVERSAMPLING * s for s in size)
     renderer, window = vtk.vtkRenderer(), vtk.vtkRenderWindow()
     renderer.SetBackground(1, 1, 1)

@@ -1,9 +1,12 @@
 """What figures of the comparison are drawn of and with, and how one says that there is nothing to draw."""
 
+from __future__ import annotations
+
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -16,7 +19,9 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.tables import series
 from barrierbench_analysis.tables.records import Records
-from barrierbench_analysis.tables.run import Run
+
+if TYPE_CHECKING:
+    from barrierbench_analysis.tables.run import Run
 
 SOURCES = ("sweep", "study", "shapes", "matrices", "baselines")
 
@@ -49,6 +54,8 @@ class SweepRecords:
 
     def run(self, row: pd.Series) -> Run:
         """With frames and config, of a row of records.runs."""
+        from barrierbench_analysis.tables.run import Run  # it takes scipy
+
         return Run(self.folder / row["run"])
 
     def each_run(self) -> list[tuple[pd.Series, Run]]:

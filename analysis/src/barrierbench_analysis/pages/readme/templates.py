@@ -160,7 +160,7 @@ def _refreshed(numbers: dict) -> str:
     return (
         "With a stiffness of the barrier that is computed anew in every Newton iteration, driven to"
         f" convergence, the run {verdict}; of our {len(others)} variants that refresh it once a step, derive"
-        f" it from a potential or make it stiffer, {ended} end `ok`. The published method, which asks for no"
+        f" it from a potential or make it stiffer, {ended} end `ok`. The published method, which requires no"
         f" convergence, ends `{published['outcome']}` after {published['steps']} steps of 1 ms."
     )
 

@@ -75,7 +75,7 @@ def _rests(found: Map, limit: str) -> str:
     """Where contact rests at the smallest target, over the places that all shapes named there reached."""
     theta = min(found.gaps)
     cut = deepest(found.rows, limit, found.shapes, theta)
-    begin = f"Asked for {theta:g} d_hat at the largest load, with {TITLES[limit]}, "
+    begin = f"At a target gap of {theta:g} d_hat at the largest load, with {TITLES[limit]}, "
     if not cut.of:
         return f"{begin}there is no place where every shape that reached a gap has one."
     ranked = sorted(middles(cut).items(), key=lambda item: item[1])
