@@ -108,6 +108,8 @@ def test_a_plugin_is_a_part_of_the_key(tmp_path):
             "axes: found 'b 1'|axes: found 'a 1'",
         ),
         ({"metrics": {"x": "newtons"}}, "metrics/x: found 'newtons'; a pointer, or one of"),
+        ({"metrics": {"x": "/steps/-1/kinetic_Joule"}}, "metrics/x: found '/steps/-1/kinetic_Joule'; the pointer of a field of records"),
+        ({"metrics": {"x": "/sumary/steps"}}, "metrics/x: found '/sumary/steps'; the pointer of a field"),
         ({"base": "none.json"}, "base: found 'none.json'"),
         ({"name": "other"}, "name: found 'other'; 'small', as its file is called"),
         ({"page": "docs/x.md"}, "page: found 'docs/x.md'; results/NAME.md"),
@@ -369,6 +371,17 @@ def test_rows_that_another_call_adds_meanwhile_stay(tmp_path, monkeypatch):
     assert verb.make_rows(study, study.cells[:1]) == 1
     rows = store.read_rows(store.file_of(study))
     assert len(rows) == 2 and rows[study.cells[1].key].values["newton"] == 9.0
+
+
+def test_a_run_that_was_cut_short_is_missing_under_a_higher_limit(tmp_path):
+    study = written(tmp_path, run_s=1.0)
+    rows = {cell.key: replace(row(cell, "timeout"), seconds=1.0) for cell in study.cells}
+    assert collect.missing(study, rows) == [] and len(collect.missing(written(tmp_path, run_s=100.0), rows)) == 8
+
+
+def test_a_pointer_may_name_a_key_with_a_slash():
+    record = {"summary": {"cond": {"full/block_jacobi": {"log10_cond": {"p95": 3.0}}}}}
+    assert collect._at(record, "/summary/cond/full~1block_jacobi/log10_cond/p95") == 3.0
 
 
 def test_again_leaves_cells_that_others_decide(tmp_path, rule_of_small):

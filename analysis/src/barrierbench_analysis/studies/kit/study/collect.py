@@ -18,7 +18,7 @@ from barrierbench_analysis.tables.numbers import rounded
 from barrierbench_analysis.tables.outcomes import outcome_of
 
 from . import store
-from .spec import Cell, Study
+from .spec import Cell, Study, parts_of
 
 RUNS = ROOT / "results" / "runs" / "studies"
 DIGITS = 12  # of a kept number
@@ -36,9 +36,15 @@ def sources_of(study: Study) -> dict[str, str]:
 
 def current(study: Study, rows: dict[str, store.Row]) -> dict[str, store.Row]:
     """The rows of today's cells that have every value of today from where it is taken now, in the order of
-    the cells."""
+    the cells; without those whose run ended at a lower limit of time (run_s) than that of today."""
     now, of_cells = sources_of(study).items(), [rows[cell.key] for cell in study.cells if cell.key in rows]
-    return {row.key: row for row in of_cells if now <= row.sources.items()}
+    limit = study.data.get("run_s", 0)
+    return {row.key: row for row in of_cells if now <= row.sources.items() and not _cut_short(row, limit)}
+
+
+def _cut_short(row: store.Row, limit_s: float) -> bool:
+    """Whether it ended at a limit of time that is higher now."""
+    return row.outcome == "timeout" and row.seconds is not None and limit_s > 2 * row.seconds
 
 
 def decided(study: Study, rows: dict[str, store.Row]) -> dict[str, str]:
@@ -71,7 +77,7 @@ def wanted(study: Study, rows: dict[str, store.Row], every: bool = False, again:
 def _at(record: dict, pointer: str) -> float | str | None:
     """The number or the text at a pointer; in a list -1 is its last entry. None where there is none."""
     found = record
-    for name in pointer.strip("/").split("/"):
+    for name in parts_of(pointer):
         if isinstance(found, list) and re.fullmatch(r"-1|\d+", name) and int(name) < len(found):
             found = found[int(name)] if found else None
         else:

@@ -32,24 +32,21 @@ def expected(cell: Cell, rows: list[store.Row], power: float) -> float | None:
     those of the nearest size, grown by the power. None without rows, and where a label of the cell stands in
     no row and its unknowns are not known.
     """
-    if cell.unknowns:
-        rows = [row for row in rows if row.unknowns]
+    size = cell.unknowns
+    if size:
+        far = {n: round(abs(math.log(n / size)), 6) for n in {row.unknowns for row in rows} if n}
+        near = min(far.values(), default=0.0)
+        rows = [row for row in rows if row.unknowns and far[row.unknowns] == near]
     elif any(
         all(row.place[name] != word for row in rows) for name, word in cell.place.items() if name != SEED
     ):
         return None
     if not rows:
         return None
-    size = cell.unknowns or 1
-
-    def distance(row: store.Row) -> tuple[float, int]:
-        far = abs(math.log(row.unknowns / size)) if cell.unknowns else 0.0
-        return round(far, 6), sum(row.place[name] != word for name, word in cell.place.items())
-
-    far = [distance(row) for row in rows]
-    near = min(far)
-    chosen = [row for row, one in zip(rows, far, strict=True) if one == near]
-    grown = [row.seconds * ((size / row.unknowns) ** power if cell.unknowns else 1.0) for row in chosen]
+    other = [sum(row.place[name] != word for name, word in cell.place.items()) for row in rows]
+    fewest = min(other)
+    chosen = [row for row, n in zip(rows, other, strict=True) if n == fewest]
+    grown = [row.seconds * ((size / row.unknowns) ** power if size else 1.0) for row in chosen]
     return sum(grown) / len(grown)
 
 

@@ -3,6 +3,7 @@
 import importlib
 import itertools
 import json
+import re
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -11,6 +12,7 @@ from hashlib import sha256
 from pathlib import Path
 from types import ModuleType
 
+from barrierbench_analysis.io import fields
 from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
@@ -206,6 +208,31 @@ def _place(file: Path, number: int, names: list[str], label: str) -> dict[str, s
     return dict(zip(names, words))
 
 
+def parts_of(pointer: str) -> list[str]:
+    """The keys of a JSON pointer (RFC 6901)."""
+    return [part.replace("~1", "/").replace("~0", "~") for part in pointer.strip("/").split("/")]
+
+
+def _is_of_record(pointer: str) -> bool:
+    """Whether records have a field at the pointer, by their schema; the keys of a map are not known there."""
+    schema = fields.schema("run")
+    node = schema
+    for part in parts_of(pointer):
+        while "$ref" in node:
+            node = schema["$defs"][node["$ref"].rsplit("/", 1)[1]]
+        if "items" in node and re.fullmatch(r"-1|\d+", part):
+            node = node["items"]
+        elif part in node.get("properties", {}):
+            node = node["properties"][part]
+        elif isinstance(node.get("additionalProperties"), dict):
+            node = node["additionalProperties"]
+        elif node.get("properties") or "items" in node:
+            return False
+        else:
+            return True  # a part of the schema that says no more
+    return True
+
+
 def read_study(name: str, out: Path | None = None, plugins: Iterable[str] = ()) -> Study:
     """The study of a name, or of the path of a spec. out, plugins: of a call (Study). Errors: UserError, with
     the names of what there is.
@@ -218,6 +245,10 @@ def read_study(name: str, out: Path | None = None, plugins: Iterable[str] = ()) 
     for metric, source in data["metrics"].items():
         if not source.startswith("/") and source not in METRICS:
             raise refused(file, f"metrics/{metric}", source, f"a pointer, or one of {', '.join(METRICS)},")
+        if source.startswith("/") and not _is_of_record(source):
+            raise refused(
+                file, f"metrics/{metric}", source, "the pointer of a field of records (./bench help record)"
+            )
     if data["name"] != file.stem:
         raise refused(file, "name", data["name"], f"{file.stem!r}, as its file is called,")
     study = Study(file, data, out, tuple(plugins))
