@@ -4,6 +4,7 @@ import importlib
 import json
 import shutil
 from dataclasses import replace
+from pathlib import Path
 from datetime import datetime, timezone
 from types import SimpleNamespace
 
@@ -343,6 +344,8 @@ def page_rows(study):
         (["--spot-check", "-1"], "--spot-check"),
         (["--plugin", "none.so", "--out", "x"], "--plugin: found 'none.so', which is no file"),
         (["--plugin", __file__], "--plugin: found without --out"),
+        (["--quick"], "--quick: found an option of before; allowed: --part quick"),
+        (["--runs=there"], "--runs=there: found an option of before; allowed: --out DIR"),
     ],
 )
 def test_options_that_do_not_go_together_are_refused(tmp_path, words, text):
@@ -371,6 +374,12 @@ def test_rows_that_another_call_adds_meanwhile_stay(tmp_path, monkeypatch):
     assert verb.make_rows(study, study.cells[:1]) == 1
     rows = store.read_rows(store.file_of(study))
     assert len(rows) == 2 and rows[study.cells[1].key].values["newton"] == 9.0
+
+
+def test_what_takes_the_place_of_an_option_is_no_option_of_before():
+    words = {word.split()[0] for word in verb.BEFORE.values() if word.startswith("--")}
+    text = Path(verb.__file__).read_text()
+    assert len(words) > 3 and all(f'"{word}"' in text for word in words) and not words & set(verb.BEFORE)
 
 
 def test_a_run_that_was_cut_short_is_missing_under_a_higher_limit(tmp_path):

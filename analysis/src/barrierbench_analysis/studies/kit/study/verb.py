@@ -25,6 +25,22 @@ from . import cost, page, store
 from .collect import left_out, missing, parts, run_cells, wanted
 from .spec import Cell, Study, read_study
 
+# Options that studies had before they were specs -> what takes their place.
+BEFORE = {
+    "--anew": "--again",
+    "--formulations": "--only formulation=LABEL[,LABEL]",
+    "--full": "./bench study configs/stress/stress_full.json run",
+    "--large": "--part large",
+    "--list": "plan",
+    "--quick": "--part quick",
+    "--results": "--out DIR",
+    "--runs": "--out DIR",
+    "--seeds": "--only seed=LABEL[,LABEL]",
+    "--set": "a spec of your own (docs/guides/add-a-study.md)",
+    "--sheet": "run --again --only formulation=log",
+    "--shards": "--only AXIS=LABEL or --minutes M",
+}
+
 
 def which_arguments(parser: argparse.ArgumentParser) -> None:
     """Which cells are run."""
@@ -74,6 +90,9 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         help="runs, rows, page and figures in this folder, apart from kept rows: repeats a study",
     )
     plugin_argument(parser)
+    for word in argv[1:]:
+        if new := BEFORE.get(word.partition("=")[0]):
+            raise UserError(f"{word}: found an option of before; allowed: {new}")
     args = parser.parse_args(argv[1:])
     _check_mode(parser, args)
     return args
