@@ -29,6 +29,8 @@ def asked(tmp_path, monkeypatch):
     stand_in.write_text(STAND_IN.format(python=sys.executable, log=str(log)))
     stand_in.chmod(0o755)
     (tmp_path / "here").mkdir()
+    for file in (tmp_path / "here/one.so", tmp_path / "two.so"):
+        file.touch()
     monkeypatch.chdir(tmp_path / "here")
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", str(stand_in))
     monkeypatch.setattr(claims, "FILE", tmp_path / "claims.jsonl")

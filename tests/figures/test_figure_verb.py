@@ -110,7 +110,7 @@ def test_the_folder_of_records_follows_the_sweep_and_what_it_names(tmp_path):
 
 def test_kept_numbers_of_a_study_that_are_missing(tmp_path):
     wanted = Wanted("study", ROOT / "configs/pareto/quick.json")
-    with pytest.raises(UserError, match=r"quick.rows.jsonl: 21 cells of 21 .*; ./bench study .*quick.json run makes them with --out"):
+    with pytest.raises(UserError, match=r"quick.rows.jsonl: 21 cells of 21 .*; ./bench study .*quick.json run --out .* makes them"):
         sources.subject(wanted, Place(tmp_path, False))
 
 

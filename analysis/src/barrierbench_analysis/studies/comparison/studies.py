@@ -6,7 +6,6 @@ from pathlib import Path
 
 from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.figures.plots.drawing import Drawing
-from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.studies.kit.study import page
 from barrierbench_analysis.studies.kit.study.spec import read_study
 from barrierbench_analysis.studies.kit.study.verb import make_rows
@@ -28,10 +27,7 @@ def of_file(file: Path, runs: Path, may_run: bool, jobs: int) -> dict:
         study = read_study(str(file), runs / f"{study.rule}-{file.stem}")
         if may_run:
             make_rows(study, jobs=jobs)
-    try:
-        return page.numbers_of(study)
-    except UserError as error:
-        raise UserError(f"{error}" + (f" with --out {study.out}" if study.out else "")) from None
+    return page.numbers_of(study)
 
 
 def pareto_fronts(numbers: dict, drawing: Drawing) -> list[Path]:
