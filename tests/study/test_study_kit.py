@@ -611,6 +611,9 @@ def test_a_study_runs_what_is_missing_and_nothing_twice(tmp_path, monkeypatch, p
     assert collect.folders(brief, brief.cells) == {}
     assert verb.make_rows(brief, brief.cells[:1]) == 1
     assert store.read_rows(store.file_of(brief))[brief.cells[0].key].outcome == "timeout"
+    longer = written(tmp_path, seeds=[1], run_s=100.0, set={"/threads": 1, "/time/steps": 4})
+    assert verb.make_rows(longer, longer.cells[:1]) == 1  # the record of the run that was cut short is not read
+    assert store.read_rows(store.file_of(longer))[longer.cells[0].key].outcome == "ok"
     longer = written(tmp_path, seeds=[1], set={"/threads": 1, "/time/steps": 3})  # the same labels, other runs
     assert verb.make_rows(longer) == 4 and {r.values["steps"] for r in page.rows_of(longer)} == {3}
 

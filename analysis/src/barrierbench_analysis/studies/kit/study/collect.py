@@ -38,13 +38,16 @@ def current(study: Study, rows: dict[str, store.Row]) -> dict[str, store.Row]:
     """The rows of today's cells that have every value of today from where it is taken now, in the order of
     the cells; without those whose run ended at a lower limit of time (run_s) than that of today."""
     now, of_cells = sources_of(study).items(), [rows[cell.key] for cell in study.cells if cell.key in rows]
-    limit = study.data.get("run_s", 0)
-    return {row.key: row for row in of_cells if now <= row.sources.items() and not _cut_short(row, limit)}
+    return {
+        row.key: row
+        for row in of_cells
+        if now <= row.sources.items() and not _cut_short(study, row.outcome, row.seconds)
+    }
 
 
-def _cut_short(row: store.Row, limit_s: float) -> bool:
-    """Whether it ended at a limit of time that is higher now."""
-    return row.outcome == "timeout" and row.seconds is not None and limit_s > 2 * row.seconds
+def _cut_short(study: Study, outcome: str, seconds: float | None) -> bool:
+    """Whether a run ended at a limit of time (run_s) that is higher now."""
+    return outcome == "timeout" and seconds is not None and study.data.get("run_s", 0) > 2 * seconds
 
 
 def decided(study: Study, rows: dict[str, store.Row]) -> dict[str, str]:
@@ -174,7 +177,7 @@ def run_cells(study: Study, cells: list[Cell], jobs: int = 1, again: bool = Fals
     """Runs these cells of one base as one sweep, so many at a time, with those of the same base whose runs
     they are measured with (function `needs` of the rule: study, cell -> cells), or as the function `run` of
     the rule (study, cells, folder, jobs) does. Runs whose records are there already are not repeated, unless
-    `again`. Errors: UserError. Cost: the runs.
+    `again`, or where a lower limit of time cut them short. Errors: UserError. Cost: the runs.
     """
     if hasattr(study.module, "run"):
         out = folder_of(study)
@@ -185,10 +188,13 @@ def run_cells(study: Study, cells: list[Cell], jobs: int = 1, again: bool = Fals
     others = {cell.key: needs(study, cell) for cell in cells}
     every = {cell.key: cell for cell in chain(*others.values(), cells)}
     there = {} if again else folders(study, list(every.values()))
-    records = {key: {**read_record(path / "run.json"), FOLDER: str(path)} for key, path in there.items()}
-    if left := [cell for key, cell in every.items() if key not in there]:
+    kept = {key: {**read_record(path / "run.json"), FOLDER: str(path)} for key, path in there.items()}
+    records = {
+        key: one for key, one in kept.items() if not _cut_short(study, outcome_of(one), seconds_of_run(one))
+    }
+    if left := [cell for key, cell in every.items() if key not in records]:
         made, out = sweep_of(study, left), _folder(study, left)
-        runs.run(made, out, plugins=study.plugins, jobs=jobs, again=again)
+        runs.run(made, out, plugins=study.plugins, jobs=jobs, again=again or len(records) < len(kept))
         found = runs.collect(made, out)
         records |= {cell.key: found[note] for cell, note in zip(left, made.notes, strict=True)}
     return [

@@ -8,10 +8,10 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from barrierbench_analysis.io.errors import UserError, reported
+from barrierbench_analysis.io.errors import reported
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
-from barrierbench_analysis.program.arguments import parser_of
+from barrierbench_analysis.program.arguments import count_from_1, parser_of
 from barrierbench_analysis.studies.kit.study.page import rows_of
 from barrierbench_analysis.studies.kit.study.spec import Study, read_study
 from barrierbench_analysis.studies.kit.study.verb import make_rows
@@ -38,11 +38,10 @@ def _arguments(argv: list[str]) -> argparse.Namespace:
     )
     parser.formula_argument("what", "WHAT")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder (default: results/runs/score/LABEL)")
-    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="runs at a time (default 2)")
-    args = parser.parse_args(argv)
-    if args.jobs < 1:
-        raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
-    return args
+    parser.add_argument(
+        "--jobs", type=count_from_1, default=2, metavar="N", help="runs at a time (default 2)"
+    )
+    return parser.parse_args(argv)
 
 
 def study_of(of: Candidate, out: Path) -> Study:
