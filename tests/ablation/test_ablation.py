@@ -258,7 +258,7 @@ def test_the_figure_and_its_caption(small, tmp_path):
 
 
 def test_the_kept_rows_are_all_of_the_fraction():
-    """What the page says of them is compared in tests/study/test_study_kit.py."""
+    """What the page says of them is compared in tests/study/test_study_calls.py."""
     study = read_study("ablation")
     rows = page.rows_of(study)
     assert len(rows) == len(study.cells) == 1152 and {row.unknowns for row in rows} <= set(range(45, 166))
