@@ -2,17 +2,14 @@
 files that these name (claims/confirmation/registry.json).
 """
 
-import ast
-import inspect
 import json
-import textwrap
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
-from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.module_code import bare, code_of, sha_of
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.studies.kit import success
 from barrierbench_analysis.studies.kit.metrics import METRICS
@@ -61,31 +58,13 @@ def confirmable(claim: Claim) -> bool:
     return bool(runs) and not claim.waits_for and all("confirm" in part for part in runs)
 
 
-def sha_of(value) -> str:
-    return of_text(json.dumps(value, sort_keys=True, separators=(",", ":")))
-
-
-def _bare(code) -> str:
-    """Source of a function or module without comments and docstrings."""
-    tree = ast.parse(textwrap.dedent(inspect.getsource(code)))
-    for node in ast.walk(tree):
-        if isinstance(node, (ast.Module, ast.FunctionDef)) and ast.get_docstring(node):
-            node.body = node.body[1:] or [ast.Pass()]
-    return ast.unparse(tree)
-
-
 def read_as(name: str) -> str:
     """Hash of how a metric is read from a record: its meaning, its unit and its code without comments; what
     that calls is not in it.
     """
     meaning, unit, _, reader = METRICS[name]
     bound = [cell.cell_contents for cell in reader.__closure__ or ()]
-    return sha_of([meaning, unit, _bare(reader), [x for x in bound if isinstance(x, (str, tuple))]])[:16]
-
-
-def code_of(module) -> str:
-    """Hash of a module's code without comments and docstrings."""
-    return sha_of(_bare(module))[:16]
+    return sha_of([meaning, unit, bare(reader), [x for x in bound if isinstance(x, (str, tuple))]])[:16]
 
 
 def rule_of(claim: Claim) -> dict:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.module_code import code_of
 from barrierbench_analysis.tables import estimate, gap_rule
 
 from . import cells, equal_gap, numbers, outcomes, threshold, verdict
-from .registry import code_of
 
 FILE = Path(__file__).with_suffix(".json")
 MODULES = (cells, equal_gap, estimate, gap_rule, numbers, outcomes, threshold, verdict)

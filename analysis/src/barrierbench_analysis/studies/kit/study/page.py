@@ -11,7 +11,7 @@ from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.tables.words import counted
 
-from . import store
+from . import registration, store
 from .collect import current, decided, missing
 from .spec import Study
 
@@ -28,7 +28,8 @@ def rows_of(study: Study, file: Path | None = None) -> list[store.Row]:
             f"{file or store.file_of(study)}: {counted(len(lacking), 'cell')} of {len(study.cells)} without a"
             f" row, the first {lacking[0].label!r}; {study.call('run')} makes them"
         )
-    return [replace(there[cell.key], place=cell.place) for cell in study.cells if cell.key in there]
+    found = [replace(there[cell.key], place=cell.place) for cell in study.cells if cell.key in there]
+    return registration.checked(study, found)
 
 
 def _some(study: Study) -> list[store.Row]:
@@ -74,6 +75,7 @@ def text_of(study: Study, rows: list[store.Row], numbers: dict) -> str:
         "spec": study.file.name,
         "pictures": os.path.relpath(study.figures, study.page.parent),
         "checks": checks_of(study, rows),
+        "registered": registration.sentences(study),
     }
     return filled(study.template, about | numbers)
 

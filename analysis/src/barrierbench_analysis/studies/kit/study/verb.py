@@ -21,7 +21,7 @@ from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.program.verbs import of_spec
 from barrierbench_analysis.tables.words import counted
 
-from . import cost, page, store
+from . import cost, page, registration, store
 from .collect import left_out, missing, parts, run_cells, wanted
 from .spec import Cell, Study, read_study
 
@@ -77,6 +77,12 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--plan", action="store_true", help="counts cells and expected seconds; runs nothing")
     parser.add_argument("--no-run", action="store_true", help="writes the page from the kept rows")
     which_arguments(parser)
+    parser.add_argument(
+        "--register",
+        metavar="WHY",
+        help="of a spec with `registered`: fixes spec and rule before the first run, or after a change with"
+        " its reason; runs nothing",
+    )
     parser.add_argument(
         "--minutes", type=positive_number, metavar="M", help="begins no further sweep after so many minutes"
     )
@@ -228,6 +234,9 @@ def _main(argv: list[str]) -> int:
     study = read_study(argv[0], args.out, args.plugin)
     cells = chosen(study, args.only, args.part)
     file = store.file_of(study)
+    if args.register:
+        print(f"{registration.file_of(study)}: {registration.register(study, args.register)}")
+        return 0
     if args.plan:
         print("\n".join(cost.plan(study, store.read_rows(file), cells, args.decided, args.again)))
         return 0
@@ -242,6 +251,7 @@ def _main(argv: list[str]) -> int:
 
 def _made(study: Study, cells: list[Cell], args: argparse.Namespace) -> int:
     """Runs what a call wants, and says how many rows it made and how many cells are left."""
+    registration.require(study)
     built_program()
     made = make_rows(study, cells, args.jobs, args.minutes, args.decided, args.again)
     if args.spot_check:

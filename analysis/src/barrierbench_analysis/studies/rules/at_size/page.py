@@ -1,0 +1,147 @@
+"""The numbers of the page: answers, laws, the table of formulations, what the runs took."""
+
+import math
+from collections import defaultdict
+
+from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.studies.kit.study.spec import Study
+from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.tables.outcomes import OK
+from barrierbench_analysis.tables.statistics import Mean, Ratio, ratio_over
+from barrierbench_analysis.tables.words import counted
+
+from . import power
+from .laws import Law, laws
+from .pairs import LOG, Rows, Where
+from .questions import Answer, answers
+
+
+def _text(number: Mean | None) -> str:
+    return "-" if number is None else f"{number} (n = {number.scenes})"
+
+
+def _answers(found: list[Answer]) -> list[str]:
+    body = [[str(a.number), a.name, f"**{a.outcome}**", f"{a.p_holm:.2g}", str(len(a.scenes))] for a in found]
+    return markdown(["", "question", "outcome", "p (Holm)", "scenes"], body)
+
+
+def _numbers(found: list[Answer]) -> list[str]:
+    body = [[str(a.number), label, _text(number)] for a in found for label, number in a.numbers.items()]
+    return markdown(["question", "number", "mean over scenes [95%]"], body)
+
+
+def _law(law: Law) -> str:
+    lines = [f"### Law {law.number}: {law.name}", "", f"**{law.verdict}**: {law.why}.", ""]
+    return "\n".join(
+        lines + (markdown(list(law.head), law.places) if law.places else ["No run has a row yet."])
+    )
+
+
+def _arms(study: Study, rows: Rows, size: str) -> list[str]:
+    """One row a formulation and target: how its runs end, and its numbers over those of the log at 0.1 in the
+    scenes in which both end ok."""
+    body = []
+    for arm, of in study.about["arms"].items():
+        for theta in ("0.1", "0.01") if of["matched"] else ("-",):
+            where, timed = Where(size, theta), Where(size, theta, measure="pcg")
+            mine = rows.of(arm, where) or rows.of(arm, timed)
+            if not mine:
+                continue
+            ok = [row for row in mine.values() if row.outcome == OK]
+            gaps = [g for row in ok if (g := row.values["gap_min"])]
+            own = f"{min(gaps):.2g}" if gaps else "-"
+            numbers = [
+                _over_log(rows, arm, theta, size, "velocity_newton", "diagnosed"),
+                _over_log(rows, arm, theta, size, "velocity_products", "pcg"),
+                _over_log(rows, arm, theta, size, "velocity_seconds", "pcg"),
+            ]
+            words = [arm, theta, f"{len(ok)} of {len(mine)}", own, *map(_ratio_text, numbers), of["when"]]
+            body.append(words)
+    head = ["formulation", "theta", "ends ok", "smallest gap / d_hat", "Newton", "products", "seconds"]
+    return markdown([*head, "when to use"], body)
+
+
+def _over_log(rows: Rows, arm: str, theta: str, size: str, metric: str, measure: str) -> Ratio | None:
+    """Over the log at theta 0.1, whatever target the formulation has."""
+    reference = rows.of(LOG, Where(size, "0.1", measure=measure))
+    logs = {}
+    for scene, row in rows.of(arm, Where(size, theta, measure=measure)).items():
+        other = reference.get(scene)
+        if other and row.outcome == OK == other.outcome and row.values[metric] and other.values[metric]:
+            logs[scene] = math.log(row.values[metric] / other.values[metric])
+    return ratio_over(list(logs.values())) if logs else None
+
+
+def _ratio_text(number: Ratio | None) -> str:
+    return "-" if number is None else str(number)
+
+
+def _cost(study: Study, rows: list[Row]) -> list[str]:
+    """Core hours by size and what was measured, and how many cells have no row."""
+    hours: dict[tuple[str, str, str], float] = defaultdict(float)
+    there: dict[tuple[str, str, str], int] = defaultdict(int)
+    every: dict[tuple[str, str, str], int] = defaultdict(int)
+    for cell in study.cells:
+        every[_group(cell.place)] += 1
+    for row in rows:
+        hours[_group(row.place)] += (row.seconds or 0.0) / 3600
+        there[_group(row.place)] += 1
+    body = [
+        [*group, f"{there[group]} of {count}", f"{hours[group]:.2f}" if there[group] else "-"]
+        for group, count in every.items()
+    ]
+    total = ["all", "", "", f"{len(rows)} of {len(study.cells)}", f"{sum(hours.values()):.2f}"]
+    return markdown(["size", "setting", "measured", "runs", "core hours"], [*body, total])
+
+
+def _group(place: dict[str, str]) -> tuple[str, str, str]:
+    setting = place["setting"]
+    return (
+        place["size"],
+        "changed load" if setting[1:2].isdigit() and setting[0] in "Emv" else setting,
+        place["measure"],
+    )
+
+
+def _ends(rows: list[Row]) -> list[str]:
+    """Which runs do not end ok."""
+    of: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for row in rows:
+        if row.outcome != OK:
+            of[row.place["arm"], row.place["theta"], row.place["size"], row.outcome].append(
+                f"{row.place['scene']} {row.place['setting']}"
+            )
+    body = [[*key, counted(len(runs), "run"), ", ".join(runs)] for key, runs in sorted(of.items())]
+    if not body:
+        return ["All runs end ok."]
+    return markdown(["formulation", "theta", "size", "outcome", "runs", "which"], body)
+
+
+def _scenes(study: Study, of: Rows) -> list[str]:
+    """What a scene is, its unknowns, and the load that both barriers carry at theta d_hat."""
+    body = []
+    for label, scene in of.scenes.items():
+        sizes = [f"{n}: {one['unknowns']} ({one['load_N']:.3g} N)" for n, one in scene["sizes"].items()]
+        seen = "no rule has seen it" if scene["fresh"] else "catalogue"
+        body.append([label, scene["kind"], scene["contact"], seen, ", ".join(sizes)])
+    return markdown(["scene", "bodies", "contact with", "from", "unknowns (matched load)"], body)
+
+
+def rule(study: Study, rows: list[Row]) -> dict:
+    """What the template needs."""
+    of = Rows(study, rows)
+    found, of_laws = answers(of), laws(of)
+    return {
+        "answers": "\n".join(_answers(found)),
+        "numbers": "\n".join(_numbers(found)),
+        "laws": "\n\n".join(map(_law, of_laws)),
+        "arms_s": "\n".join(_arms(study, of, "S")),
+        "arms_m": "\n".join(_arms(study, of, "M")),
+        "power": "\n".join(power.table(study)),
+        "cost": "\n".join(_cost(study, rows)),
+        "ends": "\n".join(_ends(rows)),
+        "scenes": "\n".join(_scenes(study, of)),
+        "outcomes": {a.name: a.outcome for a in found},
+        "rows": len(rows),
+        "cells": len(study.cells),
+    }

@@ -1,0 +1,64 @@
+"""The same run under two formulations, a pair a scene."""
+
+import math
+from dataclasses import dataclass
+
+from barrierbench_analysis.studies.kit.study.spec import Study
+from barrierbench_analysis.studies.kit.study.store import Row, timed_alike
+from barrierbench_analysis.tables.outcomes import OK
+
+LOG, CUBIC = "log", "cubic"
+FINE, COARSE = "M", "S"  # the sizes that questions name
+THETA = "0.01"  # the gap that questions name, in d_hat
+
+
+@dataclass(frozen=True)
+class Where:
+    """Labels of the runs that are put beside each other; of all of them but scene and arm."""
+
+    size: str = FINE
+    theta: str = THETA
+    setting: str = "base"
+    measure: str = "diagnosed"
+
+    def holds(self, row: Row) -> bool:
+        return all(row.place[name] == label for name, label in self.__dict__.items())
+
+
+class Rows:
+    """The rows of a study, found by their labels."""
+
+    def __init__(self, study: Study, rows: list[Row]):
+        self.scenes = {scene["label"]: scene for scene in study.about["scenes"]}
+        self.rows = rows
+
+    def of(self, arm: str, where: Where) -> dict[str, Row]:
+        """scene -> its run."""
+        return {r.place["scene"]: r for r in self.rows if r.place["arm"] == arm and where.holds(r)}
+
+    def kind(self, *kinds: str) -> set[str]:
+        """Scenes whose bodies are of these kinds: shell, rod, solid."""
+        return {label for label, scene in self.scenes.items() if scene["kind"] in kinds}
+
+    def pairs(self, where: Where, over: str = LOG, under: str = CUBIC) -> dict[str, tuple[Row, Row]]:
+        """scene -> both runs, where both end ok."""
+        first, second = self.of(over, where), self.of(under, where)
+        both = {scene: (first[scene], second[scene]) for scene in first if scene in second}
+        return {s: two for s, two in both.items() if all(row.outcome == OK for row in two)}
+
+    def logs(self, metric: str, where: Where, over: str = LOG, under: str = CUBIC) -> dict[str, float]:
+        """scene -> logarithm of the ratio, where both runs have a value above 0. Seconds of two machines or
+        builds are in no ratio."""
+        found = {}
+        for scene, two in self.pairs(where, over, under).items():
+            above, below = (row.values[metric] for row in two)
+            if metric.endswith("seconds") and not timed_alike(list(two)):
+                continue
+            if above and below:
+                found[scene] = math.log(above / below)
+        return found
+
+    def rises(self, metric: str, first: Where, second: Where) -> dict[str, float]:
+        """scene -> logarithm of the ratio log/cubic at the second place over that at the first."""
+        before, after = self.logs(metric, first), self.logs(metric, second)
+        return {scene: after[scene] - before[scene] for scene in after if scene in before}

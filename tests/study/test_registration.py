@@ -1,0 +1,112 @@
+"""A study that has to be registered makes no row before it is, nor of a spec or rule that differs from it."""
+
+import json
+import sys
+import types
+
+import pytest
+
+from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.studies.kit.study import page, registration, store, verb
+from barrierbench_analysis.studies.kit.study.spec import RULES, read_study
+
+from small_study import row, written
+
+
+@pytest.fixture
+def rule(monkeypatch):
+    """A rule whose code a test may change: name -> a module of this source."""
+
+    def made(source="def rule(study, rows):\n    return {'n': len(rows)}\n", folder=None):
+        module = types.ModuleType(f"{RULES}.small")
+        file = folder / "small_rule.py"
+        file.write_text(source)
+        module.__file__ = str(file)
+        exec(compile(source, str(file), "exec"), module.__dict__)
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+        return module
+
+    return made
+
+
+def test_a_study_that_is_not_registered_makes_no_run(tmp_path, rule):
+    rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    with pytest.raises(UserError, match=r"registered/small.json: found no registration; allowed: one before the first run"):
+        registration.require(study)
+    assert verb.main([str(study.file), "--minutes", "1"]) == 2
+    assert not store.file_of(study).exists()
+
+
+def test_a_study_without_the_key_needs_none(tmp_path, rule):
+    rule(folder=tmp_path)
+    registration.require(written(tmp_path))
+
+
+def test_what_was_registered_may_run_and_what_was_changed_may_not(tmp_path, rule, monkeypatch):
+    rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    assert verb.main([str(study.file), "--register", "before the first run"]) == 0
+    registration.require(study)
+    other = written(tmp_path, registered=True, set={"/threads": 1, "/time/steps": 3})
+    with pytest.raises(UserError, match="found the spec .*allowed: .*registered on"):
+        registration.require(other)
+    registration.register(other, "three steps instead of two, since two end before contact")
+    registration.require(other)
+    assert [e.why for e in registration.entries(other)] == ["before the first run", "three steps instead of two, since two end before contact"]
+    assert len(registration.sentences(other)) == 2
+
+
+def test_a_change_of_the_rule_is_found_and_one_of_its_words_is_not(tmp_path, rule):
+    rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    registration.register(study, "first")
+    before = registration.now(study)
+    rule('"""Words."""\n# more words\ndef rule(study, rows):\n    """And words."""\n    return {"n": len(rows)}\n', tmp_path)
+    assert registration.now(written(tmp_path, registered=True)) == before
+    rule("def rule(study, rows):\n    return {'n': 1 + len(rows)}\n", tmp_path)
+    with pytest.raises(UserError, match="found the rule"):
+        registration.require(written(tmp_path, registered=True))
+
+
+def test_the_page_and_parts_of_a_spec_may_change(tmp_path, rule):
+    rule(folder=tmp_path)
+    registration.register(written(tmp_path, registered=True), "first")
+    registration.require(written(tmp_path, registered=True, question="Does it still work?", parts={"a": {"level": ["a"]}}))
+
+
+def test_the_same_is_not_registered_twice(tmp_path, rule):
+    rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    registration.register(study, "first")
+    with pytest.raises(UserError, match="found these hashes already"):
+        registration.register(study, "again")
+
+
+def test_a_row_from_before_the_registration_is_refused(tmp_path, rule):
+    rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    registration.register(study, "first")
+    rows = {cell.key: row(cell) for cell in study.cells}  # of 2026-01-01
+    store.write_rows(store.file_of(study), rows)
+    with pytest.raises(UserError, match="found a row of 2026-01-01 .*allowed: rows from"):
+        page.rows_of(study)
+    assert len(page.rows_of(written(tmp_path))) == len(rows)  # without the key they count
+
+
+def test_a_registration_of_another_form_is_refused(tmp_path, rule):
+    rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    file = registration.file_of(study)
+    file.parent.mkdir()
+    for data, fault in (({"schema": "x"}, "schema: found 'x'"), ({"schema": registration.SCHEMA, "entries": [{"date": "d"}]}, "entries")):
+        file.write_text(json.dumps(data))
+        with pytest.raises(UserError, match=fault):
+            registration.entries(study)
+
+
+def test_every_study_of_this_tree_that_has_rows_is_what_was_registered():
+    study = read_study("at_size")
+    assert study.data["registered"] is True
+    if store.file_of(study).is_file():
+        registration.require(study)
