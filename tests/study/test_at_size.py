@@ -359,3 +359,23 @@ def test_an_unknown_arm_of_a_group_is_refused(tmp_path):
     study = type(STUDY)(file, data)
     with pytest.raises(Exception, match=r"about/groups/0/arms: found \['logarithm'\]; log, cubic, ipc, consistent, ando2024 is needed"):
         study.cells
+
+
+# ---- the page
+
+
+def test_the_page_shows_answers_laws_and_what_is_missing(tmp_path):
+    from barrierbench_analysis.studies.rules.at_size import page
+
+    rows = []
+    for size in ("S", "M"):
+        for s, x in zip(EVERY, spread(5.0, len(EVERY))):
+            rows += two(s, "cond_p95", x, Where(size), gap_min=0.1)
+    found = page.rule(STUDY, rows)
+    assert found["outcome"][1] == "persists" and found["outcome"][5] == questions.NO_RUNS
+    assert "raw condition number, log/cubic | 5 [" in found["of_question"][1]
+    assert f"| M | base | diagnosed | 20 of {len(EVERY) * 6} | 0.01 |" in found["cost"]
+    assert "| M | 0.01 | 10 | 5 [" in found["by_size"]
+    assert "All runs end ok." in found["ends"] and "**not observed**" in found["laws"]
+    failed = page.rule(STUDY, [row("drape", "log", outcome="timeout")])
+    assert "| log | 0.01 | M | timeout | 1 run | drape base |" in failed["ends"]

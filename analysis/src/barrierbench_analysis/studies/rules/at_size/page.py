@@ -11,9 +11,32 @@ from barrierbench_analysis.tables.statistics import Mean, Ratio, ratio_over
 from barrierbench_analysis.tables.words import counted
 
 from . import power
+from .figure import PANELS, SIZES, THETAS
 from .laws import Law, laws
 from .pairs import LOG, Rows, Where
 from .questions import Answer, answers
+
+SUBJECTS = {
+    1: "Does the raw condition number differ?",
+    2: "Does the difference in Newton iterations grow?",
+    3: "Which iterations make the difference?",
+    4: "Is one of them cheaper?",
+    5: "Which one ends ok under changed loads?",
+    6: "What hides the shape?",
+}
+LABELS = {
+    "raw": "raw condition number, log/cubic",
+    "raw, solids": "the same of solids",
+    "M/S of log/cubic": "Newton iterations log/cubic, M over S",
+    "log/cubic at S": "Newton iterations log/cubic at S",
+    "log/cubic at M": "Newton iterations log/cubic at M",
+    "share of all causes": "share of all causes",
+    "products": "matrix products log/cubic",
+    "flop": "operations of factors log/cubic",
+    "seconds": "seconds log/cubic",
+    "share": "share:",
+    "slope": "slope:",
+}
 
 
 def _text(number: Mean | None) -> str:
@@ -21,13 +44,24 @@ def _text(number: Mean | None) -> str:
 
 
 def _answers(found: list[Answer]) -> list[str]:
-    body = [[str(a.number), a.name, f"**{a.outcome}**", f"{a.p_holm:.2g}", str(len(a.scenes))] for a in found]
+    body = [
+        [str(a.number), SUBJECTS[a.number], f"**{a.outcome}**", f"{a.p_holm:.2g}", str(len(a.scenes))]
+        for a in found
+    ]
     return markdown(["", "question", "outcome", "p (Holm)", "scenes"], body)
 
 
-def _numbers(found: list[Answer]) -> list[str]:
-    body = [[str(a.number), label, _text(number)] for a in found for label, number in a.numbers.items()]
-    return markdown(["question", "number", "mean over scenes [95%]"], body)
+def _of_question(answer: Answer) -> str:
+    """Its numbers, as far as there are any."""
+    body = [[_label(label), _text(n)] for label, n in answer.numbers.items() if n is not None]
+    return "\n".join(
+        markdown(["number", "mean over scenes [95%]"], body) if body else ["No pair of runs yet."]
+    )
+
+
+def _label(label: str) -> str:
+    first, _, rest = label.partition(" ")
+    return f"{LABELS[label]}" if label in LABELS else f"{LABELS.get(first, first)} {rest}".strip()
 
 
 def _law(law: Law) -> str:
@@ -59,6 +93,22 @@ def _arms(study: Study, rows: Rows, size: str) -> list[str]:
             body.append(words)
     head = ["formulation", "theta", "ends ok", "smallest gap / d_hat", "Newton", "products", "seconds"]
     return markdown([*head, "when to use"], body)
+
+
+def _by_size(rows: Rows) -> list[str]:
+    """Log over cubic at every size and target: the bars of the figure, and products."""
+    columns = {**PANELS, "velocity_products": ("matrix products", "pcg")}
+    body = []
+    for size in SIZES:
+        for theta in THETAS:
+            ratios = [
+                _ratio_text(ratio_over(list(logs.values())) if logs else None)
+                for metric, (_, measure) in columns.items()
+                if (logs := rows.logs(metric, Where(size, theta, measure=measure))) is not None
+            ]
+            if set(ratios) != {"-"}:
+                body.append([size, theta, str(len(rows.pairs(Where(size, theta)))), *ratios])
+    return markdown(["size", "theta", "scenes", *(title for title, _ in columns.values())], body)
 
 
 def _over_log(rows: Rows, arm: str, theta: str, size: str, metric: str, measure: str) -> Ratio | None:
@@ -133,15 +183,17 @@ def rule(study: Study, rows: list[Row]) -> dict:
     found, of_laws = answers(of), laws(of)
     return {
         "answers": "\n".join(_answers(found)),
-        "numbers": "\n".join(_numbers(found)),
+        "of_question": {a.number: _of_question(a) for a in found},
+        "outcome": {a.number: a.outcome for a in found},
+        "subjects": SUBJECTS,
         "laws": "\n\n".join(map(_law, of_laws)),
+        "by_size": "\n".join(_by_size(of)),
         "arms_s": "\n".join(_arms(study, of, "S")),
         "arms_m": "\n".join(_arms(study, of, "M")),
         "power": "\n".join(power.table(study)),
         "cost": "\n".join(_cost(study, rows)),
         "ends": "\n".join(_ends(rows)),
         "scenes": "\n".join(_scenes(study, of)),
-        "outcomes": {a.name: a.outcome for a in found},
         "rows": len(rows),
         "cells": len(study.cells),
     }
