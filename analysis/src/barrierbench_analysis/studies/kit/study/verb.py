@@ -12,6 +12,7 @@ import argparse
 import random
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError, reported
@@ -21,7 +22,7 @@ from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.program.verbs import of_spec
 from barrierbench_analysis.tables.words import counted
 
-from . import cost, page, registration, store
+from . import cost, page, registration, repeat, store
 from .collect import left_out, missing, parts, run_cells, wanted
 from .spec import Cell, Study, read_study
 
@@ -93,7 +94,8 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "--out",
         type=Path,
         metavar="DIR",
-        help="runs, rows, page and figures in this folder, apart from kept rows: repeats a study",
+        help="runs, rows, page and figures in this folder, apart from kept rows: repeats a study, and prints"
+        " how far the new rows are from the kept ones",
     )
     plugin_argument(parser)
     for word in argv[1:]:
@@ -259,4 +261,8 @@ def _made(study: Study, cells: list[Cell], args: argparse.Namespace) -> int:
     file = store.file_of(study)
     left = len(missing(study, store.read_rows(file), args.decided))
     print(f"{study.name}: {counted(made, 'new row')} in {file.name}, {left} to run")
+    if study.out and (kept := store.file_of(replace(study, out=None))).is_file():
+        keys = {cell.key for cell in cells}
+        new = [row for row in store.read_rows(file).values() if row.key in keys]
+        print("\n".join(repeat.lines(store.read_rows(kept), new)))
     return made
