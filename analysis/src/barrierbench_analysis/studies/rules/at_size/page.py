@@ -14,7 +14,7 @@ from . import power
 from .figure import PANELS, SIZES, THETAS
 from .laws import Law, laws
 from .pairs import LOG, Rows, Where
-from .questions import Answer, answers
+from .questions import SCENES, Answer, answers
 
 SUBJECTS = {
     1: "Does the raw condition number differ?",
@@ -93,6 +93,61 @@ def _arms(study: Study, rows: Rows, size: str) -> list[str]:
             body.append(words)
     head = ["formulation", "theta", "ends ok", "smallest gap / d_hat", "Newton", "products", "seconds"]
     return markdown([*head, "when to use"], body)
+
+
+# Question -> what its sentence begins with, the number of an answer that it gives, the metric and the runs that
+# stand for it at smaller sizes while its own runs are missing.
+SENTENCES = {
+    1: ("The raw condition number of the log over that of the cubic", "raw", "cond_p95", "diagnosed"),
+    2: (
+        "Newton iterations of the log over those of the cubic",
+        "log/cubic at M",
+        "velocity_newton",
+        "diagnosed",
+    ),
+    3: (
+        "The share that the step bound of contact has in the difference of iterations",
+        "share contact",
+        "",
+        "",
+    ),
+    4: ("Seconds of the log over those of the cubic", "seconds to velocity", "velocity_seconds", "pcg"),
+    5: ("The share of changed loads under which the cubic ends ok", "cubic: share that ends ok", "", ""),
+    6: ("What clamping all element Hessians changes in that ratio of iterations", "clamped: Newton", "", ""),
+}
+COMMANDS = {
+    1: "--part m --only measure=diagnosed",
+    2: "--part m --only measure=diagnosed",
+    3: "--part m --only measure=diagnosed",
+    4: "--part m --only measure=pcg",
+    5: "--part robustness",
+    6: "--part masks",
+}
+
+
+def sentences(study: Study, rows: Rows, found: list[Answer]) -> list[str]:
+    """One a question: its number, its outcome and its command; while its runs are missing, the same number at
+    the largest smaller size that has all scenes."""
+    made = []
+    for answer in found:
+        begins, label, metric, measure = SENTENCES[answer.number]
+        command = f"`{study.call('run')} {COMMANDS[answer.number]}`"
+        number, at = answer.numbers.get(label), f"over {counted(len(answer.scenes), 'scene')}"
+        if number is None and metric:
+            number, at = _at_smaller(rows, metric, measure)
+        text = f"{begins} is {number} {at}" if number is not None else f"{begins} was not measured yet"
+        made.append(f"{answer.number}. {SUBJECTS[answer.number]} **{answer.outcome}**. {text} ({command}).")
+    return made
+
+
+def _at_smaller(rows: Rows, metric: str, measure: str) -> tuple[Ratio | None, str]:
+    for size in reversed(SIZES[:2]):
+        logs = rows.logs(metric, Where(size, measure=measure))
+        if len(logs) >= SCENES:
+            return ratio_over(
+                list(logs.values())
+            ), f"at size {size} and theta 0.01 over {counted(len(logs), 'scene')}"
+    return None, ""
 
 
 def _by_size(rows: Rows) -> list[str]:
@@ -187,6 +242,7 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "outcome": {a.number: a.outcome for a in found},
         "subjects": SUBJECTS,
         "laws": "\n\n".join(map(_law, of_laws)),
+        "sentences": "\n".join(sentences(study, of, found)),
         "by_size": "\n".join(_by_size(of)),
         "arms_s": "\n".join(_arms(study, of, "S")),
         "arms_m": "\n".join(_arms(study, of, "M")),
