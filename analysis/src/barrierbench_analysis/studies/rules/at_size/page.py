@@ -95,12 +95,12 @@ def _arms(study: Study, rows: Rows, size: str) -> list[str]:
     return markdown([*head, "when to use"], body)
 
 
-# Question -> what its sentence begins with, the number of an answer that it gives, the metric and the runs that
-# stand for it at smaller sizes while its own runs are missing.
+# Question -> what its sentence begins with, the number of an answer that it gives, the metric and the runs
+# that stand for it at smaller sizes while its own runs are missing.
 SENTENCES = {
-    1: ("The raw condition number of the log over that of the cubic", "raw", "cond_p95", "diagnosed"),
+    1: ("The ratio log/cubic of raw condition numbers", "raw", "cond_p95", "diagnosed"),
     2: (
-        "Newton iterations of the log over those of the cubic",
+        "The ratio log/cubic of Newton iterations",
         "log/cubic at M",
         "velocity_newton",
         "diagnosed",
@@ -111,9 +111,9 @@ SENTENCES = {
         "",
         "",
     ),
-    4: ("Seconds of the log over those of the cubic", "seconds to velocity", "velocity_seconds", "pcg"),
+    4: ("The ratio log/cubic of seconds", "seconds to velocity", "velocity_seconds", "pcg"),
     5: ("The share of changed loads under which the cubic ends ok", "cubic: share that ends ok", "", ""),
-    6: ("What clamping all element Hessians changes in that ratio of iterations", "clamped: Newton", "", ""),
+    6: ("The factor on that ratio of iterations where all Hessians are clamped", "clamped: Newton", "", ""),
 }
 COMMANDS = {
     1: "--part m --only measure=diagnosed",
