@@ -210,6 +210,7 @@ PARTS = {
     "docs/results/which-barrier.md": ("slices", "gap_map"),
     "docs/results/several-studies.md": ("several",),
     "docs/guides/cluster.md": ("cost",),
+    "docs/study.md": ("at_size", "at_size_arms", "at_size_laws"),
 }  # page -> its generated parts
 TEMPLATES = {
     "answer": lambda numbers: numbers["answer"].splitlines(),
@@ -220,6 +221,13 @@ TEMPLATES = {
     "several": lambda numbers: several_lines(numbers["several"]),
     "gap_map": lambda numbers: lines(numbers["gap_map"], WIDTH),
     "cost": lambda numbers: table(numbers["cost"]),
+    "at_size": lambda numbers: [
+        *numbers["at_size"]["sentences"].splitlines(),
+        "",
+        numbers["at_size"]["by_size"],
+    ],
+    "at_size_arms": lambda numbers: [numbers["at_size"]["arms_s"]],
+    "at_size_laws": lambda numbers: [numbers["at_size"]["verdicts"]],
 }
 
 

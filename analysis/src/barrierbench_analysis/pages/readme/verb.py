@@ -36,12 +36,13 @@ MORE = ("CONTRIBUTING.md", "docs/**/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
-    """The answer, the numbers of the demo, those of the claims' slices, the sentences of the gap map, what
+    """The answer, the study at size, the numbers of the demo, those of the claims' slices, the sentences of the gap map, what
     several studies say of one quantity, and what studies take. Errors: UserError where one is missing.
     """
     claims, found = claims_table.read(claims_table.FILE), kept_map()
     studies = {
         "answer": study_page.numbers_of(read_study("answer"))["table"],
+        "at_size": study_page.numbers_of(read_study("at_size")),
         "slices": gather_slices(claims, found),
         "gap_map": gather_map(found),
         "several": several.gather(claims, found, read_study("ablation")),

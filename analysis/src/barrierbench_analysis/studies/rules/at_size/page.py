@@ -242,6 +242,9 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "outcome": {a.number: a.outcome for a in found},
         "subjects": SUBJECTS,
         "laws": "\n\n".join(map(_law, of_laws)),
+        "verdicts": "\n".join(
+            f"- Law {law.number}, {law.name}: **{law.verdict}** ({law.why})." for law in of_laws
+        ),
         "sentences": "\n".join(sentences(study, of, found)),
         "by_size": "\n".join(_by_size(of)),
         "arms_s": "\n".join(_arms(study, of, "S")),
