@@ -36,8 +36,9 @@ MORE = ("CONTRIBUTING.md", "docs/**/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
-    """The answer, the study at size, the numbers of the demo, those of the claims' slices, the sentences of the gap map, what
-    several studies say of one quantity, and what studies take. Errors: UserError where one is missing.
+    """The answer, the study at size, the numbers of the demo, those of the claims' slices, the sentences of
+    the gap map, what several studies say of one quantity, and what studies take. Errors: UserError where
+    one is missing.
     """
     claims, found = claims_table.read(claims_table.FILE), kept_map()
     studies = {
