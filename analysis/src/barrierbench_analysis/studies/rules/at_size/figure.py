@@ -11,7 +11,7 @@ from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.figures.ticks import log_ticks
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
-from barrierbench_analysis.tables.statistics import Ratio, ratio_over
+from barrierbench_analysis.tables.statistics import Ratio, geometric, ratio_over
 
 from .pairs import Rows, Where
 
@@ -50,7 +50,7 @@ def _points(rows: Rows, metric: str, theta: str, measure: str) -> list[dict]:
 def _means(points: pd.DataFrame) -> list[tuple[float, Ratio]]:
     """(geometric mean of the unknowns, mean of the ratio) of each size."""
     return [
-        (float(of.unknowns.prod() ** (1 / len(of))), ratio_over(list(of.ln)))
+        (geometric(of.unknowns), ratio_over(list(of.ln)))
         for size in SIZES
         if len(of := points[points["size"] == size]) > 0
     ]
