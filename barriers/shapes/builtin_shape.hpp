@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "barriers/shapes/shape_family.hpp"
 #include "core/barrier/shape.hpp"
@@ -35,6 +36,29 @@ void potential_batch(void*, std::size_t n, const T* d, const T* d_hat, T* b, T* 
   }
 }
 
+namespace shapes {
+
+/// A shape with an exponent: eval(d, d_hat, a), and the exponents that are allowed.
+template <class S>
+concept HasExponent = requires {
+  S::eval(1.0, 1.0, 1.0);
+  S::least_exponent;
+};
+
+/// One whose pieces meet at gaps that the exponent gives: joints(a), for Shape::joints.
+template <class S>
+concept HasJoints = requires {
+  S::joints(1.0);
+};
+
+template <class S>
+std::vector<double> joints_of(double exponent) {
+  const auto joints = S::joints(exponent);
+  return {joints.begin(), joints.end()};
+}
+
+}  // namespace shapes
+
 template <class S>
 Shape builtin_shape(std::string name, std::string doc) {
   Shape shape;
@@ -48,19 +72,9 @@ Shape builtin_shape(std::string name, std::string doc) {
     shape.potential_double = &potential_batch<S, double>;
     shape.potential_float = &potential_batch<S, float>;
   }
+  if constexpr (shapes::HasJoints<S>) shape.joints = shapes::joints_of<S>(S::default_exponent);
   return shape;
 }
-
-namespace shapes {
-
-/// A shape with an exponent: eval(d, d_hat, a), and the exponents that are allowed.
-template <class S>
-concept HasExponent = requires {
-  S::eval(1.0, 1.0, 1.0);
-  S::least_exponent;
-};
-
-}  // namespace shapes
 
 /// shape_batch of the exponent whose bits `self` holds, so that copies of a shape own nothing.
 template <class S, class T>
@@ -83,6 +97,7 @@ Shape member_of(Shape shape, std::string_view name, double exponent) {
   shape.batch_float = &exponent_batch<S, float>;
   shape.self = std::bit_cast<void*>(exponent);
   shape.launches = nullptr;  // kernels are those of the usual exponent
+  if constexpr (shapes::HasJoints<S>) shape.joints = shapes::joints_of<S>(exponent);
   return shape;
 }
 

@@ -44,6 +44,12 @@ const LegendreRule& rule() {
 
 }  // namespace
 
+GapPotential::GapPotential(const BarrierFunction& barrier, const GapStiffness& stiffness)
+    : barrier_(barrier), stiffness_(stiffness), joints_(barrier.shape.joints) {
+  if (barrier.argument == Argument::squared_gap)
+    for (double& joint : joints_) joint = std::sqrt(joint);
+}
+
 void GapPotential::integrand(const KappaParts& frozen, double d_hat) {
   const std::size_t n = s_.size();
   width_.assign(n, d_hat);
@@ -53,21 +59,39 @@ void GapPotential::integrand(const KappaParts& frozen, double d_hat) {
 }
 
 // -int kappa b' over [low, high].
-double GapPotential::panel(const KappaParts& frozen, double low, double high, double d_hat) {
-  const double middle = (low + high) / 2, half = (high - low) / 2;
-  s_.resize(n_nodes);
-  for (std::size_t i = 0; i < n_nodes; ++i) s_[i] = middle + half * rule().node[i];
-  integrand(frozen, d_hat);
-  double sum = 0;
-  for (std::size_t i = 0; i < n_nodes; ++i) sum -= rule().weight[i] * kappa_[i] * db_[i];
-  return half * sum;
+double GapPotential::part(const KappaParts& frozen, double low, double high, double d_hat, int parts) {
+  const double width = (high - low) / parts;
+  double out = 0;
+  for (int part = parts; part-- > 0;) {
+    const double from = low + part * width, to = low + (part + 1) * width;
+    const double middle = (from + to) / 2, half = (to - from) / 2;
+    s_.resize(n_nodes);
+    for (std::size_t i = 0; i < n_nodes; ++i) s_[i] = middle + half * rule().node[i];
+    integrand(frozen, d_hat);
+    double sum = 0;
+    for (std::size_t i = 0; i < n_nodes; ++i) sum -= rule().weight[i] * kappa_[i] * db_[i];
+    out += half * sum;
+  }
+  return out;
 }
 
-// The same over [d, d_hat] with s = d_hat - (d_hat - d) t^2.
-double GapPotential::first_panel(const KappaParts& frozen, double d, double d_hat, int parts) {
+double GapPotential::panel(const KappaParts& frozen, double low, double high, double d_hat, int parts) {
+  double out = 0;
+  for (const double joint : joints_) {
+    const double cut = joint * d_hat;
+    if (!(low < cut && cut < high)) continue;
+    out += part(frozen, cut, high, d_hat, parts);
+    high = cut;
+  }
+  return out + part(frozen, low, high, d_hat, parts);
+}
+
+// The same over [d, d_hat] with s = d_hat - (d_hat - d) t^2, t from t0 to t1.
+double GapPotential::first_part(const KappaParts& frozen, double d, double d_hat, double t0, double t1,
+                                int parts) {
   double out = 0;
   for (int part = 0; part < parts; ++part) {
-    const double low = double(part) / parts, half = 0.5 / parts;
+    const double low = t0 + (t1 - t0) * part / parts, half = 0.5 * (t1 - t0) / parts;
     std::array<double, n_nodes> t{};
     s_.resize(n_nodes);
     for (std::size_t i = 0; i < n_nodes; ++i) {
@@ -82,6 +106,18 @@ double GapPotential::first_panel(const KappaParts& frozen, double d, double d_ha
   return out;
 }
 
+double GapPotential::first_panel(const KappaParts& frozen, double d, double d_hat, int parts) {
+  double out = 0, begin = 0;
+  for (const double joint : joints_) {
+    const double cut = joint * d_hat;
+    if (!(d < cut && cut < d_hat)) continue;
+    const double end = std::sqrt((d_hat - cut) / (d_hat - d));
+    out += first_part(frozen, d, d_hat, begin, end, parts);
+    begin = end;
+  }
+  return out + first_part(frozen, d, d_hat, begin, 1, parts);
+}
+
 // The ends of the panels are d_hat 2^(-j/2), the even ones exactly.
 double GapPotential::energy(const KappaParts& frozen, double d, double d_hat, int parts) {
   constexpr double root = std::numbers::sqrt2 / 2;
@@ -90,8 +126,7 @@ double GapPotential::energy(const KappaParts& frozen, double d, double d_hat, in
   while (d < low) {
     const double next = high / 2;
     high = low, low = next;
-    const double end = std::max(d, low), part = (high - end) / parts;
-    for (int i = parts; i-- > 0;) out += panel(frozen, end + i * part, end + (i + 1) * part, d_hat);
+    out += panel(frozen, std::max(d, low), high, d_hat, parts);
   }
   return out;
 }

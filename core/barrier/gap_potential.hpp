@@ -1,9 +1,9 @@
 // The energy whose force is kappa(d) b'(d), kappa any smooth function of the gap:
 //   E(d) = -int_d^{d_hat} kappa(s) b'(s) ds,   E' = kappa b',   E'' = kappa b'' + kappa' b'
 // The integral is Gauss-Legendre's with 20 nodes on panels that halve the square of the gap, [d_hat/sqrt 2, d_hat] and so on
-// down to d, so that shapes which are joined at half of their argument are smooth in each. What is smooth but for a pole or a
-// branch at d = 0 is integrated there to rounding: the error falls as 11.6^-40. In the first panel the variable is
-// sqrt(d_hat - s), so that half powers of d_hat - s are smooth too.
+// down to d, so that shapes which are joined at half of their argument are smooth in each; where a shape is joined elsewhere
+// (Shape::joints) its panel is cut. What is smooth but for a pole or a branch at d = 0 is integrated there to rounding: the error
+// falls as 11.6^-40. In the first panel the variable is sqrt(d_hat - s), so that half powers of d_hat - s are smooth too.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,11 @@ namespace bb {
 class GapPotential {
  public:
   /// Both on any argument, not literal; stiffness must outlive it.
-  GapPotential(const BarrierFunction& barrier, const GapStiffness& stiffness)
-      : barrier_(barrier), stiffness_(stiffness) {}
+  GapPotential(const BarrierFunction& barrier, const GapStiffness& stiffness);
 
   /// n rows: E (J), E' (N) and E'' (N/m) in the gap; exactly 0 for d >= d_hat. Requires d > 0, d_hat > 0. Grows its buffers,
-  /// allocates nothing else. Not thread-safe. Cost: 40 terms of barrier and stiffness for every halving of the gap.
+  /// allocates nothing else. Not thread-safe. Cost: 40 terms of barrier and stiffness for every halving of the gap,
+  /// 20 for every joint.
   void eval(std::size_t n, const double* d, const double* d_hat, const KappaParts* frozen, double* e,
             double* de, double* d2e);
 
@@ -33,13 +33,18 @@ class GapPotential {
 
  private:
   double energy(const KappaParts& frozen, double d, double d_hat, int parts);
+  /// The panel that ends at d_hat, cut at joints, and of it the roots from t0 to t1 in equal parts.
   double first_panel(const KappaParts& frozen, double d, double d_hat, int parts);
-  double panel(const KappaParts& frozen, double low, double high, double d_hat);
+  double first_part(const KappaParts& frozen, double d, double d_hat, double t0, double t1, int parts);
+  /// Another one, cut at joints, and of it the gaps from low to high in equal parts.
+  double panel(const KappaParts& frozen, double low, double high, double d_hat, int parts);
+  double part(const KappaParts& frozen, double low, double high, double d_hat, int parts);
   /// Terms of the barrier, kappa and its slope at the nodes s_.
   void integrand(const KappaParts& frozen, double d_hat);
 
   BarrierFunction barrier_;
   const GapStiffness& stiffness_;
+  std::vector<double> joints_;  // gaps in units of d_hat, falling
   std::vector<double> s_, width_, b_, db_, d2b_, kappa_, slope_;
 };
 

@@ -45,6 +45,9 @@ struct Shape {
   /// requested and kept as long as the process. layout: given_shape_layout of the program. Null: there is none.
   /// Errors: ConfigError.
   const DeviceCode& (*device_code)(const Shape&, std::uint64_t layout) = nullptr;
+  /// Where a shape that is put together of formulas changes from one to the next: its argument in units of that of d_hat,
+  /// falling. Empty: one formula, or pieces that meet at 1/2.
+  std::vector<double> joints = {};
 };
 
 /// What the shape is evaluated on; part of a formulation's identity (docs/theory/barriers.md).

@@ -19,11 +19,11 @@ D_HAT = 0.01
 @pytest.mark.parametrize("argument", ["gap", "squared_gap"])
 def test_shapes_are_those_of_the_program(program, argument):
     """Written twice on purpose: here they are the oracle."""
-    gaps = [D_HAT * u for u in (1e-6, 0.01, 0.3, 0.499, 0.501, 0.9, 0.999)]
+    gaps = [D_HAT * u for u in (1e-6, 0.01, 0.3, 0.499, 0.501, 0.82, 0.9, 0.999)]
     queries = [{"kind": "shape", "shape": shape, "argument": argument, "d": d, "d_hat": D_HAT} for shape in SHAPES for d in gaps]
     done = subprocess.run([program, "eval"], input="".join(json.dumps(q) + "\n" for q in queries), capture_output=True, text=True, check=True)
     answers = [json.loads(line) for line in done.stdout.splitlines()]
-    assert len(answers) == len(queries) == 42
+    assert len(answers) == len(queries) == 64
     for query, answer in zip(queries, answers):
         b, slope = barrier(query["shape"], argument, query["d"], D_HAT)
         assert [answer["b"], answer["db"]] == pytest.approx([b, slope], rel=1e-9), query
@@ -65,7 +65,7 @@ def test_quadratic_without_gravity_is_half_a_harmonic_period():
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_bounce_agrees_with_another_integrator(shape):
     b = bounce(shape, 9.81, 0.2)
-    if shape in ("quadratic", "cubic", "exponential"):
+    if shape in ("quadratic", "cubic", "exponential", "minimax_bounded"):
         b = BarrierBounce(shape, "gap", 8000.0, D_HAT, 0.3, 3, 9.81, 0.05, 0.2)
     times = np.linspace(0.0, 0.9 * (b.entry_time + b.period), 12)
     inside = [b.entry_time + f * b.half_contact for f in (0.3, 1.0, 1.6)]

@@ -26,7 +26,7 @@ def scene(program, tmp_path, name: str, every: int, **settings):
     return motion
 
 
-@pytest.mark.parametrize("formulation", ["log", "log_squared", "quadratic", "cubic", "two_stage", "exponential", "ipc2020"])
+@pytest.mark.parametrize("formulation", ["log", "log_squared", "quadratic", "cubic", "two_stage", "exponential", "minimax_bounded", "minimax", "ipc2020"])
 def test_stack_gaps_carry_the_weight_above(program, tmp_path, formulation):
     extra = {"/matching/rule": "as_given"} if formulation == "ipc2020" else {"/matching/rule": "equal_force", "/matching/load_N": 10}
     motion = scene(program, tmp_path, "stack", 39, **{"/formulation": {"name": formulation, "d_hat_m": 0.004}, **extra})

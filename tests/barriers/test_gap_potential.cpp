@@ -72,6 +72,22 @@ TEST(GapPotential, OfAConstantIsTheBarrierItself) {
   }
 }
 
+/// Shapes of several formulas, whose panels are cut where these meet.
+TEST(GapPotential, OfAConstantIsTheBarrierItselfForJointsAnywhere) {
+  for (const char* shape : {"minimax:3", "minimax:11.5", "minimax:40", "minimax_bounded:5"}) {
+    for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
+      const BarrierFunction fn = barrier(shape, argument);
+      ASSERT_GE(fn.shape.joints.size(), 2u);
+      for (const double u : spaced_u(1e-6, 1e-4)) {
+        const double d = u * d_hat;
+        const double found = at(fn, constant(), d).b, exact = 7 * fn.eval(d, d_hat).b;
+        ASSERT_GT(exact, 0);
+        EXPECT_LT(relative(found, exact), 4 * allowed(u)) << label(fn) << " u = " << u;
+      }
+    }
+  }
+}
+
 TEST(GapPotential, OfTheInverseSquareIsItsClosedForm) {
   for (const char* shape : {"cubic", "quadratic"}) {
     FoldedBarrier folded(barrier(shape));

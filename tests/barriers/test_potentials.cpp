@@ -174,7 +174,7 @@ TEST(FoldedBarrier, ItsForceAndCurvatureAreDerivativesOfItsEnergy) {
 
 TEST(FoldedBarrier, IsRefusedWhereThereIsNoPotential) {
   EXPECT_EQ(shapes_with_potential(), "quadratic, cubic");
-  for (const char* shape : {"log", "log_squared", "two_stage", "exponential"}) {
+  for (const char* shape : {"log", "log_squared", "two_stage", "exponential", "minimax_bounded", "minimax"}) {
     EXPECT_FALSE(has_potential(barrier(shape)));
     EXPECT_THROW(FoldedBarrier{barrier(shape)}, std::logic_error);
   }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tests/barriers/barrier_cases.hpp"
+#include "tests/barriers/minimax_terms.hpp"
 
 namespace bb::test::shapes_test {
 namespace {
@@ -54,6 +55,14 @@ struct Reference {
   std::function<Real(Real, Real)> b, db, d2b;
 };
 
+/// Of the exponent 7.
+Reference minimax_reference(bool infinite_at_zero) {
+  const auto terms = [=](Real d, Real dh) { return minimax_terms(7, d / dh, infinite_at_zero); };
+  return {[=](Real d, Real dh) { return dh * dh * terms(d, dh).b; },
+          [=](Real d, Real dh) { return dh * terms(d, dh).db; },
+          [=](Real d, Real dh) { return terms(d, dh).d2b; }};
+}
+
 /// The formulas as the literature writes them; long double carries 64 bits, so that their cancellation near
 /// d_hat stays below what is asserted.
 std::map<std::string, Reference> references() {
@@ -89,6 +98,7 @@ std::map<std::string, Reference> references() {
                         return -dh * (std::expm1(t) - t) / std::exp(a);
                       },
                       [=](Real d, Real dh) { return a * std::expm1(a * (1 - d / dh)) / std::exp(a); }};
+  r["minimax_bounded"] = minimax_reference(false), r["minimax"] = minimax_reference(true);
   return r;
 }
 

@@ -36,7 +36,7 @@ TEST(MaxSlope, InsideTheSupportIsFound) {
 }
 
 TEST(MaxSlope, OfAnUnboundedShapeThereIsNone) {
-  for (const char* shape : {"log", "log_squared", "two_stage"}) {
+  for (const char* shape : {"log", "log_squared", "two_stage", "minimax"}) {
     EXPECT_FALSE(max_slope({require_shape(shape), Argument::gap}, d_hat)) << shape;
   }
 }

@@ -137,7 +137,7 @@ TEST(DeviceCheck, SpringInFloat) { expect_same_bits<Spring, float>(43); }
 TEST(DeviceCheck, Hinge) { expect_same_bits<Hinge>(157); }
 TEST(DeviceCheck, Membranes) { expect_same_bits<Membranes>(915); }
 TEST(DeviceCheck, StrainLimit) { expect_same_bits<StrainLimit>(92); }
-TEST(DeviceCheck, Shapes) { expect_same_bits<EveryShape>(24); }
-TEST(DeviceCheck, ShapesInFloat) { expect_same_bits<EveryShape, float>(24); }
+TEST(DeviceCheck, Shapes) { expect_same_bits<EveryShape>(30); }
+TEST(DeviceCheck, ShapesInFloat) { expect_same_bits<EveryShape, float>(30); }
 
 }  // namespace

@@ -96,7 +96,7 @@ Said said_by(HostLimit limit, const LimitCase& of, const BarrierFunction& barrie
 /// Threads, orders, a launch of a shape's kernels or of its batch call, and terms in columns or element by element.
 TEST(LimitFamily, BitsDependOnNothingButTheState) {
   for (const LimitCase& of : limit_cases(0.1, 0.9)) {
-    for (const char* shape : {"log", "cubic", "quadratic", "two_stage"}) {
+    for (const char* shape : {"log", "cubic", "quadratic", "two_stage", "minimax"}) {
       SCOPED_TRACE(of.name + " " + shape);
       for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
         BarrierFunction barrier = barrier_of(shape);

@@ -286,7 +286,8 @@ inline std::vector<TermCase> limit_cases() {
     std::function<Method()> method;
   };
   std::vector<Form> forms;
-  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential",
+                            "minimax_bounded", "minimax"}) {
     for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
       for (const bool literal : {false, true}) {
         forms.push_back({std::string(shape) + (argument == Argument::gap ? "" : " of the squared gap") +

@@ -48,7 +48,8 @@ struct MethodCase {
 };
 std::vector<MethodCase> method_cases() {
   std::vector<MethodCase> out;
-  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential",
+                            "minimax_bounded", "minimax"}) {
     const StepHessian choice = all_step_hessians[out.size() % std::size(all_step_hessians)];
     out.push_back({shape, [=] {
                      Method method = fixed_method(shape, 20);

@@ -60,7 +60,7 @@ TEST(ExecutorBarrier, EvaluatesEveryShapeOfTheRegistry) {
       ++n_shapes;
     }
   }
-  EXPECT_GE(n_shapes, 10);
+  EXPECT_GE(n_shapes, 16);
 }
 
 TEST(ExecutorBarrier, FoldsTheStiffnessIntoShapesWithAPotential) {
@@ -95,7 +95,7 @@ TEST(ExecutorBarrier, FoldsTheStiffnessIntoShapesWithAPotential) {
 /// Of a plugin, of a formula, with an exponent: by the call that the CPU path makes, in the memory of the host.
 TEST(ExecutorBarrier, CallsAShapeWithoutAKernelForEveryRow) {
   int n_active = 0;
-  for (const char* name : {"exponential:4", "cubic"}) {
+  for (const char* name : {"exponential:4", "minimax:4", "cubic"}) {
     for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
       exec::HostExecutor executor(exec::Order::shuffled);
       ExecutorRows rows(executor, KappaColumns::kept);
@@ -113,7 +113,7 @@ TEST(ExecutorBarrier, CallsAShapeWithoutAKernelForEveryRow) {
       }
     }
   }
-  EXPECT_GT(n_active, 1200);
+  EXPECT_GT(n_active, 1800);
   BarrierFunction unknown{require_shape("cubic")};
   unknown.shape.name = "from_a_plugin", unknown.shape.launches = nullptr;
   EXPECT_THROW(ExecutorBarrier(unknown, true, true), ConfigError);  // no potential of its own

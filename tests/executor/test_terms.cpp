@@ -175,7 +175,8 @@ TEST(ExecutorTerms, BoundAMotionAsTheHostDoes) {
 TEST(ExecutorTerms, HaveEveryMatrixOfTheHost) {
   int n_matrices = 0, n_indefinite = 0;
   for (const TermCase& one : all_cases()) {
-    if (one.name.find("exponential") == 0 || one.name.find("two_stage") == 0) continue;
+    if (one.name.starts_with("exponential") || one.name.starts_with("two_stage")) continue;
+    if (one.name.starts_with("minimax")) continue;
     SCOPED_TRACE(one.name);
     std::vector<double> force(static_cast<std::size_t>(one.scene.n_vertices()));
     for (std::size_t v = 0; v < force.size(); ++v) force[v] = 1 + std::sin(5.0 * static_cast<double>(v));

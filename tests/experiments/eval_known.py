@@ -15,6 +15,21 @@ def exponential(a):
     return lambda d, h: h * h * (mp.exp(a * (1 - d / h)) - 1 - a * (1 - d / h) - (a * (1 - d / h)) ** 2 / 2) / (a * mp.exp(a))
 
 
+def minimax(a, infinite_at_zero):
+    c, joint = mp.exp(mpf(5) / 2 - a), 1 / a if infinite_at_zero else mpf(0)
+
+    def b(d, h):
+        u = d / h
+        t = a * (1 - max(u, joint))
+        if t <= 1:
+            return h * h * c * t**3 / (6 * a)
+        if t <= mpf(3) / 2:
+            return h * h * c * (mpf(1) / 6 + t * (t - 1) / 2) / a
+        return h * h * (mp.exp(t + 1 - a) - 11 * c / 24 - (mp.log(a * u) if u < joint else 0)) / a
+
+    return b
+
+
 SHAPES = {
     "log": lambda d, h: -((d - h) ** 2) * mp.log(d / h),
     "log_squared": lambda d, h: (d - h) ** 2 * mp.log(d / h) ** 2,
@@ -24,6 +39,10 @@ SHAPES = {
     "exponential": exponential(mpf(6)),
     "exponential:0.5": exponential(mpf("0.5")),
     "exponential:40": exponential(mpf(40)),
+    "minimax_bounded": minimax(mpf(7), False),
+    "minimax_bounded:40": minimax(mpf(40), False),
+    "minimax": minimax(mpf(7), True),
+    "minimax:3": minimax(mpf(3), True),
 }
 
 

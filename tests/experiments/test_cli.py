@@ -100,7 +100,7 @@ def test_a_command_line_that_means_nothing(program, arguments):
 def test_list_names_what_configs_may_name(program):
     done = bench(program, "list")
     assert done.returncode == 0
-    for name in ("log", "two_stage", "exponential", "elasticity_inclusive", "bdf2", "line_search", "drape2d", "cubic_dynamic_lagged"):
+    for name in ("log", "two_stage", "exponential", "minimax", "minimax_bounded", "elasticity_inclusive", "bdf2", "line_search", "drape2d", "cubic_dynamic_lagged"):
         assert name in done.stdout
     shapes = bench(program, "list", "shapes").stdout
     assert "cubic" in shapes and "drape2d" not in shapes

@@ -20,7 +20,8 @@ TEST(EvalShape, ClosedFormsLimitsAndZeros) {
   expect_close(squared["b"], 2 / (3 * h * h) * e * e * e / (h * h));
   expect_close(squared["db"], -2 / (h * h) * e * e * 2 * d / (h * h));
 
-  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential",
+                            "minimax_bounded", "minimax"}) {
     for (const char* argument : {"gap", "squared_gap"}) {
       for (double at : {0.8, 0.9, 1e6}) {
         const json zero =
@@ -29,7 +30,8 @@ TEST(EvalShape, ClosedFormsLimitsAndZeros) {
       }
       const json touching =
           ask({{"kind", "shape"}, {"shape", shape}, {"argument", argument}, {"d", 0}, {"d_hat", h}});
-      const bool bounded = std::string(shape) != "two_stage" && !std::string(shape).starts_with("log");
+      const std::string name = shape;
+      const bool bounded = name != "two_stage" && name != "minimax" && !name.starts_with("log");
       EXPECT_EQ(touching["b"].is_null(), !bounded);
       EXPECT_EQ(touching["db"].is_null(), !bounded);
       EXPECT_EQ(touching["d2b"].is_null(), !bounded);

@@ -134,7 +134,7 @@ TEST(EvalProtocol, TheSameFieldTwiceIsAnError) {
 }
 
 TEST(EvalProtocol, MinusZeroIsZero) {
-  for (const char* shape : {"log", "log_squared", "two_stage"}) {
+  for (const char* shape : {"log", "log_squared", "two_stage", "minimax"}) {
     json query = {{"kind", "shape"}, {"shape", shape}, {"d", -0.0}, {"d_hat", 1}};
     EXPECT_EQ(ask(query)["status"], "infinite") << shape;
   }

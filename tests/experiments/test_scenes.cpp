@@ -51,8 +51,8 @@ TEST_F(Scenes, AllOfTheRegistryTakeTheirFirstSteps) {
 
 TEST_F(Scenes, RestingBlockRestsAtTheClosedForm) {
   const double d_hat = 0.01, kappa = 1000;
-  for (const char* name :
-       {"log", "quadratic", "cubic", "log_squared", "two_stage", "exponential", "exponential:8"}) {
+  for (const char* name : {"log", "quadratic", "cubic", "log_squared", "two_stage", "exponential",
+                           "exponential:8", "minimax_bounded", "minimax", "minimax:12"}) {
     const RunConfig config = parse_config(
         R"({"schema": "barrierbench.config/1", "scene": {"name": "resting_block_1d"}, "formulation": {"argument": "gap", "shape": ")" +
             std::string(name) +

@@ -54,7 +54,7 @@ def test_a_run_is_that_of_the_closed_form(program, tmp_path, shape):
     assert message[0]["potential"] == "derived" and "potential" not in message[1]  # an id from before the key stays
 
 
-@pytest.mark.parametrize("shape, argument", [("log", "gap"), ("log", "squared_gap"), ("two_stage", "gap"), ("formula:(d_hat - d)^3/d_hat", "gap")])
+@pytest.mark.parametrize("shape, argument", [("log", "gap"), ("log", "squared_gap"), ("two_stage", "gap"), ("minimax", "gap"), ("formula:(d_hat - d)^3/d_hat", "gap")])
 def test_a_body_rests_where_the_number_lets_it_rest(program, tmp_path, shape, argument):
     """Shapes without a potential of 1/d^2: the force is that of kappa as a number of every iterate."""
     text, common = "20*m/(c*h^2)*exp(-d/d_hat)", (f'/formulation/shape="{shape}"', f'/formulation/argument="{argument}"')

@@ -90,8 +90,9 @@ def test_keys_that_a_policy_of_a_limit_shares_with_that_of_contact():
     assert set(OF_LIMIT) == {word or own for word, own in rows}
 
 
-def test_the_exponent_of_the_exponential_is_that_of_the_shape():
+@pytest.mark.parametrize(("shape", "header"), [("exponential", "exponential"), ("minimax_bounded", "minimax_bounded"), ("minimax", "minimax_bounded")])
+def test_exponents_of_plain_names_are_those_of_the_shapes(shape, header):
     from barrierbench_analysis.tables.accuracy import shapes
 
-    default = re.search(r"default_exponent = (\d+)", (ROOT / "barriers/shapes/exponential.hpp").read_text())
-    assert inspect.signature(shapes._exponential).parameters["a"].default == float(default[1])
+    default = re.search(r"default_exponent = (\d+)", (ROOT / f"barriers/shapes/{header}.hpp").read_text())
+    assert inspect.signature(shapes.SHAPES[shape]).parameters["a"].default == float(default[1])

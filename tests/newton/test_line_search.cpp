@@ -86,7 +86,7 @@ TEST(LineSearch, free_fall_of_a_cloth_is_one_quadratic) {
 // Newton doubles a gap far below its equilibrium by directions as short as the gap: here far below the tolerance.
 TEST(LineSearch, a_short_direction_next_to_an_unbounded_barrier_is_no_end_of_a_step) {
   const Scene scene = test::particle_over_plane(0.1, 1e-10, 1e-3);
-  for (const char* shape : {"log", "log_squared", "two_stage"}) {
+  for (const char* shape : {"log", "log_squared", "two_stage", "minimax"}) {
     const auto gap_at = [&](double tol_velocity) {
       Method method = test::fixed_method(shape, 1000);
       method.step_solver.tol_velocity = tol_velocity;

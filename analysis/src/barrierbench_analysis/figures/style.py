@@ -83,6 +83,8 @@ LOOKS = {
     "log_squared": Look("#000000", "X", (0, (1, 1))),
     "two_stage": Look("#A6761D", "<", (0, (5, 2, 1, 2))),
     "exponential": Look("#CC3311", "H", (0, (7, 1, 1, 1))),
+    "minimax": Look("#117733", "$M$", (0, (6, 1, 1, 1, 1, 1))),
+    "minimax_bounded": Look("#6699CC", "$B$", (0, (6, 3))),
     "log_of_square": Look("#44AA99", "d", (0, (3, 1))),
     "cubic_of_square": Look("#AA4499", "8", (0, (1, 1, 3, 1))),
     "article_cubic": Look("#999999", ">", "-."),

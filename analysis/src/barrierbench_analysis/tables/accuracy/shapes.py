@@ -42,6 +42,21 @@ def _exponential(u: float, a: float = 6.0) -> tuple[float, float]:
     return (p2 - t * t / 2) / (a * np.exp(a)), -p2 / np.exp(a)
 
 
+def _minimax_bounded(u: float, a: float = 7.0) -> tuple[float, float]:
+    t, c = a * (1 - u), np.exp(2.5 - a)
+    if t <= 1:
+        return c * t**3 / 6 / a, -c * t * t / 2
+    if t <= 1.5:
+        return c * (1 / 6 + t * (t - 1) / 2) / a, -c * (t - 0.5)
+    return (np.exp(1 - a * u) - 11 / 24 * c) / a, -np.exp(1 - a * u)
+
+
+def _minimax(u: float, a: float = 7.0) -> tuple[float, float]:
+    if a * u >= 1:
+        return _minimax_bounded(u, a)
+    return _minimax_bounded(1 / a, a)[0] - np.log(a * u) / a, -1 / (a * u)
+
+
 # u = d/d_hat in (0, 1] -> b/d_hat^2 and its derivative in u.
 SHAPES: dict[str, Callable[[float], tuple[float, float]]] = {
     "log": _log,
@@ -50,6 +65,8 @@ SHAPES: dict[str, Callable[[float], tuple[float, float]]] = {
     "cubic": _cubic,
     "two_stage": _two_stage,
     "exponential": _exponential,
+    "minimax_bounded": _minimax_bounded,
+    "minimax": _minimax,
 }
 
 
