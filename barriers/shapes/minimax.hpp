@@ -26,10 +26,14 @@ struct Minimax {
   template <class T>
   BB_HD static ShapeTerms<T> eval(T d, T d_hat, T a = T(default_exponent)) {
     const T u = d / d_hat, au = a * u;
-    if (au >= T(1)) return MinimaxBounded::eval(d, d_hat, a);
-    const T inverse = T(1) / au, c = elementary::exp(T(2.5) - a);
-    return {d_hat * d_hat / a * (T(1) - T(11) / T(24) * c - elementary::log(au)), -d_hat * inverse,
-            inverse / u};
+    const bool below = au < T(1);
+    ShapeTerms<T> out = MinimaxBounded::eval(below ? d_hat / a : d, d_hat, a);
+    if (below) {
+      out.b -= d_hat * d_hat / a * elementary::log(au);
+      out.db = -d_hat / au;
+      out.d2b = T(1) / (au * u);
+    }
+    return out;
   }
 };
 
