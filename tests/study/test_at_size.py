@@ -145,6 +145,15 @@ def test_the_fall_of_the_load_is_taken_where_it_is_above_twice_that_of_the_end()
     assert found["binding"] == 1 and found["stiffness"] == 4 and found["load_high"] == found["load_low"] == 1
 
 
+def test_the_price_weighs_a_condition_number_by_its_load():
+    def at(cond, load):
+        one = {"matrix": "clamped", "stage": "full", "scaling": "none", "cond": cond, "status": "ok", "lambda_max": 1.0}
+        return line(cond=[one], contact_load_max_N=load)
+
+    assert measured._price([at(90.0, 30.0), at(8.0, 0.1), at(5.0, None)], 2.0) == 4.0  # 90/30 and 8/2
+    assert measured._price([at(90.0, 30.0)], None) is None
+
+
 def test_contact_made_is_the_ratio_of_one_iterate():
     def cond(stage, value):
         return {"matrix": "clamped", "stage": stage, "scaling": "none", "cond": value, "status": "ok", "lambda_max": 1.0}
@@ -277,7 +286,7 @@ def test_an_outcome_needs_its_p_after_holm():
 
 def test_the_first_law_is_refuted_by_wrong_signs_alone():
     def places(ratio):
-        more = {"made": 5.0, "load_high": 4.0, "load_low": 1.0}
+        more = {"made": 5.0, "load_high": 4.0, "load_low": 1.0, "price_most": 1.0}
         return [r for s in EVERY for r in two(s, "cond_most", ratio, **more)]
 
     assert laws.load_range(Rows(STUDY, places(3.0))).verdict == "stands"  # 1/theta = 100 > 2 sqrt(4)

@@ -205,7 +205,7 @@ def result_sentences(numbers: dict) -> list[str]:
 
 
 PARTS = {
-    "README.md": ("answer",),
+    "README.md": ("answer", "at_size_sentences"),
     "docs/results/demo.md": ("result", "demo", "drape"),
     "docs/results/which-barrier.md": ("slices", "gap_map"),
     "docs/results/several-studies.md": ("several",),
@@ -226,6 +226,7 @@ TEMPLATES = {
         "",
         numbers["at_size"]["by_size"],
     ],
+    "at_size_sentences": lambda numbers: numbers["at_size"]["sentences"].splitlines(),
     "at_size_arms": lambda numbers: [numbers["at_size"]["arms_s"]],
     "at_size_laws": lambda numbers: [numbers["at_size"]["verdicts"]],
 }

@@ -35,9 +35,10 @@ def _verdict(scenes: set[str], refuted: bool) -> str:
 
 def load_range(rows: Rows) -> Law:
     """1: the sign of ln(cond_log/cond_cubic), largest of a run, is that of 1/theta - 2 sqrt(r), r the range
-    of loads of the log's run, where contact makes the largest eigenvalue in both.
+    of loads of the log's run, where contact makes the largest eigenvalue in both. The theorem implies that
+    sign for cond over load, not for cond (load-ranges.md): added after the registration, it decides nothing.
     """
-    places, wrong = [], 0
+    places, wrong, weighed = [], 0, []
     for size in ("XS", "S", "M"):
         for theta in ("0.1", "0.01"):
             for scene, (log, cubic) in rows.pairs(Where(size, theta)).items():
@@ -46,16 +47,21 @@ def load_range(rows: Rows) -> Law:
                 if None in (*made, high, low) or min(made) < MADE or not low:
                     continue
                 price = 1 / float(theta) - 2 * math.sqrt(high / low)
-                seen = math.log(log.values["cond_most"] / cubic.values["cond_most"])
+                seen, over_load = (
+                    math.log(log.values[name] / cubic.values[name]) for name in ("cond_most", "price_most")
+                )
                 wrong += (price > 0) != (seen > 0)
-                r, ratio = f"{high / low:.3g}", f"{math.exp(seen):.3g}"
-                places.append([scene, size, theta, r, "log" if price > 0 else "cubic", ratio])
+                weighed.append((price > 0) != (over_load > 0))
+                ratios = (f"{high / low:.3g}", f"{math.exp(seen):.3g}", f"{math.exp(over_load):.3g}")
+                places.append([scene, size, theta, ratios[0], "log" if price > 0 else "cubic", *ratios[1:]])
     share = wrong / len(places) if places else 0.0
-    why = f"wrong in {wrong} of {len(places)} places; refuted above {WRONG:.0%}"
-    head = ("scene", "size", "theta", "f_hi/f_lo", "predicted larger cond", "cond log/cubic")
-    return Law(
-        1, "the price of unknown loads", _verdict({p[0] for p in places}, share > WRONG), why, places, head
+    why = (
+        f"wrong in {wrong} of {len(places)} places; refuted above {WRONG:.0%}. With cond over load, which the"
+        f" theorem is about and which was added after the registration, it is wrong in {sum(weighed)}"
     )
+    head = ("scene", "size", "theta", "f_hi/f_lo", "predicted larger", "cond log/cubic", "cond over load")
+    verdict = _verdict({p[0] for p in places}, share > WRONG)
+    return Law(1, "the price of unknown loads", verdict, why, places, head)
 
 
 def _pi(row, normal: float) -> float:

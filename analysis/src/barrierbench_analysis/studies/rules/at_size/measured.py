@@ -16,6 +16,7 @@ from .stops import LOOSE, RESIDUAL, RULES, WORK, work
 LAWS = {
     "made": "largest cond over cond without contact of the same iterate",
     "cond_most": "largest cond of an iterate in contact",
+    "price_most": "largest cond over the largest load of its iterate, or over load_low if that is more",
     "bj_lambda_max": "largest eigenvalue of an iterate, block-Jacobi scaled",
     "load_high": "largest load of a contact at a step's end, the largest over steps in contact",
     "load_low": "the same, 5% quantile over steps in contact",
@@ -68,6 +69,18 @@ def _conditioning(lines: list[dict]) -> dict[str, float | None]:
     }
 
 
+def _price(lines: list[dict], least: float | None) -> float | None:
+    """Of law 1 in the form that its theorem implies: a condition number over the load of its iterate."""
+    if least is None:
+        return None
+    found = [
+        cond / max(line["contact_load_max_N"], least)
+        for line in lines
+        if line["contact_load_max_N"] and (cond := _of(line, "full", "none", "cond")) is not None
+    ]
+    return max(found, default=None)
+
+
 def _loads(record: dict, steps: dict[int, list[dict]]) -> dict[str, float | None]:
     """Of law 1 the range of loads, of law 3 how the load falls where it is too large."""
     ends = {step["step"]: step["contact_load_max_N"] for step in record["steps"]}
@@ -112,4 +125,5 @@ def measure(study: Study, cell: Cell, record: dict) -> dict[str, float | None]:
     found |= {"contacts": float(np.mean([line["contacts"]["total"] for line in lines]))}
     found |= {f"by_{name}": value for name, value in counts(lines).items()}
     found |= {f"slope_{name}": value for name, value in slopes(steps).items()}
-    return found | work(steps, record, limits(study, cell)) | _conditioning(lines) | _loads(record, steps)
+    found |= work(steps, record, limits(study, cell)) | _conditioning(lines) | _loads(record, steps)
+    return found | {"price_most": _price(lines, found["load_low"])}
