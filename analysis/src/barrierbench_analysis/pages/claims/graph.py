@@ -1,7 +1,7 @@
 """Verdicts as edges of the public graph of claims (alecjacobson/mesh-elasticity-solver-benchmark,
-claims/schema.md): nodes are methods, an edge says that one is claimed to be better than another in one dimension,
-and how well the claim stands. Names of their nodes are used where the methods are theirs; graph.json has them.
-The file is JSON, and so YAML as well, which is what that graph is written in.
+claims/schema.md): nodes are methods, an edge says that one is claimed to be better than another in one
+dimension, and how well the claim stands. Names of their nodes are used where the methods are theirs
+(graph.json). The file is JSON, and so YAML as well, which is what that graph is written in.
 """
 
 import json
@@ -70,7 +70,7 @@ def _measured(a: Answer, j: Judged, table: Table) -> dict:
 
 
 def _number_of(a: Answer, number: int) -> Judged | None:
-    """The part of this number of the claim, over confirmed scenes where there are any. None without a value."""
+    """The part of this number of the claim, over confirmed scenes if there are any. None without a value."""
     says = a.claim.parts[number - 1]["says"]
     found = (j for j in (*a.confirmed_parts, *a.parts) if j.says == says and j.value is not None)
     return next(found, None)

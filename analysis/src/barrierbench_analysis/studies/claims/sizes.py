@@ -1,5 +1,5 @@
-"""How large the runs are from which a verdict is computed. The kept rows have no unknowns of a single run: their
-sweep keeps the least and the largest number of free unknowns of all its runs, counted or not.
+"""How large the runs are from which a verdict is computed. The kept rows have no unknowns of a single run:
+their sweep keeps the least and the largest number of free unknowns of all its runs, counted or not.
 """
 
 from __future__ import annotations
@@ -50,5 +50,5 @@ def of_sweeps(names: Iterable[str], table: Table) -> Sizes | None:
 
 
 def of_parts(parts: Iterable[Judged], table: Table) -> Sizes | None:
-    """Of the runs that decide: those of the sweeps of all parts that are not beside and are no closed forms."""
+    """Of the runs that decide: those of the sweeps of all parts that are not beside and no closed forms."""
     return of_sweeps({j.sweep for j in parts if j.sweep and not j.beside}, table)
