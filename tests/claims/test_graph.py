@@ -43,6 +43,10 @@ def test_status_evidence_and_sizes_are_those_of_the_verdict():
     assert edges["H8", "quality"]["measured"]["unknowns"] == [] and edges["H8", "quality"]["assessed_by"] == "barrierbench (closed form)"
 
 
+def test_every_verdict_has_a_status():
+    assert graph.STATUS == {"holds": "validated", "holds in part": "qualified", "holds only if": "qualified", "does not hold": "refuted", "not decided": "unvalidated"}
+
+
 def test_what_was_not_run_is_claimed_by_its_authors_alone():
     (edge,) = graph.graph([Answer(read_claim("K9"), Judged("not decided", missing="waits for x"), [])], Table())["edges"]
     assert edge["status"] == "self-claimed" and edge["measured"] is None and edge["guarantee_preserved"] == "approx"

@@ -93,7 +93,7 @@ def test_a_verdict_of_small_scenes_says_up_to_which_size():
     again.about["unknowns"] = "10 to 20"
     assert report.confirmed_cell(a, Table({"s": made, "t": again})) == "does not hold; of small scenes (up to 20 unknowns)"
     a.parts[0].beside = True  # what decides nothing has no size
-    assert report.exploratory_cell(a, Table({"t": again})) == "holds"
+    assert report.exploratory_cell(a, Table({"s": again})) == "holds"
 
 
 def test_claims_that_are_true_by_construction_stand_apart_with_a_reason():
