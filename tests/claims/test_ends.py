@@ -9,7 +9,7 @@ from synthetic import write_run
 
 from barrierbench_analysis.tables import run_words
 from barrierbench_analysis.studies.claims import figure, frontiers
-from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.pages.claims import parts_file, report
 from barrierbench_analysis.studies.claims.ends import end_of_case, ends_of_part
 from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import judge
@@ -64,8 +64,8 @@ def test_page_and_figure_of_a_claim_say_it(tmp_path, monkeypatch):
     claim, table = replace(read_claim("K1"), parts=read_claim("K1").parts[:1]), Table({"tight_limits": made()})
     monkeypatch.setattr("barrierbench_analysis.studies.claims.judge.missing", lambda *_: [])
     judged = judge(claim, table, Eval(None))
-    page = report.markdown([judged], table)
-    assert f"Ends of steps: published: {WORD}." in page and f"(published: {WORD})" in page
+    (row,) = parts_file.rows([judged], table)
+    assert row["ends_of_steps"] == f"published: {WORD}" and f"(published: {WORD})" in report.markdown([judged], table)
     assert f"published: {WORD}" in report.text([judged]).replace("\n     ", " ")
     figure.draw([judged], tmp_path / "claims")
     assert WORD in (tmp_path / "claims.csv").read_text() and "residual of their ends" in " ".join((tmp_path / "claims.txt").read_text().split())

@@ -1,5 +1,6 @@
 """claims/ as committed, the kept numbers, and what is reported when something is missing."""
 
+import csv
 import json
 
 import pytest
@@ -8,7 +9,7 @@ from made import record
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.pages.claims import verb
 from barrierbench_analysis.studies.claims import fresh
-from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.pages.claims import parts_file, report
 from barrierbench_analysis.studies.claims.entry import FOLDER, ROOT, ids, read_claim, read_sweep
 from barrierbench_analysis.studies.claims.judge import RULES, judge, missing
 from barrierbench_analysis.studies.kit.metrics import METRICS
@@ -16,6 +17,7 @@ from barrierbench_analysis.studies.claims.plan import plan
 from barrierbench_analysis.studies.claims.parts import KEYS, THRESHOLDS, check
 from barrierbench_analysis.studies.claims.proofs import PROOFS, Eval
 from barrierbench_analysis.studies.claims.registry import confirmable, confirmed_parts
+from barrierbench_analysis.studies.claims.sizes import of_sweeps
 from barrierbench_analysis.studies.claims.slices import slice_of
 from barrierbench_analysis.studies.kit.success import read_for
 from barrierbench_analysis.studies.claims.table import FILE, Table, collect, read, used_metrics, write
@@ -88,10 +90,21 @@ def test_the_page_is_made_of_the_kept_numbers():
     table = read(FILE)
     asker = Eval(None, table.answers)
     answers = [judge(read_claim(name), table, asker) for name in ids()]
-    assert (ROOT / "results" / "CLAIMS.md").read_text() == report.markdown(answers, table)
-    page = (ROOT / "docs/results/claims.md").read_text()
-    assert report.in_page(page, answers) == page and "| N1 |" in page
+    made = {"CLAIMS.md": report.markdown(answers, table), "CLAIMS.csv": parts_file.parts_text(answers, table), "CLAIMS_SWEEPS.csv": parts_file.sweeps_text(table)}
+    for name, text in made.items():
+        assert (ROOT / "results" / name).read_text() == text, name
+    assert len(made["CLAIMS.md"]) < 40_000 and all(made["CLAIMS.md"].count(f"\n| [{name}]") == 1 for name in ids())
     assert not [line for a in answers for line in missing(a.claim, table)] and len(table.sweeps) >= 10
+
+
+def test_all_verdicts_are_of_small_scenes_as_the_docs_say():
+    table = read(FILE)
+    sizes = of_sweeps(table.sweeps, table)
+    assert sizes.small and f"(all are: {sizes.least} to {sizes.largest} unknowns)" in (ROOT / "docs/results/claims.md").read_text()
+    rows = list(csv.DictReader((ROOT / "results/CLAIMS.csv").read_text().splitlines()))
+    assert {row["of_small_scenes"] for row in rows if row["sweep"]} == {"yes"} and {row["unknowns_largest"] for row in rows if not row["sweep"]} == {""}
+    small = [line for line in (ROOT / "results/CLAIMS.md").read_text().splitlines() if "; of small scenes (up to " in line]
+    assert {line.partition("]")[0][3:] for line in small} == set(ids()) - {"H6", "H8"}  # closed forms decide these
 
 
 def test_the_table_survives_writing(tmp_path):

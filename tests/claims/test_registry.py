@@ -9,10 +9,11 @@ from dataclasses import replace
 import pytest
 from registered import CLAIM, FILE, NAME
 
+from barrierbench_analysis.io import module_code
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.pages.claims import verb
 from barrierbench_analysis.studies.claims import registry
-from barrierbench_analysis.pages.claims import report
+from barrierbench_analysis.pages.claims import parts_file, report
 from barrierbench_analysis.studies.claims.entry import read_claim, read_sweep
 from barrierbench_analysis.studies.claims.inputs import inputs_of
 from barrierbench_analysis.studies.claims.judge import judge
@@ -25,9 +26,9 @@ def test_the_code_of_the_common_success_is_in_the_rule(repository, monkeypatch):
     rule = registry.rule_of(read_claim("K4"))
     assert len(rule["success"]) == 16 and "success" not in registry.rule_of(CLAIM)
     source = inspect.getsource(registry.success)
-    monkeypatch.setattr(registry.inspect, "getsource", lambda module: source.replace('"""Largest', '"""The largest') + "\n# a comment\n")
+    monkeypatch.setattr(module_code.inspect, "getsource", lambda module: source.replace('"""Largest', '"""The largest') + "\n# a comment\n")
     assert registry.code_of(registry.success) == rule["success"]
-    monkeypatch.setattr(registry.inspect, "getsource", lambda module: source.replace('== "converged"', '!= "failed"'))
+    monkeypatch.setattr(module_code.inspect, "getsource", lambda module: source.replace('== "converged"', '!= "failed"'))
     assert registry.code_of(registry.success) != rule["success"]
 
 
@@ -57,11 +58,13 @@ def test_the_confirmed_verdict_is_that_of_the_confirmation_scenes(repository, mo
     monkeypatch.setattr(registry, "state", lambda claim, table, entries: original(claim, table, entries, repository.root))
     answer = judge(CLAIM, table, Eval(None), repository.entries())
     assert answer.verdict.verdict == "not decided" and answer.confirmed.verdict == "holds" and answer.confirmed_parts[0].scenes == 10
-    row = next(line for line in report.verdict_table([answer]) if line.startswith("| K12"))
-    assert "| not decided: fewer Newton" in row and "| holds |" in row
+    row = next(line for line in report.verdict_table([answer], Table()) if line.startswith("| [K12]"))
+    assert "| not decided |" in row and "| holds |" in row
     table.sweeps |= repository.run(factor=0.5).sweeps
     answer = judge(CLAIM, table, Eval(None), repository.entries())
-    assert answer.confirmed.verdict == "does not hold" and "Confirmed: **does not hold**" in report.markdown([answer], Table())
+    assert answer.confirmed.verdict == "does not hold" and "| not decided | does not hold |" in report.markdown([answer], Table())
+    of = {row["evidence"]: row for row in parts_file.rows([answer], Table()) if row["kind"] == "deciding"}
+    assert of["confirmed"]["verdict"] == "does not hold" and of["confirmed"]["basis"].startswith("registered ") and of["exploratory"]["basis"].startswith("exploratory: ")
 
 
 @pytest.mark.parametrize("edit, said", [
@@ -103,7 +106,7 @@ def test_another_way_to_read_a_metric_is_another_rule(repository, monkeypatch):
 
 def test_a_docstring_is_no_rule(monkeypatch):
     def hashed(text):
-        monkeypatch.setattr(registry.inspect, "getsource", lambda reader: text)
+        monkeypatch.setattr(module_code.inspect, "getsource", lambda reader: text)
         return registry.read_as("newton")
 
     bare = hashed('def f(r):\n    return r["x"]')

@@ -6,6 +6,7 @@ import pytest
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
+from barrierbench_analysis.pages.claims import parts_file
 from barrierbench_analysis.pages.readme import slices, verb
 from barrierbench_analysis.pages.reference import MARK
 from barrierbench_analysis.pages.stated import check, pages, several
@@ -67,9 +68,9 @@ def test_where_a_page_ranks_shapes_by_exploratory_numbers_it_says_so():
 
 
 def test_the_table_of_verdicts_has_the_confirmed_number():
-    """docs/results/claims.md: where scenes confirmed a claim, or refuted it, its number is theirs."""
-    rows = [cells for _, heads, cells in tables((ROOT / "docs/results/claims.md").read_text()) if heads[0] == "claim"]
-    judged = [cells for cells in rows if cells[4] not in ("-", "closed form")]
+    """results/CLAIMS.md: where scenes confirmed a claim, or refuted it, its number is theirs."""
+    rows = [cells for _, heads, cells in tables((ROOT / "results/CLAIMS.md").read_text()) if heads[0] == "claim" and "confirmed" in heads]
+    judged = [cells for cells in rows if cells[3] not in ("-", "closed form")]
     assert len(judged) > 15
     assert [cells[0] for cells in judged if pages.NUMBER.search(cells[5]) and not cells[5].endswith("confirmed scenes")] == []
 
@@ -77,8 +78,8 @@ def test_the_table_of_verdicts_has_the_confirmed_number():
 def test_pages_hold_no_two_statements_that_disagree(kept):
     found = pages.by_page(ROOT)
     assert len(found) > 75 and all(of or page in pages.NO_NUMBERS for page, of in found.items()) and sum(map(len, found.values())) > 12000
-    assert {"README.md", "docs/results/claims.md", "results/STRESS.md", "results/CATALOGUE.md", "results/ENGINES.md", "results/WORK_PRECISION.md"} <= set(found)
-    assert set(found) == {path.relative_to(ROOT).as_posix() for path in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "docs").rglob("*.txt"), *(ROOT / "results").glob("*.md")] if MARK not in path.read_text()}
+    assert {"README.md", "results/CLAIMS.csv", "docs/results/claims.md", "results/STRESS.md", "results/CATALOGUE.md", "results/ENGINES.md", "results/WORK_PRECISION.md"} <= set(found)
+    assert set(found) - {"results/CLAIMS.csv"} == {path.relative_to(ROOT).as_posix() for path in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "docs").rglob("*.txt"), *(ROOT / "results").glob("*.md")] if MARK not in path.read_text()}
     assert check.faults(ROOT, kept["several"]) == []
 
 
@@ -95,23 +96,24 @@ def test_a_caption_with_another_scatter_than_its_page_is_told():
     assert "the law, contact making both (Raw)" in told and "a factor 1.7) in page.md" in told and "a factor 2.33) in caption.txt" in told
 
 
-def claim(sweep: str, number: str, scenes: str, verdict: str = "holds", measures: str = "95th percentile of cond over a run, raw: log / cubic") -> str:
-    return (
-        f"- above: **{verdict}**. {measures}: {number}, asked: above 1; 21 pairs count; `{sweep}`.\n"
-        f"  Conditions: theta 0.1, limit off. Samples: 2 scenes; one start at each place.\n  By scene (least and largest of its levels): {scenes}.\n"
-    )
+def claim(evidence: str, sweep: str, number: str, scenes: str, verdict: str = "holds") -> dict:
+    value, lower, upper = number.split()
+    return {"claim": "H1", "evidence": evidence, "measures": "95th percentile of cond over a run, raw: log / cubic", "number": value, "lower": lower, "upper": upper, "interval": "95% over scenes",
+            "conditions": "theta 0.1, limit off", "counted_and_left_out": "21 pairs count", "by_scene": scenes, "verdict": verdict, "sweep": sweep}
+
+
+def read(*rows: dict) -> list:
+    return list(pages._claims(parts_file.as_csv(parts_file.COLUMNS, iter(rows)), "c.csv"))
 
 
 def test_parts_of_claims_are_read_with_slice_scenes_and_evidence():
-    text = "## H1: holds\n\n" + claim("a", "1.2 [0.9, 1.6]", "ball 1 (1 to 1 at 3, n = 3); big-box 2 (1 to 3 at 3, n = 3)") + "\nConfirmed: **holds**\n\n" + claim("b", "1.3 [1, 1.7]", "bar 1 (1 to 1 at 3, n = 3)", "not decided: x")
-    first, second = pages._claims(text, "c.md")
-    assert (first.page, first.quantity, first.number, first.verdict) == ("c.md, H1, exploratory", "95th percentile of cond over a run, raw: log / cubic", "1.2 [0.9, 1.6]", "holds")
-    assert first.conditions == "theta 0.1, limit off; ball, big-box; 21 pairs count; `a`" and second.page == "c.md, H1, confirmed" and second.verdict == "not decided"
-    again = list(pages._claims(text.replace("1.2 [0.9", "1.25 [0.9"), "c.md"))
-    [told] = check.contradictions([first, second, *again])
-    assert "1.2 [0.9, 1.6], holds in c.md, H1, exploratory; 1.25" in told
-    other_scenes = list(pages._claims(text.replace("ball 1 (", "sack 1 (").replace("1.2 [0.9", "1.25 [0.9"), "c.md"))
-    assert check.contradictions([first, *other_scenes]) == []
+    one = claim("exploratory", "a", "1.2 0.9 1.6", "ball 1 (1 to 1 at 3, n = 3); big-box 2 (1 to 3 at 3, n = 3)")
+    first, second = read(one, claim("confirmed", "b", "1.3 1 1.7", "bar 1 (1 to 1 at 3, n = 3)", "not decided"), {**one, "interval": "least and largest"})
+    assert (first.page, first.quantity, first.number, first.verdict) == ("c.csv, H1, exploratory", "95th percentile of cond over a run, raw: log / cubic", "1.2 [0.9, 1.6]", "holds")
+    assert first.conditions == "theta 0.1, limit off; ball, big-box; 21 pairs count; `a`" and second.page == "c.csv, H1, confirmed" and second.verdict == "not decided"
+    [told] = check.contradictions([first, second, *read({**one, "number": "1.25"})])
+    assert "1.2 [0.9, 1.6], holds in c.csv, H1, exploratory; 1.25" in told
+    assert check.contradictions([first, *read({**one, "number": "1.25", "by_scene": one["by_scene"].replace("ball", "sack")})]) == []
 
 
 def test_a_page_in_which_nothing_is_read_is_no_page_without_faults(tmp_path):
@@ -140,10 +142,10 @@ def test_what_one_study_decides_and_another_leaves_open_has_to_lead_to_both(tmp_
     effect = replace(k16, limit=OFF, study="ablation", confirmed=False, value=0.78, lower=0.636, upper=0.958, decided=True, sweep="")
     assert several.apart([k16, effect]) == {("bj_p95", "two_stage"): {0, -1}} and several.apart([k16, k16]) == {}
     link = "[x](../docs/results/several-studies.md)"
-    root = root_with(tmp_path, "\n".join(several.table_lines([k16, effect])), f"\n## K15: a\n{link}\n## K16: not decided\n\n## K17: b\n{link}\n", link)
+    root = root_with(tmp_path, "\n".join(several.table_lines([k16, effect])), f"| [K15](x) | a {link} |\n| [K16](x) | not decided |\n| [K17](x) | b {link} |\n", link)
     [told] = check.unreconciled(root, [k16, effect])
     assert told.startswith("results/CLAIMS.md, K16: bj_p95 of the log over two_stage is decided differently") and check.SEVERAL in told
-    (root / "results/CLAIMS.md").write_text(f"\n## K16: not decided\n{link}\n")
+    (root / "results/CLAIMS.md").write_text(f"| [K16](x) | not decided {link} |\n")
     assert check.unreconciled(root, [k16, effect]) == []
     (root / check.SEVERAL).write_text("no table")
     assert check.unreconciled(root, [k16, effect]) == ["docs/results/several-studies.md: no row on two_stage, of which studies decide bj_p95 differently"]

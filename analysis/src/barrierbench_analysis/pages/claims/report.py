@@ -1,4 +1,6 @@
-"""Verdicts as text: results/CLAIMS.md, and the short table of docs/results/claims.md."""
+"""Verdicts as text: results/CLAIMS.md, a line for each claim, and what a terminal shows. All parts are in
+results/CLAIMS.csv (parts_file.py).
+"""
 
 import textwrap
 
@@ -8,13 +10,14 @@ from barrierbench_analysis.io.text_table import markdown as table_lines
 from barrierbench_analysis.pages.stated.sources import measured_elsewhere
 from barrierbench_analysis.program.verbs import renewed
 from barrierbench_analysis.studies.claims import frontiers, verdict_code
-from barrierbench_analysis.studies.claims.entry import read_sweep
 from barrierbench_analysis.studies.claims.judge import Answer
+from barrierbench_analysis.studies.claims.sizes import SMALL, Sizes, of_parts, of_sweeps
 from barrierbench_analysis.studies.claims.table import Table
-from barrierbench_analysis.studies.claims.verdict import IN_PART, ONLY_IF, OPEN, Judged
+from barrierbench_analysis.studies.claims.verdict import HOLDS, IN_PART, NOT, ONLY_IF, OPEN, Judged
 from barrierbench_analysis.studies.claims.words import interval
 from barrierbench_analysis.studies.kit.metrics import METRICS
-from barrierbench_analysis.tables.numbers import ratio
+
+from .appendix import TRIVIAL
 
 TEMPLATE = ROOT / "configs" / "studies" / "claims.md"
 WIDTH = 140
@@ -28,7 +31,7 @@ def counts_of(groups: tuple[int, ...], parts: list[Judged]) -> str:
     deciding = [j for j in parts if not j.beside]
     numbers = {(j.measures, j.sweep, j.slice, j.value, j.lower, j.upper) for j in deciding}
     of = (
-        f"of {sum(groups)} questions on {len(numbers)} numbers"
+        f"of {sum(groups)} questions on {len(numbers)} number{'s' if len(numbers) > 1 else ''}"
         if len(numbers) < len(deciding) == sum(groups)
         else f"of {sum(groups)} parts"
     )
@@ -64,32 +67,6 @@ def _resting(rests: dict[str, str], parts: list[Judged]) -> str:
     return f" ({'; '.join(named)})" if named else ""
 
 
-SWEEP_COLUMNS = (
-    "sweep",
-    "runs",
-    "unknowns",
-    "ok",
-    "comparable",
-    "seconds",
-    "date",
-    "machine",
-    "build",
-    "command",
-)
-
-
-def sweep_table(table: Table) -> list[str]:
-    rows = []
-    for name, runs in sorted(table.sweeps.items()):
-        sweep, about = read_sweep(name), runs.about
-        ok = sum(row["outcome"] == "ok" for row in runs.rows)
-        comparable = sum(row["comparability"] == "comparable" for row in runs.rows)
-        made = about["unknowns"], f"{ok}", f"{comparable}", f"{about['seconds']:.0f}", about["date"]
-        by = about["machine"], about["build"][:8], f"`{sweep.command}`"
-        rows.append([name, f"{len(runs.rows)} of {len(sweep.cases)}", *made, *by])
-    return table_lines(SWEEP_COLUMNS, rows)
-
-
 def _short(a: Answer) -> str:
     if a.verdict.verdict == OPEN and a.claim.waits_for:
         return f"{OPEN}: waits for {a.claim.waits_for}"
@@ -100,53 +77,103 @@ def main_number(j: Judged) -> str:
     return f"{j.measures}: {interval(j)}" + (f" ({j.ends})" if j.ends else "")
 
 
+LAST = "number of its first part (of the confirmed scenes where there are any)"
 VERDICT_COLUMNS = (
-    "claim",
-    "sentence",
-    "kind",
-    "exploratory verdict (or closed form)",
-    "confirmed",
-    "number of its first part (of the confirmed scenes where there are any)",
+    *(
+        "claim",
+        "sentence",
+        "exploratory verdict (or closed form)",
+        "confirmed",
+        "sizes of these scenes",
+        LAST,
+    ),
 )
+TRIVIAL_COLUMNS = ("claim", "sentence", "verdict", "why no run could say otherwise", LAST)
+SEVERAL = "[other studies](../docs/results/several-studies.md) measure the same"
 
 
-def verdict_table(answers: list[Answer]) -> list[str]:
+def counted(j: Judged, parts: list[Judged]) -> str:
+    """A verdict in a cell: of parts that are not all alike how many hold, do not, and are not decided."""
+    deciding = [part.verdict for part in parts if not part.beside]
+    if len(set(deciding)) < 2:
+        return f"{j.verdict}: {j.condition}" if j.verdict == ONLY_IF else j.verdict
+    good, bad = (sum(v in of for v in deciding) for of in ((HOLDS, ONLY_IF), (NOT,)))
+    return f"{j.verdict} ({counts_of((good, bad, len(deciding) - good - bad), parts)})"
+
+
+def _marked(text: str, sizes: Sizes | None) -> str:
+    """With the rule on small scenes (studies/claims/sizes.py)."""
+    return f"{text}; {sizes.mark}" if sizes and sizes.mark else text
+
+
+def exploratory_cell(a: Answer, table: Table) -> str:
+    if a.verdict.verdict == OPEN and a.claim.waits_for:
+        return f"{OPEN}: waits for {a.claim.waits_for}"
+    return _marked(counted(a.verdict, a.parts) + _resting(a.rests, a.parts), of_parts(a.parts, table))
+
+
+def confirmed_cell(a: Answer, table: Table) -> str:
+    if a.proven or not a.confirmed:
+        return confirmed_word(a)
+    text = counted(a.confirmed, a.confirmed_parts) + _resting(a.confirmed_rests, a.confirmed_parts)
+    return _marked(text, of_parts(a.confirmed_parts, table))
+
+
+def _number_cell(a: Answer) -> str:
+    j = a.confirmed_main or a.main
+    if j is None:
+        return "-"
+    which = " confirmed" if a.confirmed_main else ""
+    scenes = f"; {j.scenes}{which} scenes" if j.scenes else ""
+    return f"{main_number(j)}{f' ({j.slice})' if j.slice else ''}{scenes}"
+
+
+def _sizes_cell(a: Answer, table: Table) -> str:
+    """Of the runs of the number beside it."""
+    j = a.confirmed_main or a.main
+    sizes = of_sweeps([j.sweep], table) if j and j.sweep else None
+    return sizes.words if sizes else "-"
+
+
+def _link(a: Answer) -> str:
+    return f"[{a.claim.id}](../claims/{a.claim.id}.json)"
+
+
+def _sentence_cell(a: Answer) -> str:
+    """Where other studies measure what a part compares, verdicts may differ with the conditions."""
+    return a.claim.sentence + (f" ({SEVERAL})" if any(map(measured_elsewhere, a.claim.parts)) else "")
+
+
+def verdict_table(answers: list[Answer], table: Table) -> list[str]:
+    """Of the claims that runs can decide."""
     rows = []
-    for a in answers:
-        j = a.confirmed_main or a.main
-        number_of = f"{main_number(j)}{f' ({j.slice})' if j.slice else ''}" if j else "-"
-        number_of += f"; {j.scenes} confirmed scenes" if j and a.confirmed_main else ""
-        rows.append([a.claim.id, a.claim.sentence, a.claim.kind, _short(a), confirmed_word(a), number_of])
+    for a in (a for a in answers if a.claim.id not in TRIVIAL):
+        verdicts = exploratory_cell(a, table), confirmed_cell(a, table)
+        rows.append([_link(a), _sentence_cell(a), *verdicts, _sizes_cell(a, table), _number_cell(a)])
     return table_lines(VERDICT_COLUMNS, rows)
 
 
-BEGIN, END = "<!-- claims: written by ./bench study claims -->\n", "<!-- /claims -->"
-
-
-def in_page(page: str, answers: list[Answer]) -> str:
-    """docs/results/claims.md with its table of verdicts made anew."""
-    before, _, rest = page.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    return before + BEGIN + "\n".join(verdict_table(answers)) + "\n" + end + after if end else page
+def trivial_table(answers: list[Answer], table: Table) -> list[str]:
+    """Of the others, each with its reason."""
+    rows = []
+    for a in (a for a in answers if a.claim.id in TRIVIAL):
+        verdict = exploratory_cell(a, table)
+        rows.append([_link(a), _sentence_cell(a), verdict, TRIVIAL[a.claim.id], _number_cell(a)])
+    return table_lines(TRIVIAL_COLUMNS, rows)
 
 
 def markdown(answers: list[Answer], table: Table) -> str:
     """The page. Errors: UserError for a template that asks for what is not here."""
     about = {
-        "answers": answers,
         "changes": verdict_code.changes(),
-        "conditional": (ONLY_IF, IN_PART, OPEN),
-        "confirmed_word": confirmed_word,
-        # Other studies measure what a part compares: verdicts may differ with the conditions.
-        "elsewhere": lambda claim: any(map(measured_elsewhere, claim.parts)),
-        "frontier": lambda claim: frontiers.lines(claim, table),
-        "interval": interval,
+        "frontiers": [
+            (a.claim.id, "\n".join(found)) for a in answers if (found := frontiers.lines(a.claim, table))
+        ],
         "metrics": METRICS,
-        "ratio": ratio,
         "seconds": f"{sum(runs.about['seconds'] for runs in table.sweeps.values()):.0f}",
-        "sentence": sentence,
-        "sweeps": "\n".join(sweep_table(table)),
-        "verdicts": "\n".join(verdict_table(answers)),
+        "small": f"{SMALL:,}",
+        "trivial": "\n".join(trivial_table(answers, table)),
+        "verdicts": "\n".join(verdict_table(answers, table)),
     }
     return renewed(filled(TEMPLATE, about))  # texts of claims are kept
 

@@ -1,9 +1,10 @@
 """Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every
-verdict from the records by the rule of its claim, and writes results/CLAIMS.md, the numbers used
-(results/studies/claims.jsonl), docs/claims.png and the table of docs/results/claims.md. With names of claims
-it runs the sweeps of these alone. Confirmation sweeps are run for claims that are registered (--register ID,
-then commit claims/confirmation/registry.json). plan: counts the runs, those that are kept, and what the rest
-is expected to take. page: judges the records that are there, or the kept numbers.
+verdict from the records by the rule of its claim, and writes results/CLAIMS.md, all parts as
+results/CLAIMS.csv, the sweeps as results/CLAIMS_SWEEPS.csv, the numbers used (results/studies/claims.jsonl)
+and docs/claims.png. With names of claims it runs the sweeps of these alone. Confirmation sweeps are run for
+claims that are registered (--register ID, then commit claims/confirmation/registry.json). plan: counts the
+runs, those that are kept, and what the rest is expected to take. page: judges the records that are there, or
+the kept numbers. --export FILE: writes the verdicts as edges of the public graph of claims.
 
 Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them;
 a bad entry; no program), or calls itself confirmed and is not.
@@ -16,19 +17,18 @@ import time
 from pathlib import Path
 
 from barrierbench_analysis.figures.figure_files import copy_to_page
-from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError, passed_on, reported
 from barrierbench_analysis.io.whole_file import write_whole
 from barrierbench_analysis.program.arguments import parser_of, plugin_argument
 from barrierbench_analysis.program.start import built_program, run_sweep
 from barrierbench_analysis.studies.claims import coverage, figure, frontiers, registry
 from barrierbench_analysis.studies.claims.entry import ROOT, Claim, ids, read_claim, read_sweep
-from barrierbench_analysis.studies.claims.judge import judge, missing
+from barrierbench_analysis.studies.claims.judge import Answer, judge, missing
 from barrierbench_analysis.studies.claims.plan import plan, sweeps_to_run
 from barrierbench_analysis.studies.claims.proofs import Eval
 from barrierbench_analysis.studies.claims.table import FILE, RUNS, Table, collect, read, used_metrics, write
 
-from . import report
+from . import graph, parts_file, report
 
 # Options with which no sweep is run -> what is done instead.
 NOTHING_IS_RUN = {
@@ -83,12 +83,17 @@ def arguments(argv: list[str]) -> argparse.Namespace:
         "./bench study claims run K3",
         "./bench study claims page",
         "./bench study claims --register K3",
+        "./bench study claims --export out/claims.yaml",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
     for option, text in NOTHING_IS_RUN.items():
         parser.add_argument(option, action="store_true", help=f"run nothing: {text}")
     of_sweeps = "folder of the sweeps (default: results/runs/claims)"
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help=of_sweeps)
+    graph_of = (
+        "run nothing: write the kept verdicts as edges of the public graph of claims (JSON, so YAML too)"
+    )
+    parser.add_argument("--export", type=Path, metavar="FILE", help=graph_of)
     before = "with --register, where the scenes were run before: when, and by which rule; the page says so"
     parser.add_argument("--run-before", default="", metavar="TEXT", help=before)
     plugin_argument(parser)
@@ -106,17 +111,32 @@ def main(argv: list[str]) -> int:
     if args.plan:
         print("\n".join(plan(claims, gather(claims, args.runs, read(FILE)), registry.read())))
         return 0
+    if args.export:
+        return export(claims, args)
     return judge_all(claims, args)
+
+
+def judged_kept(claims: list[Claim], table: Table, asker: Eval) -> list[Answer]:
+    """Errors: UserError for records that are missing."""
+    if absent := [line for claim in claims for line in missing(claim, table)]:
+        raise UserError("\n".join(absent))
+    return [judge(claim, table, asker) for claim in claims]
+
+
+def export(claims: list[Claim], args: argparse.Namespace) -> int:
+    table = gather(claims, args.runs, read(FILE))
+    answers = judged_kept(claims, table, Eval(None, table.answers))
+    write_whole(args.export, graph.text(answers, table))
+    print(f"claims: {len(answers)} verdicts: {args.export}")
+    return 0
 
 
 def judge_all(claims: list[Claim], args: argparse.Namespace) -> int:
     if not args.no_run:
         run_sweeps(claims, args.runs, args.plugin)
     table = gather(claims, args.runs, read(FILE))
-    if absent := [line for claim in claims for line in missing(claim, table)]:
-        raise UserError("\n".join(absent))
     asker = Eval(program(not args.no_run), table.answers, fresh=not args.no_run, plugins=tuple(args.plugin))
-    answers = [judge(claim, table, asker) for claim in claims]
+    answers = judged_kept(claims, table, asker)
     print(report.text(answers))
     write_all(table, asker)
     if refused := [
@@ -152,11 +172,15 @@ def write_all(table: Table, asker: Eval) -> None:
     if not set(ids()) - {a.claim.id for a in answers if a.parts or a.claim.waits_for}:
         table.answers = {text: table.answers[text] for text in asker.asked}
     write(table, FILE)
-    write_whole(ROOT / "results" / "CLAIMS.md", report.markdown(answers, table))
+    pages = {
+        "CLAIMS.md": report.markdown(answers, table),
+        "CLAIMS.csv": parts_file.parts_text(answers, table),
+        "CLAIMS_SWEEPS.csv": parts_file.sweeps_text(table),
+    }
+    for name, text in pages.items():
+        write_whole(ROOT / "results" / name, text)
     drawn, folder = figure.draw(answers, RUNS / "figure" / "claims"), RUNS / "figure"
     for claim in (a.claim for a in answers if frontiers.has_runs(a.claim, table)):
         runs = table.sweeps[claim.frontier["sweep"]]
         drawn += frontiers.draw(claim, runs, folder / f"policies_{claim.id}")
     copy_to_page(drawn, ROOT / "docs")
-    page = ROOT / "docs/results/claims.md"
-    write_whole(page, report.in_page(input_file.read_text(page), answers))

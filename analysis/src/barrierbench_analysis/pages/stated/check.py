@@ -43,10 +43,9 @@ def contradictions(found: Iterable[Statement]) -> list[str]:
     ]
 
 
-def _section(text: str, claim: str) -> str:
-    """Of a claim in results/CLAIMS.md."""
-    _, _, rest = text.partition(f"\n## {claim}:")
-    return rest.partition("\n## ")[0]
+def _line(text: str, claim: str) -> str:
+    """Of a claim in the tables of results/CLAIMS.md."""
+    return next((line for line in text.splitlines() if line.startswith(f"| [{claim}]")), "")
 
 
 def unreconciled(root: Path, numbers: Iterable[Number]) -> list[str]:
@@ -61,7 +60,7 @@ def unreconciled(root: Path, numbers: Iterable[Number]) -> list[str]:
             faults.append(f"{SEVERAL}: no row on {shape}, of which studies decide {metric} differently")
         for study in dict.fromkeys(n.study for n in numbers if (n.metric, n.over) == (metric, shape)):
             page = PAGES.get(study, f"results/CLAIMS.md, {study}")
-            text = input_file.read_text(root / PAGES[study]) if study in PAGES else _section(claims, study)
+            text = input_file.read_text(root / PAGES[study]) if study in PAGES else _line(claims, study)
             if SEVERAL not in text:
                 faults.append(
                     f"{page}: {metric} of the log over {shape} is decided differently by other studies; a"

@@ -3,6 +3,7 @@ which number, and what its study decides of it. A number that stands on two page
 there, whatever made it.
 """
 
+import csv
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -10,17 +11,12 @@ from pathlib import Path
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.pages.reference import MARK
+from barrierbench_analysis.tables.numbers import interval, ratio
 
 from . import counted
 from .statement import Statement, tables
 from .whole_page import everything
 
-PART = re.compile(
-    r"^- (?P<says>.+?): \*\*(?P<verdict>.+)\*\*.*?\. (?P<measures>[^.]*?(?:\d\.\d[^.]*?)?)"
-    r"(?: \(depends on the machine\))?: (?P<number>[\d.e+-]+ \[[^\]]+\]), asked: [^;]*; (?P<counted>.*)\.$"
-)
-CONDITIONS = re.compile(r"^  Conditions: (.+?)\.(?: Samples:.*)?$")
-OF_SCENE = re.compile(r"[:;] ([\w-]+) [\d.e+-]+ \(")
 NUMBER = re.compile(r"(?P<number>[\d.e+-]+ \[[\d.e+inf-]+, [\d.e+inf-]+\])")
 LAW = re.compile(
     r"(Raw|Block Jacobi): (the law, [^:]+): (\d+) of (\d+) pairs, (ln\(measured/predicted\) \S+ in the mean"
@@ -29,28 +25,18 @@ LAW = re.compile(
 )
 
 
-def _conditions(below: list[str]) -> str:
-    """Theta, limit and the scenes, of the lines below a part."""
-    theta = next((found[1] for line in below if (found := CONDITIONS.match(line))), "")
-    scenes = next((line for line in below if line.startswith("  By scene ")), "")
-    return "; ".join(filter(None, [theta, ", ".join(OF_SCENE.findall(scenes))]))
-
-
 def _claims(text: str, page: str) -> Iterator[Statement]:
-    """Parts of results/CLAIMS.md, each with the line of its conditions below it."""
-    claim, evidence, lines = "", "exploratory", text.splitlines()
-    for k, line in enumerate(lines):
-        if line.startswith("## "):
-            claim, evidence = line[3:].partition(":")[0], "exploratory"
-        elif line.startswith("Confirmed: "):
-            evidence = "confirmed"
-        elif found := PART.match(line):
+    """Parts of results/CLAIMS.csv that have a number with a 95% interval."""
+    for row in csv.DictReader(text.splitlines()):
+        if row["interval"] == "95% over scenes":
+            scenes = ", ".join(one.split()[0] for one in row["by_scene"].split("; ") if one)
+            conditions = (row["conditions"], scenes, row["counted_and_left_out"], f"`{row['sweep']}`")
             yield Statement(
-                f"{page}, {claim}, {evidence}",
-                found["measures"],
-                f"{_conditions(lines[k + 1 : k + 3])}; {found['counted']}",
-                found["number"],
-                found["verdict"].partition(":")[0].partition(" (")[0],
+                f"{page}, {row['claim']}, {row['evidence']}",
+                row["measures"],
+                "; ".join(filter(None, conditions)),
+                interval(*(float(row[name]) for name in ("number", "lower", "upper")), ratio),
+                row["verdict"],
             )
 
 
@@ -95,16 +81,17 @@ def _ablation(text: str, page: str) -> Iterator[Statement]:
 
 
 def _verdicts(text: str, page: str) -> Iterator[Statement]:
-    """The number of a claim in a table of verdicts: that of the part of which results/CLAIMS.md has more."""
+    """The number of a claim in a table of verdicts: that of its first part in results/CLAIMS.csv."""
     for _, heads, cells in tables(text):
         if heads[0] == "claim" and (found := NUMBER.search(cells[-1])):
             confirmed = "confirmed" if cells[-1].endswith("confirmed scenes") else "exploratory"
             measures = cells[-1][: found.start()].rstrip(": ")
-            yield Statement(page, f"{cells[0]}, {confirmed}: {measures}", "first part", found["number"])
+            claim = cells[0].lstrip("[").partition("]")[0]
+            yield Statement(page, f"{claim}, {confirmed}: {measures}", "first part", found["number"])
 
 
 def _firsts(text: str, page: str) -> Iterator[Statement]:
-    """The same of the sections of the claims."""
+    """The same of the rows of the claims."""
     seen: set[str] = set()
     for one in _claims(text, page):
         _, claim, evidence = one.page.split(", ")
@@ -116,14 +103,14 @@ def _firsts(text: str, page: str) -> Iterator[Statement]:
 # Page -> its readers. Each has to find something: a page that is written otherwise would be read as silent.
 Reader = Callable[[str, str], Iterator[Statement]]
 READERS: dict[str, tuple[Reader, ...]] = {
-    "results/CLAIMS.md": (_claims, _firsts, _verdicts),
+    "results/CLAIMS.csv": (_claims, _firsts),
+    "results/CLAIMS.md": (_verdicts,),
     "results/GAP_MAP.md": (_map, pair, _law, counted.gap_map),
     "results/PARETO.md": (_pareto,),
     "results/ABLATION.md": (_ablation,),
     **{f"results/{of.__name__.upper()}.md": (of,) for of in (counted.stress, counted.catalogue)},
     "results/WORK_PRECISION.md": (counted.work_precision,),
     **dict.fromkeys(("results/ENGINES.md", "results/ENGINES_SIZE.md"), (counted.engines,)),
-    "docs/results/claims.md": (_verdicts,),
     "docs/results/which-barrier.md": (counted.gap_map,),
     "docs/results/engines.md": (counted.engines_in_words,),
     "docs/guides/verbs.md": (counted.mentions,),

@@ -8,6 +8,7 @@ from barrierbench_analysis.studies.claims import registry
 from barrierbench_analysis.studies.claims.entry import Claim, ids, read_claim
 from barrierbench_analysis.studies.claims.judge import judge_part, missing
 from barrierbench_analysis.studies.claims.proofs import Eval
+from barrierbench_analysis.studies.claims.sizes import span
 from barrierbench_analysis.studies.claims.table import Table
 from barrierbench_analysis.studies.claims.verdict import Judged
 from barrierbench_analysis.studies.kit.study import page
@@ -35,12 +36,6 @@ def measured_elsewhere(part: dict) -> bool:
     return ratio and BOTH.get(part["over"], part["over"]) in SHAPES
 
 
-def _span(words: str) -> tuple[int, int]:
-    """`108 to 600`."""
-    low, _, high = words.partition(" to ")
-    return int(low), int(high or low)
-
-
 def _of_part(claim: Claim, part: dict, judged: Judged, table: Table, confirmed: bool) -> Number:
     theta = re.search(r"theta ([\d.]+)", judged.slice)
     limit = re.search(r"limit (\w+)", judged.slice)
@@ -54,7 +49,7 @@ def _of_part(claim: Claim, part: dict, judged: Judged, table: Table, confirmed: 
         theta=float(theta[1]) if theta else None,
         limit=OWN if own else OFF if limit and limit[1] == "off" else SAME,
         study=claim.id, confirmed=confirmed, scenes=judged.scenes,
-        unknowns=_span(table.sweeps[part["sweep"]].about["unknowns"]),
+        unknowns=span(table.sweeps[part["sweep"]].about["unknowns"]),
         value=judged.value, lower=judged.lower, upper=judged.upper,
         decided=not few and not judged.lower <= 1 <= judged.upper, places=places, sweep=part["sweep"],
         alike=sum(1 / ALIKE < value < ALIKE for _, value, *_ in judged.per_scene),
