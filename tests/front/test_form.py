@@ -63,9 +63,9 @@ def test_users_see_one_kind_of_error():
 
 def test_one_place_starts_the_program():
     """Other files start git, compilers and their like, Python, or targets of their own."""
-    others = {"figures/pictures/animation.py", "studies/claims/history.py", "studies/toolkit/compare_toolkit.py", "studies/engines/environment.py", "studies/engines/launch.py",
-              "program/formula/cache.py", "program/building.py", "pages/readme/snippets.py", "studies/comparison/sources.py",
-              *(f"front/{name}.py" for name in ("fuzz", "python_module", "site", "test", "tools", "version"))}
+    others = {"figures/pictures/animation.py", "io/git.py", "studies/toolkit/compare_toolkit.py", "studies/engines/environment.py", "studies/engines/launch.py",
+              "program/formula/cache.py", "program/building.py", "pages/readme/snippets.py",
+              *(f"front/{name}.py" for name in ("fuzz", "python_module", "site", "test", "tools"))}
     starters, program = set(), re.compile(r"built_program\(|ensure_program\(|RELEASE|BARRIERBENCH_PROGRAM")
     for path in PACKAGE.rglob("*.py"):
         name = path.relative_to(PACKAGE).as_posix()

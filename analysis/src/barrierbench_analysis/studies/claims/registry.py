@@ -8,6 +8,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.git import NoHistory
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.module_code import bare, code_of, sha_of
 from barrierbench_analysis.io.whole_file import write_whole
@@ -17,7 +18,7 @@ from barrierbench_analysis.studies.kit.success import COMMON, read_for
 
 from . import fresh
 from .entry import ROOT, Claim, read_sweep
-from .history import NoHistory, brought
+from .history import brought
 from .inputs import inputs_of
 from .outcomes import LEVEL
 from .table import Table

@@ -4,7 +4,6 @@ sweep is run where that is allowed; else, what is missing is said with the comma
 
 import json
 import os
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +16,7 @@ from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.cases import has_list, read_cases
 from barrierbench_analysis.io.digests import of_text
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.git import NoHistory, git
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.matrix_market import read_matrix
 from barrierbench_analysis.io.places import ROOT
@@ -88,13 +88,13 @@ def matrices(wanted: Wanted, _: Place) -> list[Spectrum]:
 
 
 def _git(*words: str) -> str:
-    done = subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
+    try:
+        return git(ROOT, *words)
+    except NoHistory as fault:
         raise UserError(
             f"{BASELINES}: their history is read from git, which says:"
-            f" {(done.stderr.strip() or 'nothing').splitlines()[0]}; a clone with its history is needed"
-        )
-    return done.stdout
+            f" {(str(fault) or 'nothing').splitlines()[0]}; a clone with its history is needed"
+        ) from None
 
 
 def baselines(wanted: Wanted, _: Place) -> pd.DataFrame:

@@ -8,13 +8,13 @@ before the first one.
 import importlib
 import json
 import pkgutil
-import subprocess
 from dataclasses import asdict, dataclass
 from datetime import datetime, timezone
 from pathlib import Path
 from types import ModuleType
 
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.io.git import NoHistory, git
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.module_code import DIGITS, code_of, sha_of
 from barrierbench_analysis.io.places import ROOT
@@ -84,13 +84,11 @@ def register(study: Study, why: str) -> Entry:
         raise UserError(
             f"{file_of(study)}: found these hashes already, of {kept[-1].date}; nothing was added"
         )
-    commit = subprocess.run(
-        ["git", "-C", str(ROOT), "rev-parse", "--short=10", "HEAD"],
-        capture_output=True,
-        text=True,
-        check=False,
-    ).stdout.strip()
-    entry = Entry(datetime.now(timezone.utc).date().isoformat(), commit or "none", spec, rule, why)
+    try:
+        commit = git(ROOT, "rev-parse", "--short=10", "HEAD").strip()
+    except NoHistory:
+        commit = "none"
+    entry = Entry(datetime.now(timezone.utc).date().isoformat(), commit, spec, rule, why)
     data = {"schema": SCHEMA, "entries": [asdict(one) for one in (*kept, entry)]}
     write_whole(file_of(study), json.dumps(data, indent=1) + "\n")
     return entry
