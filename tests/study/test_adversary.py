@@ -17,7 +17,7 @@ from barrierbench_analysis.studies.kit.study.collect import sources_of
 from barrierbench_analysis.studies.kit.study.spec import read_study
 from barrierbench_analysis.studies.rules.adversary import compared, draws, of_claims, of_size, size_region
 from barrierbench_analysis.studies.rules.adversary.gathered import gathered
-from barrierbench_analysis.studies.rules.adversary.page import rule
+from barrierbench_analysis.studies.rules.adversary.page import rule, verdict
 from barrierbench_analysis.studies.rules.adversary.region import Range
 from barrierbench_analysis.studies.rules.adversary.statement import EVERY, MEAN, Side, contrary
 from barrierbench_analysis.studies.rules.at_size import questions
@@ -232,6 +232,15 @@ def test_rows_of_another_region_are_of_no_draw(study):
     assert there(study, "N2-1") and not draws.kept_draws(other, named("N2-1"), draws.rows_of_today(study))
 
 
+def test_a_draw_whose_neighbour_is_gone_is_of_no_draw(study):
+    for _ in range(2):
+        keep(study, "N2-1", lambda number, arm: {"newton": 20.0 if arm == "clamped" else 10.0 + number})
+    rows = draws.rows_of_today(study)
+    left = {key: one for key, one in rows.items() if one.place["draw"] != "3"}
+    assert [draw.label for draw in draws.kept_draws(study, named("N2-1"), rows)][3:] == ["3", "4", "5of3", "6", "7of3"]
+    assert [draw.label for draw in draws.kept_draws(study, named("N2-1"), left)] == ["0", "1", "2", "4", "6"]
+
+
 def test_the_search_of_a_statement_ends_with_its_hours(study):
     keep(study, "K6-1", lambda *_: {}, seconds=600.0)
     assert len(draws.next_draws(study, named("K6-1"), there(study, "K6-1"))) == 4  # 2400 s of 3600
@@ -345,8 +354,6 @@ def test_the_third_law_is_refuted_by_two_scenes(study):
     scenes = {draw.point.scene for draw in new}
     assert len(scenes) > 1 and "law-3" in rule(study, page.rows_of(study))["refuted"]
     one = [draw for draw in there(study, "law-3") if draw.point.scene == min(scenes)]
-    from barrierbench_analysis.studies.rules.adversary.page import verdict
-
     assert verdict(named("law-3"), one) == "contradicted in 1 scene"
 
 
