@@ -7,6 +7,7 @@ from collections import Counter
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.tables.numbers import significant
 from barrierbench_analysis.tables.words import counted, listed
 
 from .draws import Draw, hours, kept_draws, most_contrary, spent
@@ -53,7 +54,7 @@ def _row(study: Study, statement: Statement, draws: list[Draw]) -> list[str]:
         statement.verdict,
         statement.threshold,
         str(len(draws)),
-        f"{hours(draws):.2f}{end}",
+        f"{significant(hours(draws), 2)}{end}",
         str(len(contradicting(draws))) if draws else "-",
         str(len(none)) if draws else "-",
         f"**{verdict(statement, draws)}**",
@@ -139,7 +140,7 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "left": _left(study),
         "statements": len(of),
         "draws": len(every),
-        "hours": f"{hours(every):.1f}",
+        "hours": significant(hours(every), 2),
         "hours_each": f"{study.about['hours_each']:g}",
         "draws_each": study.about.get("draws_each"),
         "seed": study.about["seed"],
