@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from barrierbench_analysis.io.cases import read_cases
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.studies.kit.study import collect, cost, page, store, verb
-from barrierbench_analysis.studies.kit.study.spec import known, read_study
+from barrierbench_analysis.studies.kit.study.spec import Case, known, read_study
 
 from small_study import SPEC, row, without_record, written
 
@@ -173,9 +174,40 @@ def test_a_template_that_asks_for_more_is_refused(tmp_path):
         page.text_of(study, rows, {})
 
 
+def test_a_call_goes_on_with_the_cells_that_its_rows_bring(tmp_path, monkeypatch, rule_of_small, capsys):
+    """Each level has its runs once those of the level before are kept; a plan says what the rule adds."""
+    study = written(tmp_path, metrics={"newton": "newton"})
+    study.file.with_suffix(".md").write_text("{{ number }}")
+
+    def cells(of):
+        there = len(store.read_rows(store.file_of(of)))
+        for k in range(min(there + 1, 4)):
+            yield Case({"level": str(k)}, {"/time/steps": k + 1})
+
+    def made(of, cells, *_):
+        return [replace(row(cell), values={"newton": 3.0}, sources=of.data["metrics"]) for cell in cells]
+
+    rule_of_small.cells, rule_of_small.PARTIAL = cells, True
+    rule_of_small.planned = lambda of, rows: [f"{4 - len(rows)} levels left"]
+    monkeypatch.setattr(verb, "run_cells", made)
+    monkeypatch.setattr(verb, "built_program", lambda: None)
+    assert verb._main([str(study.file)]) == 0 and study.page.read_text() == "1"  # one round without GROWS
+    rule_of_small.GROWS = True
+    assert verb._main([str(study.file), "--minutes", "1e-9"]) == 0 and study.page.read_text() == "1"
+    assert verb._main([str(study.file)]) == 0 and study.page.read_text() == "4"
+    assert verb._main([str(study.file), "--again"]) == 0  # chosen rows once, and not for ever
+    capsys.readouterr()
+    assert verb._main([str(study.file), "--plan"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "0 levels left"
+
+
 @pytest.mark.parametrize("name", known())
 def test_the_page_of_a_study_is_that_of_its_kept_rows(name):
+    """One that has made no run has no page."""
     study = read_study(name)
+    if not store.file_of(study).is_file():
+        assert not study.page.is_file()
+        return
     rows = page.rows_of(study)
     whole = not getattr(study.module, "PARTIAL", False)
     assert 0 < len(rows) <= len(study.cells) and (len(rows) == len(study.cells) or not whole)

@@ -71,8 +71,8 @@ def in_lines(
 def plan(
     study: Study, rows: dict[str, store.Row], chosen: list[Cell], every: bool = False, again: bool = False
 ) -> list[str]:
-    """Lines: cells, those with a row, those that need none, and what the rest takes as far as rows tell.
-    chosen: the cells of the call. every, again: as wanted().
+    """Lines: cells, those with a row, those that need none, what the rest takes as far as rows tell, and what
+    the rule adds (function `planned`). chosen: the cells of the call. every, again: as wanted().
     """
     to_run = {cell.key for cell in wanted(study, rows, every, again)}
     kept = [
@@ -84,4 +84,5 @@ def plan(
     seconds = [expected(cell, kept, power) for cell in chosen if cell.key in to_run]
     decided = 0 if every else len(left_out(study, rows))
     there = len(current(study, rows))
-    return in_lines(study.name, store.file_of(study), len(study.cells), there, seconds, decided)
+    more = getattr(study.module, "planned", lambda *_: [])(study, rows)
+    return [*in_lines(study.name, store.file_of(study), len(study.cells), there, seconds, decided), *more]

@@ -153,7 +153,7 @@ class Study:
         fastest. Errors: UserError for two cells that are one run, and what the rule refuses.
         """
         asked = getattr(self.module, "cells", product)(self)
-        found = [self._cell(case) for case in asked]
+        found = [self.cell(case) for case in asked]
         counts = Counter(cell.key for cell in found)
         if twice := next((cell for cell in found if counts[cell.key] > 1), None):
             raise refused(self.file, "axes", twice.label, "another run for each combination of cases")
@@ -170,7 +170,8 @@ class Study:
         as they are read."""
         return {}
 
-    def _cell(self, case: Case) -> Cell:
+    def cell(self, case: Case) -> Cell:
+        """A case as a cell, with its key."""
         base, common = case.base or self.base, self.data.get("set", {})
         if base not in self._of_bases:
             whole = base.resolve()

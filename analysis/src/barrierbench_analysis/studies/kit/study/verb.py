@@ -234,28 +234,41 @@ def main(argv: list[str]) -> int:
 def _main(argv: list[str]) -> int:
     args = arguments(argv)
     study = read_study(argv[0], args.out, args.plugin)
-    cells = chosen(study, args.only, args.part)
     file = store.file_of(study)
     if args.register:
         print(f"{registration.file_of(study)}: {registration.register(study, args.register)}")
         return 0
     if args.plan:
+        cells = chosen(study, args.only, args.part)
         print("\n".join(cost.plan(study, store.read_rows(file), cells, args.decided, args.again)))
         return 0
-    made = None if args.no_run else _made(study, cells, args)
+    made = None
+    if not args.no_run:
+        study, made = _made(study, args)
     left = len(missing(study, store.read_rows(file), args.decided))
     if made and left and not getattr(study.module, "PARTIAL", False):
         print(f"no page yet: {counted(left, 'cell')} without a row; {study.call('run')} goes on")
         return 0
     print(page.write_page(study))
-    return _judged(study, cells, made)
+    return _judged(study, chosen(study, args.only, args.part), made)
 
 
-def _made(study: Study, cells: list[Cell], args: argparse.Namespace) -> int:
-    """Runs what a call wants, and says how many rows it made and how many cells are left."""
+def _made(study: Study, args: argparse.Namespace) -> tuple[Study, int]:
+    """Runs what a call wants, and says how many rows it made and how many cells are left. Returns the study
+    with its cells of then. Where cells follow from rows (GROWS of a rule) the call goes on with those that
+    its rows brought.
+    """
     registration.require(study)
     built_program()
-    made = make_rows(study, cells, args.jobs, args.minutes, args.decided, args.again)
+    begun, made, left = time.monotonic(), 0, args.minutes
+    while True:
+        cells = chosen(study, args.only, args.part)
+        new = make_rows(study, cells, args.jobs, left, args.decided, args.again)
+        made += new
+        if args.again or not new or not getattr(study.module, "GROWS", False):
+            break
+        study = replace(study)  # whose cells are asked for anew
+        left = None if args.minutes is None else args.minutes - (time.monotonic() - begun) / 60
     if args.spot_check:
         made += spot_check(study, cells, args.spot_check, args.seed, args.jobs)
     file = store.file_of(study)
@@ -265,4 +278,4 @@ def _made(study: Study, cells: list[Cell], args: argparse.Namespace) -> int:
         keys = {cell.key for cell in cells}
         new = [row for row in store.read_rows(file).values() if row.key in keys]
         print("\n".join(repeat.lines(store.read_rows(kept), new)))
-    return made
+    return study, made
