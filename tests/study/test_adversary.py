@@ -4,6 +4,7 @@ import json
 import math
 import random
 import subprocess
+from contextlib import contextmanager
 from dataclasses import replace
 
 import pytest
@@ -16,14 +17,33 @@ from barrierbench_analysis.studies.kit.study import cost, page, store
 from barrierbench_analysis.studies.kit.study.collect import sources_of
 from barrierbench_analysis.studies.kit.study.spec import read_study
 from barrierbench_analysis.studies.rules.adversary import compared, draws, of_claims, of_size, size_region
-from barrierbench_analysis.studies.rules.adversary.gathered import gathered
+from barrierbench_analysis.studies.rules.adversary.gathered import _gathered, gathered
 from barrierbench_analysis.studies.rules.adversary.page import rule, verdict
 from barrierbench_analysis.studies.rules.adversary.region import Range
 from barrierbench_analysis.studies.rules.adversary.statement import EVERY, MEAN, Side, contrary
 from barrierbench_analysis.studies.rules.at_size import questions
 
 FILE = read_study("adversary").file
-LABELS = [one.label for one in gathered(read_study("adversary")).statements]
+
+
+@contextmanager
+def without_rows_of_the_study_at_size():
+    """Statements as they are before the study at size has a row, so that no test depends on what its rows say."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(of_size, "rows_of", lambda study: [])
+        _gathered.cache_clear()
+        yield
+    _gathered.cache_clear()
+
+
+with without_rows_of_the_study_at_size():
+    LABELS = [one.label for one in gathered(read_study("adversary")).statements]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def no_rows_of_the_study_at_size():
+    with without_rows_of_the_study_at_size():
+        yield
 
 
 @pytest.fixture

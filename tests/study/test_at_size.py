@@ -383,7 +383,7 @@ def test_the_page_shows_answers_laws_and_what_is_missing(tmp_path):
     found = page.rule(STUDY, rows)
     assert found["outcome"][1] == "persists" and found["outcome"][5] == questions.NO_RUNS
     assert "raw condition number, log/cubic | 4.97 [" in found["of_question"][1]
-    assert f"| M | base | diagnosed | 20 of {len(EVERY) * 6} | 0.01 |" in found["cost"]
+    assert f"| M base diagnosed | 20 of {len(EVERY) * 6} | 0.01 |" in found["cost"]
     assert "| M | 0.01 | 10 | 5 [" in found["by_size"]
     assert "All runs end ok." in found["ends"] and "**not observed**" in found["laws"]
     failed = page.rule(STUDY, [row("drape", "log", outcome="timeout")])

@@ -24,6 +24,7 @@ PANELS = {
 }
 SIZES = ("XS", "S", "M", "L")
 THETAS = {"0.1": "#1f6fb4", "0.01": "#c23b22"}
+COLUMNS = 3
 LEAST = 1.5  # over and under 1 that an axis shows at least
 TITLE = "The log over the cubic at equal force against the number of unknowns"
 SHOWN = (
@@ -84,21 +85,28 @@ def draw(study: Study, rows: list[Row], numbers: dict, folder: Path) -> list[Pat
     )
     if points.empty:
         return []
-    fig, axes = plt.subplots(1, len(PANELS), figsize=(style.WIDE_IN, 2.5), layout="constrained", sharex=True)
+    panels = {metric: title for metric, (title, _) in PANELS.items() if (points.metric == metric).any()}
+    rows_of = math.ceil(len(panels) / COLUMNS)
+    size_in = style.WIDE_IN, 2.1 * rows_of + 0.4
+    fig, grid = plt.subplots(rows_of, COLUMNS, figsize=size_in, layout="constrained", squeeze=False)
+    axes = list(grid.flat)
+    for axis in axes[len(panels) :]:
+        axis.set_axis_off()
     low, high = points.unknowns.min() / 1.4, points.unknowns.max() * 1.4
-    for axis, (metric, (title, _)) in zip(axes, PANELS.items(), strict=True):
+    for axis, (metric, title) in zip(axes, panels.items()):
         mine = points[points.metric == metric]
         axis.set(xscale="log", yscale="log", title=title, xlabel="unknowns", xlim=(low, high))
         _panel(axis, mine)
-        ratios = [math.exp(v) for v in mine.ln] or [1.0]
+        ratios = [math.exp(v) for v in mine.ln]
         bottom, top = min(*ratios, 1 / LEAST) / 1.1, max(*ratios, LEAST) * 1.1
         axis.set_ylim(bottom, top)
         log_ticks(axis.yaxis, bottom, top, 5)
         log_ticks(axis.xaxis, low, high, 3)
-    axes[0].set_ylabel("log over cubic")
+    for axis in grid[:, 0]:
+        axis.set_ylabel("log over cubic")
     handles = [plt.Line2D([], [], color=c, marker="s", label=f"theta {t}") for t, c in THETAS.items()]
     fig.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False)
-    style.letter_panels(axes)
+    style.letter_panels(axes[: len(panels)])
     sizes = f"{points.unknowns.min()} to {points.unknowns.max()} unknowns; no strain limit"
     facts = Facts(
         f"{len(points)} ratios of two runs each",

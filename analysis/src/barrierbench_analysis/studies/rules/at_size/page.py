@@ -89,7 +89,8 @@ def _arms(study: Study, rows: Rows, size: str) -> list[str]:
                 _over_log(rows, arm, theta, size, "velocity_products", "pcg"),
                 _over_log(rows, arm, theta, size, "velocity_seconds", "pcg"),
             ]
-            words = [arm, theta, f"{len(ok)} of {len(mine)}", own, *map(_ratio_text, numbers), of["when"]]
+            ratios = ["1" if n and (arm, theta) == (LOG, "0.1") else _ratio_text(n) for n in numbers]
+            words = [arm, theta, f"{len(ok)} of {len(mine)}", own, *ratios, of["when"]]
             body.append(words)
     head = ["formulation", "theta", "ends ok", "smallest gap / d_hat", "Newton", "products", "seconds"]
     return markdown([*head, "when to use"], body)
@@ -192,11 +193,11 @@ def _cost(study: Study, rows: list[Row]) -> list[str]:
         hours[_group(row.place)] += (row.seconds or 0.0) / 3600
         there[_group(row.place)] += 1
     body = [
-        [*group, f"{there[group]} of {count}", f"{hours[group]:.2f}" if there[group] else "-"]
+        [" ".join(group), f"{there[group]} of {count}", f"{hours[group]:.2f}" if there[group] else "-"]
         for group, count in every.items()
     ]
-    total = ["all", "", "", f"{len(rows)} of {len(study.cells)}", f"{sum(hours.values()):.2f}"]
-    return markdown(["size", "setting", "measured", "runs", "core hours"], [*body, total])
+    total = ["all", f"{len(rows)} of {len(study.cells)}", f"{sum(hours.values()):.2f}"]
+    return markdown(["size, setting, what is measured", "runs", "core hours"], [*body, total])
 
 
 def _group(place: dict[str, str]) -> tuple[str, str, str]:
