@@ -3,6 +3,7 @@
 import json
 import sys
 import types
+from dataclasses import replace
 
 import pytest
 
@@ -83,15 +84,37 @@ def test_the_same_is_not_registered_twice(tmp_path, rule):
         registration.register(study, "again")
 
 
-def test_a_row_from_before_the_registration_is_refused(tmp_path, rule):
+def test_a_row_of_another_registration_is_refused(tmp_path, rule):
     rule(folder=tmp_path)
     study = written(tmp_path, registered=True)
     registration.register(study, "first")
-    rows = {cell.key: row(cell) for cell in study.cells}  # of 2026-01-01
-    store.write_rows(store.file_of(study), rows)
-    with pytest.raises(UserError, match="found a row of 2026-01-01 .*allowed: rows from"):
+    made = {cell.key: row(cell) for cell in study.cells}
+    store.write_rows(store.file_of(study), made)
+    with pytest.raises(UserError, match="found a row of the registration 'none' .*allowed: "):
         page.rows_of(study)
-    assert len(page.rows_of(written(tmp_path))) == len(rows)  # without the key they count
+    marked = {key: replace(one, origin=one.origin | registration.mark(study)) for key, one in made.items()}
+    store.write_rows(store.file_of(study), marked)
+    assert len(page.rows_of(study)) == len(made)
+    assert len(page.rows_of(written(tmp_path))) == len(made)  # without the key all rows count
+
+
+def test_a_page_of_a_changed_rule_is_refused(tmp_path, rule):
+    rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    registration.register(study, "first")
+    one = {cell.key: replace(row(cell), origin=row(cell).origin | registration.mark(study)) for cell in study.cells}
+    store.write_rows(store.file_of(study), one)
+    rule("def rule(study, rows):\n    return {'n': 1 + len(rows)}\n", tmp_path)
+    with pytest.raises(UserError, match="found the rule"):
+        page.numbers_of(written(tmp_path, registered=True))
+
+
+def test_code_that_a_rule_uses_is_registered_too(tmp_path, rule):
+    module = rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    before = registration.now(study)
+    module.USES = (store,)
+    assert registration.now(study)[1] != before[1] and registration.now(study)[0] == before[0]
 
 
 def test_a_registration_of_another_form_is_refused(tmp_path, rule):

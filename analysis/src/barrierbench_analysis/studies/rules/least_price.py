@@ -1,25 +1,35 @@
 """Barriers that a law asks for beside log, cubic and the consistent dynamic stiffness, in the scenes of the
 study at size: `minimax`, bounded and unbounded, and the exponential at its best exponent.
 
-Their exponents follow from the range of loads that a run with the log had in that scene on its coarsest mesh,
-so that nothing is tuned on what is measured here. The log, cubic and consistent runs are those of at_size.
+Their exponents follow from the range of loads that a run with the log had in that scene on its coarsest mesh
+(XS): what is measured at S was not used for them. The runs of log and cubic are those of at_size.
 """
 
+import inspect
 import math
 from collections.abc import Iterator
 
 from barrierbench_analysis.io.text_table import markdown
+from barrierbench_analysis.studies.kit.study.page import rows_of
 from barrierbench_analysis.studies.kit.study.spec import Case, Cell, Study, read_study
-from barrierbench_analysis.studies.kit.study.store import Row, file_of, read_rows
+from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import Ratio, ratio_over
 from barrierbench_analysis.tables.words import counted
 
 from . import at_size
+from .at_size import causes, measured, pairs, stops
 from .at_size.cells import settings
 from .at_size.pairs import Rows, Where
 
 PARTIAL = True
+USES = (
+    inspect.getmodule(settings),
+    causes,
+    measured,
+    pairs,
+    stops,
+)  # what numbers depend on beside this file
 ALIKE = ("scene", "size", "setting")
 MEASURED = at_size.MEASURED
 FIRST, LAST = 3.0, 40.0  # exponents that the barriers have
@@ -116,7 +126,7 @@ def _won(rows: Rows, arm: str, where: Where) -> str:
 def rule(study: Study, rows: list[Row]) -> dict:
     """The tables of the page."""
     base = read_study("at_size")
-    others = list(read_rows(file_of(base)).values())
+    others = rows_of(base)
     of, body = Rows(base, rows + others), []
     for size in study.about["sizes"]:
         for theta in study.about["thetas"]:
@@ -128,12 +138,13 @@ def rule(study: Study, rows: list[Row]) -> dict:
                     body.append([size, theta, arm, under, *ends, *numbers])
     head = ["size", "theta", "barrier", "over", "ends ok", "scenes ahead of both (Newton and PCG)", "scenes"]
     exponents = [
-        [scene, f"{r:.3g}", *(f"{exponent(shape, r, 0.1):.3g}" for shape in study.about["shapes"])]
+        [scene, theta, f"{r:.3g}", *(f"{exponent(s, r, float(theta)):.3g}" for s in study.about["shapes"])]
         for scene, r in study.about["load_ratios"].items()
+        for theta in study.about["thetas"]
     ]
     return {
         "table": "\n".join(markdown([*head, *METRICS.values()], body)),
-        "exponents": "\n".join(markdown(["scene", "load ratio", *study.about["shapes"]], exponents)),
+        "exponents": "\n".join(markdown(["scene", "theta", "load ratio", *study.about["shapes"]], exponents)),
         "rows": len(rows),
         "cells": counted(len(study.cells), "run"),
     }

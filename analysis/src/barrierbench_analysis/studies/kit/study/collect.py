@@ -17,7 +17,7 @@ from barrierbench_analysis.studies.kit.metrics import FOLDER
 from barrierbench_analysis.tables.numbers import rounded
 from barrierbench_analysis.tables.outcomes import outcome_of
 
-from . import store
+from . import registration, store
 from .spec import Cell, Study, parts_of
 
 RUNS = ROOT / "results" / "runs" / "studies"
@@ -119,7 +119,7 @@ def row_of(study: Study, cell: Cell, record: dict, *others: dict) -> store.Row:
         unknowns=found,
         seconds=round(seconds_of_run(record), 3),
         run=run_of(record),
-        origin=stamp(record, *ORIGIN, threads=ONE_THREAD),
+        origin=stamp(record, *ORIGIN, threads=ONE_THREAD) | registration.mark(study),
     )
 
 

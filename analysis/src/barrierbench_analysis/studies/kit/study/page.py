@@ -33,7 +33,8 @@ def rows_of(study: Study, file: Path | None = None) -> list[store.Row]:
 
 
 def _some(study: Study) -> list[store.Row]:
-    """As rows_of. Errors: UserError where there is none."""
+    """As rows_of. Errors: UserError where there is none, and for a study that is not what was registered."""
+    registration.require(study)
     if rows := rows_of(study):
         return rows
     raise UserError(f"{store.file_of(study)}: found no row; {study.call('run')} makes them")

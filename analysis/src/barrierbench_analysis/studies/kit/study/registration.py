@@ -1,8 +1,8 @@
 """What was fixed before the runs of a study whose spec has `registered`: configs/studies/registered/NAME.json
 lists, oldest first, the hash of its spec and of the code of its rule, with date, commit and reason.
 
-`run` makes no row of a spec or of a rule that is not the last one of the list, and a page takes no row from
-before the first one.
+`run` makes no row, and no page is written, of a spec or of a rule that is not the last one of the list. A row
+has the hashes of the entry that it was made after, and a page takes no row without one.
 """
 
 import importlib
@@ -25,6 +25,7 @@ from .spec import Study
 from .store import Row
 
 SCHEMA = "barrierbench.registered/1"
+MARK = "registered"  # in the origin of a row
 LATER = ("page", "question", "parts")  # keys of a spec that no number depends on
 
 
@@ -57,7 +58,8 @@ def now(study: Study) -> tuple[str, str]:
     """
     spec = {key: value for key, value in study.data.items() if key not in LATER}
     cells = [cell.key for cell in study.cells]
-    code = [code_of(module) for module in (*_modules(study.module), estimate, statistics)]
+    used = (*_modules(study.module), *getattr(study.module, "USES", ()), estimate, statistics)
+    code = [code_of(module) for module in used]
     return sha_of([spec, cells])[:DIGITS], sha_of(code)[:DIGITS]
 
 
@@ -114,14 +116,26 @@ def require(study: Study) -> None:
             )
 
 
-def checked(study: Study, rows: list[Row]) -> list[Row]:
-    """The rows as they are. Errors: UserError for one from before the first registration."""
+def mark(study: Study) -> dict[str, str]:
+    """What the origin of a row has of the last entry; nothing of a study that is not registered."""
     kept = entries(study) if study.data.get("registered") else []
-    early = next((row for row in rows if kept and row.origin["date"] < kept[0].date), None)
-    if early is not None:
+    return {MARK: _mark(kept[-1])} if kept else {}
+
+
+def _mark(entry: Entry) -> str:
+    return f"{entry.spec} {entry.rule}"
+
+
+def checked(study: Study, rows: list[Row]) -> list[Row]:
+    """The rows as they are. Errors: UserError for one that was made after no entry of the list."""
+    if not study.data.get("registered"):
+        return rows
+    known = {_mark(entry) for entry in entries(study)}
+    other = next((row for row in rows if row.origin.get(MARK) not in known), None)
+    if other is not None:
         raise UserError(
-            f"{study.name}: found a row of {early.origin['date']} ({' '.join(early.place.values())}); "
-            f"allowed: rows from {kept[0].date} on, when the study was registered"
+            f"{study.name}: found a row of the registration {other.origin.get(MARK, 'none')!r}"
+            f" ({' '.join(other.place.values())}); allowed: {', '.join(sorted(known)) or 'none yet'}"
         )
     return rows
 

@@ -15,6 +15,7 @@ from .loads import changed
 
 NOT_OF_A_SCENE = ("schema", "name", "doc", "matching")
 TIGHT = 1e-6  # of d_hat/h: the speed that ends a step, a hundredth of the program's default
+BASE, GUESS = "base", "guess"
 NO_THETA = "-"  # of formulations that follow from mass and elasticity
 
 
@@ -33,10 +34,13 @@ def _sections(study: Study, scene: dict, size: dict) -> dict[str, object]:
     return {f"/{key}": copy.deepcopy(value) for key, value in found.items() if key not in NOT_OF_A_SCENE}
 
 
-def matching(scene: dict, size: dict, theta: str) -> dict:
-    if theta == NO_THETA:
+def matching(scene: dict, size: dict, place: dict[str, str]) -> dict:
+    """Both barriers carry load_N at theta d_hat. It is the largest load of a contact in the run of the log
+    that is matched to a first guess (setting `guess`)."""
+    if place["theta"] == NO_THETA:
         return {"rule": "as_given"}
-    found = {"rule": "equal_force", "theta": float(theta), "load_N": size["load_N"]}
+    load = size["guess_N" if place["setting"] == GUESS else "load_N"]
+    found = {"rule": "equal_force", "theta": float(place["theta"]), "load_N": load}
     return found | ({"limit_load_N_per_m": scene["limit_N_per_m"]} if "limit_N_per_m" in scene else {})
 
 
@@ -49,11 +53,11 @@ def settings(study: Study, place: dict[str, str]) -> dict:
     found["/strain_limit"] = {"enabled": False}
     d_hat = found["/formulation"]["d_hat_m"]
     found["/formulation"] = {**about["arms"][place["arm"]]["formulation"], "d_hat_m": d_hat}
-    found["/matching"] = matching(scene, size, place["theta"])
+    found["/matching"] = matching(scene, size, place)
     found |= about["measures"][place["measure"]]
     if place["setting"] in about["masks"]:
         found |= _mask(study, place["setting"], scene, found)
-    elif place["setting"] != "base":
+    elif place["setting"] not in (BASE, GUESS):
         found = changed(found, place["setting"])
     found |= about["arms"][place["arm"]].get("set", {})
     if "/method" in found:  # its own step length and end of a step, over the same time
@@ -94,8 +98,9 @@ def cells(study: Study) -> Iterator[Case]:
 
 
 def _of_scene(study: Study, group: dict, scene: dict, size: str) -> Iterator[Case]:
-    if size not in scene["sizes"]:
-        return
+    needed = "guess_N" if group["setting"] == GUESS else "load_N"
+    if needed not in scene["sizes"].get(size, {}):
+        return  # a size whose load is not known yet
     for arm in group["arms"]:
         for theta in group["thetas"] if study.about["arms"][arm]["matched"] else [NO_THETA]:
             words = (scene["label"], size, arm, theta, group["setting"], group["measure"])

@@ -1,6 +1,7 @@
 """What the study keeps of a run."""
 
 import math
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -8,15 +9,16 @@ import numpy as np
 from barrierbench_analysis.io.record_file import read_trace
 from barrierbench_analysis.studies.kit.metrics import FOLDER
 from barrierbench_analysis.studies.kit.study.spec import Cell, Study
-from barrierbench_analysis.studies.rules.gap_map.measured import conditions
+from barrierbench_analysis.studies.rules.gap_map.measured import INFINITE, LARGEST, conditions
 
 from .causes import CAUSES, by_step, counts, slopes
-from .stops import LOOSE, RESIDUAL, RULES, WORK, work
+from .stops import LOOSE, RESIDUAL, RULES, WORK, until_slow, work
 
+LOADS = 100.0  # of law 1: the range of loads, from the matched one down
 LAWS = {
     "made": "largest cond over cond without contact of the same iterate",
     "cond_most": "largest cond of an iterate in contact",
-    "price_most": "largest cond over the largest load of its iterate, or over load_low if that is more",
+    "price_most": "largest cond over the largest load of its iterate, at least 1/100 of the matched one",
     "bj_lambda_max": "largest eigenvalue of an iterate, block-Jacobi scaled",
     "load_high": "largest load of a contact at a step's end, the largest over steps in contact",
     "load_low": "the same, 5% quantile over steps in contact",
@@ -27,8 +29,11 @@ LAWS = {
 # Value of a row -> what it is.
 MEASURED = {
     "contacts": "contacts of an iterate, mean",
-    **{f"by_{name}": f"iterations: {what}" for name, what in CAUSES.items()},
-    **{f"slope_{name}": f"iterations of a step over ln contacts: {what}" for name, what in CAUSES.items()},
+    **{f"by_{name}": f"iterations to 1e-4 d_hat: {what}" for name, what in CAUSES.items()},
+    **{
+        f"slope_{name}": f"iterations of a step to 1e-4 d_hat over ln contacts: {what}"
+        for name, what in CAUSES.items()
+    },
     **{f"{rule}_{name}": f"{what} until {of}" for rule, of in RULES.items() for name, what in WORK.items()},
     **{f"{rule}_missed": f"steps without an iterate in which {of}" for rule, of in RULES.items()},
     "cond_p95": "95th percentile of cond over iterates in contact",
@@ -43,7 +48,7 @@ MEASURED = {
 def _of(line: dict, stage: str, scaling: str, what: str) -> float | None:
     for one in line.get("cond") or []:
         if (one["matrix"], one["stage"], one["scaling"]) == ("clamped", stage, scaling):
-            return one[what]
+            return LARGEST if what == "cond" and one["status"] in INFINITE else one[what]
     return None
 
 
@@ -69,10 +74,8 @@ def _conditioning(lines: list[dict]) -> dict[str, float | None]:
     }
 
 
-def _price(lines: list[dict], least: float | None) -> float | None:
+def _price(lines: list[dict], least: float) -> float | None:
     """Of law 1 in the form that its theorem implies: a condition number over the load of its iterate."""
-    if least is None:
-        return None
     found = [
         cond / max(line["contact_load_max_N"], least)
         for line in lines
@@ -105,6 +108,13 @@ def _loads(record: dict, steps: dict[int, list[dict]]) -> dict[str, float | None
     }
 
 
+def _matched(study: Study, cell: Cell) -> float:
+    """The load that both barriers are matched to in this scene and size."""
+    scene = next(one for one in study.about["scenes"] if one["label"] == cell.place["scene"])
+    size = scene["sizes"][cell.place["size"]]
+    return size.get("load_N", size.get("guess_N"))
+
+
 def limits(study: Study, cell: Cell) -> dict[str, float]:
     """Of the stop rules: the direction in m, the gradient in N."""
     scene = next(one for one in study.about["scenes"] if one["label"] == cell.place["scene"])
@@ -123,7 +133,9 @@ def measure(study: Study, cell: Cell, record: dict) -> dict[str, float | None]:
         return found
     steps = by_step(lines)
     found |= {"contacts": float(np.mean([line["contacts"]["total"] for line in lines]))}
-    found |= {f"by_{name}": value for name, value in counts(lines).items()}
-    found |= {f"slope_{name}": value for name, value in slopes(steps).items()}
-    found |= work(steps, record, limits(study, cell)) | _conditioning(lines) | _loads(record, steps)
-    return found | {"price_most": _price(lines, found["load_low"])}
+    ends = limits(study, cell)
+    cut = until_slow(steps, ends["velocity"])
+    found |= {f"by_{name}": value for name, value in counts(list(chain(*cut.values()))).items()}
+    found |= {f"slope_{name}": value for name, value in slopes(cut).items()}
+    found |= work(steps, record, ends) | _conditioning(lines) | _loads(record, steps)
+    return found | {"price_most": _price(lines, _matched(study, cell) / LOADS)}

@@ -1,6 +1,5 @@
 """The numbers of the page: answers, laws, the table of formulations, what the runs took."""
 
-import math
 from collections import defaultdict
 
 from barrierbench_analysis.io.text_table import markdown
@@ -15,6 +14,7 @@ from .figure import PANELS, SIZES, THETAS
 from .laws import Law, laws
 from .pairs import LOG, Rows, Where
 from .questions import SCENES, Answer, answers
+from .stops import RULES as STOPS
 
 SUBJECTS = {
     1: "Does the raw condition number differ?",
@@ -128,7 +128,7 @@ COMMANDS = {
 
 def sentences(study: Study, rows: Rows, found: list[Answer]) -> list[str]:
     """One a question: its number, its outcome and its command; while its runs are missing, the same number at
-    the largest smaller size that has all scenes."""
+    the largest smaller size that has five scenes."""
     made = []
     for answer in found:
         begins, label, metric, measure = SENTENCES[answer.number]
@@ -142,8 +142,10 @@ def sentences(study: Study, rows: Rows, found: list[Answer]) -> list[str]:
 
 
 def _at_smaller(rows: Rows, metric: str, measure: str) -> tuple[Ratio | None, str]:
+    kinds = ("shell", "rod") if metric == "cond_p95" else ("shell", "rod", "solid")
     for size in reversed(SIZES[:2]):
-        logs = rows.logs(metric, Where(size, measure=measure))
+        every = rows.logs(metric, Where(size, measure=measure))
+        logs = {scene: value for scene, value in every.items() if scene in rows.kind(*kinds)}
         if len(logs) >= SCENES:
             return ratio_over(
                 list(logs.values())
@@ -153,7 +155,12 @@ def _at_smaller(rows: Rows, metric: str, measure: str) -> tuple[Ratio | None, st
 
 def _by_size(rows: Rows) -> list[str]:
     """Log over cubic at every size and target: the bars of the figure, and products."""
-    columns = {**PANELS, "velocity_products": ("matrix products", "pcg")}
+    columns = {
+        "gap_min": ("smallest gap", "diagnosed"),
+        "load_high": ("largest load", "diagnosed"),
+        **PANELS,
+        "velocity_products": ("matrix products", "pcg"),
+    }
     body = []
     for size in SIZES:
         for theta in THETAS:
@@ -163,18 +170,30 @@ def _by_size(rows: Rows) -> list[str]:
                 if (logs := rows.logs(metric, Where(size, theta, measure=measure))) is not None
             ]
             if set(ratios) != {"-"}:
-                body.append([size, theta, str(len(rows.pairs(Where(size, theta)))), *ratios])
-    return markdown(["size", "theta", "scenes", *(title for title, _ in columns.values())], body)
+                left = rows.dropped(Where(size, theta))
+                out = "; ".join(f"{scene} ({why})" for scene, why in left.items()) or "-"
+                body.append([size, theta, str(len(rows.pairs(Where(size, theta)))), out, *ratios])
+    head = ["size", "theta", "scenes", "in no ratio", *(title for title, _ in columns.values())]
+    return markdown(head, body)
+
+
+def _missed(rows: list[Row]) -> list[str]:
+    """Steps in which a stop rule never holds, which count with all of their iterations."""
+    of: dict[tuple[str, str, str], dict[str, int]] = defaultdict(lambda: defaultdict(int))
+    for row in rows:
+        for rule in STOPS:
+            if missed := row.values[f"{rule}_missed"]:
+                of[row.place["arm"], row.place["size"], row.place["scene"]][rule] += missed
+    body = [[*key, *(str(found[rule]) for rule in STOPS)] for key, found in sorted(of.items())]
+    if not body:
+        return ["Every rule holds in every step."]
+    return markdown(["formulation", "size", "scene", *STOPS], body)
 
 
 def _over_log(rows: Rows, arm: str, theta: str, size: str, metric: str, measure: str) -> Ratio | None:
     """Over the log at theta 0.1, whatever target the formulation has."""
-    reference = rows.of(LOG, Where(size, "0.1", measure=measure))
-    logs = {}
-    for scene, row in rows.of(arm, Where(size, theta, measure=measure)).items():
-        other = reference.get(scene)
-        if other and row.outcome == OK == other.outcome and row.values[metric] and other.values[metric]:
-            logs[scene] = math.log(row.values[metric] / other.values[metric])
+    where, reference = Where(size, theta, measure=measure), Where(size, "0.1", measure=measure)
+    logs = rows.logs(metric, where, arm, LOG, reference)
     return ratio_over(list(logs.values())) if logs else None
 
 
@@ -223,11 +242,15 @@ def _ends(rows: list[Row]) -> list[str]:
     return markdown(["formulation", "theta", "size", "outcome", "runs", "which"], body)
 
 
+def _load(size: dict) -> str:
+    return f"{size['load_N']:.3g} N" if "load_N" in size else "not known yet"
+
+
 def _scenes(study: Study, of: Rows) -> list[str]:
     """What a scene is, its unknowns, and the load that both barriers carry at theta d_hat."""
     body = []
     for label, scene in of.scenes.items():
-        sizes = [f"{n}: {one['unknowns']} ({one['load_N']:.3g} N)" for n, one in scene["sizes"].items()]
+        sizes = [f"{n}: {one['unknowns']} ({_load(one)})" for n, one in scene["sizes"].items()]
         seen = "no rule has seen it" if scene["fresh"] else "catalogue"
         body.append([label, scene["kind"], scene["contact"], seen, ", ".join(sizes)])
     return markdown(["scene", "bodies", "contact with", "from", "unknowns (matched load)"], body)
@@ -253,6 +276,7 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "power": "\n".join(power.table(study)),
         "cost": "\n".join(_cost(study, rows)),
         "ends": "\n".join(_ends(rows)),
+        "missed": "\n".join(_missed(rows)),
         "scenes": "\n".join(_scenes(study, of)),
         "rows": len(rows),
         "cells": len(study.cells),

@@ -40,17 +40,37 @@ class Rows:
         """Scenes whose bodies are of these kinds: shell, rod, solid."""
         return {label for label, scene in self.scenes.items() if scene["kind"] in kinds}
 
-    def pairs(self, where: Where, over: str = LOG, under: str = CUBIC) -> dict[str, tuple[Row, Row]]:
-        """scene -> both runs, where both end ok."""
-        first, second = self.of(over, where), self.of(under, where)
-        both = {scene: (first[scene], second[scene]) for scene in first if scene in second}
+    def _both(self, where: Where, over: str, under: str, beside: Where | None) -> dict[str, tuple[Row, Row]]:
+        first, second = self.of(over, where), self.of(under, beside or where)
+        return {scene: (first[scene], second[scene]) for scene in first if scene in second}
+
+    def pairs(
+        self, where: Where, over: str = LOG, under: str = CUBIC, beside: Where | None = None
+    ) -> dict[str, tuple[Row, Row]]:
+        """scene -> both runs, where both end ok. beside: labels of the second one where they differ."""
+        both = self._both(where, over, under, beside)
         return {s: two for s, two in both.items() if all(row.outcome == OK for row in two)}
 
-    def logs(self, metric: str, where: Where, over: str = LOG, under: str = CUBIC) -> dict[str, float]:
+    def dropped(self, where: Where, over: str = LOG, under: str = CUBIC) -> dict[str, str]:
+        """scene -> which of its two runs did not end ok, and how: it is in no ratio."""
+        return {
+            scene: ", ".join(f"{row.place['arm']} {row.outcome}" for row in two if row.outcome != OK)
+            for scene, two in self._both(where, over, under, None).items()
+            if any(row.outcome != OK for row in two)
+        }
+
+    def logs(
+        self,
+        metric: str,
+        where: Where,
+        over: str = LOG,
+        under: str = CUBIC,
+        beside: Where | None = None,
+    ) -> dict[str, float]:
         """scene -> logarithm of the ratio, where both runs have a value above 0. Seconds of two machines or
         builds are in no ratio."""
         found = {}
-        for scene, two in self.pairs(where, over, under).items():
+        for scene, two in self.pairs(where, over, under, beside).items():
             above, below = (row.values[metric] for row in two)
             if metric.endswith("seconds") and not timed_alike(list(two)):
                 continue

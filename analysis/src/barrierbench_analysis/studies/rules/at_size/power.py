@@ -2,6 +2,9 @@
 that earlier runs lead one to expect, with their scatter between scenes (key `power` of the spec).
 """
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from barrierbench_analysis.io.spec_file import refused
@@ -9,68 +12,62 @@ from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.tables.estimate import sign_test
 
-from .p_values import LEVEL, p_above, p_other, power, within
-from .questions import ALIKE, GROWS, PERSISTS, VANISHES
+from .causes import CAUSES
+from .p_values import LEVEL, p_above, p_other, p_within, power
+from .questions import ALIKE, GROWS, MASKS, PERSISTS, VANISHES
 
 HALF = 0.5
 
 
-def _persists(values: np.ndarray) -> bool:
-    return p_above(list(values), PERSISTS) < LEVEL / 2
-
-
-def _vanishes(values: np.ndarray) -> bool:
-    return within(list(values), *VANISHES)
-
-
-def _grows(values: np.ndarray) -> bool:
-    return p_above(list(values), 0.0) < LEVEL / 2 and float(np.mean(values)) > GROWS
-
-
-def _differs(values: np.ndarray) -> bool:
-    return p_other(list(values)) < LEVEL
-
-
-def _alike(values: np.ndarray) -> bool:
-    return within(list(values), *ALIKE)
-
-
-def _one_sided(values: np.ndarray) -> bool:
-    return sign_test(int(np.sum(values > 0)), int(np.sum(values < 0))) * OTHERS < LEVEL
-
-
+SIX = 6  # questions, over which Holm's method corrects: at worst each p counts so many times
 OTHERS = 3  # formulations beside the log in question 5
-# Outcome -> whether these values of scenes lead to it, before Holm's correction.
-RULES = {
-    "1 vanishes": _vanishes,
-    "1 persists": _persists,
-    "2 grows": _grows,
-    "3 a cause": _differs,
-    "4 equivalent": _alike,
-    "5 more or less often": _one_sided,
-    "6 a mask": _differs,
+# Outcome -> p of these values of scenes, as the question has it before Holm's correction.
+RULES: dict[str, Callable[[list[float]], float]] = {
+    "1 vanishes": lambda values: 2 * p_within(values, *VANISHES),
+    "1 persists": lambda values: 2 * p_above(values, PERSISTS),
+    "2 grows": lambda values: 2 * p_above(values, 0.0) if sum(values) > len(values) * GROWS else 1.0,
+    "3 a cause": lambda values: len(CAUSES) * p_other(values),
+    "4 equivalent": lambda values: 2 * p_within(values, *ALIKE),
+    "5 more or less often": lambda values: OTHERS * sign_test(*_signs(values)),
+    "6 a mask": lambda values: len(MASKS) * p_other(values),
 }
 
 
-def powers(study: Study) -> dict[str, float]:
-    """Outcome -> power. Errors: UserError for an outcome that has no rule here."""
+def _signs(values: list[float]) -> tuple[int, int]:
+    return sum(v > 0 for v in values), sum(v < 0 for v in values)
+
+
+def _found(p: Callable[[list[float]], float], factor: int, values: np.ndarray) -> bool:
+    return factor * p(list(values)) < LEVEL
+
+
+def powers(study: Study, factor: int = 1) -> dict[str, float]:
+    """Outcome -> power, where p counts `factor` times. Errors: UserError for an outcome without a rule."""
     found = {}
     for k, (name, of) in enumerate(study.about["power"].items()):
         if name not in RULES:
             raise refused(study.file, f"about/power/{name}", name, ", ".join(RULES))
-        found[name] = power(RULES[name], of["effect"], of["scatter"], of["scenes"], seed=k + 1)
+        rule = partial(_found, RULES[name], factor)
+        found[name] = power(rule, of["effect"], of["scatter"], of["scenes"], seed=k + 1)
     return found
 
 
 def table(study: Study) -> list[str]:
     """Markdown: effect, scatter, scenes and power, and which question is weak before it is asked."""
-    body = []
+    body, worst = [], powers(study, SIX)
     for name, found in powers(study).items():
         of = study.about["power"][name]
-        weak = (
-            "yes: an effect of this size is found in less than half of such studies" if found < HALF else "no"
-        )
-        numbers = [f"{np.exp(of['effect']):.3g}", f"{of['scatter']:.2g}", str(of["scenes"]), f"{found:.2f}"]
-        body.append([name, *numbers, weak, of["from"]])
-    head = ["outcome", "ratio expected", "scatter (ln)", "scenes", "power", "below one half", "from"]
+        weak = "yes" if found < HALF else "after Holm" if worst[name] < HALF else "no"
+        numbers = [f"{np.exp(of['effect']):.3g}", f"{of['scatter']:.2g}", str(of["scenes"])]
+        body.append([name, *numbers, f"{found:.2f}", f"{worst[name]:.2f}", weak, of["from"]])
+    head = [
+        "outcome",
+        "ratio expected",
+        "scatter (ln)",
+        "scenes",
+        "power",
+        "power at the worst factor of Holm",
+        "below one half",
+        "from",
+    ]
     return markdown(head, body)

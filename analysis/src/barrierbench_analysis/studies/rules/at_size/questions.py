@@ -93,7 +93,7 @@ def newton(rows: Rows) -> Answer:
         "log/cubic at M": _ratio(rows.logs("velocity_newton", Where())),
     }
     word = _word(rise, {"grows": above and mean > GROWS})
-    return Answer(2, "Newton", word, p_above(values, 0.0), numbers, sorted(rise))
+    return Answer(2, "Newton", word, min(1.0, 2 * p_above(values, 0.0)), numbers, sorted(rise))
 
 
 def _differences(rows: Rows, where: Where) -> dict[str, dict[str, float]]:
@@ -168,9 +168,10 @@ def robustness(rows: Rows) -> Answer:
         if row.place["setting"][0] in "Emv" and row.place["setting"][1:2].isdigit():
             of.setdefault((row.place["arm"], row.place["scene"]), []).append(row)
     arms = list(dict.fromkeys(arm for arm, _ in of))
+    of = _alike_loads(of)
     share = {key: sum(r.outcome == OK for r in mine) / len(mine) for key, mine in of.items()}
     scenes = sorted({scene for arm, scene in of if arm == LOG})
-    numbers, words, ps = {}, {}, []
+    numbers, words = {}, {}
     for arm in arms:
         mine = {s: share[arm, s] for s in scenes if (arm, s) in share}
         numbers[f"{arm}: share that ends ok"] = _mean(mine)
@@ -180,14 +181,34 @@ def robustness(rows: Rows) -> Answer:
             continue
         more = sum(mine[s] > share[LOG, s] for s in mine)
         less = sum(mine[s] < share[LOG, s] for s in mine)
-        ps.append(sign_test(more, less))
-        words[f"{arm} {'more' if more > less else 'less'} often than log"] = ps[-1]
-    if not ps:
+        words[f"{arm} {'more' if more > less else 'less'} often than log"] = sign_test(more, less)
+    if not words:
         return Answer(5, "robustness", NO_RUNS, 1.0, numbers)
-    p = min(1.0, len(ps) * min(ps))
-    chosen = {word: p_one * len(ps) < LEVEL for word, p_one in words.items()}
-    held = ", ".join(word for word, holds in chosen.items() if holds)
-    return Answer(5, "robustness", held if held and len(scenes) >= SCENES else UNDECIDED, p, numbers, scenes)
+    held, p = _named(words if len(scenes) >= SCENES else {})
+    return Answer(5, "robustness", held, p, numbers, scenes)
+
+
+def _named(words: dict[str, float]) -> tuple[str, float]:
+    """Of several tests in one question: the words whose p holds after Holm's correction over all questions,
+    and the largest p of these times their number; the least one where none does. words: word -> p.
+    """
+    adjusted = {word: min(1.0, p * len(words)) for word, p in words.items()}
+    held = [word for word, p in adjusted.items() if p * len(QUESTIONS) < LEVEL]
+    chosen = [adjusted[word] for word in held] or [min(adjusted.values(), default=1.0)]
+    return ", ".join(held) or UNDECIDED, max(chosen)
+
+
+def _alike_loads(of: dict[tuple[str, str], list]) -> dict[tuple[str, str], list]:
+    """The runs of those loads alone that every formulation of a scene has."""
+    loads: dict[str, set[str]] = {}
+    for (_, scene), mine in of.items():
+        there = {row.place["setting"] for row in mine}
+        loads[scene] = loads.get(scene, there) & there
+    return {
+        key: kept
+        for key, mine in of.items()
+        if (kept := [row for row in mine if row.place["setting"] in loads[key[1]]])
+    }
 
 
 def _least_gap(mine: list) -> float | None:
@@ -206,10 +227,8 @@ def masks(rows: Rows) -> Answer:
         ps[mask] = p_other(list(found[mask].values()))
     if not any(found.values()):
         return Answer(6, "masks", NO_RUNS, 1.0, numbers)
-    held = [m for m, p in ps.items() if p * len(MASKS) < LEVEL and len(found[m]) >= SCENES]
-    scenes = sorted(set().union(*found.values()))
-    p = min(1.0, len(MASKS) * min(ps.values()))
-    return Answer(6, "masks", ", ".join(held) or UNDECIDED, p, numbers, scenes)
+    held, p = _named({mask: p for mask, p in ps.items() if len(found[mask]) >= SCENES})
+    return Answer(6, "masks", held, p, numbers, sorted(set().union(*found.values())))
 
 
 QUESTIONS = (conditioning, newton, cause, work, robustness, masks)

@@ -4,11 +4,11 @@ tight: so that all of them are of the same steps.
 
 LOOSE = 1e-4  # of d_hat/h: the speed at which the program ends a step by default
 RESIDUAL = 1e-2  # of the force that moves the mean vertex by d_hat in a step
-GAP = 1e-2  # of d_hat
+GAP = 0.1  # of the gap at the end of the step
 RULES = {
     "velocity": f"the direction moves no vertex by more than {LOOSE:g} d_hat",
     "residual": f"no entry of the gradient is above {RESIDUAL:g} of the inertia of a vertex times d_hat",
-    "gap": f"the smallest gap is, and stays, within {GAP:g} d_hat of its value at the end of the step",
+    "gap": f"the smallest gap is, and stays, within {GAP:.0%} of its value at the end of the step",
 }
 WORK = {
     "newton": "linear systems",
@@ -33,9 +33,15 @@ def solved(of_step: list[dict], rule: str, limits: dict[str, float], end_gap: fl
     elif rule == "residual":
         at = (k for k, line in enumerate(of_step) if line["grad_inf_N"] <= limits["residual"])
     else:
-        far = [k for k, line in enumerate(of_step) if abs(_gap(line) - end_gap) > GAP]
+        far = [k for k, line in enumerate(of_step) if abs(_gap(line) - end_gap) > GAP * end_gap]
         return far[-1] + 1 if far else 0
     return next(at, None)
+
+
+def until_slow(steps: dict[int, list[dict]], most_m: float) -> dict[int, list[dict]]:
+    """The iterations of each step until its direction is as short as the program asks for by default."""
+    limits = {"velocity": most_m}
+    return {number: of[: solved(of, "velocity", limits, FREE)] for number, of in steps.items()}
 
 
 def _work(lines: list[dict]) -> dict[str, float]:
