@@ -69,11 +69,10 @@ def _measured(a: Answer, j: Judged, table: Table) -> dict:
     }
 
 
-def _number_of(a: Answer, number: int) -> Judged | None:
-    """The part of this number of the claim, over confirmed scenes if there are any. None without a value."""
+def _number_of(a: Answer, parts: list[Judged], number: int) -> Judged | None:
+    """The part of this number of the claim among those that its verdict rests on. None without a value."""
     says = a.claim.parts[number - 1]["says"]
-    found = (j for j in (*a.confirmed_parts, *a.parts) if j.says == says and j.value is not None)
-    return next(found, None)
+    return next((j for j in parts if j.says == says and j.value is not None), None)
 
 
 def _edges(a: Answer, source: str, target: str, dimensions: dict[str, int], table: Table) -> list[dict]:
@@ -94,7 +93,7 @@ def _edges(a: Answer, source: str, target: str, dimensions: dict[str, int], tabl
     }
     edges = []
     for dimension, number in dimensions.items():
-        j = _number_of(a, number)
+        j = _number_of(a, parts, number)
         found = {"evidence": _evidence(j, table), "measured": _measured(a, j, table)} if j else {}
         edge = {"from": source, "to": target, "dimension": dimension, **whole}
         edges.append({**edge, "evidence": "", "measured": None, **found})
