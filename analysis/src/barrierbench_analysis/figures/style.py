@@ -62,7 +62,9 @@ plt.rcParams.update(
 @dataclass(frozen=True)
 class Look:
     color: str
-    marker: str
+    marker: (
+        str | tuple[int, int, int]
+    )  # of matplotlib: a letter, or a star of so many points (points, 1, angle)
     dash: object
 
     def line(self, **more) -> dict:
@@ -83,8 +85,8 @@ LOOKS = {
     "log_squared": Look("#000000", "X", (0, (1, 1))),
     "two_stage": Look("#A6761D", "<", (0, (5, 2, 1, 2))),
     "exponential": Look("#CC3311", "H", (0, (7, 1, 1, 1))),
-    "minimax": Look("#117733", "$M$", (0, (6, 1, 1, 1, 1, 1))),
-    "minimax_bounded": Look("#6699CC", "$B$", (0, (6, 3))),
+    "minimax": Look("#117733", (4, 1, 0), (0, (6, 1, 1, 1, 1, 1))),
+    "minimax_bounded": Look("#6699CC", (3, 1, 0), (0, (6, 3))),
     "log_of_square": Look("#44AA99", "d", (0, (3, 1))),
     "cubic_of_square": Look("#AA4499", "8", (0, (1, 1, 3, 1))),
     "article_cubic": Look("#999999", ">", "-."),

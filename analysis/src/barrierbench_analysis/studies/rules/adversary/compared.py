@@ -10,6 +10,7 @@ from barrierbench_analysis.studies.claims.parts import MOST
 from barrierbench_analysis.studies.kit.study.store import Row, timed_alike
 from barrierbench_analysis.studies.kit.success import failures
 from barrierbench_analysis.studies.rules.at_size.laws import MADE
+from barrierbench_analysis.tables.numbers import significant
 from barrierbench_analysis.tables.outcomes import OK
 
 from .statement import Statement, contrary
@@ -55,7 +56,7 @@ def _logs(statement: Statement, rows: dict[str, Row]) -> tuple[list[float], str]
 
 def _numbers(statement: Statement, rows: dict[str, Row]) -> str:
     found = ((arm, row.values[statement.metric]) for arm, row in rows.items())
-    return ", ".join(f"{arm} {'-' if x is None else f'{x:.4g}'}" for arm, x in found)
+    return ", ".join(f"{arm} {significant(x, 4)}" for arm, x in found)
 
 
 def ratio(statement: Statement, rows: dict[str, Row]) -> Contrast:
