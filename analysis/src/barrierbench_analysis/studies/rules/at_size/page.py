@@ -39,8 +39,8 @@ LABELS = {
 }
 
 
-def _text(number: Mean | None) -> str:
-    return "-" if number is None else f"{number} (n = {number.scenes})"
+def _text(number: Mean) -> list[str]:
+    return [str(number), str(number.scenes)]
 
 
 def _answers(found: list[Answer]) -> list[str]:
@@ -51,11 +51,16 @@ def _answers(found: list[Answer]) -> list[str]:
     return markdown(["", "question", "outcome", "p (Holm)", "scenes"], body)
 
 
-def _of_question(answer: Answer) -> str:
-    """Its numbers, as far as there are any."""
-    body = [[_label(label), _text(n)] for label, n in answer.numbers.items() if n is not None]
+def _of_question(rows: Rows, answer: Answer) -> str:
+    """Its numbers, as far as there are any, and the one of its sentence at smaller sizes."""
+    body = [[_label(label), *_text(n)] for label, n in answer.numbers.items() if n is not None]
+    begins, _, metric, measure = SENTENCES[answer.number]
+    for size in SIZES[:2] if metric else ():
+        if logs := _smaller(rows, metric, measure, size):
+            words = begins.replace("The ratio log/cubic of ", "")
+            body.append([f"log/cubic of {words} at {size}", *_text(ratio_over(list(logs.values())))])
     return "\n".join(
-        markdown(["number", "mean over scenes [95%]"], body) if body else ["No pair of runs yet."]
+        markdown(["number", "mean over scenes [95%]", "scenes"], body) if body else ["No pair of runs yet."]
     )
 
 
@@ -141,11 +146,16 @@ def sentences(study: Study, rows: Rows, found: list[Answer]) -> list[str]:
     return made
 
 
-def _at_smaller(rows: Rows, metric: str, measure: str) -> tuple[Ratio | None, str]:
+def _smaller(rows: Rows, metric: str, measure: str, size: str) -> dict[str, float]:
+    """Logarithms of a ratio at theta 0.01; of raw condition numbers those of shells and rods."""
     kinds = ("shell", "rod") if metric == "cond_p95" else ("shell", "rod", "solid")
+    found = rows.logs(metric, Where(size, measure=measure))
+    return {scene: value for scene, value in found.items() if scene in rows.kind(*kinds)}
+
+
+def _at_smaller(rows: Rows, metric: str, measure: str) -> tuple[Ratio | None, str]:
     for size in reversed(SIZES[:2]):
-        every = rows.logs(metric, Where(size, measure=measure))
-        logs = {scene: value for scene, value in every.items() if scene in rows.kind(*kinds)}
+        logs = _smaller(rows, metric, measure, size)
         if len(logs) >= SCENES:
             return ratio_over(
                 list(logs.values())
@@ -262,7 +272,7 @@ def rule(study: Study, rows: list[Row]) -> dict:
     found, of_laws = answers(of), laws(of)
     return {
         "answers": "\n".join(_answers(found)),
-        "of_question": {a.number: _of_question(a) for a in found},
+        "of_question": {a.number: _of_question(of, a) for a in found},
         "outcome": {a.number: a.outcome for a in found},
         "subjects": SUBJECTS,
         "laws": "\n\n".join(map(_law, of_laws)),
