@@ -6,6 +6,8 @@ from types import SimpleNamespace
 import pytest
 from study_files import sweep_of_four
 
+from barrierbench_analysis.studies.kit.study.spec import read_study
+
 
 @pytest.fixture(scope="session")
 def kept_study(program, tmp_path_factory):
@@ -31,3 +33,17 @@ def decided(rule_of_small):
     rule_of_small.decided = lambda study, rows: (
         {cell.key: "stalled" for cell in study.cells[1:4]} if study.cells[0].key in rows else {}
     )
+
+
+@pytest.fixture(scope="module")
+def no_rows_of_the_study_at_size():
+    from adversary_rows import without_rows_of_the_study_at_size
+
+    with without_rows_of_the_study_at_size():
+        yield
+
+
+@pytest.fixture
+def adversary(tmp_path):
+    """The study, without a kept row."""
+    return read_study("adversary", tmp_path)

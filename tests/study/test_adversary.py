@@ -1,96 +1,35 @@
-"""The adversary: its statements and regions, its draws, and what rows with a planted contradiction say."""
+"""The adversary: its statements, its regions and its draws."""
 
 import json
 import math
 import random
 import subprocess
-from contextlib import contextmanager
 from dataclasses import replace
 
 import pytest
+from adversary_rows import FILE, LABELS, keep, named, there
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.studies.claims.merged import put
-from barrierbench_analysis.studies.kit.study import cost, page, store
-from barrierbench_analysis.studies.kit.study.collect import sources_of
+from barrierbench_analysis.studies.kit.study import cost, store
 from barrierbench_analysis.studies.kit.study.spec import read_study
-from barrierbench_analysis.studies.rules.adversary import compared, draws, of_claims, of_size, size_region
-from barrierbench_analysis.studies.rules.adversary.gathered import _gathered, gathered
-from barrierbench_analysis.studies.rules.adversary.page import rule, verdict
+from barrierbench_analysis.studies.rules.adversary import (
+    draws,
+    of_claims,
+    of_size,
+    size_region,
+)
+from barrierbench_analysis.studies.rules.adversary.gathered import gathered
 from barrierbench_analysis.studies.rules.adversary.region import Range
-from barrierbench_analysis.studies.rules.adversary.statement import EVERY, MEAN, Side, contrary
+from barrierbench_analysis.studies.rules.adversary.statement import (
+    EVERY,
+    MEAN,
+)
 from barrierbench_analysis.studies.rules.at_size import questions
 
-FILE = read_study("adversary").file
-
-
-@contextmanager
-def without_rows_of_the_study_at_size():
-    """Statements as they are before the study at size has a row, so that no test depends on what its rows say."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(of_size, "rows_of", lambda study: [])
-        _gathered.cache_clear()
-        yield
-    _gathered.cache_clear()
-
-
-with without_rows_of_the_study_at_size():
-    LABELS = [one.label for one in gathered(read_study("adversary")).statements]
-
-
-@pytest.fixture(autouse=True, scope="module")
-def no_rows_of_the_study_at_size():
-    with without_rows_of_the_study_at_size():
-        yield
-
-
-@pytest.fixture
-def study(tmp_path):
-    """Without a kept row."""
-    return read_study("adversary", tmp_path)
-
-
-def named(label):
-    return gathered(read_study("adversary")).named(label)
-
-
-def row(of, case, outcome="ok", seconds=1.0, **values):
-    cell, sources = of.cell(case), sources_of(of)
-    origin = {"date": "2026-01-01", "machine": "m", "commit": "c", "build": "b", "version": "1", "threads": 1}
-    empty = dict.fromkeys(sources) | {"failed_audit": 0.0, "gap_min": 0.5}
-    return store.Row(cell.key, cell.place, outcome, empty | values, sources, 12, seconds, "r", origin)
-
-
-def keep(of, label, made, seconds=1.0):
-    """Keeps rows of the next round of a statement. made: number of a draw and arm -> outcome and values."""
-    file, statement = store.file_of(of), named(label)
-    kept = store.read_rows(file)
-    new = draws.next_draws(of, statement, draws.kept_draws(of, statement, kept))
-    for draw in new:
-        for case in draws.cases_of(of, draw):
-            more = made(draw.number, case.place["arm"])
-            outcome = more.pop("outcome", "ok")
-            kept |= {(one := row(of, case, outcome, seconds, **more)).key: one}
-    store.write_rows(file, kept)
-    return new
-
-
-def there(of, label):
-    return draws.kept_draws(of, named(label), draws.rows_of_today(of))
-
-
-def said(label, outcomes=("ok", "ok", "ok", "ok"), **columns):
-    """The contrast of one draw whose runs have these numbers, column -> a number for each arm."""
-    statement = named(label)
-    rows = {}
-    for k, arm in enumerate(statement.arms):
-        values = {name: of[k] for name, of in columns.items()}
-        place = {"statement": label, "draw": "0", "scene": "s", "arm": arm}
-        empty = dict.fromkeys(sources_of(read_study("adversary"))) | {"gap_min": 0.5}
-        rows[arm] = store.Row(arm, place, outcomes[k], empty | values, {}, 12, 1.0, "r", {"machine": "m", "build": "b"})
-    return compared.contrast(statement, rows)
+pytestmark = pytest.mark.usefixtures("no_rows_of_the_study_at_size")
 
 
 # ---- statements
@@ -214,25 +153,25 @@ def test_a_range_rounds_and_stays_within():
     assert all(abs(math.log(axis.near(0.2, rng) / 0.2)) < 4 * 0.15 * math.log(20 / 3) for _ in range(100))
 
 
-def test_draws_are_the_same_in_every_call_and_others_for_another_seed(study):
-    keys = [cell.key for cell in study.cells]
-    assert keys == [cell.key for cell in replace(study).cells] and len({*keys}) == len(keys)
-    assert len(keys) == study.about["round"] * sum(len(named(label).arms) for label in LABELS)
-    other = replace(study, data={**study.data, "about": {**study.about, "seed": 1}})
+def test_draws_are_the_same_in_every_call_and_others_for_another_seed(adversary):
+    keys = [cell.key for cell in adversary.cells]
+    assert keys == [cell.key for cell in replace(adversary).cells] and len({*keys}) == len(keys)
+    assert len(keys) == adversary.about["round"] * sum(len(named(label).arms) for label in LABELS)
+    other = replace(adversary, data={**adversary.data, "about": {**adversary.about, "seed": 1}})
     assert not {*keys} & {cell.key for cell in other.cells}
 
 
-def test_kept_draws_keep_their_cells_whatever_rows_come_later(study):
-    first = keep(study, "N2-1", lambda number, arm: {"newton": 20.0 if arm == "clamped" else 10.0 + number})
+def test_kept_draws_keep_their_cells_whatever_rows_come_later(adversary):
+    first = keep(adversary, "N2-1", lambda number, arm: {"newton": 20.0 if arm == "clamped" else 10.0 + number})
     assert [draw.label for draw in first] == ["0", "1", "2", "3"]  # nothing is known before
-    keys = [cell.key for cell in study.cells if cell.place["statement"] == "N2-1"]
-    second = keep(study, "N2-1", lambda number, arm: {"newton": 30.0 if arm == "clamped" and number == 5 else 40.0})
+    keys = [cell.key for cell in adversary.cells if cell.place["statement"] == "N2-1"]
+    second = keep(adversary, "N2-1", lambda number, arm: {"newton": 30.0 if arm == "clamped" and number == 5 else 40.0})
     assert [draw.label for draw in second] == ["4", "5of3", "6", "7of3"]  # 20/13 is nearest to 1
-    third = draws.next_draws(study, named("N2-1"), there(study, "N2-1"))
+    third = draws.next_draws(adversary, named("N2-1"), there(adversary, "N2-1"))
     assert [draw.label for draw in third] == ["8", "9of5", "10", "11of5"]
-    after = [cell.key for cell in replace(study).cells if cell.place["statement"] == "N2-1"]
+    after = [cell.key for cell in replace(adversary).cells if cell.place["statement"] == "N2-1"]
     assert after[: len(keys)] == keys and len(after) == 3 * 4 * 2
-    kept = there(study, "N2-1")
+    kept = there(adversary, "N2-1")
     assert [draw.point for draw in kept] == [draw.point for draw in (*first, *second)]
     assert kept[5].point.scene == kept[3].point.scene and kept[5].point.values["seed"] != kept[3].point.values["seed"]
 
@@ -246,152 +185,48 @@ def test_a_draw_close_to_another_changes_a_value_and_no_scene():
     assert any(one.values["theta"] != point.values["theta"] for one in steps)
 
 
-def test_rows_of_another_region_are_of_no_draw(study):
-    keep(study, "N2-1", lambda number, arm: {"newton": 10.0})
-    other = replace(study, data={**study.data, "about": {**study.about, "seed": 1}})
-    assert there(study, "N2-1") and not draws.kept_draws(other, named("N2-1"), draws.rows_of_today(study))
+def test_rows_of_another_region_are_of_no_draw(adversary):
+    keep(adversary, "N2-1", lambda number, arm: {"newton": 10.0})
+    other = replace(adversary, data={**adversary.data, "about": {**adversary.about, "seed": 1}})
+    assert there(adversary, "N2-1") and not draws.kept_draws(other, named("N2-1"), draws.rows_of_today(adversary))
 
 
-def test_a_draw_whose_neighbour_is_gone_is_of_no_draw(study):
+def test_a_draw_whose_neighbour_is_gone_is_of_no_draw(adversary):
     for _ in range(2):
-        keep(study, "N2-1", lambda number, arm: {"newton": 20.0 if arm == "clamped" else 10.0 + number})
-    rows = draws.rows_of_today(study)
+        keep(adversary, "N2-1", lambda number, arm: {"newton": 20.0 if arm == "clamped" else 10.0 + number})
+    rows = draws.rows_of_today(adversary)
     left = {key: one for key, one in rows.items() if one.place["draw"] != "3"}
-    assert [draw.label for draw in draws.kept_draws(study, named("N2-1"), rows)][3:] == ["3", "4", "5of3", "6", "7of3"]
-    assert [draw.label for draw in draws.kept_draws(study, named("N2-1"), left)] == ["0", "1", "2", "4", "6"]
+    assert [draw.label for draw in draws.kept_draws(adversary, named("N2-1"), rows)][3:] == ["3", "4", "5of3", "6", "7of3"]
+    assert [draw.label for draw in draws.kept_draws(adversary, named("N2-1"), left)] == ["0", "1", "2", "4", "6"]
 
 
-def test_the_search_of_a_statement_ends_with_its_hours(study):
-    keep(study, "K6-1", lambda *_: {}, seconds=600.0)
-    assert len(draws.next_draws(study, named("K6-1"), there(study, "K6-1"))) == 4  # 2400 s of 3600
-    keep(study, "K6-1", lambda *_: {}, seconds=600.0)
-    assert not draws.next_draws(study, named("K6-1"), there(study, "K6-1"))
-    lines = cost.plan(replace(study), store.read_rows(store.file_of(study)), [])
+def test_the_search_of_a_statement_ends_with_its_hours(adversary):
+    keep(adversary, "K6-1", lambda *_: {}, seconds=600.0)
+    assert len(draws.next_draws(adversary, named("K6-1"), there(adversary, "K6-1"))) == 4  # 2400 s of 3600
+    keep(adversary, "K6-1", lambda *_: {}, seconds=600.0)
+    assert not draws.next_draws(adversary, named("K6-1"), there(adversary, "K6-1"))
+    lines = cost.plan(replace(adversary), store.read_rows(store.file_of(adversary)), [])
     assert "K6-1: 8 draws, 1.33 core hours, search ended by its hours" in lines
     assert f"{LABELS[0]}: no draw, 0.00 core hours, 1.00 h left" in lines
-    few = replace(study, data={**study.data, "about": {**study.about, "hours_each": 9.0, "draws_each": 10}})
-    assert len(draws.next_draws(few, named("K6-1"), there(study, "K6-1"))) == 2  # of ten
-    assert draws.spent(few, there(study, "K6-1") * 2) == "draws"
+    few = replace(adversary, data={**adversary.data, "about": {**adversary.about, "hours_each": 9.0, "draws_each": 10}})
+    assert len(draws.next_draws(few, named("K6-1"), there(adversary, "K6-1"))) == 2  # of ten
+    assert draws.spent(few, there(adversary, "K6-1") * 2) == "draws"
 
 
-def test_rounds_grow_with_the_draws_that_are_there(study):
+def test_rounds_grow_with_the_draws_that_are_there(adversary):
     kept = [replace(draws.Draw(named("K6-1"), str(k), None, {})) for k in range(100)]
-    assert len(draws.next_draws(study, named("K6-1"), kept)) == 25
-
-
-# ---- what draws say
-
-
-@pytest.mark.parametrize(
-    ("side", "x", "expected"),
-    [
-        (Side("above", 2.0), 1.5, 0.5),
-        (Side("below", high=2.0), 1.5, -0.5),
-        (Side("within", -1.0, 1.0), 1.5, 0.5),
-        (Side("within", -1.0, 1.0), 0.75, -0.25),
-        (Side("beyond", -1.0, 1.0), 0.75, 0.25),
-        (Side("beyond", -1.0, 1.0), -1.5, -0.5),
-    ],
-)
-def test_a_number_is_contrary_by_its_distance_from_the_threshold(side, x, expected):
-    assert contrary(side, x) == pytest.approx(expected)
-
-
-def test_a_ratio_on_the_threshold_contradicts_above_and_not_within():
-    assert named("N2-1").contradicts(0.0) and not named("law-3").contradicts(0.0)
-    assert not named("K6-1").contradicts(-0.0)
-
-
-def test_a_ratio_needs_two_runs_that_end_ok():
-    assert said("N2-1", newton=(20, 10)).margin == pytest.approx(-math.log(2))
-    assert said("N2-1", newton=(10, 20)).margin == pytest.approx(math.log(2))
-    failed = said("N2-1", ("ok", "newton_stall"), newton=(10, 20))
-    assert failed.margin is None and failed.why == "absolute newton_stall"
-    assert said("N2-1", newton=(10, None)).why == "no newton above 0"
-
-
-def test_the_growth_of_a_ratio_is_of_four_runs():
-    found = said("question-2", size_newton=(30, 10, 20, 10))
-    assert found.margin == pytest.approx(-math.log(1.5)) and found.numbers.startswith("1.5 (log@S 30")
-    assert said("question-2", size_newton=(10, 10, 20, 10)).margin == pytest.approx(math.log(2))
-
-
-def test_runs_at_other_gaps_make_no_ratio_where_the_claim_asks_for_comparable_ones():
-    def gaps(x):
-        return json.dumps({"a|b": [x, x, x, True]})
-
-    assert said("H3-1", cond_p95=(8, 10), gaps=(gaps(0.5), gaps(0.4))).margin == pytest.approx(math.log(0.9 / 0.8))
-    assert "not_comparable" in said("H3-1", cond_p95=(8, 10), gaps=(gaps(0.5), gaps(0.1))).why
-
-
-def test_who_gets_through_counts_runs_that_fail():
-    through = {"failed_audit": (0.0, 1.0)}
-    assert said("K6-2", **through).margin == -0.5  # the smaller its gap, the nearer to a failure
-    assert said("K6-2", failed_audit=(1.0, 0.0)).margin == 1.0
-    assert said("K6-2", failed_audit=(1.0, 1.0)).why == "no run gets through"
-    assert said("K6-1", failed_audit=(1.0,)).margin == 1.0
-    assert said("K5-2", ("newton_stall",)).margin == 1.0 and said("K5-2").margin < 0
-    assert said("K6-1", ("timeout",), failed_audit=(None,)).margin == 1.0
-
-
-def test_a_level_is_that_of_the_most_contrary_run():
-    assert said("law-2", size_bj_lambda_max=(3.0, 4.5)).margin == pytest.approx(0.5)
-    assert said("law-2", ("ok", "newton_stall"), size_bj_lambda_max=(3.0, 9.0)).margin == pytest.approx(-1.0)
-    assert said("law-2", ("nan", "nan"), size_bj_lambda_max=(3.0, 9.0)).margin is None
-    assert said("H2-1", climb_of_limit=(0.4,)).margin == pytest.approx(0.1)
-
-
-def test_the_first_law_is_contradicted_by_the_wrong_sign_where_contact_makes_the_largest_eigenvalue():
-    more = {"made": (5.0, 5.0), "load_high": (4.0, 4.0), "load_low": (1.0, 1.0), "theta": (0.01, 0.01)}
-    assert said("law-1", size_cond_most=(30, 10), **more).margin == pytest.approx(-math.log(3))  # 100 > 2 sqrt(4)
-    assert said("law-1", size_cond_most=(10, 30), **more).margin == pytest.approx(math.log(3))
-    wide = {**more, "load_high": (1e4, 1e4)}  # 100 < 2 sqrt(1e4)
-    assert said("law-1", size_cond_most=(10, 30), **wide).margin == pytest.approx(-math.log(3))
-    assert "largest eigenvalue" in said("law-1", size_cond_most=(10, 30), **{**more, "made": (5.0, 1.0)}).why
-
-
-def test_a_planted_contradiction_refutes_and_leads_the_search(study):
-    keep(study, "K6-1", lambda number, arm: {"failed_audit": float(number == 2), "gap_min": 0.01 * (number + 1)})
-    found = rule(study, page.rows_of(study))
-    assert found["refuted"] == ["K6-1"] and "**refuted in 1 scene**" in found["every"]
-    assert "`K6-1`, draw 2 contradicts: line_search fails (ok)" in found["best_every"]
-    assert "--again --only statement=K6-1 --only draw=2`" in found["best_every"]
-    assert [draw.label for draw in draws.next_draws(study, named("K6-1"), there(study, "K6-1"))] == ["4", "5of2", "6", "7of2"]
-
-
-def test_a_mean_is_refuted_by_no_draw_and_draws_without_a_ratio_are_listed(study):
-    keep(study, "N2-1", lambda number, arm: {"newton": 10.0 if arm == "clamped" else 20.0} | ({"outcome": "nan"} if number == 3 else {}))
-    found = rule(study, page.rows_of(study))
-    assert found["refuted"] == [] and "**3 draws of 4 on the other side**" in found["mean"]
-    assert "| `N2-1` | clamped nan, absolute nan | 1 |" in found["nothing"] and found["draws"] == 4
-
-
-def test_the_third_law_is_refuted_by_two_scenes(study):
-    def ratio(number, arm):
-        return {"size_newton": 30.0 if arm.startswith("log") else 10.0}
-
-    new = keep(study, "law-3", ratio)
-    scenes = {draw.point.scene for draw in new}
-    assert len(scenes) > 1 and "law-3" in rule(study, page.rows_of(study))["refuted"]
-    one = [draw for draw in there(study, "law-3") if draw.point.scene == min(scenes)]
-    assert verdict(named("law-3"), one) == "contradicted in 1 scene"
-
-
-def test_the_page_is_written_from_any_rows(study):
-    keep(study, "K6-1", lambda *_: {})
-    text = page.write_page(study).read_text()
-    assert "no counterexample" in text and "not attacked yet" in text and "`at_size`, question 6" in text
+    assert len(draws.next_draws(adversary, named("K6-1"), kept)) == 25
 
 
 # ---- the spec and the program
 
 
 @pytest.mark.parametrize("label", LABELS)
-def test_the_first_draw_of_every_statement_is_a_config_that_the_program_takes(label, study, tmp_path):
-    draw = draws.next_draws(study, named(label), [])[0]
-    for case in draws.cases_of(study, draw):
+def test_the_first_draw_of_every_statement_is_a_config_that_the_program_takes(label, adversary, tmp_path):
+    draw = draws.next_draws(adversary, named(label), [])[0]
+    for case in draws.cases_of(adversary, draw):
         config = read_object(case.base)
-        for pointer, value in (study.data["set"] | case.settings).items():
+        for pointer, value in (adversary.data["set"] | case.settings).items():
             put(config, pointer, value)
         (tmp_path / "run.json").write_text(json.dumps(config))
         found = subprocess.run([built_program(), "check", tmp_path / "run.json"], capture_output=True, text=True, check=False)

@@ -9,7 +9,7 @@ import pytest
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.studies.kit.study import page, registration, store, verb
-from barrierbench_analysis.studies.kit.study.spec import RULES, read_study
+from barrierbench_analysis.studies.kit.study.spec import RULES, known, read_study
 
 from small_study import row, written
 
@@ -128,8 +128,31 @@ def test_a_registration_of_another_form_is_refused(tmp_path, rule):
             registration.entries(study)
 
 
-def test_every_study_of_this_tree_that_has_rows_is_what_was_registered():
-    study = read_study("at_size")
-    assert study.data["registered"] is True
-    if store.file_of(study).is_file():
-        registration.require(study)
+REGISTERED = [name for name in known() if read_study(name).data.get("registered")]
+
+
+@pytest.mark.parametrize("name", REGISTERED)
+def test_every_study_of_this_tree_that_asks_for_it_is_what_was_registered(name):
+    assert {"at_size", "least_price"} <= {*REGISTERED}
+    registration.require(read_study(name))
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (["--register", " "], "found an empty reason; allowed: a text"),
+        (["--register", "why", "--plan"], "--register: found beside plan"),
+        (["--register", "why", "--no-run"], "--register: found beside page"),
+    ],
+)
+def test_a_registration_without_reason_or_beside_another_mode_is_refused(tmp_path, rule, capsys, options, text):
+    rule(folder=tmp_path)
+    study = written(tmp_path, registered=True)
+    assert verb.main([str(study.file), *options]) == 2 and text in capsys.readouterr().err
+    assert registration.entries(study) == [] and not store.file_of(study).exists()
+
+
+def test_a_study_that_asks_for_none_is_not_registered(tmp_path, rule):
+    rule(folder=tmp_path)
+    with pytest.raises(UserError, match='registered: found none; allowed: "registered": true'):
+        registration.register(written(tmp_path), "why")

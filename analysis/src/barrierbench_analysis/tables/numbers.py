@@ -12,6 +12,11 @@ def _missing(value: float | None) -> bool:
     return value is None or value != value
 
 
+def written(value: object) -> str:
+    """Any value as it writes itself."""
+    return "-" if value is None else str(value)
+
+
 def significant(value: float | None, digits: int = 3, none: str = "-", unit: str = "") -> str:
     """So many significant digits, with a power of ten where Python writes one."""
     return none if _missing(value) else f"{value:.{digits}g}{unit}"

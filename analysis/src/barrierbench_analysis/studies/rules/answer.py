@@ -17,6 +17,7 @@ from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row, timed_alike
 from barrierbench_analysis.tables.answer import when_to_use
 from barrierbench_analysis.tables.estimate import Cells, wilson
+from barrierbench_analysis.tables.numbers import written
 from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import Ratio, ratio_of_scenes
 
@@ -93,18 +94,14 @@ def compared(rows: list[Row], study: Study) -> dict[str, dict]:
     }
 
 
-def _text(number: Ratio | None) -> str:
-    return "-" if number is None else str(number)
-
-
 def table(found: dict[str, dict], study: Study) -> list[str]:
     """Markdown: one row a formulation. Ratios of the reference are 1 by definition."""
     words, reference = study.about["names"], study.about["reference"]
 
     def cells(name: str) -> list[str]:
         numbers = found[name]
-        ratios = ["1" if name == reference else _text(numbers[metric]) for metric in RATIOS]
-        return [words[name], *numbers["ends"].cells, _text(numbers["gap"]), *ratios]
+        ratios = ["1" if name == reference else written(numbers[metric]) for metric in RATIOS]
+        return [words[name], *numbers["ends"].cells, written(numbers["gap"]), *ratios]
 
     return markdown([*HEAD, "when to use"], [[*cells(name), when_to_use(words[name])] for name in found])
 

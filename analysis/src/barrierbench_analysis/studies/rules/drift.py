@@ -13,6 +13,7 @@ from collections import defaultdict
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.tables.numbers import written
 from barrierbench_analysis.tables.outcomes import OK
 from barrierbench_analysis.tables.statistics import ratio_of_scenes
 
@@ -39,7 +40,7 @@ def rule(study: Study, rows: list[Row]) -> dict:
         found = ratio_of_scenes({scene: {"largest": [math.log(max(v))]} for scene, v in of_scene.items()})
         gaps = [row.values["gap_min"] for row in ended if row.values["gap_min"] is not None]
         newton = [row.values["newton"] for row in ended]
-        numbers = ["-" if found is None else str(found), f"{min(gaps):.2g}" if gaps else "-"]
+        numbers = [written(found), f"{min(gaps):.2g}" if gaps else "-"]
         mean = f"{sum(newton) / len(newton):.0f}" if newton else "-"
         body.append([name, f"{len(ended)} of {len(mine)}", *numbers, mean])
     head = ["formulation", "ends ok", "largest share of kinetic energy", "least gap / d_hat", "Newton (mean)"]

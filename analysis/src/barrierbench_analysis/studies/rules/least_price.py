@@ -5,6 +5,7 @@ Their exponents follow from the range of loads that a run with the log had in th
 (XS): what is measured at S was not used for them. The runs of log and cubic are those of at_size.
 """
 
+import functools
 import inspect
 import math
 from collections.abc import Iterator
@@ -13,13 +14,13 @@ from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.page import rows_of
 from barrierbench_analysis.studies.kit.study.spec import Case, Cell, Study, read_study
 from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.tables.numbers import written
 from barrierbench_analysis.tables.outcomes import OK
-from barrierbench_analysis.tables.statistics import Ratio, ratio_over
 from barrierbench_analysis.tables.words import counted
 
 from . import at_size
 from .at_size import causes, measured, pairs, stops
-from .at_size.cells import settings
+from .at_size.cells import AXES, settings
 from .at_size.pairs import Rows, Where
 
 PARTIAL = True
@@ -39,7 +40,12 @@ METRICS = {
     "pcg": "PCG iterations",
     "velocity_newton": "Newton iterations",
 }
-AXES = ("scene", "size", "arm", "theta", "setting", "measure")
+
+
+@functools.cache
+def base() -> Study:
+    """The study at size, whose scenes and rows these runs stand beside."""
+    return read_study("at_size")
 
 
 def exponent(shape: str, load_ratio: float, theta: float) -> float:
@@ -80,14 +86,13 @@ def best_exponential(load_ratio: float, depths: float) -> float:
 
 def cells(study: Study) -> Iterator[Case]:
     """The scenes, sizes and targets of the spec with every barrier of a law."""
-    base = read_study("at_size")
     for size in study.about["sizes"]:
         for scene, load_ratio in study.about["load_ratios"].items():
             for shape in study.about["shapes"]:
                 for theta in study.about["thetas"]:
                     words = (scene, size, shape, theta, "base", "diagnosed")
                     place = dict(zip(AXES, words, strict=True))
-                    found = settings(base, place | {"arm": "log"})
+                    found = settings(base(), place | {"arm": "log"})
                     a = exponent(shape, load_ratio, float(theta))
                     found["/formulation"] |= {"name": shape, "shape": f"{shape}:{a:.3g}"}
                     yield Case(place, found)
@@ -95,18 +100,13 @@ def cells(study: Study) -> Iterator[Case]:
 
 def measure(study: Study, cell: Cell, record: dict) -> dict[str, float | None]:
     """What the study at size measures."""
-    return at_size.measure(read_study("at_size"), cell, record)
+    return at_size.measure(base(), cell, record)
 
 
 def _over(rows: Rows, arm: str, under: str, where: Where) -> list[str]:
     """Geometric means over scenes of the ratios of all METRICS, and in how many scenes both end ok."""
-    pairs = rows.pairs(where, arm, under)
-    ratios = [rows.logs(metric, where, arm, under) for metric in METRICS]
-    return [str(len(pairs)), *(_text(ratio_over(list(r.values())) if r else None) for r in ratios)]
-
-
-def _text(number: Ratio | None) -> str:
-    return "-" if number is None else str(number)
+    ratios = [rows.ratio(metric, where, arm, under) for metric in METRICS]
+    return [str(len(rows.pairs(where, arm, under))), *map(written, ratios)]
 
 
 def _ends(rows: Rows, arm: str, where: Where) -> str:
@@ -125,9 +125,7 @@ def _won(rows: Rows, arm: str, where: Where) -> str:
 
 def rule(study: Study, rows: list[Row]) -> dict:
     """The tables of the page."""
-    base = read_study("at_size")
-    others = rows_of(base)
-    of, body = Rows(base, rows + others), []
+    of, body = Rows(base(), rows + rows_of(base())), []
     for size in study.about["sizes"]:
         for theta in study.about["thetas"]:
             where = Where(size, theta)

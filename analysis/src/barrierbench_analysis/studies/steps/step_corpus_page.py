@@ -6,7 +6,7 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.template import filled
 from barrierbench_analysis.io.text_table import markdown
-from barrierbench_analysis.tables.numbers import significant
+from barrierbench_analysis.tables.numbers import significant, written
 
 from .step_corpus_states import HALVES
 
@@ -45,17 +45,13 @@ def others(record: dict) -> list[str]:
     return [t["step_solver"] for t in first if t["step_solver"] != SOLVER]
 
 
-def _count(value: int | None) -> str:
-    return "-" if value is None else str(value)
-
-
 def _cell(state: dict, trial: dict) -> str:
     """Iterations, those to the tolerance, and where it ended unless that is A."""
     if "refused" in trial:
         return "-"
     if trial["status"] != "converged":
         return f"{trial['iterations']}, {trial['status'].replace('_', ' ')}"
-    counts = f"{trial['iterations']} ({_count(trial['iterations_to_tolerance'])})"
+    counts = f"{trial['iterations']} ({written(trial['iterations_to_tolerance'])})"
     if trial["minimum"] == "A" or trial["error_m"] is None:
         return counts
     far = f"{trial['error_m'] / state['tolerance_m']:.2g} tolerances from A"
@@ -125,7 +121,7 @@ def _solvers(record: dict) -> list[str]:
             far = None if t["error_m"] is None else t["error_m"] / state["tolerance_m"]
             work = [
                 str(t["iterations"]),
-                _count(t["iterations_to_tolerance"]),
+                written(t["iterations_to_tolerance"]),
                 *(str(t[key]) for key in WORK),
             ]
             end = [significant(far, 2), t["minimum"] or "-", t["status"].replace("_", " ")]

@@ -15,7 +15,7 @@ from types import ModuleType
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.git import NoHistory, git
-from barrierbench_analysis.io.json_file import read_object
+from barrierbench_analysis.io.json_file import read_of_schema
 from barrierbench_analysis.io.module_code import DIGITS, code_of, sha_of
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
@@ -68,9 +68,7 @@ def entries(study: Study) -> list[Entry]:
     file = file_of(study)
     if not file.is_file():
         return []
-    data = read_object(file)
-    if data.get("schema") != SCHEMA:
-        raise UserError(f"{file}#/schema: found {data.get('schema')!r}; allowed: {SCHEMA!r}")
+    data = read_of_schema(file, SCHEMA)
     try:
         return [Entry(**one) for one in data["entries"]]
     except (KeyError, TypeError) as fault:
@@ -80,7 +78,15 @@ def entries(study: Study) -> list[Entry]:
 
 
 def register(study: Study, why: str) -> Entry:
-    """Adds an entry with the hashes of today. Errors: UserError where they are registered already."""
+    """Adds an entry with the hashes of today. Errors: UserError where they are registered already, without a
+    reason, or for a spec that asks for none.
+    """
+    if not study.data.get("registered"):
+        raise UserError(f'{study.file}#/registered: found none; allowed: "registered": true')
+    if not why.strip():
+        raise UserError(
+            "--register: found an empty reason; allowed: a text that says what is registered, and why"
+        )
     kept, (spec, rule) = entries(study), now(study)
     if kept and (kept[-1].spec, kept[-1].rule) == (spec, rule):
         raise UserError(

@@ -113,7 +113,14 @@ def _check_mode(parser: argparse.ArgumentParser, args: argparse.Namespace) -> No
     if args.plan and args.no_run:
         raise UserError("--plan: found beside --no-run; allowed: one of the two")
     mode = "plan" if args.plan else "page" if args.no_run else ""
-    of_run = ["minutes", "jobs", "spot_check", "seed", *(["again", "decided"] if mode == "page" else [])]
+    of_run = [
+        "minutes",
+        "jobs",
+        "spot_check",
+        "seed",
+        "register",
+        *(["again", "decided"] if mode == "page" else []),
+    ]
     for name in of_run if mode else []:
         if getattr(args, name) != parser.get_default(name):
             word = f"--{name.replace('_', '-')}"
@@ -235,7 +242,7 @@ def _main(argv: list[str]) -> int:
     args = arguments(argv)
     study = read_study(argv[0], args.out, args.plugin)
     file = store.file_of(study)
-    if args.register:
+    if args.register is not None:
         print(f"{registration.file_of(study)}: {registration.register(study, args.register)}")
         return 0
     if args.plan:

@@ -9,7 +9,7 @@ from barrierbench_analysis.studies.claims.outcomes import good
 from barrierbench_analysis.studies.claims.parts import MOST
 from barrierbench_analysis.studies.kit.study.store import Row, timed_alike
 from barrierbench_analysis.studies.kit.success import failures
-from barrierbench_analysis.studies.rules.at_size.laws import MADE
+from barrierbench_analysis.studies.rules.at_size.laws import MADE, log_pays
 from barrierbench_analysis.tables.numbers import significant
 from barrierbench_analysis.tables.outcomes import OK
 
@@ -113,7 +113,7 @@ def sign(statement: Statement, rows: dict[str, Row]) -> Contrast:
     high, low = (log.values[name] for name in ("load_high", "load_low"))
     if None in (*made, high, low) or min(made) < MADE or not low:
         return Contrast(None, "", "contact does not make the largest eigenvalue")
-    price = 1 / log.values["theta"] - 2 * math.sqrt(high / low)
+    price = log_pays(log.values["theta"], high / low)
     seen = math.log(log.values[statement.metric] / cubic.values[statement.metric])
     text = f"{math.exp(seen):.4g} ({_numbers(statement, rows)}), f_hi/f_lo {high / low:.3g}"
     return Contrast(-math.copysign(1.0, price) * seen, text)

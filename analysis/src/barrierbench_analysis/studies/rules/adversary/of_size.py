@@ -10,11 +10,12 @@ from barrierbench_analysis.studies.kit.study.page import rows_of
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.rules.at_size import questions
 from barrierbench_analysis.studies.rules.at_size.laws import BLOCK_BOUND, MOST, laws
+from barrierbench_analysis.studies.rules.at_size.loads import of_label
 from barrierbench_analysis.studies.rules.at_size.pairs import CUBIC, LOG, THETA, Rows
 from barrierbench_analysis.studies.rules.at_size.stops import RULES
 
 from .region import Region
-from .size_region import AT, LOAD, NAME, region, study
+from .size_region import AT, NAME, region, study
 from .statement import Left, Side, Statement
 
 ROUNDING = 1e-9  # of the eigenvalue of law 2, as the law reads it
@@ -78,7 +79,7 @@ def _work(of: Study, about: dict, word: str) -> list[Statement]:
 
 def _robustness(of: Study, about: dict, word: str) -> list[Statement]:
     """A statement for each formulation in the word, at the theta of the changed loads."""
-    theta = next(g["thetas"][0] for g in of.about["groups"] if LOAD.fullmatch(g["setting"]))
+    theta = next(g["thetas"][0] for g in of.about["groups"] if of_label(g["setting"]))
     where, found = region(of, about, "audited", theta), []
     for arm, more in OFTEN.findall(word):
         first, second = (arm, LOG) if more == "more" else (LOG, arm)
@@ -142,7 +143,7 @@ def of_laws(of: Study, about: dict, rows: Rows) -> tuple[list[Statement], list[L
     found, left = [], []
     for law in laws(rows):
         source = f"`{NAME}`, law {law.number}"
-        if law.verdict == "refuted":
+        if law.is_refuted:
             left.append(Left(source, law.name, "the kept runs of the study refute it"))
         else:
             made = _law(of, about, law.number)

@@ -4,12 +4,11 @@ import copy
 import functools
 import json
 import math
-import re
 from pathlib import Path
 
 from barrierbench_analysis.studies.kit.study.spec import Study, read_study
 from barrierbench_analysis.studies.rules.at_size.cells import NO_THETA, TIGHT, settings
-from barrierbench_analysis.studies.rules.at_size.loads import changed
+from barrierbench_analysis.studies.rules.at_size.loads import changed, of_label
 from barrierbench_analysis.studies.rules.at_size.pairs import LOG, THETA
 
 from .region import SEED, Axes, Choice, Point, Range, Region
@@ -18,7 +17,6 @@ NAME = "at_size"
 LOADS = "Emv"  # factors on elasticity, mass and speed
 OFF, ON = "off", "on"
 AT = "@"  # between the formulation and the size of an arm
-LOAD = re.compile(rf"([{LOADS}])([\d.]+)")  # the label of a changed load
 
 
 @functools.cache
@@ -32,8 +30,8 @@ def _spans(about: dict) -> dict[str, Range]:
     thetas = sorted({float(theta) for group in about["groups"] for theta in group["thetas"]})
     spans = {"theta": Range(thetas[0], thetas[-1], log=True)}
     for kind in LOADS:
-        labels = [found for group in about["groups"] if (found := LOAD.fullmatch(group["setting"]))]
-        factors = [1.0, *(float(label[2]) for label in labels if label[1] == kind)]
+        changes = [found for group in about["groups"] if (found := of_label(group["setting"]))]
+        factors = [1.0, *(factor for what, factor in changes if what == kind)]
         spans[kind] = Range(min(factors), max(factors), log=True, base=1.0)
     return spans
 

@@ -16,10 +16,11 @@ from .loads import changed
 NOT_OF_A_SCENE = ("schema", "name", "doc", "matching")
 TIGHT = 1e-6  # of d_hat/h: the speed that ends a step, a hundredth of the program's default
 BASE, GUESS = "base", "guess"
+AXES = ("scene", "size", "arm", "theta", "setting", "measure")
 NO_THETA = "-"  # of formulations that follow from mass and elasticity
 
 
-def _sections(study: Study, scene: dict, size: dict) -> dict[str, object]:
+def sections(study: Study, scene: dict, size: dict) -> dict[str, object]:
     """Settings that make the scene at a size: of the catalogue's mini scene or of a config beside the spec,
     with what the size sets (pointers, as in the catalogue), and without what the study sets itself.
     """
@@ -44,19 +45,24 @@ def matching(scene: dict, size: dict, place: dict[str, str]) -> dict:
     return found | ({"limit_load_N_per_m": scene["limit_N_per_m"]} if "limit_N_per_m" in scene else {})
 
 
+def sized(study: Study, place: dict[str, str]) -> tuple[dict, dict]:
+    """What the spec says of the scene of a place, and of its size."""
+    scene = next(one for one in study.about["scenes"] if one["label"] == place["scene"])
+    return scene, scene["sizes"][place["size"]]
+
+
 def settings(study: Study, place: dict[str, str]) -> dict:
     """All of one run. place: the label of every axis."""
     about = study.about
-    scene = next(one for one in about["scenes"] if one["label"] == place["scene"])
-    size = scene["sizes"][place["size"]]
-    found = _sections(study, scene, size)
+    scene, size = sized(study, place)
+    found = sections(study, scene, size)
     found["/strain_limit"] = {"enabled": False}
     d_hat = found["/formulation"]["d_hat_m"]
     found["/formulation"] = {**about["arms"][place["arm"]]["formulation"], "d_hat_m": d_hat}
     found["/matching"] = matching(scene, size, place)
     found |= about["measures"][place["measure"]]
     if place["setting"] in about["masks"]:
-        found |= _mask(study, place["setting"], scene, found)
+        found |= _mask(about["masks"][place["setting"]], found)
     elif place["setting"] not in (BASE, GUESS):
         found = changed(found, place["setting"])
     found |= about["arms"][place["arm"]].get("set", {})
@@ -70,9 +76,9 @@ def settings(study: Study, place: dict[str, str]) -> dict:
     return found
 
 
-def _mask(study: Study, name: str, scene: dict, found: dict) -> dict:
+def _mask(mask: dict, found: dict) -> dict:
     """What a mask changes. One with its own step length keeps the time that is simulated."""
-    more = dict(study.about["masks"][name]["set"])
+    more = dict(mask["set"])
     if dt := more.pop("/time/dt_s", None):
         steps = math.ceil(found["/time"]["steps"] * found["/time"]["dt_s"] / dt)
         more["/time"] = {"dt_s": dt, "steps": steps}
@@ -87,11 +93,12 @@ def cells(study: Study) -> Iterator[Case]:
     scenes = {scene["label"]: scene for scene in about["scenes"]}
     for k, group in enumerate(about["groups"]):
         of_mask = about["masks"].get(group["setting"], {}).get("scenes", list(scenes))
-        for place in ("arms", "measure"):
-            known = about["arms"] if place == "arms" else about["measures"]
-            labels = group[place] if place == "arms" else [group[place]]
+        for key, labels, known in (
+            ("arms", group["arms"], about["arms"]),
+            ("measure", [group["measure"]], about["measures"]),
+        ):
             if unknown := set(labels) - set(known):
-                raise refused(study.file, f"about/groups/{k}/{place}", sorted(unknown), ", ".join(known))
+                raise refused(study.file, f"about/groups/{k}/{key}", sorted(unknown), ", ".join(known))
         for size in group["sizes"]:
             for label in group.get("scenes", of_mask):
                 yield from _of_scene(study, group, scenes[label], size)
@@ -104,5 +111,5 @@ def _of_scene(study: Study, group: dict, scene: dict, size: str) -> Iterator[Cas
     for arm in group["arms"]:
         for theta in group["thetas"] if study.about["arms"][arm]["matched"] else [NO_THETA]:
             words = (scene["label"], size, arm, theta, group["setting"], group["measure"])
-            place = dict(zip(("scene", "size", "arm", "theta", "setting", "measure"), words, strict=True))
+            place = dict(zip(AXES, words, strict=True))
             yield Case(place, settings(study, place), unknowns=scene["sizes"][size]["unknowns"])

@@ -26,12 +26,13 @@ SIZES = ("XS", "S", "M", "L")
 THETAS = {"0.1": "#1f6fb4", "0.01": "#c23b22"}
 COLUMNS = 3
 LEAST = 1.5  # over and under 1 that an axis shows at least
-TITLE = "The log over the cubic at equal force against the number of unknowns"
+TITLE = "The log over the cubic, calibrated to the same load, against the number of unknowns"
 SHOWN = (
     "A thin line is a scene, its points are its meshes; a bar is the geometric mean over the scenes of a"
     " size with its 95% interval. Above 1 (grey) the log has the larger number. cond: 95th percentile over"
-    " iterates in contact; PCG: median of block-Jacobi PCG to 1e-6 on one right-hand side; Newton and"
-    " seconds: until no vertex moves by more than 1e-4 d_hat."
+    " diagnosed iterates in contact (every tenth of a step, beginning with its first); PCG: median of"
+    " block-Jacobi PCG to 1e-6 on one right-hand side; Newton and seconds: until no vertex moves by more than"
+    " 1e-4 d_hat."
 )
 
 
@@ -111,7 +112,7 @@ def draw(study: Study, rows: list[Row], numbers: dict, folder: Path) -> list[Pat
     facts = Facts(
         f"{len(points)} ratios of two runs each",
         "95% interval of Student's t over scenes",
-        "the cubic in the same scene under the same loads",
+        "the cubic in the same scene, whose loads and gaps then differ (results/AT_SIZE.md)",
         f"scenes {', '.join(dict.fromkeys(points.scene))}; {sizes}",
     )
     points["ratio"] = [math.exp(v) for v in points.ln]

@@ -1,14 +1,17 @@
 """Three laws, each with the observation that refutes it (docs/theory/load-ranges.md, scaled-conditioning.md,
-newton.md). A law of which nothing was observed is not confirmed.
+newton-price.md). A law of which nothing was observed is not confirmed.
 """
 
 import math
 from dataclasses import dataclass
 
+from barrierbench_analysis.tables.numbers import significant
+
 from .measured import LOADS
 from .pairs import CUBIC, LOG, Rows, Where
 from .questions import SCENES
 
+REFUTED = "refuted"
 NOT_SEEN = "not observed"  # in five scenes
 MADE = 3.0  # contact makes the largest eigenvalue where cond is so many times that without contact
 WRONG = 0.1  # part of the places in which law 1 may be wrong
@@ -27,13 +30,24 @@ class Law:
     places: list[list[str]]  # rows of a table: what was predicted and what was seen
     head: tuple[str, ...]
 
+    @property
+    def is_refuted(self) -> bool:
+        return self.verdict.startswith(REFUTED)
+
 
 def _verdict(rows: Rows, scenes: set[str], refuted: bool) -> str:
     """What the runs say that there are, and `so far` until size M has been run."""
     if len(scenes) < SCENES:
         return NOT_SEEN
-    word = "refuted" if refuted else "stands"
+    word = REFUTED if refuted else "stands"
     return word if len(rows.pairs(Where())) >= SCENES else f"{word} so far"
+
+
+def log_pays(theta: float, load_ratio: float) -> float:
+    """Above 0 where law 1 predicts the larger number for the log, below 0 where it does for the cubic:
+    1/theta and 2 sqrt(r) are the largest relative stiffnesses of the two.
+    """
+    return 1 / theta - 2 * math.sqrt(load_ratio)
 
 
 def load_range(rows: Rows) -> Law:
@@ -49,12 +63,12 @@ def load_range(rows: Rows) -> Law:
                 high, low = (log.values[name] for name in ("load_high", "load_low"))
                 if None in (*made, high, low) or min(made) < MADE or not low:
                     continue
-                price = 1 / float(theta) - 2 * math.sqrt(high / low)
+                price = log_pays(float(theta), high / low)
                 seen, over_load = (
                     math.log(log.values[name] / cubic.values[name]) for name in ("cond_most", "price_most")
                 )
                 wrong += (price > 0) != (seen > 0)
-                weighed.append((1 / float(theta) > 2 * math.sqrt(LOADS)) != (over_load > 0))
+                weighed.append((log_pays(float(theta), LOADS) > 0) != (over_load > 0))
                 ratios = (f"{high / low:.3g}", f"{math.exp(seen):.3g}", f"{math.exp(over_load):.3g}")
                 places.append([scene, size, theta, ratios[0], "log" if price > 0 else "cubic", *ratios[1:]])
     share = wrong / len(places) if places else 0.0
@@ -107,14 +121,16 @@ def newton(rows: Rows) -> Law:
     for scene, ratio in rows.logs("velocity_newton", Where("M")).items():
         log, cubic = rows.pairs(Where("M"))[scene]
         most.append(math.exp(ratio))
-        falls = ["-" if row.values["fall"] is None else f"{row.values['fall']:.2f}" for row in (log, cubic)]
-        places.append([scene, f"{math.exp(ratio):.3g}", *falls])
+        falls = [significant(row.values["fall"]) for row in (log, cubic)]
+        deep = [significant(row.values["binding"]) for row in (log, cubic)]
+        places.append([scene, f"{math.exp(ratio):.3g}", *falls, *deep])
     above = sum(value > MOST for value in most)
     why = (
         f"{above} of {len(most)} scenes have more than {MOST:g} times the iterations of the cubic (refuted"
         f" by two); predicted falls are {RATES[LOG]:.2f} and {RATES[CUBIC]:.2f}"
     )
-    head = ("scene", "Newton log/cubic", "fall of ln load an iteration, log", "cubic")
+    head = ("scene", "Newton log/cubic", *(f"fall of ln load an iteration, {arm}" for arm in (LOG, CUBIC)))
+    head += tuple(f"times a bound left it too deep, {arm}" for arm in (LOG, CUBIC))
     return Law(
         3,
         "iterations of Newton's method",

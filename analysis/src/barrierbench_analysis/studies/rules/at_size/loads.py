@@ -4,12 +4,14 @@ the barriers as it was calibrated before.
 
 import copy
 import math
+import re
 
 ELASTIC = ("youngs_N_per_m", "youngs_Pa", "bending_J", "solid_youngs_Pa", "rod_stretching_N")
 MASS = ("density_kg_per_m2", "solid_density_kg_per_m3", "line_density_kg_per_m")
 BY_MASS = "rod_bending_J_per_kg"
 SPEEDS = ("velocity_m_per_s", "angular_velocity_rad_per_s")
 TIMES = ("time_s", "start_s", "end_s")
+LABEL = re.compile(r"([Emv])([\d.]+)")  # of a changed load: what is changed, and the factor on it
 FIRST_M_PER_S = 0.5  # downward speed, times the factor, of a scene in which nothing moves at the start
 
 
@@ -62,9 +64,23 @@ def _sped(settings: dict, factor: float) -> dict:
     return settings
 
 
+def of_label(label: str) -> tuple[str, float] | None:
+    """What is changed, E, m or v, and the factor on it: of E0.01, m100, v4. None of a setting that is no
+    changed load.
+    """
+    found = LABEL.fullmatch(label)
+    return (found[1], float(found[2])) if found else None
+
+
+def mass_factor(label: str) -> float:
+    """What the mass is multiplied by in a setting."""
+    kind, factor = of_label(label) or ("", 1.0)
+    return factor if kind == "m" else 1.0
+
+
 def changed(settings: dict, label: str) -> dict:
-    """Settings of a run under a changed load. label: E, m or v, and the factor on it: E0.01, m100, v4."""
-    settings, kind, factor = copy.deepcopy(settings), label[0], float(label[1:])
+    """Settings of a run under a changed load, whose label is one."""
+    settings, (kind, factor) = copy.deepcopy(settings), of_label(label)
     if kind == "v":
         return _sped(settings, factor)
     for body in settings["/scene"]["bodies"]:

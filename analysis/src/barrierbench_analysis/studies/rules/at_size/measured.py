@@ -12,6 +12,8 @@ from barrierbench_analysis.studies.kit.study.spec import Cell, Study
 from barrierbench_analysis.studies.rules.gap_map.measured import INFINITE, LARGEST, conditions
 
 from .causes import CAUSES, by_step, counts, slopes
+from .cells import BASE, sections, sized
+from .loads import mass_factor
 from .stops import LOOSE, RESIDUAL, RULES, WORK, until_slow, work
 
 LOADS = 100.0  # of law 1: the range of loads, from the matched one down
@@ -108,19 +110,21 @@ def _loads(record: dict, steps: dict[int, list[dict]]) -> dict[str, float | None
     }
 
 
+def limits(study: Study, cell: Cell) -> dict[str, float]:
+    """Of the stop rules: the direction in m, the gradient in N. The inertia of a vertex, which the spec has
+    for the scene as it is, follows a changed mass and a changed step length.
+    """
+    scene, size = sized(study, cell.place)
+    slower = sections(study, scene, size)["/time"]["dt_s"] / cell.settings["/time"]["dt_s"]
+    inertia = size["inertia_N_per_m"] * mass_factor(cell.place.get("setting", BASE)) * slower**2
+    d_hat = cell.settings["/formulation"]["d_hat_m"]
+    return {"velocity": LOOSE * d_hat, "residual": RESIDUAL * d_hat * inertia}
+
+
 def _matched(study: Study, cell: Cell) -> float:
     """The load that both barriers are matched to in this scene and size."""
-    scene = next(one for one in study.about["scenes"] if one["label"] == cell.place["scene"])
-    size = scene["sizes"][cell.place["size"]]
+    _, size = sized(study, cell.place)
     return size.get("load_N", size.get("guess_N"))
-
-
-def limits(study: Study, cell: Cell) -> dict[str, float]:
-    """Of the stop rules: the direction in m, the gradient in N."""
-    scene = next(one for one in study.about["scenes"] if one["label"] == cell.place["scene"])
-    d_hat = cell.settings["/formulation"]["d_hat_m"]
-    inertia = scene["sizes"][cell.place["size"]]["inertia_N_per_m"]
-    return {"velocity": LOOSE * d_hat, "residual": RESIDUAL * d_hat * inertia}
 
 
 def measure(study: Study, cell: Cell, record: dict) -> dict[str, float | None]:

@@ -47,11 +47,11 @@ def within(values: Sequence[float], low: float, high: float) -> bool:
     return low <= lower and upper <= high
 
 
-def power(
-    found: Callable[[np.ndarray], bool], effect: float, scatter: float, scenes: int, seed: int
-) -> float:
-    """Share of simulated studies in which a rule finds an effect of this size: one value a scene, normal with
-    this mean and standard deviation. Cost O(TRIALS). Seeded.
+def simulated(
+    p: Callable[[list[float]], float], effect: float, scatter: float, scenes: int, seed: int
+) -> np.ndarray:
+    """p of simulated studies: one value a scene, normal with this mean and standard deviation. The share of
+    them below a level is the power. Cost O(TRIALS). Seeded.
     """
     drawn = np.random.default_rng(seed).normal(effect, scatter, (TRIALS, scenes))
-    return float(np.mean([found(values) for values in drawn]))
+    return np.array([p(list(values)) for values in drawn])

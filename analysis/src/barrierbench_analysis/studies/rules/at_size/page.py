@@ -1,18 +1,21 @@
 """The numbers of the page: answers, laws, the table of formulations, what the runs took."""
 
 from collections import defaultdict
+from dataclasses import replace
 
 from barrierbench_analysis.io.text_table import markdown
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
+from barrierbench_analysis.tables.numbers import written
 from barrierbench_analysis.tables.outcomes import OK
-from barrierbench_analysis.tables.statistics import Mean, Ratio, ratio_over
+from barrierbench_analysis.tables.statistics import Mean, Ratio
 from barrierbench_analysis.tables.words import counted
 
 from . import power
 from .figure import PANELS, SIZES, THETAS
 from .laws import Law, laws
-from .pairs import LOG, Rows, Where
+from .loads import of_label
+from .pairs import LOG, Rows, Where, mean_ratio
 from .questions import SCENES, Answer, answers
 from .stops import RULES as STOPS
 
@@ -56,9 +59,9 @@ def _of_question(rows: Rows, answer: Answer) -> str:
     body = [[_label(label), *_text(n)] for label, n in answer.numbers.items() if n is not None]
     begins, _, metric, measure = SENTENCES[answer.number]
     for size in SIZES[:2] if metric else ():
-        if logs := _smaller(rows, metric, measure, size):
-            words = begins.replace("The ratio log/cubic of ", "")
-            body.append([f"log/cubic of {words} at {size}", *_text(ratio_over(list(logs.values())))])
+        if number := mean_ratio(_smaller(rows, metric, measure, size)):
+            words = begins.removeprefix("The ratio log/cubic of ") + _kinds(metric)
+            body.append([f"log/cubic of {words} at {size}", *_text(number)])
     return "\n".join(
         markdown(["number", "mean over scenes [95%]", "scenes"], body) if body else ["No pair of runs yet."]
     )
@@ -90,11 +93,14 @@ def _arms(study: Study, rows: Rows, size: str) -> list[str]:
             gaps = [g for row in ok if (g := row.values["gap_min"])]
             own = f"{min(gaps):.2g}" if gaps else "-"
             numbers = [
-                _over_log(rows, arm, theta, size, "velocity_newton", "diagnosed"),
-                _over_log(rows, arm, theta, size, "velocity_products", "pcg"),
-                _over_log(rows, arm, theta, size, "velocity_seconds", "pcg"),
+                rows.ratio(metric, mine_at, arm, LOG, replace(mine_at, theta="0.1"))
+                for metric, mine_at in (
+                    ("velocity_newton", where),
+                    ("velocity_products", timed),
+                    ("velocity_seconds", timed),
+                )
             ]
-            ratios = ["1" if n and (arm, theta) == (LOG, "0.1") else _ratio_text(n) for n in numbers]
+            ratios = ["1" if n and (arm, theta) == (LOG, "0.1") else written(n) for n in numbers]
             words = [arm, theta, f"{len(ok)} of {len(mine)}", own, *ratios, of["when"]]
             body.append(words)
     head = ["formulation", "theta", "ends ok", "smallest gap / d_hat", "Newton", "products", "seconds"]
@@ -146,20 +152,27 @@ def sentences(study: Study, rows: Rows, found: list[Answer]) -> list[str]:
     return made
 
 
+OF_THIN = "cond_p95"  # the number that question 1 has of shells and rods alone
+
+
+def _kinds(metric: str) -> str:
+    return " of shells and rods" if metric == OF_THIN else ""
+
+
 def _smaller(rows: Rows, metric: str, measure: str, size: str) -> dict[str, float]:
-    """Logarithms of a ratio at theta 0.01; of raw condition numbers those of shells and rods."""
-    kinds = ("shell", "rod") if metric == "cond_p95" else ("shell", "rod", "solid")
+    """Logarithms of a ratio at theta 0.01, of the scenes that its question is about."""
     found = rows.logs(metric, Where(size, measure=measure))
-    return {scene: value for scene, value in found.items() if scene in rows.kind(*kinds)}
+    thin = rows.kind("shell", "rod")
+    return {scene: value for scene, value in found.items() if metric != OF_THIN or scene in thin}
 
 
 def _at_smaller(rows: Rows, metric: str, measure: str) -> tuple[Ratio | None, str]:
+    """The number at the largest smaller size that has five scenes, and which these are."""
     for size in reversed(SIZES[:2]):
         logs = _smaller(rows, metric, measure, size)
         if len(logs) >= SCENES:
-            return ratio_over(
-                list(logs.values())
-            ), f"at size {size} and theta 0.01 over {counted(len(logs), 'scene')}"
+            scenes = counted(len(logs), "scene") + _kinds(metric)
+            return mean_ratio(logs), f"at size {size} and theta 0.01 over {scenes}"
     return None, ""
 
 
@@ -175,9 +188,8 @@ def _by_size(rows: Rows) -> list[str]:
     for size in SIZES:
         for theta in THETAS:
             ratios = [
-                _ratio_text(ratio_over(list(logs.values())) if logs else None)
+                written(rows.ratio(metric, Where(size, theta, measure=measure)))
                 for metric, (_, measure) in columns.items()
-                if (logs := rows.logs(metric, Where(size, theta, measure=measure))) is not None
             ]
             if set(ratios) != {"-"}:
                 left = rows.dropped(Where(size, theta))
@@ -198,17 +210,6 @@ def _missed(rows: list[Row]) -> list[str]:
     if not body:
         return ["Every rule holds in every step."]
     return markdown(["formulation", "size", "scene", *STOPS], body)
-
-
-def _over_log(rows: Rows, arm: str, theta: str, size: str, metric: str, measure: str) -> Ratio | None:
-    """Over the log at theta 0.1, whatever target the formulation has."""
-    where, reference = Where(size, theta, measure=measure), Where(size, "0.1", measure=measure)
-    logs = rows.logs(metric, where, arm, LOG, reference)
-    return ratio_over(list(logs.values())) if logs else None
-
-
-def _ratio_text(number: Ratio | None) -> str:
-    return "-" if number is None else str(number)
 
 
 def _cost(study: Study, rows: list[Row]) -> list[str]:
@@ -233,7 +234,7 @@ def _group(place: dict[str, str]) -> tuple[str, str, str]:
     setting = place["setting"]
     return (
         place["size"],
-        "changed load" if setting[1:2].isdigit() and setting[0] in "Emv" else setting,
+        "changed load" if of_label(setting) else setting,
         place["measure"],
     )
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row, timed_alike
 from barrierbench_analysis.tables.outcomes import OK
+from barrierbench_analysis.tables.statistics import Ratio, ratio_over
 
 LOG, CUBIC = "log", "cubic"
 FINE, COARSE = "M", "S"  # the sizes that questions name
@@ -23,6 +24,11 @@ class Where:
 
     def holds(self, row: Row) -> bool:
         return all(row.place[name] == label for name, label in self.__dict__.items())
+
+
+def mean_ratio(logs: dict[str, float]) -> Ratio | None:
+    """logs: scene -> logarithm of a ratio. None without a scene."""
+    return ratio_over(list(logs.values())) if logs else None
 
 
 class Rows:
@@ -77,6 +83,12 @@ class Rows:
             if above and below:
                 found[scene] = math.log(above / below)
         return found
+
+    def ratio(
+        self, metric: str, where: Where, over: str = LOG, under: str = CUBIC, beside: Where | None = None
+    ) -> Ratio | None:
+        """The mean of these over scenes; None without one."""
+        return mean_ratio(self.logs(metric, where, over, under, beside))
 
     def rises(self, metric: str, first: Where, second: Where) -> dict[str, float]:
         """scene -> logarithm of the ratio log/cubic at the second place over that at the first."""

@@ -3,7 +3,6 @@ that earlier runs lead one to expect, with their scatter between scenes (key `po
 """
 
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
@@ -13,12 +12,10 @@ from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.tables.estimate import sign_test
 
 from .causes import CAUSES
-from .p_values import LEVEL, p_above, p_other, p_within, power
+from .p_values import LEVEL, p_above, p_other, p_within, simulated
 from .questions import ALIKE, GROWS, MASKS, PERSISTS, VANISHES
 
 HALF = 0.5
-
-
 SIX = 6  # questions, over which Holm's method corrects: at worst each p counts so many times
 OTHERS = 3  # formulations beside the log in question 5
 # Outcome -> p of these values of scenes, as the question has it before Holm's correction.
@@ -37,29 +34,27 @@ def _signs(values: list[float]) -> tuple[int, int]:
     return sum(v > 0 for v in values), sum(v < 0 for v in values)
 
 
-def _found(p: Callable[[list[float]], float], factor: int, values: np.ndarray) -> bool:
-    return factor * p(list(values)) < LEVEL
-
-
-def powers(study: Study, factor: int = 1) -> dict[str, float]:
-    """Outcome -> power, where p counts `factor` times. Errors: UserError for an outcome without a rule."""
+def powers(study: Study) -> dict[str, tuple[float, float]]:
+    """Outcome -> power without Holm's correction, and at its largest factor. Errors: UserError for an outcome
+    without a rule.
+    """
     found = {}
     for k, (name, of) in enumerate(study.about["power"].items()):
         if name not in RULES:
             raise refused(study.file, f"about/power/{name}", name, ", ".join(RULES))
-        rule = partial(_found, RULES[name], factor)
-        found[name] = power(rule, of["effect"], of["scatter"], of["scenes"], seed=k + 1)
+        p = simulated(RULES[name], of["effect"], of["scatter"], of["scenes"], seed=k + 1)
+        found[name] = float(np.mean(p < LEVEL)), float(np.mean(SIX * p < LEVEL))
     return found
 
 
 def table(study: Study) -> list[str]:
     """Markdown: effect, scatter, scenes and power, and which question is weak before it is asked."""
-    body, worst = [], powers(study, SIX)
-    for name, found in powers(study).items():
+    body = []
+    for name, (found, worst) in powers(study).items():
         of = study.about["power"][name]
-        weak = "yes" if found < HALF else "after Holm" if worst[name] < HALF else "no"
+        weak = "yes" if found < HALF else "after Holm" if worst < HALF else "no"
         numbers = [f"{np.exp(of['effect']):.3g}", f"{of['scatter']:.2g}", str(of["scenes"])]
-        body.append([name, *numbers, f"{found:.2f}", f"{worst[name]:.2f}", weak, of["from"]])
+        body.append([name, *numbers, f"{found:.2f}", f"{worst:.2f}", weak, of["from"]])
     head = [
         "outcome",
         "ratio expected",

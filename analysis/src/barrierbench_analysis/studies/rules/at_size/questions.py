@@ -10,11 +10,12 @@ from dataclasses import dataclass, field, replace
 
 from barrierbench_analysis.tables.estimate import sign_test, student
 from barrierbench_analysis.tables.outcomes import OK
-from barrierbench_analysis.tables.statistics import Mean, Ratio, holm, mean_over, ratio_over
+from barrierbench_analysis.tables.statistics import Mean, holm, mean_over
 
 from .causes import CAUSES
+from .loads import of_label
 from .p_values import LEVEL, p_above, p_other, p_within, within
-from .pairs import COARSE, CUBIC, FINE, LOG, Rows, Where
+from .pairs import COARSE, CUBIC, FINE, LOG, Rows, Where, mean_ratio
 from .stops import RULES
 
 UNDECIDED = "not decided"
@@ -49,10 +50,6 @@ class Answer:
         return self.word if self.p_holm < LEVEL else UNDECIDED
 
 
-def _ratio(logs: dict[str, float]) -> Ratio | None:
-    return ratio_over(list(logs.values())) if logs else None
-
-
 def _mean(values: dict[str, float]) -> Mean | None:
     return mean_over(list(values.values())) if values else None
 
@@ -77,7 +74,7 @@ def conditioning(rows: Rows) -> Answer:
     word = _word(thin, {"vanishes": within(values, *VANISHES), "persists": persists})
     p = min(1.0, 2 * min(p_within(values, *VANISHES), p_above(values, PERSISTS)))
     return Answer(
-        1, "conditioning", word, p, {"raw": _ratio(thin), "raw, solids": _ratio(solid)}, sorted(thin)
+        1, "conditioning", word, p, {"raw": mean_ratio(thin), "raw, solids": mean_ratio(solid)}, sorted(thin)
     )
 
 
@@ -88,9 +85,9 @@ def newton(rows: Rows) -> Answer:
     above = len(values) > 1 and float(student(values)[0]) > 0
     mean = sum(values) / len(values) if values else 0.0
     numbers = {
-        "M/S of log/cubic": _ratio(rise),
-        "log/cubic at S": _ratio(rows.logs("velocity_newton", Where(COARSE))),
-        "log/cubic at M": _ratio(rows.logs("velocity_newton", Where())),
+        "M/S of log/cubic": mean_ratio(rise),
+        "log/cubic at S": rows.ratio("velocity_newton", Where(COARSE)),
+        "log/cubic at M": rows.ratio("velocity_newton", Where()),
     }
     word = _word(rise, {"grows": above and mean > GROWS})
     return Answer(2, "Newton", word, min(1.0, 2 * p_above(values, 0.0)), numbers, sorted(rise))
@@ -140,11 +137,11 @@ def work(rows: Rows) -> Answer:
     """4: is one of them cheaper? Products, operations of factors and seconds until each of three stop
     rules.
     """
-    numbers, every, ps = {}, {}, []
+    numbers, every = {}, {}
     for rule in RULES:
         for name, measure in WORK.items():
             logs = rows.logs(f"{rule}_{name}", Where(measure=measure))
-            numbers[f"{name} to {rule}"], every[rule, name] = _ratio(logs), list(logs.values())
+            numbers[f"{name} to {rule}"], every[rule, name] = mean_ratio(logs), list(logs.values())
     whole = [values for values in every.values() if len(values) >= SCENES]
     scenes = sorted(rows.pairs(Where(measure="pcg")))
     if len(whole) < len(every):
@@ -165,7 +162,7 @@ def robustness(rows: Rows) -> Answer:
     """
     of: dict[tuple[str, str], list] = {}
     for row in rows.rows:
-        if row.place["setting"][0] in "Emv" and row.place["setting"][1:2].isdigit():
+        if of_label(row.place["setting"]):
             of.setdefault((row.place["arm"], row.place["scene"]), []).append(row)
     arms = list(dict.fromkeys(arm for arm, _ in of))
     of = _alike_loads(of)
@@ -176,7 +173,7 @@ def robustness(rows: Rows) -> Answer:
         mine = {s: share[arm, s] for s in scenes if (arm, s) in share}
         numbers[f"{arm}: share that ends ok"] = _mean(mine)
         gaps = {s: _least_gap(of[arm, s]) for s in mine}
-        numbers[f"{arm}: smallest gap"] = _ratio({s: math.log(g) for s, g in gaps.items() if g})
+        numbers[f"{arm}: smallest gap"] = mean_ratio({s: math.log(g) for s, g in gaps.items() if g})
         if arm == LOG:
             continue
         more = sum(mine[s] > share[LOG, s] for s in mine)
@@ -222,8 +219,8 @@ def masks(rows: Rows) -> Answer:
     for mask in MASKS:
         with_mask = Where(COARSE, setting=mask)
         found[mask] = rows.rises("velocity_newton", Where(COARSE), with_mask)
-        numbers[f"{mask}: Newton"] = _ratio(found[mask])
-        numbers[f"{mask}: raw"] = _ratio(rows.rises("cond_p95", Where(COARSE), with_mask))
+        numbers[f"{mask}: Newton"] = mean_ratio(found[mask])
+        numbers[f"{mask}: raw"] = mean_ratio(rows.rises("cond_p95", Where(COARSE), with_mask))
         ps[mask] = p_other(list(found[mask].values()))
     if not any(found.values()):
         return Answer(6, "masks", NO_RUNS, 1.0, numbers)
