@@ -10,12 +10,13 @@ from pathlib import Path
 
 from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import BUILD_FAILED, UserError
+from barrierbench_analysis.io.free_memory import free_bytes
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.io.whole_file import write_whole
 
 from .start import RELEASE
 
-KIB_A_JOB = 2097152  # 2 GiB: g++ on many files at once
+BYTES_A_JOB = 2 << 30  # g++ on many files at once
 MINUTE = 60  # seconds between two words about a build off the terminal
 
 
@@ -25,12 +26,7 @@ def say(text: str) -> None:
 
 def job_count() -> int:
     """One job a core, and 2 GiB of memory for each."""
-    try:
-        lines = input_file.read_text(Path("/proc/meminfo")).splitlines()
-        free_kib = next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
-    except (UserError, StopIteration):
-        free_kib = 4 << 20
-    return max(1, min(free_kib // KIB_A_JOB, len(os.sched_getaffinity(0))))
+    return max(1, min(free_bytes() // BYTES_A_JOB, len(os.sched_getaffinity(0))))
 
 
 def folder(preset: str) -> Path:

@@ -17,13 +17,13 @@ GROWTH = 1.7
 SPAN = 3.0  # largest over smallest number of unknowns from which on rows tell the power
 
 
-def growth(rows: list[store.Row]) -> float:
-    """Power p of seconds ~ unknowns^p, at least 1; GROWTH where less than a factor SPAN in size was
+def growth(rows: list[store.Row], unmeasured: float = GROWTH) -> float:
+    """Power p of seconds ~ unknowns^p, at least 1; the given one where less than a factor SPAN in size was
     measured."""
     rows = [row for row in rows if row.unknowns]  # of those that left a record
     sizes = {row.unknowns for row in rows}
     if not sizes or max(sizes) < SPAN * min(sizes):
-        return GROWTH
+        return unmeasured
     return max(1.0, slope((math.log(row.unknowns), math.log(max(row.seconds, 1e-3))) for row in rows))
 
 

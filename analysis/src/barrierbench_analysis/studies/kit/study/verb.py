@@ -22,7 +22,7 @@ from barrierbench_analysis.program.start import built_program
 from barrierbench_analysis.program.verbs import of_spec
 from barrierbench_analysis.tables.words import counted
 
-from . import cost, page, registration, repeat, store
+from . import cost, memory, page, registration, repeat, store
 from .collect import left_out, missing, parts, run_cells, wanted
 from .spec import Cell, Study, read_study
 
@@ -184,6 +184,7 @@ def make_rows(
     rows = store.read_rows(file)
     keys = {cell.key for cell in (study.cells if cells is None else cells)}
     lacking = [cell for cell in wanted(study, rows, every, again) if cell.key in keys]
+    memory.require(study, rows, lacking, jobs)
     there = {*rows} if again else set()
     for part in parts(study, lacking):
         if minutes is not None and time.monotonic() - begun > 60 * minutes:
@@ -247,7 +248,11 @@ def _main(argv: list[str]) -> int:
         return 0
     if args.plan:
         cells = chosen(study, args.only, args.part)
-        print("\n".join(cost.plan(study, store.read_rows(file), cells, args.decided, args.again)))
+        rows = store.read_rows(file)
+        keys = {cell.key for cell in wanted(study, rows, args.decided, args.again)}
+        to_run = [cell for cell in cells if cell.key in keys]
+        lines = cost.plan(study, rows, cells, args.decided, args.again)
+        print("\n".join([*lines, *memory.line(study, rows, to_run)]))
         return 0
     made = None
     if not args.no_run:
