@@ -179,3 +179,51 @@ def test_what_cannot_be_used_is_refused(tmp_path, capsys):
     assert "cell 0: found a tetrahedron of -0.166667 m^3" in refused(capsys, tmp_path / "inverted.vtu")
     code = mesh_file.main([str(written(tmp_path / "a.vtu")), str(tmp_path / "out.obj")])
     assert code == 2 and "extension '.obj'; allowed: .ply" in capsys.readouterr().err
+
+
+# --- lists of files, units and axes
+
+
+def blocks(folder: Path, **files: str) -> Path:
+    rows = "".join(
+        f'<Block name="{name}" index="{k}"><DataSet index="0" file="{file}"/></Block>'
+        for k, (name, file) in enumerate(files.items())
+    )
+    text = f'<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet>{rows}</vtkMultiBlockDataSet></VTKFile>'
+    (folder / "a.vtm").write_text(text)
+    return folder / "a.vtm"
+
+
+def test_the_meshes_of_a_list_are_one_mesh(tmp_path):
+    """Squares stay squares until all is there: they are cut as those of one file."""
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+    meshio.Mesh(square, [("quad", np.array([[0, 1, 2, 3]]))]).write(tmp_path / "one.vtu")
+    meshio.Mesh(square + [0, 0, 1 / 3], [("quad", np.array([[3, 2, 1, 0]]))]).write(tmp_path / "other.vtu")
+    code, target = convert(blocks(tmp_path, lower="one.vtu", upper="other.vtu"))
+    assert code == 0
+    ply = numbers_of(target)
+    assert (ply["vertex"] == np.concatenate([square, square + [0, 0, 1 / 3]])).all()
+    assert [set(row) <= {0, 1, 2, 3} for row in ply["face"]["v"].tolist()] == [True, True, False, False]
+    pieces = '<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid><Piece Source="one.vtu"/></PUnstructuredGrid></VTKFile>'
+    (tmp_path / "b.pvtu").write_text(pieces)
+    assert convert(tmp_path / "b.pvtu")[0] == 0 and len(numbers_of(target)["vertex"]) == 4
+
+
+def test_of_a_body_that_is_there_twice_the_solid_is_read(tmp_path, capsys):
+    meshio.Mesh(POINTS[[0, 1, 2, 4]], [("tetra", np.array([[0, 1, 2, 3]]))]).write(tmp_path / "volume.vtu")
+    meshio.Mesh(POINTS[[0, 1, 2]], [("triangle", np.array([[0, 1, 2]]))]).write(tmp_path / "surface.vtu")
+    code, target = convert(blocks(tmp_path, Volume="volume.vtu", Surface="surface.vtu"))
+    assert code == 0 and len(numbers_of(target)["tetrahedron"]) == 1 and not len(numbers_of(target)["face"])
+    assert "a.vtm: blocks that show the same bodies once more are not read: Surface" in capsys.readouterr().err
+    (tmp_path / "volume.vtu").unlink()
+    assert convert(tmp_path / "a.vtm")[0] == 2
+    assert "volume.vtu: " in capsys.readouterr().err
+
+
+def test_unit_and_axis_can_be_stated(tmp_path, capsys):
+    code, target = convert(written(tmp_path / "a.vtu"), "--scale", "0.001", "--up", "y")
+    assert code == 0
+    x = POINTS[[0, 1, 2, 4, 5, 6, 7, 8, 9]] * 0.001
+    assert (numbers_of(target)["vertex"] == np.stack([x[:, 0], -x[:, 2], x[:, 1]], 1)).all()
+    words = "a.vtu: coordinates were multiplied by 0.001 (m per unit) and rounded and turned from y up to z up"
+    assert words in capsys.readouterr().err

@@ -19,6 +19,7 @@ from barrierbench_analysis.program.building import build, folder, job_count, say
 from . import private, python_module, tools
 
 OWN = ("--sanitize", "--browser")  # what ctest does not see
+FILMS = ("usd", "alembic", "vtkhdf")  # of analysis/requirements-NAME.txt
 NAMED_TESTS = 20  # C++ tests that the summary names
 
 
@@ -121,16 +122,18 @@ def _gate() -> int:
     return gate.main([])
 
 
-def set_up(browser: bool) -> None:
-    """What every test needs; with `browser` also Debian's chromium (about 100 MB) and what drives it. Errors:
-    UserError.
+def set_up(browser: bool, films: bool) -> None:
+    """What every test needs; with `browser` also Debian's chromium (about 100 MB) and what drives it, with
+    `films` the packages of films (about 50 MB), so that no test of theirs is skipped. Errors: UserError.
     """
     setup(python_module.PACKAGE, *(["chromium"] if browser else []))
-    if browser:
+    names = [*(FILMS if films else ()), *(["browser"] if browser else [])]
+    files = [f"analysis/requirements-{name}.txt" for name in names]
+    if files:
         words = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-        file = ROOT / "analysis/requirements-browser.txt"
-        if subprocess.run([*words, "--requirement", str(file)], stdout=sys.stderr, check=False).returncode:
-            raise UserError(f"cannot install {file.relative_to(ROOT)}: is there a network?")
+        words += [word for file in files for word in ("--requirement", str(ROOT / file))]
+        if subprocess.run(words, stdout=sys.stderr, check=False).returncode:
+            raise UserError(f"cannot install {', '.join(files)}: is there a network?")
 
 
 @reported("test")
@@ -138,7 +141,7 @@ def main(argv: list[str]) -> int:
     own = {word for word in argv if word in OWN}
     arguments = [word for word in argv if word not in OWN]
     preset = "sanitize" if "--sanitize" in own else "release"
-    set_up("--browser" in own)
+    set_up("--browser" in own, films=not arguments)
     summary = Summary()
     start = time.monotonic()
     build(preset, options={"BB_CUDA": "AUTO"} | (python_module.options() if preset == "release" else {}))

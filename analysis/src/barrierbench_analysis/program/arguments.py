@@ -159,6 +159,22 @@ count_from_0 = number_type("a whole number from 0", lambda value: value >= 0, in
 count_from_1 = number_type("a whole number from 1", lambda value: value >= 1, int)
 
 
+def axes_arguments(parser: argparse.ArgumentParser, of: str) -> None:
+    """--scale and --up, unit and upward axis of the coordinates of `of`. None where they are not given."""
+    parser.add_argument(
+        "--scale",
+        type=positive_number,
+        metavar="M",
+        help=f"m of one unit of {of}; 0.001: its coordinates are in mm (default: what USD says, else 1)",
+    )
+    parser.add_argument(
+        "--up",
+        choices=("y", "z"),
+        help=f"the axis of {of} that points up, which is turned to z (default: what USD says, y of Alembic,"
+        " else z)",
+    )
+
+
 def set_argument(parser: argparse.ArgumentParser, words: str, example: str = "/scene/n=8") -> None:
     """--set, as the program takes it; may be repeated. The values are `overrides` of what is parsed."""
     parser.add_argument(

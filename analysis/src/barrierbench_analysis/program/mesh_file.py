@@ -11,14 +11,19 @@ import numpy as np
 from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.whole_file import write_whole_bytes
 
-from .arguments import finite_number, parser_of
-from .mesh_arrays import SUFFIXES, MeshArrays, read_body_file
+from .arguments import axes_arguments, finite_number, parser_of
+from .mesh_arrays import MESHES, MeshArrays, read_body_file
 from .tetrahedra import INSTALL, filled
 
+DOC = """IN: of a list of files (.vtm, .pvtu, .pvtp) all its meshes, of a film (USD, Alembic, VTKHDF) the
+first frame. OUT.ply has m and z up; of most files lengths are taken as m and z as up."""
 
-def read_cells(path: Path, skin: bool = False) -> MeshArrays:
-    """Errors: UserError of the reader, and without a tetrahedron and a triangle."""
-    found = read_body_file(path, skin)
+
+def read_cells(
+    path: Path, skin: bool = False, unit_m: float | None = None, up: str | None = None
+) -> MeshArrays:
+    """As read_body_file. Errors: UserError of the reader, and without a tetrahedron and a triangle."""
+    found = read_body_file(path, skin, unit_m, up)
     if not len(found.triangles) and not len(found.tetrahedra):
         raise UserError(f"{path}: no tetrahedron and no triangle; at least one of them is needed")
     return found
@@ -42,14 +47,15 @@ def ply_bytes(cells: MeshArrays) -> bytes:
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
-    parser = parser_of("data mesh", "Lengths are taken as m.")
+    parser = parser_of("data mesh", DOC)
     parser.add_argument(
         "source",
         type=Path,
         metavar="IN",
-        help=f"one of {', '.join(SUFFIXES)}",
+        help=f"one of {', '.join(MESHES)}",
     )
     parser.add_argument("target", type=Path, metavar="OUT.ply")
+    axes_arguments(parser, "IN")
     parser.add_argument(
         "--skin",
         action="store_true",
@@ -75,18 +81,17 @@ def parse(argv: list[str]) -> argparse.Namespace:
     return options
 
 
-def solid_of(path: Path, edge: float | None) -> MeshArrays:
-    """Tetrahedra within the surface in a file. Errors: UserError, as read_cells and `filled`; one for lone
-    edges and tetrahedra in the file.
+def solid_of(path: Path, surface: MeshArrays, edge: float | None) -> MeshArrays:
+    """Tetrahedra within the surface of a file. Errors: UserError, as `filled`; one for lone edges and
+    tetrahedra in the file.
     """
-    surface = read_cells(path)
     if len(surface.segments) or len(surface.tetrahedra):
         raise UserError(
             f"{path}: {len(surface.segments)} lone edges and {len(surface.tetrahedra)} tetrahedra beside the"
             " triangles; --tetrahedra needs triangles alone"
         )
     points, tetrahedra = filled(path, surface.points, surface.triangles, edge)
-    return MeshArrays(points, surface.triangles[:0], surface.segments, tetrahedra)
+    return MeshArrays(points, surface.triangles[:0], surface.segments, tetrahedra, notes=surface.notes)
 
 
 @reported("data mesh")
@@ -94,10 +99,9 @@ def main(argv: list[str]) -> int:
     options = parse(argv)
     if options.target.suffix.lower() != ".ply":
         raise UserError(f"{options.target}: extension {options.target.suffix!r}; allowed: .ply")
+    cells = read_cells(options.source, options.skin, options.scale, options.up)
     if options.tetrahedra:
-        cells = solid_of(options.source, options.edge)
-    else:
-        cells = read_cells(options.source, options.skin)
+        cells = solid_of(options.source, cells, options.edge)
     write_whole_bytes(options.target, ply_bytes(cells))
     for note in cells.notes:
         more = " (--skin keeps those of the surface)" if "face of tetrahedra" in note else ""

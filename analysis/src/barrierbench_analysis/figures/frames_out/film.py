@@ -1,6 +1,7 @@
 """A film for a config out of whatever holds frames: ./bench data film SOURCE OUT."""
 
 import argparse
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
 from barrierbench_analysis.io.errors import UserError, reported
-from barrierbench_analysis.program.arguments import options, parser_of, positive_number
+from barrierbench_analysis.program.arguments import axes_arguments, options, parser_of, positive_number
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import Trajectory, has_cells
 
@@ -16,9 +17,9 @@ from .formats import write
 from .verb import in_new_folder
 
 ABOUT = """
-SOURCE: a folder of OBJ, PLY, STL, MSH or VTK frames, a PVD, PC2, MDD or NPZ file, or a run that kept
-frames. OUT becomes a folder of numbered PLY files (frame_000000.ply, ..., every bit) with times.csv, whose
-first file is the `film` of a motion or the `rest_film` of a body."""
+SOURCE: a folder of OBJ, PLY, STL, MSH or VTK frames, a PVD, PC2, MDD, NPZ, USD, Alembic or VTKHDF file, or a
+run that kept frames. OUT becomes a folder of numbered PLY files (frame_000000.ply, ..., every bit) with
+times.csv, whose first file is the `film` of a motion or the `rest_film` of a body."""
 
 
 def times_of(source: Trajectory, frame_s: float | None) -> list[float]:
@@ -53,7 +54,7 @@ def _cells(cells: np.ndarray, chosen: np.ndarray) -> np.ndarray:
     return np.searchsorted(chosen, kept)
 
 
-def film_of(source: Trajectory, body: str | None, scale: float, frame_s: float | None) -> Sequence:
+def film_of(source: Trajectory, body: str | None, frame_s: float | None) -> Sequence:
     """The sequence that is written. Of solids the points alone: their mesh knows its cells."""
     chosen, topology = vertices_of(source, body), source.topology
     solid = len(topology.tetrahedra) > 0 or not has_cells(topology)
@@ -72,7 +73,7 @@ def film_of(source: Trajectory, body: str | None, scale: float, frame_s: float |
         for number, points in enumerate(source.frames()):
             if not np.isfinite(points[chosen]).all():
                 raise UserError(f"{source.source}: frame {number} holds a coordinate that is not finite")
-            yield State(scale * points[chosen], {}, {})
+            yield State(points[chosen], {}, {})
 
     times = times_of(source, frame_s)
     return Sequence("frame", mesh, True, list(range(len(times))), times, states)
@@ -89,21 +90,22 @@ def parse(argv: list[str]) -> argparse.Namespace:
 source SOURCE: a folder or file with frames, or a run
 out OUT: a folder that is not there yet
 --body BODY: of a run: the body whose vertices are wanted
---frame-s FRAME_S: time (s) of a frame, where the source has no times
---scale SCALE: factor to m, as 0.001 of files in mm"""
-    scale = {"type": positive_number, "default": 1.0}
-    options(parser, text, source=Path, out=Path, frame_s=positive_number, scale=scale)
+--frame-s FRAME_S: time (s) of a frame, where the source has no times"""
+    options(parser, text, source=Path, out=Path, frame_s=positive_number)
+    axes_arguments(parser, "SOURCE")
     return parser.parse_args(argv)
 
 
 @reported("data film")
 def main(argv: list[str]) -> int:
     arguments = parse(argv)
-    source = read_trajectory(arguments.source)
-    film = film_of(source, arguments.body, arguments.scale, arguments.frame_s)
+    source = read_trajectory(arguments.source, unit_m=arguments.scale, up=arguments.up)
+    film = film_of(source, arguments.body, arguments.frame_s)
     if len(film.steps) < 2:
         raise UserError(f"{arguments.source}: {len(film.steps)} frame; allowed: two or more")
     in_new_folder(arguments.out, lambda folder: write([film], "ply", folder))
+    for note in source.notes:
+        print(f"bench data film: {note}", file=sys.stderr)
     print(
         f"{arguments.out}: a film of {len(film.steps)} frames of {len(film.mesh.of_points)} vertices,"
         f" {film.times_s[0]:g} to {film.times_s[-1]:g} s;"

@@ -14,6 +14,9 @@ import numpy as np
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
 from barrierbench_analysis.io.whole_file import whole, write_whole, write_whole_bytes
 
+from .alembic import write_alembic
+from .usd import write_usd
+
 
 def _name(sequence: Sequence, number: int, suffix: str) -> str:
     """Of a frame; without a number for what does not move."""
@@ -155,7 +158,14 @@ def pvd_text(sequences: list[Sequence]) -> str:
     return "\n".join([*lines, "  </Collection>", "</VTKFile>", ""])
 
 
-WRITERS = {"obj": write_obj, "ply": write_ply, "pc2": write_pc2, "vtu": write_vtu}
+WRITERS = {
+    "obj": write_obj,
+    "ply": write_ply,
+    "pc2": write_pc2,
+    "vtu": write_vtu,
+    "usd": write_usd,
+    "abc": write_alembic,
+}
 
 
 def write(sequences: list[Sequence], kind: str, folder: Path) -> None:

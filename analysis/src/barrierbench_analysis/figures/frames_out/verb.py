@@ -1,4 +1,4 @@
-"""Files of the frames of a run for other tools: ./bench data frames RUN OUT --format obj|ply|pc2|vtu."""
+"""Files of the frames of a run for other tools: ./bench data frames RUN OUT --format NAME."""
 
 import argparse
 import os
@@ -28,7 +28,7 @@ from barrierbench_analysis.program.arguments import (
     parser_of,
     positive_number,
 )
-from barrierbench_analysis.program.mesh_arrays import SUFFIXES, read_frame_file
+from barrierbench_analysis.program.mesh_arrays import MESHES, read_frame_file
 
 from .formats import WRITERS, write
 
@@ -36,8 +36,11 @@ REACH = 0.05  # of the diagonal of a body's box: how far a vertex may be from it
 MOST_TIMES = 6  # 4^6 = 4096 triangles for one
 ABOUT = """
 OUT becomes a folder. obj, ply, vtu: a file a frame, frame_000000.obj, ...; pc2: frame.pc2 and frame.obj, its
-first state. obstacles.obj, ...: the analytic obstacles as triangles. times.csv: number, step and time (s) of
-every frame. frames.pvd, of vtu: what ParaView opens. Rods are lines, solids their surface. Lengths are m."""
+first state; usd, abc: frame.usd or frame.abc, bodies and times in one file, positions in single precision, by
+packages that are installed on demand (analysis/requirements-usd.txt, requirements-alembic.txt).
+obstacles.obj, ...: the analytic obstacles as triangles. times.csv: number, step and time (s) of every frame.
+frames.pvd, of vtu: what ParaView opens. Rods are lines, solids their surface. Lengths are m, z is up; of abc
+y is up."""
 
 
 def _body_with_surface(run: Run, name: str) -> tuple[int, np.ndarray]:
@@ -141,7 +144,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     )
     one_of = parser.add_mutually_exclusive_group()
     text = f"""
---render-mesh FILE: a mesh of triangles ({", ".join(SUFFIXES)}) in the place that --body has at the start: it
+--render-mesh FILE: a mesh of triangles ({", ".join(MESHES)}) in the place that --body has at the start: it
     follows the surface of the body and is written in its place
 --subdivide N: cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})"""
     times = number_type(f"a number from 1 to {MOST_TIMES}", lambda n: 1 <= n <= MOST_TIMES, int)

@@ -7,12 +7,12 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import TRAJECTORY, opened
+from barrierbench_analysis.program.film_files.film import ROUNDED
 
 from .trajectory import Topology, Trajectory, increasing, no_cells
 
 PC2_HEADER = struct.Struct("<12siiffi")
 MDD_HEADER = struct.Struct(">ii")
-ROUNDED = "positions are float32 in the file: the states that were judged are the rounded ones"
 
 
 def _bytes(path: Path) -> bytes:

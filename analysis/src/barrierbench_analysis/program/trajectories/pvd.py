@@ -1,5 +1,5 @@
-"""Lists of files: collections of ParaView (.pvd) with their times, and what stands for several files of one
-time (.vtm, .pvtu, .pvtp). Several parts of one time are one frame.
+"""Trajectories of lists of files: collections of ParaView (.pvd) with their times, and of what stands for
+several files of one time (file_lists.py). Several parts of one time are one frame.
 """
 
 import xml.etree.ElementTree as ElementTree
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.input_file import SMALL, read_bytes
+from barrierbench_analysis.program.file_lists import beside, files_of_list, root_of
 
 from .sequence import no_frames, of_obstacles, of_parts
 from .trajectory import Trajectory, increasing
@@ -23,72 +23,6 @@ class Entry:
     time_s: float
     part: PartName
     file: str
-
-
-LISTS = (".vtm", ".pvtu", ".pvtp")
-MOST_LEVELS = 8  # of lists in lists
-# Blocks that show the same body once more, as PolyFEM writes them; the first that is there is judged.
-SAME_BODY = (("surface", "surf", "faces"), ("volume", "tets"))
-DRAWN = ("contact", "wireframe", "wire", "points", "edges", "verts", "obstacle points")
-
-
-def _root(path: Path) -> ElementTree.Element:
-    return ElementTree.fromstring(read_bytes(path, SMALL))
-
-
-def _blocks(root: ElementTree.Element) -> list[tuple[str, str]]:
-    """Names of blocks and files, in the order of the file."""
-    out: list[tuple[str, str]] = []
-
-    def walk(element: ElementTree.Element, name: str) -> None:
-        for child in element:
-            of_child = child.get("name") or name
-            if child.tag == "DataSet" and child.get("file"):
-                out.append((name or of_child, child.get("file", "")))
-            walk(child, of_child if child.tag in ("Block", "Piece") else name)
-
-    walk(root, "")
-    return out
-
-
-def _chosen(blocks: list[tuple[str, str]]) -> tuple[list[str], list[str]]:
-    """Files that are judged, and names of blocks that show the same body."""
-    names = {name.lower() for name, _ in blocks}
-    bodies = [group for group in SAME_BODY if names & set(group)]
-    if not bodies:
-        return [file for _, file in blocks], []
-    hidden = {name for group in bodies[1:] for name in group} | set(DRAWN)
-    kept = [file for name, file in blocks if name.lower() not in hidden]
-    return kept, [name for name, _ in blocks if name.lower() in hidden]
-
-
-def files_of_list(path: Path, levels: int = 0) -> tuple[list[Path], list[str]]:
-    """The mesh files of a .vtm, .pvtu or .pvtp, and what was left out. Errors: UserError."""
-    if path.suffix.lower() not in LISTS:
-        return [path], []
-    if levels > MOST_LEVELS:
-        raise UserError(f"{path}: lists in lists; at most {MOST_LEVELS} levels are allowed")
-    try:
-        root = _root(path)
-    except (ElementTree.ParseError, LookupError, ValueError) as error:
-        raise UserError(f"{path}: not a list of files of VTK: {error}") from None
-    if path.suffix.lower() == ".vtm":
-        files, hidden = _chosen(_blocks(root))
-    else:
-        files, hidden = [one.get("Source", "") for one in root.iter("Piece") if one.get("Source")], []
-    if not files:
-        raise UserError(f"{path}: names no file of a mesh; DataSet file= or Piece Source= is needed")
-    found: list[Path] = []
-    for file in files:
-        inner, more = files_of_list(beside(path, file), levels + 1)
-        found += inner
-        hidden += more
-    return found, hidden
-
-
-def beside(path: Path, file: str) -> Path:
-    """A file that a list names, with the separators of either system."""
-    return path.parent / file.replace("\\", "/")
 
 
 def of_list(paths: list[Path], source: str, times_s: list[float] | None = None) -> Trajectory:
@@ -119,7 +53,7 @@ def of_lists(frames: list[list[Path]], source: str, kind: str, times_s: list[flo
 def _entries(path: Path) -> list[Entry]:
     """In the order of the file. Without any timestep, entries are numbered. Errors: UserError."""
     try:
-        sets = _root(path).findall("Collection/DataSet")
+        sets = root_of(path).findall("Collection/DataSet")
     except (ElementTree.ParseError, LookupError, ValueError) as error:
         raise UserError(f"{path}: not a collection of ParaView: {error}") from None
     if not sets:

@@ -1,5 +1,5 @@
-"""Trajectories of any program by what their path is: a folder of frames, PVD, PC2, MDD, NPZ, one frame, or a
-run of barrierbench.
+"""Trajectories of any program by what their path is: a folder of frames, PVD, PC2, MDD, NPZ, USD, Alembic,
+VTKHDF, one frame, or a run of barrierbench.
 """
 
 from collections import defaultdict
@@ -8,15 +8,19 @@ from pathlib import Path
 
 import numpy as np
 
+from barrierbench_analysis.io.axes import chosen, sentence
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.frames import frame_paths, frames_of, read_scene, times_of
 from barrierbench_analysis.io.record_file import read_record
+from barrierbench_analysis.program.file_lists import LISTS
+from barrierbench_analysis.program.film_files.formats import FILMS
 from barrierbench_analysis.program.mesh_arrays import SUFFIXES
 
 from .arrays import of_npz
 from .displacement import displaced
+from .films import of_film
 from .packed import of_mdd, of_pc2
-from .pvd import LISTS, of_list, of_pvd
+from .pvd import of_list, of_pvd
 from .sequence import no_frames, numbered, of_files, of_obstacles
 from .trajectory import Topology, Trajectory, has_cells, increasing, no_cells, read_mesh, topology_of_mesh
 
@@ -29,10 +33,10 @@ def of_folder(folder: Path) -> Trajectory:
     """All files of the one format of frames that is there, by a collection (.pvd) where one is; or one PC2
     and the mesh of its name. The obstacles beside them, as `bench data frames` writes them, are no frame.
     """
-    known = (*SUFFIXES, *LISTS, *CACHES, ".pvd")
+    known = (*SUFFIXES, *LISTS, *CACHES, *FILMS, ".pvd")
     every = [p for p in sorted(folder.iterdir()) if p.suffix.lower() in known]
     files = [p for p in every if not p.name.startswith(".")]
-    frames = [p for p in files if not of_obstacles(p) or p.suffix.lower() not in SUFFIXES] or files
+    frames = [p for p in files if not of_obstacles(p) or p.suffix.lower() not in (*SUFFIXES, *FILMS)] or files
     found = _of_frames(folder, frames)
     notes = [
         note for note in no_frames([p.name for p in files if p not in frames]) if note not in found.notes
@@ -46,6 +50,8 @@ def _of_frames(folder: Path, files: list[Path]) -> Trajectory:
     found: dict[str, list[Path]] = defaultdict(list)
     for path in files:
         found[path.suffix.lower()].append(path)
+    if any(found[suffix] for suffix in FILMS):
+        return _of_only_film(folder, files)
     if any(found[suffix] for suffix in CACHES):
         return _of_cache_folder(folder, [path for paths in found.values() for path in paths])
     there = [suffix for suffix in (*SUFFIXES, *LISTS) if found[suffix]]
@@ -60,6 +66,15 @@ def _of_frames(folder: Path, files: list[Path]) -> Trajectory:
             f"{folder}: found {have}; frames of one of {', '.join((*SUFFIXES, *LISTS))} are needed"
         )
     return of_files(numbered(found[there[0]]), str(folder))
+
+
+def _of_only_film(folder: Path, files: list[Path]) -> Trajectory:
+    """Errors: UserError for a film beside anything else that could be frames."""
+    film = next(path for path in files if path.suffix.lower() in FILMS)
+    if len(files) > 1:
+        names = ", ".join(path.name for path in files)
+        raise UserError(f"{folder}: found {names}; one film is needed, or say which: ./bench judge {film}")
+    return of_film(film)
 
 
 def _of_collection(folder: Path, collections: list[Path]) -> Trajectory:
@@ -151,6 +166,8 @@ def _of_path(path: Path) -> Trajectory:
     suffix = path.suffix.lower()
     if reader := {**CACHES, ".npz": of_npz, ".pvd": of_pvd}.get(suffix):
         return reader(path)
+    if suffix in FILMS:
+        return of_film(path)
     if suffix in SUFFIXES:
         return of_files([path], str(path))
     if suffix in LISTS:
@@ -158,24 +175,39 @@ def _of_path(path: Path) -> Trajectory:
     frames = ", ".join((*SUFFIXES, *LISTS))
     raise UserError(
         f"{path}: extension {suffix!r}; allowed: a folder of frames ({frames}) or of a run, .pvd,"
-        f" {', '.join(CACHES)}, .npz, or one frame{HINTS.get(suffix, '')}"
+        f" {', '.join((*CACHES, *FILMS))}, .npz, or one frame{HINTS.get(suffix, '')}"
     )
 
 
 # What other programs write, and how it becomes something that is read.
-OF_BLENDER = ". Blender exports it as PC2 or MDD, or as OBJ frames"
+OF_BLENDER = ". Blender exports it as USD, Alembic, PC2 or MDD, or as OBJ frames"
 OF_HOUDINI = ". Houdini writes OBJ or PLY frames (ROP Geometry Output)"
 OF_PARAVIEW = ". ParaView writes it as VTU frames (Save Data, all time steps)"
 HINTS = {
-    **dict.fromkeys((".abc", ".usd", ".usda", ".usdc", ".usdz", ".blend"), OF_BLENDER),
+    ".blend": OF_BLENDER,
     **dict.fromkeys((".bgeo", ".geo", ".sc"), OF_HOUDINI),
-    **dict.fromkeys((".xdmf", ".xmf", ".h5", ".hdf", ".bp", ".e", ".exo"), OF_PARAVIEW),
+    **dict.fromkeys((".xdmf", ".xmf", ".h5", ".bp", ".e", ".exo"), OF_PARAVIEW),
 }
 
 
-def read_trajectory(path: Path, topology: Path | None = None, displacement: str | None = None) -> Trajectory:
-    """By what the path is. displacement: the field that moves points at rest. Errors: UserError that names
+def _upright(found: Trajectory, unit_m: float | None, up: str | None) -> Trajectory:
+    """In m and with z up, and a note where that changes coordinates."""
+    axes = chosen(found.axes, unit_m, up)
+    if (note := sentence(axes)) is None:
+        return found
+    return replace(found, frames=lambda: map(axes.metres, found.frames()), notes=(*found.notes, note))
+
+
+def read_trajectory(
+    path: Path,
+    topology: Path | None = None,
+    displacement: str | None = None,
+    unit_m: float | None = None,
+    up: str | None = None,
+) -> Trajectory:
+    """By what the path is, in m and with z up. displacement: the field that moves points at rest. unit_m, up:
+    unit and upward axis of the coordinates, in the place of those of the file. Errors: UserError that names
     the file, what was found and what is allowed.
     """
-    found = displaced(_of_path(path), displacement)
+    found = _upright(displaced(_of_path(path), displacement), unit_m, up)
     return found if topology is None else replace(found, topology=topology_of(topology, found))

@@ -1,4 +1,4 @@
-"""Trajectories of one or more mesh files a frame.
+"""Trajectories of one or more meshes a frame: files, or bodies of a film.
 
 The topology is that of the first frame; one of another topology is refused by name.
 """
@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from barrierbench_analysis.io.errors import UserError
+from barrierbench_analysis.program.film_files.film import Step
 from barrierbench_analysis.program.mesh_arrays import MeshArrays
 
 from .trajectory import Topology, Trajectory, read_mesh, same_topology, topology_of_mesh
@@ -75,9 +76,9 @@ class Notes:
 
     def __init__(self) -> None:
         self.first: dict[str, str] = {}
-        self.files: dict[str, set[Path]] = {}
+        self.files: dict[str, set[Path | Step]] = {}
 
-    def hear(self, path: Path, mesh: MeshArrays) -> None:
+    def hear(self, path: Path | Step, mesh: MeshArrays) -> None:
         for note in mesh.notes:
             kind = note.split(": ")[0]
             self.first.setdefault(kind, note)
@@ -90,7 +91,7 @@ class Notes:
 
 
 def read_parts(
-    frames: list[list[Path]], first: list[MeshArrays], fields: list[tuple[str, ...]], notes: Notes
+    frames: list[list[Path | Step]], first: list[MeshArrays], fields: list[tuple[str, ...]], notes: Notes
 ) -> Iterator[list[MeshArrays]]:
     """The parts of every frame. Errors: UserError for the first that has another topology."""
     for paths in frames:
@@ -104,9 +105,9 @@ def read_parts(
 
 
 def of_parts(
-    frames: list[list[Path]], source: str, kind: str, times_s: list[float] | None = None
+    frames: list[list[Path | Step]], source: str, kind: str, times_s: list[float] | None = None
 ) -> Trajectory:
-    """A list of files a frame, as many in each."""
+    """A list of meshes a frame, as many in each."""
     first, notes = [read_mesh(path) for path in frames[0]], Notes()
     none = [()] * len(first)
 
@@ -119,6 +120,6 @@ def of_parts(
     return Trajectory(topology, read, labels, source, kind, times_s, heard=notes, files=frames)
 
 
-def _label(paths: list[Path]) -> str:
+def _label(paths: list[Path | Step]) -> str:
     more = f" and {len(paths) - 1} more" if len(paths) > 1 else ""
     return f"{paths[0].name}{more}"

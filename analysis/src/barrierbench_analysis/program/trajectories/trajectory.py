@@ -8,8 +8,10 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from barrierbench_analysis.io.axes import OURS, Axes
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.program.mesh_arrays import SUFFIXES, MeshArrays, read_frame_file
+from barrierbench_analysis.program.film_files.film import Step
+from barrierbench_analysis.program.mesh_arrays import MESHES, MeshArrays, read_frame_file
 
 MOST_METRES = 1e15  # that the program takes of reach, thickness and obstacles
 
@@ -33,7 +35,9 @@ class Topology:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """`frames` reads [n_vertices, 3] m anew by every call; Errors of it: UserError with the file."""
+    """`frames` reads [n_vertices, 3] anew by every call, of a reader in the unit and axes of the file, of
+    read_trajectory in m with z up. Errors of it: UserError with the file.
+    """
 
     topology: Topology
     frames: Callable[[], Iterator[np.ndarray]]
@@ -46,9 +50,10 @@ class Trajectory:
     notes: tuple[str, ...] = ()
     half_thickness_m: np.ndarray | None = None  # [n_vertices], where the frames themselves say it
     heard: Iterable[str] = ()  # notes that come while the frames are read
-    files: list[list[Path]] | None = None  # of every frame, its parts, where they are mesh files
+    files: list[list[Path | Step]] | None = None  # of every frame, its parts, where they are meshes
     displacement: str | None = None  # the field that is added to points at rest
     frame_numbers: list[float] | None = None  # times in frames of the program that wrote them, not in seconds
+    axes: Axes = OURS  # of the file
 
 
 def no_cells(n: int) -> np.ndarray:
@@ -139,10 +144,10 @@ def increasing(times_s: Sequence[float], place: Callable[[int], str]) -> list[fl
 # --- meshes
 
 
-def read_mesh(path: Path, fields: tuple[str, ...] = ()) -> MeshArrays:
+def read_mesh(path: Path | Step, fields: tuple[str, ...] = ()) -> MeshArrays:
     """Errors: UserError for a file that is not there, of another format, or broken."""
-    if path.suffix.lower() not in SUFFIXES:
-        raise UserError(f"{path}: extension {path.suffix!r}; allowed: {', '.join(SUFFIXES)}")
+    if path.suffix.lower() not in MESHES:
+        raise UserError(f"{path}: extension {path.suffix!r}; allowed: {', '.join(MESHES)}")
     return read_frame_file(path, fields)
 
 
@@ -151,7 +156,7 @@ def topology_of_mesh(mesh: MeshArrays) -> Topology:
     return Topology(len(mesh.points), mesh.triangles, mesh.segments, mesh.tetrahedra, polygons)
 
 
-def same_topology(path: Path, first: MeshArrays, other: MeshArrays) -> None:
+def same_topology(path: Path | Step, first: MeshArrays, other: MeshArrays) -> None:
     """Errors: UserError with the first difference."""
     if len(first.points) != len(other.points):
         raise UserError(f"{path}: {len(other.points)} vertices; the first frame has {len(first.points)}")

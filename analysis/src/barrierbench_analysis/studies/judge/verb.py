@@ -12,7 +12,7 @@ import numpy as np
 
 from barrierbench_analysis.io.errors import UserError, reported
 from barrierbench_analysis.io.whole_file import check_can_be_written, write_whole
-from barrierbench_analysis.program.arguments import number_type, parser_of, positive_number
+from barrierbench_analysis.program.arguments import axes_arguments, number_type, parser_of
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from barrierbench_analysis.program.trajectories.trajectory import MOST_METRES, Trajectory, checked, with_parts
 
@@ -26,9 +26,10 @@ CLEAN, NOT_CLEAN = 0, 1
 FILES = ("judgement.json", "judgement.html")  # record and page
 WIDE_M = 100.0  # beyond it a note asks for the unit: millimetres look like that
 DOC = """TRAJECTORY: a folder of numbered frames (OBJ, PLY, STL, VTU, VTP, VTK, MSH, VTM), a .pvd collection,
-.pc2, .mdd, .npz, or a run of barrierbench. What its files do not say (obstacles, rods, thickness, densities):
---about FILE (configs/schema/judge.schema.json). Every frame is judged by exact signs, and the straight line
-from each frame to the next as a motion. Exit 0: clean, 1: not, 2: cannot be judged."""
+.pc2, .mdd, .npz, USD, Alembic (.abc), VTKHDF, or a run of barrierbench. What its files do not say (obstacles,
+rods, thickness, densities): --about FILE (configs/schema/judge.schema.json). Every frame is judged by exact
+signs, and the straight line from each frame to the next as a motion. Exit 0: clean, 1: not, 2: cannot be
+judged."""
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
@@ -58,12 +59,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--reference", type=Path, metavar="TRAJECTORY", help="another one of the same vertices: how far apart"
     )
-    parser.add_argument(
-        "--scale",
-        type=positive_number,
-        default=1.0,
-        help="of all coordinates of the frames; 0.001: they are in mm",
-    )
+    axes_arguments(parser, "TRAJECTORY")
     parser.add_argument(
         "--reach",
         type=number_type(
@@ -84,17 +80,12 @@ def parse(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def scaled(trajectory: Trajectory, scale: float) -> Trajectory:
-    if scale == 1.0:
-        return trajectory
-    of_one = np.errstate(over="ignore")(lambda x: x * scale)  # the verdict reports what is not finite
-    return replace(trajectory, frames=lambda: map(of_one, trajectory.frames()))
-
-
 def read(options: argparse.Namespace) -> tuple[Trajectory, About]:
     """The trajectory with all that is known of it. Errors: UserError."""
-    found = read_trajectory(options.trajectory, options.topology, options.displacement)
-    found, _ = welded(scaled(found, options.scale), options.weld)
+    found = read_trajectory(
+        options.trajectory, options.topology, options.displacement, options.scale, options.up
+    )
+    found, _ = welded(found, options.weld)
     data, found = with_cells(found, options.about)
     topology, notes = with_parts(checked(found).topology)
     found = replace(found, topology=topology, notes=found.notes + notes)
