@@ -216,6 +216,11 @@ def test_what_crosses_is_seen_and_what_does_not_is_clean(program, tmp_path):
     assert judge(tmp_path, stage_of(tmp_path / "b.usd", [APART, APART + 0.5]))[0] == 0
 
 
+def test_numbers_that_are_none_are_the_verdict(program, tmp_path):
+    code, record = judge(tmp_path, stage_of(tmp_path / "a.usd", [APART, APART * np.nan]))
+    assert (code, record["verdict"]) == (1, "not_finite")
+
+
 def test_a_mesh_of_a_film_is_its_first_frame(program, tmp_path, capsys):
     path = stage_of(tmp_path / "a.usd", [APART, CROSSED])
     assert mesh_file.main([str(path), str(tmp_path / "a.ply")]) == 0

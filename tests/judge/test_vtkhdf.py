@@ -232,6 +232,7 @@ def with_steps(times, count):
     (lambda group: grid(group, [APART], [[[0, 1, 9]]], [[5]]), "a.vtkhdf (the only step)"),
     (lambda group: head(group, "ImageData"), "/VTKHDF: found the type 'ImageData'; allowed: UnstructuredGrid, PolyData,"),
     (lambda group: head(group, "MultiBlockDataSet"), "a collection without a data set; one at least is needed"),
+    (lambda group: grid(group, [np.zeros((6, 2))], [FACES], [[5, 5]]), "a.vtkhdf (the only step): cannot be read: cannot reshape"),
     (without("Points"), "/VTKHDF/Points: none; rows 0 to 6 are needed"),
     (without("NumberOfPoints"), "/VTKHDF: no NumberOfPoints; VTKHDF needs it"),
     (without("Types"), "/VTKHDF/Types: none; rows 0 to 2 are needed"),

@@ -178,7 +178,7 @@ def _frame(answer: dict, arrays: dict[str, np.ndarray], fields: tuple[str, ...])
 
 def _of_step(step: Step, fields: tuple[str, ...]) -> MeshArrays:
     """A body in a frame of a film. The cells of a body are read once, and again where they change."""
-    shape = step.film.shape(step.body, step.frame)
+    shape = step.film.at(step.body, step.frame)
     known, mesh = step.film.known.get(step.body, (None, None))
     if known is None or not shape.has_cells_of(known) or len(shape.points) != len(known.points):
         mesh = _frame(*_of_shape(shape, str(step)), ())

@@ -2,9 +2,10 @@
 (formats.py).
 """
 
+import contextlib
 import importlib
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -36,6 +37,18 @@ class Shape:
         return all(np.array_equal(a, b) for a, b in zip(mine, its))
 
 
+@contextlib.contextmanager
+def readable(what: str) -> Iterator[None]:
+    """Faults of libraries, which a damaged file meets in any way, as UserError."""
+    try:
+        yield
+    except UserError:
+        raise
+    except (RuntimeError, ValueError, LookupError, TypeError, OSError) as error:
+        why = " ".join(str(error).split()) or type(error).__name__
+        raise UserError(f"{what}: cannot be read: {why}") from None
+
+
 def joined(parts: list[Shape]) -> Shape:
     """One after the other, without fields."""
     before = np.cumsum([0, *(len(part.points) for part in parts)])
@@ -55,9 +68,14 @@ class FilmFile:
     notes: tuple[str, ...] = ()
     known: dict[int, tuple[Shape, object]] = field(default_factory=dict)  # of a body, and what it was read as
 
+    def at(self, body: int, frame: int) -> Shape:
+        """Errors: UserError, also for what the library of the format cannot read."""
+        with readable(str(Step(self, body, frame))):
+            return self.shape(body, frame)
+
     def frame(self, number: int) -> Shape:
-        """All bodies, one after the other."""
-        return joined([self.shape(body, number) for body in range(len(self.bodies))])
+        """All bodies, one after the other. Errors: as `at`."""
+        return joined([self.at(body, number) for body in range(len(self.bodies))])
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from .alembic import of_alembic
-from .film import FilmFile
+from .film import FilmFile, readable
 from .usd import of_usd
 from .vtkhdf import of_vtkhdf
 
@@ -17,4 +17,5 @@ FILMS: dict[str, Callable[[Path], FilmFile]] = {
 
 def opened_film(path: Path) -> FilmFile:
     """Errors: UserError: no such file, of another format, broken, without a body, or no package for it."""
-    return FILMS[path.suffix.lower()](path)
+    with readable(str(path)):
+        return FILMS[path.suffix.lower()](path)
