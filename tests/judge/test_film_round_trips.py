@@ -65,6 +65,10 @@ def test_points_alone_are_a_film_without_cells(program, tmp_path, kind):
     found = read_trajectory(tmp_path / f"frame.{kind}")
     assert found.topology.n_vertices == 12 and not len(found.topology.triangles)
     np.testing.assert_array_equal(list(found.frames()), POINTS.astype("<f4").astype(float))
+    cells = "".join("v %r %r %r\n" % tuple(p) for p in POINTS[0].tolist()) + "f 1 2 3\nf 4 5 6\n"
+    (tmp_path / "cells.obj").write_text(cells)
+    found = read_trajectory(tmp_path / f"frame.{kind}", topology=tmp_path / "cells.obj")
+    assert found.topology.triangles.tolist() == [[0, 1, 2], [3, 4, 5]]
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -98,13 +98,13 @@ def test_crossing_blocks_of_a_collection_are_bodies_that_cross(program, tmp_path
         for index, (name, x) in enumerate((("spear", SPEAR), ("floor", FLOOR))):
             block = group.create_group(name)
             polygons(block, [x], Polygons=[[[0, 1, 2]]])
-            block.attrs["Index"] = 1 - index
+            block.attrs["Index"] = index
         assembly = group.create_group("Assembly")
         assembly["floor"] = h5py.SoftLink("/VTKHDF/floor")
         group.create_group("empty").attrs["Index"] = 2
 
     code, record = judge(tmp_path, file_of(tmp_path, fill))
-    assert (code, record["verdict"], record["trajectory"]["bodies"]) == (1, "penetrates", ["floor", "spear"])
+    assert (code, record["verdict"], record["trajectory"]["bodies"]) == (1, "penetrates", ["spear", "floor"])
 
 
 # --- steps

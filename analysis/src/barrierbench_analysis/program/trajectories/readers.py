@@ -150,7 +150,7 @@ def topology_of(mesh: Path, trajectory: Trajectory) -> Topology:
     if has_cells(have) or have.names:
         raise UserError(
             f"--topology {mesh}: the frames of {trajectory.source} have cells of their own; allowed: for "
-            "frames without any (.pc2, .mdd, .npz)"
+            "frames without any (.pc2, .mdd, .npz, points of USD and Alembic)"
         )
     found = topology_of_mesh(read_mesh(mesh))
     if found.n_vertices != n:
