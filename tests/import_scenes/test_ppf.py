@@ -20,7 +20,7 @@ def test_the_whole_session(imported, session):
     made = imported(session())
     assert made.scene["gravity_m_per_s2"] == [0, -9.8, 0]
     assert made.config["time"] == {"dt_s": 0.01, "steps": 20}  # 12 frames of 1/60 s
-    assert made.config["formulation"] == {"name": "cubic_dynamic", "d_hat_m": pytest.approx(2e-3)}
+    assert made.config["formulation"] == {"name": "cubic_dynamic_lagged", "d_hat_m": pytest.approx(2e-3)}
     assert made.config["friction"] == {"mu": 0.0, "combine": "max"}
     assert made.scene["obstacles"] == [{"name": "wall_0", "kind": "plane", "point_m": [0, 0, 0], "axis": [0, 1, 0], "friction": 0.1}]
     body = made.scene["bodies"][0]

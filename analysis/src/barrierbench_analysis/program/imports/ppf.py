@@ -13,6 +13,7 @@ from .ppf_elements import KINDS, Elements, material_of
 from .ppf_obstacles import Obstacles
 from .ppf_session import Session
 
+FORMULATION = "cubic_dynamic_lagged"
 SHAPES = {"cubic": "cubic", "quad": "quadratic", "log": "log"}
 NOT_HERE = "the solver and its tolerances are those of this program"
 KNOWN = (
@@ -27,7 +28,9 @@ KNOWN = (
     ),
     *(
         (f"param.toml#/param/{key}", "what is written is said by /output of the config")
-        for key in "keep_states keep_verts auto_save save_state_on_finish checkpoints fake_crash_frame".split()
+        for key in (
+            "keep_states keep_verts auto_save save_state_on_finish checkpoints fake_crash_frame"
+        ).split()
     ),
     ("param.toml#/param/playback", "time runs at its own speed"),
     ("param.toml#/param/inactive_momentum", "bodies have inertia"),
@@ -144,13 +147,16 @@ class Scene:
         barrier = session.value("barrier", "cubic")
         if barrier not in SHAPES:
             raise card.refuse(session.at("barrier"), barrier, ", ".join(SHAPES))
-        card.mapped(
-            session.at("barrier"), "/formulation", "with the elasticity-inclusive stiffness of Ando 2024"
+        card.changed(
+            session.at("barrier"),
+            f"{barrier}, its stiffness anew in every iteration",
+            f"{FORMULATION}, its stiffness anew in every step",
+            "Newton's method goes on to its tolerance, and a stiffness of each iteration does not settle",
         )
         shape = {} if barrier == "cubic" else {"shape": SHAPES[barrier]}
         d_hat = float(np.median(self.elements.gaps)) if len(self.elements.gaps) else 1e-3
         made.settings |= {
-            "formulation": {"name": "cubic_dynamic", "d_hat_m": d_hat, **shape},
+            "formulation": {"name": FORMULATION, "d_hat_m": d_hat, **shape},
             "matching": {"rule": "as_given"},
         }
         mode = session.value("friction_mode", "min")
