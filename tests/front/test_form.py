@@ -58,7 +58,7 @@ def test_users_see_one_kind_of_error():
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ClassDef) and any(isinstance(base, ast.Name) and base.id.endswith(("Error", "Exception")) for base in node.bases):
                 classes[node.name] = [base.id for base in node.bases]
-    assert classes == {"UserError": ["ValueError"], "RecordError": ["UserError"], "FormulaError": ["UserError"], "NoReference": ["ValueError"], "NotFinite": ["ValueError"], "NoHistory": ["Exception"], "RepeatedKey": ["ValueError"]}
+    assert classes == {"UserError": ["ValueError"], "RecordError": ["UserError"], "FormulaError": ["UserError"], "NoReference": ["ValueError"], "NotFinite": ["ValueError"], "NoHistory": ["Exception"], "RepeatedKey": ["ValueError"], "NoExpression": ["ValueError"], "NotAtRest": ["ValueError"]}
 
 
 def test_one_place_starts_the_program():
