@@ -10,6 +10,7 @@
 #include "core/audit/enclosed.hpp"
 #include "core/base/record/phase_times.hpp"
 #include "core/math/error.hpp"
+#include "experiments/judge/elastic_energies.hpp"
 #include "experiments/judge/frame_stream.hpp"
 
 namespace bb::judge {
@@ -28,7 +29,9 @@ class Judge {
       : subject_(subject),
         audit_(subject.mesh),
         closed_(audit_.mesh(), subject.names.first_vertex, audit_.vertices()),
-        gap_counts_(bins_a_decade * decades + 1, 0) {}
+        gap_counts_(bins_a_decade * decades + 1, 0) {
+    if (subject.elastic) elastic_.emplace(*subject.elastic, subject.mesh.prescribed);
+  }
 
   Json frame(const Positions& x) {
     const double start = now_s();
@@ -39,6 +42,7 @@ class Judge {
     if (x.allFinite()) {
       add_gaps(x, line);
       add_sides(x, line);
+      add_energies(x, line);
     }
     last_ = x;
     seconds_ += now_s() - start;
@@ -102,6 +106,12 @@ class Judge {
       line["deepest"] = words(*found.deepest);
       line["deepest_m"] = found.deepest_m;
     }
+  }
+
+  void add_energies(const Positions& x, Json& line) {
+    if (!elastic_) return;
+    line["elastic_J"] = elastic_->energies(x);
+    line["work_of_given_J"] = elastic_->work_of_given(x);
   }
 
   void add_motion(const Positions& x, int number, Json& line) {
@@ -174,6 +184,7 @@ class Judge {
   const Subject& subject_;
   audit::Audit audit_;
   audit::ClosedBodies closed_;
+  std::optional<ElasticEnergies> elastic_;
   Positions last_;
   std::optional<audit::Enclosed> first_sides_, sides_;
   std::vector<long> gap_counts_;

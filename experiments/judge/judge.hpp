@@ -17,6 +17,7 @@ struct Answer {
 /// gaps, and of the motion that led to it: certified, passages (proven on the straight line; a program's own path
 /// between its frames is not known), unproven; vertices that are inside a closed body, and those that changed sides of
 /// one since the frame before: these passed through it on whatever path.
+/// Where materials are given: elastic energies, and the work that the given vertices do against elastic forces.
 /// Errors: ConfigError from the stream, and when it holds no frame. Cost: a state's audit, a motion's and two gaps a
 /// frame; O(vertices + primitives) memory.
 Answer judge(const Subject& subject, std::istream& frames, std::ostream& out);

@@ -181,6 +181,19 @@ void read_vertices(Keys& keys, Subject& out) {
     throw ConfigError(keys.at("half_thickness_m"), fmt::format("{} numbers", found), fmt::format("{}", n));
 }
 
+void read_elastic(Keys& keys, Subject& out) {
+  const json* value = keys.find("elastic");
+  if (!value) return;
+  Keys given(*value, keys.at("elastic"));
+  ElasticPart part;
+  part.config = given.word("config", "the path of a config");
+  given.each("vertices", [&](const json& vertex, const std::string& where) {
+    part.vertices.push_back(Keys::integer_of(vertex, where, 0, out.n_vertices - 1));
+  });
+  given.finish();
+  out.elastic = std::move(part);
+}
+
 /// Vertices of no triangle and no segment; those that obstacles move with are no part of the surface.
 void set_particles(Subject& out) {
   std::vector<int> all(static_cast<std::size_t>(out.n_vertices));
@@ -211,6 +224,7 @@ Subject read_subject(const std::string& path) {
   read_bodies(keys, out);
   read_obstacles(keys, out);
   read_vertices(keys, out);
+  read_elastic(keys, out);
   set_particles(out);
   keys.finish();
   if (triangles.empty() && segments.empty() && out.mesh.obstacles.empty()) {

@@ -2,10 +2,12 @@
 // (analysis/src/barrierbench_analysis/studies/judge) writes from the files of any program.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/audit/pair_text.hpp"
 #include "core/audit/surface.hpp"
+#include "experiments/judge/elastic_energies.hpp"
 
 namespace bb::judge {
 
@@ -17,6 +19,7 @@ struct Subject {
   int n_vertices = 0;
   double reach_m = 0;      // gaps above it are not measured
   double tolerance_m = 0;  // see Audit::check_motion
+  std::optional<ElasticPart> elastic;
 };
 
 /// The keys (all but the first three may be absent):
@@ -26,6 +29,7 @@ struct Subject {
 ///   given [] prescribed vertices, which the scene moves; half_thickness_m [n_vertices]; tolerance_m; planar
 ///   obstacles [{name, kind, point_m, axis, radius_m, inside, vertex}]: kind plane, sphere or cylinder; one with a
 ///   vertex is where that is in each frame, and the vertex is prescribed and on no surface
+///   elastic {config, vertices}: a file with the bodies that have a material, and which vertex each of its vertices is
 /// Edges are made of the triangles and segments (planar: of boundary edges); vertices of neither are particles.
 /// Errors: ConfigError with file and pointer for every key that is wrong or unknown, and for a subject without any
 /// triangle, segment or obstacle: nothing of it could be judged.

@@ -17,6 +17,11 @@ class About:
     given: np.ndarray  # vertices that the scene moves
     half_thickness_m: np.ndarray | None  # [n_vertices]
     density: dict[str, float] = field(default_factory=dict)
+    materials: dict[str, dict] = field(default_factory=dict)  # of a body: keys of a config's material
+    rest_m: np.ndarray | None = None  # [n_vertices, 3]; None: the first frame
+    paths_m: dict[int, np.ndarray] = field(
+        default_factory=dict
+    )  # number of an obstacle that moves: [frames, 3]
     dt_s: float | None = None
     gravity_m_s2: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
@@ -103,6 +108,47 @@ def _half_thickness(data: dict, path: Path, trajectory: Trajectory) -> np.ndarra
     return half
 
 
+DENSITIES = ("density_kg_per_m2", "line_density_kg_per_m", "solid_density_kg_per_m3")  # keys of materials
+
+
+def _densities(data: dict, path: Path, trajectory: Trajectory) -> dict[str, float]:
+    """By name of a body, those that materials state too. Errors: UserError for a body with two."""
+    out = dict(data.get("density", {}))
+    for name in out:
+        _body(name, path, f"density/{name}", trajectory)
+    for name, material in data.get("materials", {}).items():
+        _body(name, path, f"materials/{name}", trajectory)
+        keys = [key for key in DENSITIES if key in material]
+        if name in out and keys:
+            raise refused(path, f"density/{name}", out[name], f"nothing beside materials/{name}/{keys[0]}")
+        if len(keys) > 1:
+            raise refused(path, f"materials/{name}/{keys[1]}", material[keys[1]], "one density of a body")
+        if keys:
+            out[name] = material[keys[0]]
+    return out
+
+
+def _rest(data: dict, path: Path, trajectory: Trajectory) -> np.ndarray | None:
+    if "rest_m" not in data:
+        return None
+    rest, n = np.array(data["rest_m"], float), trajectory.topology.n_vertices
+    if len(rest) != n:
+        raise refused(path, "rest_m", len(rest), f"a list of {n} points")
+    return rest
+
+
+def _paths(trajectory: Trajectory, path: Path) -> dict[int, np.ndarray]:
+    """Of the obstacles with `points_m`."""
+    out, frames = {}, len(trajectory.labels)
+    for k, obstacle in enumerate(trajectory.obstacles):
+        if "points_m" in obstacle:
+            if len(obstacle["points_m"]) != frames:
+                found, place = len(obstacle["points_m"]), f"obstacles/{obstacle.get('name', k)}/points_m"
+                raise refused(path, place, found, f"a list of {frames} points, one for each frame,")
+            out[k] = np.array(obstacle["points_m"], float)
+    return out
+
+
 def about_of(data: dict, path: Path | None, trajectory: Trajectory) -> About:
     """What refers to bodies by name. Errors: UserError with the place in the file."""
     n = trajectory.topology.n_vertices
@@ -111,16 +157,19 @@ def about_of(data: dict, path: Path | None, trajectory: Trajectory) -> About:
     for k, vertex in enumerate(vertices):
         if vertex >= n:
             raise refused(path, f"given_vertices/{k}", vertex, f"a number below {n}")
-    for name in data.get("density", {}):
-        _body(name, path, f"density/{name}", trajectory)
-    if "density" in data and data.get("dt_s") is None and trajectory.times_s is None:
-        raise UserError(f"{path}#/density: needs times of the frames for velocities: dt_s")
+    density = _densities(data, path, trajectory)
+    if density and data.get("dt_s") is None and trajectory.times_s is None:
+        place = "density" if "density" in data else "materials"
+        raise UserError(f"{path}#/{place}: needs times of the frames for velocities: dt_s")
     if not np.isfinite(data.get("dt_s", 0.0) * len(trajectory.labels)):
         raise refused(path, "dt_s", data["dt_s"], "a step with which all times are finite")
     return About(
         np.unique(np.concatenate([*given, np.array(vertices, int)]).astype(int)),
         _half_thickness(data, path, trajectory),
-        data.get("density", {}),
+        density,
+        data.get("materials", {}),
+        _rest(data, path, trajectory),
+        _paths(trajectory, path),
         data.get("dt_s"),
         tuple(data.get("gravity_m_s2", (0.0, 0.0, 0.0))),
     )

@@ -16,6 +16,7 @@ from barrierbench_analysis.program.start import piped
 from barrierbench_analysis.program.trajectories.trajectory import MOST_METRES, Trajectory, surface_of
 
 from .about import About
+from .materials import CONFIG, written
 
 CROSSED, CLEAN = 1, 0  # exit codes of the program that are answers
 REACH_SHARE = 0.1  # of the mean edge of the first frame: gaps above it are not measured
@@ -33,43 +34,51 @@ def _reach_of(first: np.ndarray, sides: np.ndarray) -> float:
 def subject_of(trajectory: Trajectory, about: About, first: np.ndarray, reach_m: float | None) -> dict:
     """barrierbench.subject/1."""
     t = trajectory.topology
+    n, moving = t.n_vertices, list(about.paths_m)  # an obstacle that moves has a vertex behind all others
     triangles = surface_of(t)
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]], t.segments])
     subject = {
         "schema": "barrierbench.subject/1",
-        "n_vertices": t.n_vertices,
+        "n_vertices": n + len(moving),
         "reach_m": _reach_of(first, sides) if reach_m is None else reach_m,
         "planar": trajectory.planar,
         "bodies": [{"name": name, "first_vertex": first} for name, first in zip(t.names, t.first_vertex)],
         "triangles": triangles.tolist(),
         "segments": t.segments.tolist(),
         "given": about.given.tolist(),
-        "obstacles": trajectory.obstacles,
+        "obstacles": [
+            {key: value for key, value in obstacle.items() if key != "points_m"}
+            | ({"vertex": n + moving.index(k)} if k in moving else {})
+            for k, obstacle in enumerate(trajectory.obstacles)
+        ],
     }
     if about.half_thickness_m is not None:
-        subject["half_thickness_m"] = about.half_thickness_m.tolist()
+        subject["half_thickness_m"] = about.half_thickness_m.tolist() + [0.0] * len(moving)
     return subject
 
 
 def audited(
-    trajectory: Trajectory, subject: dict, each: Callable[[int, np.ndarray], None]
+    trajectory: Trajectory, about: About, subject: dict, each: Callable[[int, np.ndarray], None]
 ) -> tuple[list[dict], dict, float]:
     """Answers of all frames, the total, and seconds that reading took. each: called with every frame as it is
     handed on. Errors: UserError of the trajectory, or with what the program says.
     """
     with tempfile.TemporaryDirectory(prefix="barrierbench-judge-") as folder:
         path = Path(folder) / "subject.json"
+        if elastic := written(trajectory, about, Path(folder)):
+            subject = subject | {"elastic": elastic}
         path.write_text(json.dumps(subject, allow_nan=False))
         with piped("audit", str(path)) as child, ThreadPoolExecutor(2) as pool:
             answers, errors = (pool.submit(stream.read) for stream in (child.stdout, child.stderr))
             try:
-                reading = _hand_on(trajectory.frames(), child, each)
+                reading = _hand_on(trajectory.frames(), about.paths_m, child, each)
             except BaseException:
                 child.kill()
                 raise
     if child.returncode not in (CLEAN, CROSSED):
         why = errors.result().decode().strip()
         why = why.replace(str(path), f"what was handed on of {trajectory.source}")
+        why = why.replace(str(Path(folder) / CONFIG), "the materials of --about as a config")
         raise UserError(
             f"the program's audit ended with {child.returncode}: {why}", passed_on(child.returncode)
         )
@@ -77,14 +86,17 @@ def audited(
     return lines[:-1], lines[-1]["total"], reading
 
 
-def _hand_on(frames: Iterator[np.ndarray], child: subprocess.Popen, each: Callable) -> float:
+def _hand_on(
+    frames: Iterator[np.ndarray], paths_m: dict[int, np.ndarray], child: subprocess.Popen, each: Callable
+) -> float:
     """Seconds that reading took. A program that no longer reads has written why; its exit code shows it."""
     reading, number = 0.0, 0
     start = time.perf_counter()
     with suppress(BrokenPipeError), child.stdin:
         for x in frames:
             reading += time.perf_counter() - start
-            child.stdin.write(np.ascontiguousarray(x, "<f8").data)
+            whole = np.concatenate([x, *(path[number : number + 1] for path in paths_m.values())])
+            child.stdin.write(np.ascontiguousarray(whole, "<f8").data)
             each(number, x)
             number += 1
             start = time.perf_counter()

@@ -7,6 +7,7 @@ import numpy as np
 from barrierbench_analysis.figures.style import NARROW_IN, WIDE_IN, plt, png
 from barrierbench_analysis.io.template import filled
 
+from .energy import words
 from .verdict import meaning
 
 TEMPLATE = Path(__file__).resolve().parent / "page.html"
@@ -50,8 +51,35 @@ def figure_of(record: dict) -> str:
     return png(figure, dpi=160)
 
 
+ENERGIES = (  # key of a frame: label, dash
+    ("kinetic_J", "kinetic, of the interval before", "-"),
+    ("gravity_J", "of gravity", "--"),
+    ("elastic_J", "elastic", ":"),
+)
+
+
+def energy_figure_of(record: dict) -> str | None:
+    """Energies over the frames, that of gravity from its first value; None without elastic ones."""
+    if not any("elastic_J" in frame for frame in record["frames"]):
+        return None
+    times = record["trajectory"]["times_s"]
+    across = np.arange(len(record["frames"])) if times is None else np.array(times)
+    figure, axes = plt.subplots(figsize=(NARROW_IN * 1.3, NARROW_IN * 0.8), layout="constrained")
+    for key, word, dash in ENERGIES:
+        series = _series(record, key)
+        if key == "gravity_J":
+            series = series - series[0]
+        if np.isfinite(series).any():
+            axes.plot(across, series, dash, label=word)
+    axes.set_xlabel("frame" if times is None else "time (s)")
+    axes.set_ylabel("energy (J)")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
+    return png(figure, dpi=160)
+
+
 def page_of(record: dict) -> str:
     keys = ("frame", "what", "count", "pair", "depth_m")
     shown = [[row[key] for key in keys] for row in record["findings"][:MOST_ROWS]]
-    more = {"meaning": meaning(record), "figure": figure_of(record), "shown": shown, "most": MOST_ROWS}
+    more = {"energy_figure": energy_figure_of(record), "energy_words": words(record["energy"])}
+    more |= {"meaning": meaning(record), "figure": figure_of(record), "shown": shown, "most": MOST_ROWS}
     return filled(TEMPLATE, record | more)

@@ -26,7 +26,7 @@ def _frames_of(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 class Physics:
-    """Of the frames of one trajectory, in order; the first is the rest."""
+    """Of the frames of one trajectory, in order."""
 
     @np.errstate(all="ignore")
     def __init__(self, topology: Topology, about: About, rest: np.ndarray, times_s: np.ndarray | None):

@@ -18,6 +18,7 @@ from barrierbench_analysis.program.trajectories.trajectory import MOST_METRES, T
 
 from .about import About, about_of, with_cells
 from .ask import audited, subject_of
+from .energy import Motion, energy_of, words
 from .physics import Physics, finite_or_none
 from .verdict import findings, meaning, verdict_of
 from .weld import seam_note, welded
@@ -107,6 +108,7 @@ class Watch:
     def __init__(self, trajectory: Trajectory, about: About, reference: Trajectory | None):
         self.trajectory, self.about = trajectory, about
         self.physics: Physics | None = None
+        self.motion: Motion | None = None
         self.rows: list[dict] = []
         self.reference = reference.frames() if reference else None
         self.largest_m = 0.0
@@ -118,11 +120,14 @@ class Watch:
     def __call__(self, number: int, x: np.ndarray) -> None:
         t = self.trajectory
         if self.physics is None:
-            self.physics = Physics(t.topology, self.about, x, times_of(t, self.about))
+            times, rest = times_of(t, self.about), x if self.about.rest_m is None else self.about.rest_m
+            self.physics = Physics(t.topology, self.about, rest, times)
+            self.motion = Motion(self.physics.mass, self.about, times)
             self.largest_m = float(np.ptp(x, axis=0).max())
             self.first = np.array(x)
         self.moves = self.moves or not np.array_equal(x, self.first, equal_nan=True)
         row = self.physics.of(number, x)
+        self.motion.add(number, x)
         if self.reference is not None and (other := next(self.reference, None)) is not None:
             apart = np.linalg.norm(x - other, axis=1)
             row["apart_max_m"] = finite_or_none(apart.max())
@@ -166,7 +171,7 @@ def judged(options: argparse.Namespace) -> dict:
     subject = subject_of(trajectory, about, first, options.reach)
     for name in FILES:
         check_can_be_written(options.out / name)
-    frames, total, reading_s = audited(trajectory, subject, watch)
+    frames, total, reading_s = audited(trajectory, about, subject, watch)
     for frame, row, label in zip(frames, watch.rows, trajectory.labels):
         frame |= row | {"label": label}
         volumes = frame.pop("volume_rel", {})  # the program says which bodies are closed
@@ -191,6 +196,7 @@ def judged(options: argparse.Namespace) -> dict:
         },
         "reach_m": subject["reach_m"],
         "total": total,
+        "energy": energy_of(trajectory.topology, about, watch.motion, frames),
         "findings": findings(frames, trajectory.labels, options.states_only),
         "frames": frames,
         "notes": notes_of(trajectory, watch),
@@ -225,6 +231,7 @@ def summary(record: dict) -> str:
         )
     if len(rows) > 5:
         lines.append(f"and {len(rows) - 5} more rows")
+    lines += words(record["energy"])
     return "\n".join([*lines, *(f"note: {note}" for note in record["notes"])])
 
 
