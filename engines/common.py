@@ -44,18 +44,20 @@ class Scene:
     v: np.ndarray  # [n, 3] m/s
     mass: np.ndarray  # [n] kg, 0 of given vertices
     triangles: np.ndarray  # [m, 3]
+    segments: np.ndarray  # [s, 2] of rods
     bodies: list[dict]
     obstacles: list[dict]
     given: np.ndarray  # [p] vertices
     given_x: np.ndarray  # [frames or 1, p, 3] m
+    friction: float  # Coulomb's coefficient of all surfaces
 
     def given_at(self, frame: float) -> np.ndarray:
         """[p, 3] m, at a time in frames; on a straight line between two frames."""
-        last = len(self.given_x) - 1
-        k = min(int(frame), last)
-        if k == last:
-            return self.given_x[last]
-        return self.given_x[k] + (frame - k) * (self.given_x[k + 1] - self.given_x[k])
+        return _between(self.given_x, frame)
+
+    def point_of(self, obstacle: dict, frame: float) -> np.ndarray:
+        """[3] m, of an obstacle that may move, at a time in frames."""
+        return _between(np.array(obstacle.get("points_m") or [obstacle["point_m"]], float), frame)
 
     def body_of(self) -> np.ndarray:
         """[n] number of the body of each vertex."""
@@ -64,9 +66,45 @@ class Scene:
 
     def triangles_of(self, body: dict) -> np.ndarray:
         """[k, 3], in the numbers of the body."""
-        first, n = body["first_vertex"], body["vertices"]
-        inside = (self.triangles[:, 0] >= first) & (self.triangles[:, 0] < first + n)
-        return self.triangles[inside] - first
+        return _own(self.triangles, body)
+
+    def segments_of(self, body: dict) -> np.ndarray:
+        """[k, 2], in the numbers of the body."""
+        return _own(self.segments, body)
+
+
+def _own(cells: np.ndarray, body: dict) -> np.ndarray:
+    first, n = body["first_vertex"], body["vertices"]
+    inside = (cells[:, 0] >= first) & (cells[:, 0] < first + n)
+    return cells[inside] - first
+
+
+def _between(states: np.ndarray, frame: float) -> np.ndarray:
+    """On a straight line between two states; the last one stays."""
+    last = len(states) - 1
+    k = min(int(frame), last)
+    return states[last] if k == last else states[k] + (frame - k) * (states[k + 1] - states[k])
+
+
+def require(scene: Scene, *, friction: bool = False, motion: bool = False, rods: bool = False) -> None:
+    """What an engine has words for. Errors: Refused with the first that it has none for."""
+    if scene.friction > 0 and not friction:
+        raise Refused("friction is not mapped; surfaces without friction are")
+    for o in scene.obstacles:
+        if "points_m" in o and not motion:
+            raise Refused(f"obstacle {o['name']}: moves; obstacles that rest are mapped")
+    for body in scene.bodies:
+        if "rod" in body and not rods:
+            raise Refused(f"body {body['name']}: is a rod; sheets are mapped")
+
+
+def corners_of(segments: np.ndarray) -> np.ndarray:
+    """[c, 3] end, vertex, other end of every vertex between two segments."""
+    ends: dict[int, list[int]] = {}
+    for a, b in segments.tolist():
+        ends.setdefault(a, []).append(b)
+        ends.setdefault(b, []).append(a)
+    return np.array([[e[0], v, e[1]] for v, e in ends.items() if len(e) == 2], int).reshape(-1, 3)
 
 
 def read_scene(path: Path) -> Scene:
@@ -83,12 +121,14 @@ def read_scene(path: Path) -> Scene:
         table("velocities_m_s", 3),
         np.array(data["mass_kg"], float),
         np.array(data["triangles"], int).reshape(-1, 3),
+        np.array(data.get("segments", []), int).reshape(-1, 2),
         data["bodies"],
         data["obstacles"],
         given,
         np.array(data["given"]["positions_m"], float).reshape(
             len(data["given"]["positions_m"]), len(given), 3
         ),
+        data.get("friction", 0.0),
     )
 
 
@@ -209,6 +249,7 @@ def leave(out: Path, frames: Frames, who: dict, notes: dict) -> None:
         positions=np.array(frames.states),
         triangles=scene.triangles,
         times_s=scene.dt_s * np.arange(len(frames.states)),
+        **({"segments": scene.segments} if len(scene.segments) else {}),
     )
     record = {
         "schema": RUN,

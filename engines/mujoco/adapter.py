@@ -13,6 +13,8 @@ import common  # noqa: E402
 
 HEAVY = 1e6  # times the mass of the scene: a given vertex, which no force moves within a step
 PLANE_HALF_M = 10.0
+AXES, UNITS = "xyz", ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+CURVED = 1e-6  # angle at rest, rad: less is a straight rod whose coordinates are rounded
 
 
 def words(values):
@@ -21,10 +23,67 @@ def words(values):
 
 def point(k, x, mass, given):
     """A vertex: a mass without size on three slides; gravity does not act on a given one."""
-    slides = "".join(f'<joint type="slide" axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
+    slides = "".join(
+        f'<joint name="{axis}{k}" type="slide" axis="{words(way)}"/>' for axis, way in zip(AXES, UNITS)
+    )
     around = words(3 * [mass * 1e-4])
     inertia = f'<inertial pos="0 0 0" mass="{mass:.17g}" diaginertia="{around}"/>'
-    return f'<body name="v{k}" pos="{words(x.tolist())}" gravcomp="{int(given)}">{slides}{inertia}</body>'
+    site = f'<site name="s{k}"/>'
+    return (
+        f'<body name="v{k}" pos="{words(x.tolist())}" gravcomp="{int(given)}">{slides}{inertia}{site}</body>'
+    )
+
+
+def spring(a, b, stiffness, length):
+    """A tendon between two vertices: k/2 (l - l0)^2, implicit under the discrete integrator."""
+    sites = f'<site site="s{a}"/><site site="s{b}"/>'
+    return f'<spatial stiffness="{stiffness:.17g}" springlength="{length:.17g}">{sites}</spatial>'
+
+
+def bend(rest, corner, stiffness, name):
+    """Three fixed tendons, one an axis, whose length is the difference u of both segments over their lengths: the
+    energy k/2 |u|^2 is k/2 (2 sin(angle/2))^2 where segments keep their lengths, ours k/2 angle^2. Without twist.
+    """
+    before, after = rest[corner[1]] - rest[corner[0]], rest[corner[2]] - rest[corner[1]]
+    a, b = np.linalg.norm(before), np.linalg.norm(after)
+    if np.linalg.norm(after / b - before / a) > CURVED:
+        raise common.Refused(f"body {name}: is curved at rest; rods that are straight there can bend")
+    parts = list(zip(corner, (1 / a, -(1 / a + 1 / b), 1 / b)))
+    return "".join(
+        f'<fixed stiffness="{stiffness:.17g}" springlength="0">'
+        + "".join(f'<joint joint="{axis}{v}" coef="{share:.17g}"/>' for v, share in parts)
+        + "</fixed>"
+        for axis in AXES
+    )
+
+
+def rod_tendons(scene, body, settings):
+    """Stretching and bending of a rod."""
+    rod, first = body["rod"], body["first_vertex"]
+    segments = scene.segments_of(body) + first
+    length = np.linalg.norm(scene.rest[segments[:, 1]] - scene.rest[segments[:, 0]], axis=1)
+    stretching = rod["stretching_N"] * settings["stretch_factor"]
+    out = [
+        spring(a, b, stretching / one, one) for (a, b), one in zip(segments.tolist(), length.tolist())
+    ]
+    bending = rod["bending_N_m2"] * settings["bending_factor"]
+    for corner in common.corners_of(segments).tolist() if bending > 0 else ():
+        a, v, b = scene.rest[corner]
+        mean = (np.linalg.norm(v - a) + np.linalg.norm(b - v)) / 2
+        out.append(bend(scene.rest, corner, bending / mean, body["name"]))
+    return "".join(out)
+
+
+def rod_surface(scene, body, settings):
+    """What of a rod meets others: a flex of capsules without any stiffness."""
+    first = body["first_vertex"]
+    names = " ".join(f"v{first + k}" for k in range(body["vertices"]))
+    ignored = 'contype="0" conaffinity="0"' if settings["contact"] == "none" else ""
+    return (
+        f'<flex name={quoteattr(body["name"])} dim="1" radius="{common.reach(body, settings["radius_m"]):.17g}"'
+        f' body="{names}" element="{words(scene.segments_of(body).ravel().tolist())}">'
+        f'<contact selfcollide="auto" condim="1" {ignored}/></flex>'
+    )
 
 
 def flex(scene, body, settings):
@@ -63,9 +122,14 @@ def geom(o, settings):
 
 
 def model_of(scene, settings, dt_s):
-    bare = [body["name"] for body in scene.bodies if "membrane" not in body]
+    bare = [body["name"] for body in scene.bodies if "membrane" not in body and "rod" not in body]
     if bare:
         raise common.Refused(f"body {bare[0]}: has no membrane; a flex needs one")
+    common.require(scene, rods=True)
+    rods = [body for body in scene.bodies if "rod" in body]
+    sheets = [body for body in scene.bodies if "rod" not in body]
+    if rods and settings["contact"] == "ipc":
+        raise common.Refused("contact ipc is of triangles; rods need --engine-set contact=penalty")
     mass = np.where(scene.mass > 0, scene.mass, 0)
     given = np.zeros(len(mass), bool)
     given[scene.given] = True
@@ -77,7 +141,9 @@ def model_of(scene, settings, dt_s):
         f' iterations="{settings["iterations"]}" tolerance="{settings["tolerance"]:.17g}"'
         f' gravity="{words(scene.gravity.tolist())}"><flag ipc="{ipc}"/></option><size memory="2G"/>'
         f"<worldbody>{''.join(geom(o, settings) for o in scene.obstacles)}{points}</worldbody>"
-        f"<deformable>{''.join(flex(scene, body, settings) for body in scene.bodies)}</deformable></mujoco>"
+        f"<deformable>{''.join(flex(scene, body, settings) for body in sheets)}"
+        f"{''.join(rod_surface(scene, body, settings) for body in rods)}</deformable>"
+        f"<tendon>{''.join(rod_tendons(scene, body, settings) for body in rods)}</tendon></mujoco>"
     )
     try:
         return mujoco.MjModel.from_xml_string(xml)

@@ -62,8 +62,8 @@ def hinge_unit(builder, k, settings):
     return float(np.mean(areas))
 
 
-def add_obstacle(builder, o):
-    free = newton.ModelBuilder.ShapeConfig(mu=0.0)
+def add_obstacle(builder, o, friction):
+    free = newton.ModelBuilder.ShapeConfig(mu=friction)
     if o["kind"] == "sphere" and not o["inside"]:
         at = wp.transform(wp.vec3(*o["point_m"]), UNTURNED)
         builder.add_shape_sphere(body=-1, xform=at, radius=o["radius_m"], cfg=free)
@@ -83,7 +83,7 @@ def model_of(scene, settings):
         add_body(builder, scene, body, settings)
     if settings["contact"]:
         for o in scene.obstacles:
-            add_obstacle(builder, o)
+            add_obstacle(builder, o, scene.friction)
     for k, mass in enumerate(scene.mass.tolist()):
         builder.particle_mass[k] = mass
     for k in scene.given.tolist():
@@ -94,7 +94,7 @@ def model_of(scene, settings):
     model = builder.finalize(device="cpu")
     model.soft_contact_ke = settings["contact_N_per_m"]
     model.soft_contact_kd = settings["contact_damping"]
-    model.soft_contact_mu = model.particle_mu = 0.0
+    model.soft_contact_mu = model.particle_mu = scene.friction
     return model
 
 
@@ -142,6 +142,7 @@ class Stepper:
 
 
 def simulate(scene, settings, frames, notes):
+    common.require(scene, friction=True)
     notes["version"] = newton.__version__
     Stepper(scene, settings, frames.dt_s).step(scene.given_at(0))  # kernels are compiled here
     stepper = Stepper(scene, settings, frames.dt_s)

@@ -15,9 +15,13 @@ ROOT_3 = 3**0.5
 
 
 def springs_of(scene, factor):
-    """[e, 2] edges, [e] rest lengths (m) and [e] stiffnesses (N/m) of every body with a membrane."""
+    """[e, 2] edges, [e] rest lengths (m) and [e] stiffnesses (N/m) of every body."""
     edges, stiffness = [], []
     for body in scene.bodies:
+        if "rod" in body:
+            edges.append(rod_edges(scene, body))
+            along = scene.rest[edges[-1][:, 1]] - scene.rest[edges[-1][:, 0]]
+            stiffness.append(body["rod"]["stretching_N"] / np.linalg.norm(along, axis=1) * factor)
         if "membrane" not in body:
             continue
         found, _ = common.edges_of(scene.triangles_of(body))
@@ -29,11 +33,18 @@ def springs_of(scene, factor):
     return edges, length, np.concatenate(stiffness)
 
 
-def obstacle_force(scene, x, stiffness):
-    """[n, 3] N of a penalty on the depth in each obstacle."""
+def rod_edges(scene, body):
+    """Its segments. A bending that is not 0 has no counterpart here."""
+    if body["rod"]["bending_N_m2"] > 0:
+        raise common.Refused(f"body {body['name']}: bending of rods is not mapped")
+    return scene.segments_of(body) + body["first_vertex"]
+
+
+def obstacle_force(scene, x, frame, stiffness):
+    """[n, 3] N of a penalty on the depth in each obstacle, at a time in frames."""
     force = np.zeros_like(x)
     for o in scene.obstacles:
-        away = x - o["point_m"]
+        away = x - scene.point_of(o, frame)
         if o["kind"] == "plane":
             normal = np.broadcast_to(np.array(o["axis"]), x.shape)
             gap = away @ np.array(o["axis"])
@@ -47,6 +58,7 @@ def obstacle_force(scene, x, stiffness):
 
 
 def simulate(scene, settings, frames, notes):
+    common.require(scene, motion=True, rods=True)
     edges, length, stiffness = springs_of(scene, settings["stretch_factor"])
     mass = scene.mass.copy()
     free = np.setdiff1d(np.flatnonzero(mass > 0), scene.given)
@@ -58,7 +70,7 @@ def simulate(scene, settings, frames, notes):
                 along = x[edges[:, 1]] - x[edges[:, 0]]
                 now = np.linalg.norm(along, axis=1)
                 pull = (stiffness * (now - length) / now)[:, None] * along
-                force = obstacle_force(scene, x, settings["obstacle_N_per_m"])
+                force = obstacle_force(scene, x, k + sub / frames.substeps, settings["obstacle_N_per_m"])
                 np.add.at(force, edges[:, 0], pull)
                 np.add.at(force, edges[:, 1], -pull)
                 v[free] += frames.dt_s * (scene.gravity + force[free] / mass[free, None])

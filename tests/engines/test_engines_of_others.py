@@ -112,13 +112,28 @@ def test_what_engines_do_not_share_is_refused_by_name(program):
         scene.exported(HANG, ["/strain_limit/enabled=true"])
 
 
-@pytest.mark.parametrize("name, term", [("trapped", "tetrahedra"), ("domino", "tetrahedra"), ("noodle", "springs"), ("codim", "springs")])
+@pytest.mark.parametrize("name, term", [("trapped", "tetrahedra"), ("domino", "tetrahedra"), ("codim", "tetrahedra")])
 def test_scenes_that_peers_cannot_run_are_refused_by_name_and_the_page_says_so(program, tmp_path, name, term):
     """The table of docs/results/engines.md has the times of ours that are kept."""
     entry = read_entry(name)
     write_config(entry, tmp_path / "scene.json")
     with pytest.raises(UserError, match=f"found {term} .*engines share no other term"):
         scene.exported(tmp_path / "scene.json")
+    assert_times_of_the_page(name)
+
+
+def test_rods_with_friction_are_exported_and_no_adapter_takes_both(program, here, tmp_path):
+    write_config(read_entry("noodle"), tmp_path / "scene.json")
+    found = scene.made(scene.exported(tmp_path / "scene.json"), Path("noodle"))
+    rod = found["bodies"][0]["rod"]
+    assert rod["stretching_N"] == pytest.approx(1e4) and rod["bending_N_m2"] > 0 and found["friction"] == 0.05
+    assert len(found["segments"]) == 9 * 60
+    done = launch.run(cards.read_card("template"), found, tmp_path / "out", "plain")
+    assert done["outcome"] == "refused" and "friction is not mapped" in done["detail"]
+    assert_times_of_the_page("noodle")
+
+
+def assert_times_of_the_page(name):
     kept = {row.place["formulation"]: row for row in rows_of(read_study("catalogue")) if row.place["scene"] == name}
     log, dynamic = kept["log"], kept["cubic_dynamic_consistent"]
     cells = f"| `{name}` | {log.seconds:g} s, {log.values['newton']} | {dynamic.seconds:g} s, {dynamic.values['newton']} |"

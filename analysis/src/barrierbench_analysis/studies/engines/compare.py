@@ -115,6 +115,9 @@ def believed(fit: dict) -> dict:
 
 def fits(study: Study) -> dict[str, dict]:
     """Factors and what is left of each "engine variant", or why it has `failed`."""
+    if "material" not in study.spec:
+        as_mapped = {"outcome": "as_mapped", "failed": "nothing is fitted; cards say what is mapped"}
+        return {f"{one['engine']} {one['variant']}": as_mapped for one in study.spec["engines"]}
     m = study.spec["material"]
     material = Material(m["youngs_N_per_m"], m["poisson"], m["density_kg_per_m2"], m["hinge_J"])
     folder, tests, out = study.folder / "material", None, {}
@@ -202,6 +205,7 @@ def of_scene(
         "scene": name,
         "vertices": len(scene["positions_m"]),
         "triangles": len(scene["triangles"]),
+        **({"segments": len(scene["segments"])} if "segments" in scene else {}),
         "frames": scene["steps"],
         "frame_s": scene["dt_s"],
         "reference": _row(fine, scene, None),

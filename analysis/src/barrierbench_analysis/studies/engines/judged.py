@@ -13,6 +13,8 @@ from barrierbench_analysis.studies.judge import verb
 
 from .scene import about
 
+BALANCE = ("gained_J", "gained_of_every_second_frame_J", "lost_J", "exchanged_J", "why_not")  # of `energy`
+
 
 def width_of(scene: dict) -> float:
     """The longest side of the box around the start, m: what errors are relative to."""
@@ -68,4 +70,5 @@ def judge(folder: Path, scene: dict) -> dict:
         "depth_bodies_m": max(deep),
         "stretch_most": max((f.get("stretch_max") or 1.0 for f in frames), default=1.0),
         **energy_of(frames),
+        **{key: value for key, value in (record["energy"] or {}).items() if key in BALANCE},
     }

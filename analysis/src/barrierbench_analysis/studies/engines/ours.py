@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.frames import frames_of, read_scene
+from barrierbench_analysis.io.frames import frames_of
 from barrierbench_analysis.io.record_file import read_record
 from barrierbench_analysis.io.whole_file import bytes_of, write_whole, write_whole_bytes
 from barrierbench_analysis.program.start import started
@@ -68,16 +67,17 @@ def run(
 
 
 def _write_frames(record: dict, folder: Path, scene: dict, out: Path, parts: int) -> None:
-    """Of the start and of the ends of frames: step `parts` - 1 ends the first. Obstacles that rest stand for
-    no vertex.
+    """Of the start and of the ends of frames: step `parts` - 1 ends the first. Vertices that stand for
+    obstacles that move come last, and are left out.
     """
-    if any("vertex" in o for o in read_scene(record, folder)["obstacles"]):
-        raise UserError(f"{folder}: an obstacle moves")
+    n = len(scene["positions_m"])
     steps = [-1, *range(parts - 1, scene["steps"] * parts, parts)]
-    states = np.array([frame.vertices for frame in frames_of(record, folder, steps)], float)
+    states = np.array([frame.vertices[:n] for frame in frames_of(record, folder, steps)], float)
     arrays = {
         "positions": states,
         "triangles": np.array(scene["triangles"], int).reshape(-1, 3),
         "times_s": scene["dt_s"] * np.arange(len(states)),
     }
+    if "segments" in scene:
+        arrays["segments"] = np.array(scene["segments"], int)
     write_whole_bytes(out / "frames.npz", bytes_of(lambda file: np.savez_compressed(file, **arrays)))

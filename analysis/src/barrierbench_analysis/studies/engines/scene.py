@@ -38,15 +38,20 @@ def _check(scene: dict, path: Path) -> None:
             raise refused(path, f"bodies/{k}/first_vertex", body["first_vertex"], f"{first}, in order,")
         first += body["vertices"]
     given = scene["given"]
-    named = [*given["vertices"], *(v for t in scene["triangles"] for v in t)]
+    cells = [*scene["triangles"], *scene.get("segments", [])]
+    named = [*given["vertices"], *(v for cell in cells for v in cell)]
     if named and max(named) >= n:
-        raise refused(path, "triangles or given/vertices", max(named), f"numbers below {n}")
+        raise refused(path, "triangles, segments or given/vertices", max(named), f"numbers below {n}")
     for k, frame in enumerate(given["positions_m"]):
         if len(frame) != len(given["vertices"]):
             raise refused(path, f"given/positions_m/{k}", len(frame), f"{len(given['vertices'])} points")
     if len(given["positions_m"]) not in (1, scene["steps"] + 1):
         wanted = f"1, or one more than {scene['steps']} steps,"
         raise refused(path, "given/positions_m", len(given["positions_m"]), wanted)
+    for k, o in enumerate(scene["obstacles"]):
+        if "points_m" in o and len(o["points_m"]) != scene["steps"] + 1:
+            wanted = f"one more than {scene['steps']} steps,"
+            raise refused(path, f"obstacles/{k}/points_m", len(o["points_m"]), wanted)
 
 
 def made(scene: dict, path: Path) -> dict:
@@ -66,28 +71,62 @@ def read(path: Path, sets: list[str] = ()) -> dict:
     return made(scene, path)
 
 
-def about(scene: dict) -> dict:
-    """barrierbench.judge/1 (./bench judge --about): bodies, obstacles, given vertices, densities."""
-    rest, mass = np.array(scene["rest_m"]), np.array(scene["mass_kg"])
+def _weights(rest: np.ndarray, scene: dict) -> np.ndarray:
+    """[n] area (m^2) or length (m) of the cells of a vertex, a share of each at each corner."""
     triangles = np.array(scene["triangles"], int).reshape(-1, 3)
+    segments = np.array(scene.get("segments", []), int).reshape(-1, 2)
     a, b = (rest[triangles[:, k]] - rest[triangles[:, 0]] for k in (1, 2))
-    area = np.linalg.norm(np.cross(a, b), axis=1) / 2
-    density = {}
+    sizes = (
+        (triangles, np.linalg.norm(np.cross(a, b), axis=1) / 2),
+        (segments, np.linalg.norm(rest[segments[:, 1]] - rest[segments[:, 0]], axis=1)),
+    )
+    share = np.zeros(len(rest))
+    for cells, size in sizes:
+        np.add.at(share, cells, (size / cells.shape[1])[:, None])
+    return share
+
+
+def _material(body: dict, density: float) -> dict:
+    """Of a body as a config has it: what `bench judge` computes elastic energies of."""
+    out = {"bending_J": body["hinge_J"]} if body["hinge_J"] > 0 else {}
+    if membrane := body.get("membrane"):
+        mu, lam = membrane["lame_mu_N_per_m"], membrane["lame_lambda_N_per_m"]
+        poisson = lam / (lam + 2 * mu)  # plane stress
+        out |= {"model": membrane["model"], "youngs_N_per_m": 2 * mu * (1 + poisson), "poisson": poisson}
+        out |= {"density_kg_per_m2": density}
+    if rod := body.get("rod"):
+        out |= {"rod_stretching_N": rod["stretching_N"], "rod_bending_N_m2": rod["bending_N_m2"]}
+        out |= {"rod_rest": "straight" if rod.get("straight") else "shape", "line_density_kg_per_m": density}
+    return out
+
+
+def about(scene: dict) -> dict:
+    """barrierbench.judge/1 (./bench judge --about): bodies, materials, obstacles, given vertices."""
+    rest, mass = np.array(scene["rest_m"]), np.array(scene["mass_kg"])
+    share = _weights(rest, scene)
+    density, materials = {}, {}
     for body in scene["bodies"]:
         first, last = body["first_vertex"], body["first_vertex"] + body["vertices"]
-        share = np.zeros(len(rest))
-        own = (triangles[:, 0] >= first) & (triangles[:, 0] < last)
-        np.add.at(share, triangles[own].ravel(), np.repeat(area[own] / 3, 3))
         free = np.flatnonzero(mass[first:last] > 0) + first  # given vertices have no mass in the scene
         if len(free) and share[free].sum() > 0:
-            density[body["name"]] = float(mass[free].sum() / share[free].sum())
-    keys = ("kind", "point_m", "axis", "radius_m", "inside", "name")
+            mean = float(mass[free].sum() / share[free].sum())
+            if "membrane" in body or "rod" in body:
+                materials[body["name"]] = _material(body, mean)
+            else:
+                density[body["name"]] = mean
+    moving = ("kind", "points_m", "axis", "radius_m", "inside", "name")
+    resting = ("kind", "point_m", "axis", "radius_m", "inside", "name")
     return {
         "schema": "barrierbench.judge/1",
         "bodies": [{"name": body["name"], "vertices": body["vertices"]} for body in scene["bodies"]],
         "given_vertices": scene["given"]["vertices"],
-        "obstacles": [{key: o[key] for key in keys if key in o} for o in scene["obstacles"]],
+        "rest_m": scene["rest_m"],
+        "obstacles": [
+            {key: o[key] for key in (moving if "points_m" in o else resting) if key in o}
+            for o in scene["obstacles"]
+        ],
         "dt_s": scene["dt_s"],
         "gravity_m_s2": scene["gravity_m_s2"],
         **({"density": density} if density else {}),
+        **({"materials": materials} if materials else {}),
     }

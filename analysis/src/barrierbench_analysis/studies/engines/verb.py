@@ -1,4 +1,4 @@
-"""./bench engine list | NAME setup | NAME run SCENE --out DIR | compare [SPEC]."""
+"""./bench engine list | NAME setup | NAME run SCENE --out DIR | compare [SPEC] | [NAME] cases."""
 
 import argparse
 import json
@@ -26,14 +26,20 @@ of it; exit 0: clean, 1: not, 3: it did not run (outcome and log are said), 2: b
 compare [SPEC]: all scenes of configs/engines/compare.json under us and all engines: results/engines.json,
 results/ENGINES.md, docs/engines.png, or those of the `name` of the spec; what was run is kept and not run
 again. compare --starts N adds N jittered starts to what is there: the scatter of errors, depths and
-crossings."""
+crossings.
+NAME cases: four scenes that public trackers report faults of, with the numbers that physics allows, under
+one engine (barrierbench: this program); exit 0: all within, 1: not, 3: it is not installed. cases alone:
+under all of them, in results/ENGINES_CASES.md; engines that are not installed are listed as skipped."""
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
     run = "./bench engine mujoco run configs/scenes/twist_cloth.json --out out/twist"
     parser = parser_of("engine", DOC, run, "./bench engine compare --scene hang")
     parser.add_argument(
-        "words", nargs="+", metavar="WORD", help="list | NAME setup | NAME run SCENE | compare [SPEC]"
+        "words",
+        nargs="+",
+        metavar="WORD",
+        help="list | NAME setup | NAME run SCENE | compare [SPEC] | [NAME] cases",
     )
     parser.add_argument("--out", type=Path, help="run: folder of frames.npz, engine.json, log.txt, judgement")
     parser.add_argument("--variant", help="run: one of the card (default: its first)")
@@ -46,7 +52,10 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "--scene", action="append", default=[], help="compare: these scenes alone; writes no page"
     )
     parser.add_argument(
-        "--runs", type=Path, default=ROOT / "results/runs/engines", help="compare: folder of its runs"
+        "--runs",
+        type=Path,
+        default=ROOT / "results/runs/engines",
+        help="compare, cases: folder of their runs",
     )
     parser.add_argument(
         "--starts",
@@ -161,6 +170,23 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
     return OK
 
 
+def _cases(engines: list[str], options: argparse.Namespace, argv: list[str]) -> int:
+    """Of all engines, on a page; of one alone the table is printed."""
+    from .cases import HEADER, SKIPPED, all_engines, cells_of, is_well, page_of, rows_of
+
+    say = lambda line: print(f"engine: {line}", file=sys.stderr, flush=True)  # noqa: E731
+    rows = rows_of(engines or all_engines(), options.runs / "cases", say)
+    print("\n".join(fitted(HEADER, [cells_of(row) for row in rows])))
+    if not engines:
+        command = shlex.join(["./bench", "engine", *argv])
+        page = page_of(rows, command).replace(f"{ROOT}/", "")  # no path of a machine
+        write_whole(ROOT / "results/ENGINES_CASES.md", page)
+        print("results/ENGINES_CASES.md")
+    if engines and all(row["outcome"] == SKIPPED for row in rows):
+        return NOT_RUN
+    return OK if all(map(is_well, rows)) else NOT_CLEAN
+
+
 @reported("engine")
 def main(argv: list[str]) -> int:
     options = parse(argv)
@@ -171,10 +197,13 @@ def main(argv: list[str]) -> int:
             return _compare(SPEC, options, argv)
         case ["compare", spec]:
             return _compare(Path(spec), options, argv)
+        case ["cases"]:
+            return _cases([], options, argv)
+        case [name, "cases"]:
+            return _cases([name], options, argv)
         case [name, "setup"]:
             return _setup(read_card(name))
         case [name, "run", scene]:
             return _run(read_card(name), Path(scene), options)
-    raise UserError(
-        f"found {' '.join(options.words)!r}; allowed: list, NAME setup, NAME run SCENE, compare [SPEC]"
-    )
+    allowed = "list, NAME setup, NAME run SCENE, compare [SPEC], [NAME] cases"
+    raise UserError(f"found {' '.join(options.words)!r}; allowed: {allowed}")
