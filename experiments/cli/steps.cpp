@@ -23,8 +23,9 @@ struct StepsVerb {
   std::vector<int> at;  // steps, from 0
   std::string out;      // JSON file; empty: none
   std::string keep;     // files of the state before the step, without their endings; empty: none
-  std::string corpus;   // folder of states, with the two lists below
-  std::vector<std::string> only;
+  std::string corpus;   // folder of states, with what is below
+  std::vector<std::string> only, trials;
+  bool without_reference = false;
   std::string split;
 };
 
@@ -73,6 +74,7 @@ std::vector<std::string> chosen_names(const StepsVerb& verb) {
 
 /// All states are read before the first is taken; the record is written after each, so that an interrupt loses none.
 int corpus(const StepsVerb& verb, const CommonOptions& common) {
+  const CorpusChoice choice{corpus_trials(verb.trials), !verb.without_reference};
   std::vector<StepState> states;
   for (const std::string& name : chosen_names(verb)) {
     StepState state = read_step_state(verb.corpus, name);
@@ -84,7 +86,7 @@ int corpus(const StepsVerb& verb, const CommonOptions& common) {
   ProgressLine line(common);
   std::vector<CorpusState> out;
   for (const StepState& state : states) {
-    out.push_back(take_state(state, options, [&line](const std::string& text) { line.tell(text); }));
+    out.push_back(take_state(state, choice, options, [&line](const std::string& text) { line.tell(text); }));
     line.clear();
     if (!verb.out.empty()) write_atomically(verb.out, corpus_json(out, options));
     show("{}", corpus_table(out.back()));
@@ -106,8 +108,12 @@ int steps(const StepsVerb& verb, const CommonOptions& common) {
                         "none of these: its states have their configs");
     return corpus(verb, common);
   }
-  if (!verb.only.empty() || !verb.split.empty())
-    throw ConfigError(verb.only.empty() ? "--split" : "--only", "no --corpus", "--corpus DIR with it");
+  for (const auto& [option, given] : {std::pair("--only", !verb.only.empty()),
+                                      {"--split", !verb.split.empty()},
+                                      {"--trials", !verb.trials.empty()},
+                                      {"--without-reference", verb.without_reference}}) {
+    if (given) throw ConfigError(option, "no --corpus", "--corpus DIR with it");
+  }
   if (verb.config.empty()) throw ConfigError("config", "nothing", "a config file, or --corpus DIR");
   if (verb.at.empty()) throw ConfigError("--at", "nothing", "steps of the run, from 0");
   return verb.keep.empty() ? study(verb, common) : keep(verb, common);
@@ -134,6 +140,13 @@ Action verb::steps(CLI::App& app) {
       ->allow_extra_args(false);
   app.add_option("--split", verb->split, "of --corpus: the half that options are tuned on, or the other one")
       ->check(CLI::IsMember({"tune", "report"}));
+  app.add_option("--trials", verb->trials,
+                 "of --corpus: trials by name, with commas between: a step solver, or line_search/HESSIAN "
+                 "(without it: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_flag("--without-reference", verb->without_reference,
+               "of --corpus: takes the trials alone, whose ends are then compared with no minimum");
   app.add_option("--out", verb->out,
                  "JSON file with every |dx|, for ./bench draw figures; of --corpus: its record, written "
                  "after each state");

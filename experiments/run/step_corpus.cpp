@@ -1,6 +1,7 @@
 #include "experiments/run/step_corpus.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "core/math/error.hpp"
 #include "core/step_solvers/registry.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/contact_gaps.hpp"
 #include "experiments/run/thread_limit.hpp"
 
 namespace bb {
@@ -112,6 +114,19 @@ void judge_end(const TakenStep& taken, const Minima& minima, CorpusTrial& out) {
   }
 }
 
+/// Of a step that converged; a step without load has none.
+void find_gaps(const StepReport& report, CorpusTrial& out) {
+  out.gap_min_rel = report.gap_min_rel;
+  LogHistogram gaps;
+  for (const ContactLoad& each : report.contact_loads) {
+    if (each.load_N > 0) gaps.add(each.gap_rel, each.load_N);
+  }
+  if (report.status != StepStatus::converged || gaps.weight() == 0) return;
+  out.gap_rel_p05 = gaps.quantile(0.05);
+  out.gap_rel_median = gaps.quantile(0.5);
+  out.gap_rel_p95 = gaps.quantile(0.95);
+}
+
 void take_trial(const StepState& state, Minima& minima, CorpusTrial& out) {
   const auto hessian = out.hessian.empty() ? std::nullopt : std::optional(step_hessian_of(out.hessian));
   RunConfig config = with_step_solver(state.config, out.step_solver);
@@ -133,6 +148,7 @@ void take_trial(const StepState& state, Minima& minima, CorpusTrial& out) {
   out.iterations = static_cast<int>(taken.iterations.size());
   out.seconds = taken.seconds;
   out.state_hash = state_hash(taken.end);
+  find_gaps(taken.report, out);
   count_causes(taken, cap_fraction_of(config.step_solver), out);
   judge_end(taken, minima, out);
 }
@@ -149,7 +165,7 @@ void find_reference(const StepState& state, Minima& minima, CorpusState& out) {
   if (out.reference == StepStatus::converged) minima.add(std::move(fine.end));
 }
 
-std::vector<CorpusTrial> trials_of() {
+std::vector<CorpusTrial> all_trials() {
   std::vector<CorpusTrial> out;
   for (const StepHessian hessian : all_step_hessians) {
     out.emplace_back();
@@ -191,7 +207,27 @@ std::string minimum_name(std::size_t place) {
   return out;
 }
 
-CorpusState take_state(const StepState& state, const RunOptions& options,
+std::string trial_name(const CorpusTrial& trial) {
+  std::string out = trial.step_solver;
+  if (!trial.hessian.empty()) out += "/" + trial.hessian;
+  return trial.exact_friction ? out + "/exact_friction" : out;
+}
+
+std::vector<CorpusTrial> corpus_trials(const std::vector<std::string>& names) {
+  std::vector<CorpusTrial> all = all_trials();
+  std::vector<std::string> known;
+  for (const CorpusTrial& trial : all) known.push_back(trial_name(trial));
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw ConfigError("--trials", '"' + name + '"', fmt::format("{}", fmt::join(known, ", ")));
+  }
+  std::erase_if(all, [&names](const CorpusTrial& trial) {
+    return !names.empty() && std::find(names.begin(), names.end(), trial_name(trial)) == names.end();
+  });
+  return all;
+}
+
+CorpusState take_state(const StepState& state, const CorpusChoice& choice, const RunOptions& options,
                        const std::function<void(const std::string&)>& tell) {
   const auto threads = threads_of(state.config);
   const double start = processor_seconds();
@@ -200,16 +236,18 @@ CorpusState take_state(const StepState& state, const RunOptions& options,
     if (options.interrupted && options.interrupted->load()) throw Interrupted{};
     if (tell) tell(fmt::format("{}: {}", state.name, what));
   };
-  begin("reference");
+  if (choice.reference) begin("reference");
   Minima minima(out.tolerance_m);
+  out.has_reference = choice.reference;
   try {
-    find_reference(state, minima, out);
+    if (choice.reference) find_reference(state, minima, out);
   } catch (const ConfigError& error) {
     out.refused = refusal_of(error);
     return out;
   }
-  for (CorpusTrial& trial : out.trials = trials_of()) {
-    begin(trial.step_solver + " " + trial.hessian);
+  out.trials = choice.trials;
+  for (CorpusTrial& trial : out.trials) {
+    begin(trial_name(trial));
     try {
       take_trial(state, minima, trial);
     } catch (const ConfigError& error) {

@@ -31,6 +31,9 @@ struct CorpusTrial {
   WorkCounts work;
   double seconds = 0;      // of the processor
   std::string state_hash;  // sha256 of the end positions
+  /// Of its end, in d_hat: the smallest gap, and those at which 5 %, half and 95 % of the contact load are carried at smaller ones.
+  Number gap_min_rel = Number::missing("no_contacts"), gap_rel_p05 = gap_min_rel,
+         gap_rel_median = gap_min_rel, gap_rel_p95 = gap_min_rel;
 };
 
 struct CorpusState {
@@ -40,6 +43,7 @@ struct CorpusState {
   int step = 0, vertices = 0;
   std::size_t contacts = 0;  // at the end of the reference
   double tolerance_m = 0;
+  bool has_reference = true;                     // else nothing is known of the reference
   StepStatus reference = StepStatus::converged;  // how line_search ended at a thousandth of the tolerance
   int reference_iterations = 0;
   double seconds = 0;  // of all trials, the reference and other minima
@@ -49,9 +53,22 @@ struct CorpusState {
 /// A to Z, then AA, AB ...
 std::string minimum_name(std::size_t place);
 
-/// All trials of a state: line_search with each of all_step_hessians and with the exact Hessian of friction, then every other step solver of the registry with its own
-/// Hessian. `tell` receives the name of each before it begins. Errors: Interrupted.
-CorpusState take_state(const StepState& state, const RunOptions& options,
+/// As --trials has it: SOLVER, SOLVER/HESSIAN, or SOLVER/HESSIAN/exact_friction.
+std::string trial_name(const CorpusTrial& trial);
+
+/// Trials that are not taken yet: line_search with each of all_step_hessians and with the exact Hessian of friction, then every other
+/// step solver of the registry with its own Hessian; of these the ones with a name of `names`, in the order of this list, all of
+/// them without one. Errors: ConfigError for a name that no trial has.
+std::vector<CorpusTrial> corpus_trials(const std::vector<std::string>& names);
+
+/// What is taken of a state. Without the reference no end is compared with a minimum.
+struct CorpusChoice {
+  std::vector<CorpusTrial> trials = corpus_trials({});
+  bool reference = true;
+};
+
+/// `tell` receives the name of each trial before it begins. Errors: Interrupted.
+CorpusState take_state(const StepState& state, const CorpusChoice& choice, const RunOptions& options,
                        const std::function<void(const std::string&)>& tell);
 
 /// {"schema": "barrierbench.step_corpus/1", ...}; numbers that are absent are null.

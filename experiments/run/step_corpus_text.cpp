@@ -35,6 +35,10 @@ json json_of(const CorpusTrial& t) {
   out["seconds"] = t.seconds;
   out["causes"] = std::move(causes);
   out["regularised"] = t.regularised;
+  out["gap_min_rel"] = json_of(t.gap_min_rel);
+  out["gap_rel_p05"] = json_of(t.gap_rel_p05);
+  out["gap_rel_median"] = json_of(t.gap_rel_median);
+  out["gap_rel_p95"] = json_of(t.gap_rel_p95);
   out["state_hash"] = t.state_hash;
   return out;
 }
@@ -54,10 +58,10 @@ json json_of(const CorpusState& s) {
   }
   json trials = json::array();
   for (const CorpusTrial& trial : s.trials) trials.push_back(json_of(trial));
-  out["contacts"] = s.contacts;
+  out["contacts"] = s.has_reference ? json(s.contacts) : json();
   out["tolerance_m"] = s.tolerance_m;
-  out["reference_status"] = to_string(s.reference);
-  out["reference_iterations"] = s.reference_iterations;
+  out["reference_status"] = s.has_reference ? json(to_string(s.reference)) : json();
+  out["reference_iterations"] = s.has_reference ? json(s.reference_iterations) : json();
   out["seconds"] = s.seconds;
   out["trials"] = std::move(trials);
   return out;
@@ -89,8 +93,10 @@ std::string corpus_json(const std::vector<CorpusState>& states, const RunOptions
 std::string corpus_table(const CorpusState& state) {
   if (!state.refused.empty())
     return fmt::format("{}, step {}: refused: {}\n", state.name, state.step, state.refused);
-  std::string out = fmt::format("{}, step {}, {} vertices, {} contacts, {}: {}\n", state.name, state.step,
-                                state.vertices, state.contacts, state.linear_solver, state.hard_for);
+  const std::string contacts =
+      state.has_reference ? fmt::format("{} contacts, ", state.contacts) : std::string();
+  std::string out = fmt::format("{}, step {}, {} vertices, {}{}: {}\n", state.name, state.step,
+                                state.vertices, contacts, state.linear_solver, state.hard_for);
   out += fmt::format("  {:<20} {:<21} {:>10} {:>6} {:>6} {:>8} {:>8} {:>10} {:>3}  {:<18} {}\n",
                      "step solver", "hessian", "iterations", "to tol", "solves", "factors", "products",
                      "error", "min", "status", "causes");

@@ -37,7 +37,7 @@ TEST(StepState, AKeptStateHasTheCalibrationAndGivesTheStepOfItsRun) {
   const StepState state = read_step_state(place, "cloth");
   EXPECT_EQ(state.start.step, 12);
   EXPECT_TRUE(state.calibration.kappa.has_value()) << "the calibration of equal_force is kept";
-  const CorpusState taken = take_state(state, {}, {});
+  const CorpusState taken = take_state(state, {}, {}, {});
   EXPECT_EQ(taken.reference, StepStatus::converged);
   EXPECT_GT(taken.contacts, 0U);
   int judged = 0;
@@ -48,9 +48,45 @@ TEST(StepState, AKeptStateHasTheCalibrationAndGivesTheStepOfItsRun) {
     if (trial.hessian != "blend" || trial.exact_friction) continue;
     EXPECT_EQ(trial.state_hash, hash_after(config, 13));
     EXPECT_EQ(trial.minimum, "A");
+    EXPECT_GT(trial.gap_min_rel.value, 0);
+    EXPECT_LE(trial.gap_min_rel.value, 1.02 * trial.gap_rel_p05.value);
+    EXPECT_LT(trial.gap_rel_p05.value, trial.gap_rel_p95.value);
+    EXPECT_LE(trial.gap_rel_p95.value, 1.02);
     ++judged;
   }
   EXPECT_EQ(judged, 1);
+}
+
+TEST(StepState, OfTheTrialsOnlyThoseThatAreNamedAreTaken) {
+  const std::vector<CorpusTrial> all = corpus_trials({}), few = corpus_trials({"pncg", "line_search/blend"});
+  EXPECT_GT(all.size(), 10U);
+  ASSERT_EQ(few.size(), 2U);
+  EXPECT_EQ(trial_name(few[0]), "line_search/blend");
+  EXPECT_EQ(trial_name(few[1]), "pncg");
+  const StepState state = read_step_state(source / "results/steps", "twist_cloth");
+  const CorpusState taken = take_state(state, {corpus_trials({"line_search/blend"})}, {}, {});
+  ASSERT_EQ(taken.trials.size(), 1U);
+  EXPECT_EQ(taken.trials[0].minimum, "A");
+  EXPECT_GT(taken.trials[0].iterations, 2);
+  EXPECT_GT(taken.trials[0].gap_min_rel.value, 0);
+  const CorpusState alone = take_state(state, {few, false}, {}, {});
+  EXPECT_FALSE(alone.has_reference);
+  EXPECT_EQ(alone.trials[0].state_hash, taken.trials[0].state_hash);
+  EXPECT_EQ(alone.trials[0].minimum, "");
+  EXPECT_FALSE(alone.trials[0].error_m.finite());
+  EXPECT_FALSE(alone.trials[1].refused.empty()) << "pncg takes no obstacle that moves";
+}
+
+TEST(StepState, AnUnknownTrialIsRefusedWithTheNamesThatThereAre) {
+  try {
+    corpus_trials({"line_search/blend", "newton"});
+    FAIL() << "nothing was thrown";
+  } catch (const ConfigError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("--trials"), std::string::npos) << text;
+    EXPECT_NE(text.find("\"newton\""), std::string::npos) << text;
+    EXPECT_NE(text.find("line_search/blend/exact_friction"), std::string::npos) << text;
+  }
 }
 
 TEST(StepState, AMinimumBeyondTheAlphabetHasTwoLetters) {
