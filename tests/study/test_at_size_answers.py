@@ -208,3 +208,18 @@ def test_the_page_shows_answers_laws_and_what_is_missing(tmp_path):
     failed = page.rule(STUDY, [row("drape", "log", outcome="timeout"), *two("twist", "cond_p95", 2.0), row("drape", "cubic")])
     assert "| M | 0.01 | 1 | drape (log timeout) |" in failed["by_size"]
     assert "| log | 0.01 | M | timeout | 1 run | drape base |" in failed["ends"]
+
+
+def test_a_sentence_has_the_number_of_a_size_with_five_scenes():
+    def first(scenes_of_m):
+        rows = [
+            one
+            for size, ratio, n in (("S", 2.0, 5), ("M", 8.0, scenes_of_m))
+            for scene, r in zip(SHELLS[:n], spread(ratio, max(n, 1)))
+            for one in two(scene, "cond_p95", r, Where(size))
+        ]
+        of = Rows(STUDY, rows)
+        return page.sentences(STUDY, of, questions.answers(of))[0]
+
+    assert "raw condition numbers is 2 [" in first(4) and "at size S" in first(4) and "over 5 scenes" in first(4)
+    assert "raw condition numbers is 8 [" in first(5) and "over 5 scenes" in first(5)

@@ -138,16 +138,20 @@ COMMANDS = {
 
 
 def sentences(study: Study, rows: Rows, found: list[Answer]) -> list[str]:
-    """One a question: its number, its outcome and its command; while its runs are missing, the same number at
-    the largest smaller size that has five scenes."""
+    """One a question: its number, its outcome and its command; while fewer than five scenes have its runs,
+    the same number at the largest smaller size that has five."""
     made = []
     for answer in found:
         begins, label, metric, measure = SENTENCES[answer.number]
         command = f"`{study.call('run')} {COMMANDS[answer.number]}`"
-        number, at = answer.numbers.get(label), f"over {counted(len(answer.scenes), 'scene')}"
-        if number is None and metric:
+        seen = len(answer.scenes)
+        number, at = None, ""
+        if seen >= SCENES:
+            number, at = answer.numbers.get(label), f"over {counted(seen, 'scene')}"
+        elif metric:
             number, at = _at_smaller(rows, metric, measure)
-        text = f"{begins} is {number} {at}" if number is not None else f"{begins} was not measured yet"
+        few = f"in {counted(seen, 'scene')}, fewer than {SCENES}" if 0 < seen < SCENES else "nowhere yet"
+        text = f"{begins} is {number} {at}" if number is not None else f"{begins} was measured {few}"
         made.append(f"{answer.number}. {SUBJECTS[answer.number]} **{answer.outcome}**. {text} ({command}).")
     return made
 
