@@ -70,6 +70,31 @@ def test_what_given_vertices_pull_is_no_gain(program, tmp_path):
     assert record["energy"]["gained_J"] > 0.9 * 25 * 0.19**2
 
 
+def test_what_a_contact_gives_back_is_no_gain(program, tmp_path):
+    """A sheet falls on a floor of springs, which are not in the frames, and comes back as high: exact positions."""
+    dt, omega, g = 0.005, 40.0, 10.0
+    fall = np.sqrt(2 * 0.2 / g)  # from 0.2 m
+    # in contact z = -g/omega^2 (1 - cos) - v/omega sin, until z = 0 again
+    speed = g * fall
+    phase = 2 * (np.pi - np.arctan2(speed * omega, g))
+    def height(t):
+        if t < fall:
+            return 0.2 - g / 2 * t**2
+        s = t - fall
+        if s < phase / omega:
+            return -g / omega**2 * (1 - np.cos(omega * s)) - speed / omega * np.sin(omega * s)
+        s -= phase / omega
+        return speed * s - g / 2 * s**2
+    z = np.array([height(dt * k) for k in range(100)])
+    assert z.min() < -0.03 and z[-40:].max() > 0.19  # it bounced
+    about = {"dt_s": dt, "gravity_m_s2": [0, 0, -g], "materials": {"surface": {"youngs_N_per_m": 100, "density_kg_per_m2": 0.5}}, "triangles": TRIANGLES}
+    x = SQUARE + np.array([0, 0, 1.0]) * z[:, None, None]
+    _, record = judge(tmp_path, x, about | {"bodies": [{"name": "surface", "vertices": 4}]})
+    found = record["energy"]
+    assert min(found["balance_J"]) < found["balance_J"][0] - 0.5  # the floor holds most of it meanwhile
+    assert found["gained_J"] < 1e-3 * found["exchanged_J"] and abs(found["lost_J"]) < 1e-3 * found["exchanged_J"]
+
+
 def test_free_fall_gains_nothing(program, tmp_path):
     dt, n = 0.01, 41
     x = SQUARE + np.array([0, 0, 1.0]) * (1 - 5 * (dt * np.arange(n)) ** 2)[:, None, None]

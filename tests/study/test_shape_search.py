@@ -125,7 +125,7 @@ def row_of(study, cell, iterations=(10, 10), **values) -> store.Row:
     """A row as `run` makes it."""
     found = dict.fromkeys(measured.MEASURED) | {
         **{"iterations": list(iterations), "ends": ["converged"] * 2, "processor_s": 1.0, "products": [5, 5]},
-        **{name: [0.05, 0.1] for name in ("gap_min", "gap_p05")},
+        **{name: [0.05, 0.1] for name in ("gap_min", "gap_p05", "gap_median")},
         **{"gap_p95": [0.6, 0.8], "parameters": cell.settings.get(search.PARAMETERS), "name": cell.settings.get("/shape")},
     }
     if found["name"]:
@@ -246,8 +246,19 @@ def test_the_strategy_finds_the_least_value_of_an_ill_conditioned_function():
         assert np.array_equal(found, evolution.ask())
         evolution.tell(found, [float(np.sum((scale * (x - 1)) ** 2)) for x in found])
     assert evolution.mean == pytest.approx(np.ones(8), abs=1e-4)
-    spread = np.sqrt(np.diag(evolution.covariance))
-    assert spread[0] > 30 * spread[-1]  # it has learnt the shape of the function
+
+
+def test_the_strategy_goes_on_from_kept_points_as_without_a_break():
+    unbroken, kept = Evolution(np.zeros(5), 0.5, 8, 3), []
+    for _ in range(12):
+        points = np.round(unbroken.ask(), 3)
+        kept.append((points, [float(np.sum((x - 2) ** 2)) for x in points]))
+        unbroken.tell(*kept[-1])
+    later = Evolution(np.zeros(5), 0.5, 8, 3)
+    for one in kept:
+        later.tell(*one)
+    assert later.generation == 12 and np.array_equal(later.ask(), unbroken.ask())
+    assert not np.array_equal(later.ask(), np.round(kept[-1][0], 3)) and np.ptp(later.ask()) > 0
 
 
 def test_the_page_says_whether_what_was_found_is_the_law(study):
@@ -255,13 +266,19 @@ def test_the_page_says_whether_what_was_found_is_the_law(study):
         keep(study)
     rows = list(search.rows_of_today(study).values())
     found = report.rule(study, rows)
-    assert found["ended"] and len(found["same"]) == 2 and all("another shape" in line for line in found["same"])
+    assert found["ended"] and len(found["same"]) == 2 and all("is undecided beside" in line for line in found["same"])
+    assert len(found["best"]) == 2 and all("of the shapes of the program." in line for line in found["best"])
+    assert len(found["rest"].split(", ")) > 1
     law = next(one for one in found["curves"]["known"] if one.label.startswith("minimax ("))
     assert law.label == f"minimax (law 1: {2.5 + math.log(math.sqrt(200)):.3g})"  # its loads have the ratio sqrt(10 20)
     same = report.Found("x", {"tune": SimpleNamespace(values={"gap_p05": [0.1], "gap_p95": [0.5]})}, [1.4 * x for x in law.rho])
-    assert report.apart(same, law) == pytest.approx((1.4, 1.4)) and "is the same shape" in report._same(study, [same], law)[0]
+    assert report.apart(same, law) == pytest.approx((1.4, 1.4))
+    assert "is the same shape" in report._same(study, [same], law, {"x": 0.1})[0]
+    assert "is undecided" in report._same(study, [same], law, {"x": 0.3})[0]
+    other = report.Found("x, best", same.rows, [1.6 * x for x in law.rho])
+    assert "is another shape" in report._same(study, [other], law, {"x": 0.1})[0]
     less = replace(same, rho=[0.6 * x for x in law.rho])
-    assert "another shape" in report._same(study, [less], law)[0]
+    assert "another shape" in report._same(study, [less], law, {"x": 0.2})[0]
     beyond = replace(same, rho=[x * (9 if u > 0.5 or u < 0.1 else 1) for u, x in zip(shape.CURVE, law.rho)])
     assert report.apart(beyond, law) == pytest.approx((1, 1))  # no contact rests there
     pair = [replace(same, label=f"{name}, best", rows={"tune": row}) for name, row in (("a", rows[0]), ("b", rows[0]))]

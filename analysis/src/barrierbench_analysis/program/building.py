@@ -17,6 +17,7 @@ from barrierbench_analysis.io.whole_file import write_whole
 from .start import RELEASE
 
 BYTES_A_JOB = 2 << 30  # g++ on many files at once
+UNKNOWN_BYTES = 4 << 30  # where the system does not say what is free
 MINUTE = 60  # seconds between two words about a build off the terminal
 
 
@@ -26,7 +27,7 @@ def say(text: str) -> None:
 
 def job_count() -> int:
     """One job a core, and 2 GiB of memory for each."""
-    return max(1, min(free_bytes() // BYTES_A_JOB, len(os.sched_getaffinity(0))))
+    return max(1, min((free_bytes() or UNKNOWN_BYTES) // BYTES_A_JOB, len(os.sched_getaffinity(0))))
 
 
 def folder(preset: str) -> Path:

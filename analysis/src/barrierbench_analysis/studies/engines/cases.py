@@ -23,6 +23,7 @@ OURS = "barrierbench"
 CONFIGS = ROOT / "configs/engines/cases"
 LIMIT_S = 300.0
 WITHIN, OUTSIDE, REFUSED, SKIPPED, FAILED = "within", "outside", "refused", "skipped", "failed"
+CLEAN = "clean"  # verdict of the judge
 LATE = 10  # frames at the end, over which a speed is measured
 
 
@@ -44,6 +45,7 @@ class Case:
     title: str
     source: str
     bounds: tuple[Bound, ...]
+    clean: bool = False  # whether the judge has to find no crossing and no passage, too
 
 
 def _way_off_mm(x: np.ndarray, scene: dict) -> float:
@@ -64,14 +66,17 @@ def _late_speed_mm_s(x: np.ndarray, scene: dict) -> float:
 
 def _least_height_mm(x: np.ndarray, scene: dict) -> float:
     """The least of all frames: mean height of the upper sheet over the lowest vertex of the lower one, whose
-    dent it may lie in.
+    dent it may lie in. Whether it crosses or passes the other one locally is the judge's to say.
     """
     split = scene["bodies"][1]["first_vertex"]
     return 1e3 * float((x[:, split:, 2].mean(axis=1) - x[:, :split, 2].min(axis=1)).min())
 
 
-# Way until a sheet with the speed 0.5 m/s stops by friction 1/2: v^2/(2 mu g).
+# Way until a sheet with the speed v = 0.5 m/s stops by friction 1/2, v^2/(2 mu g); a method of first order in
+# time goes up to v dt/2 farther, 5% with the 5 ms of this case.
 STOP_MM = 1e3 * 0.5**2 / (2 * 0.5 * 9.81)
+# Coulomb's law allows no creep. A law that is regularised below a speed creeps up to it; 1 mm/s is the
+# default of this program.
 SLOW = Bound("speed at the end", "mm/s", 0.0, 1.0, _late_speed_mm_s)
 CASES = (
     Case(
@@ -86,12 +91,13 @@ CASES = (
         "stops",
         "a sheet that slides with friction stops where Coulomb's law says",
         "newton issue 3492: boxes slide as on ice",
-        (Bound("way", "mm", 0.8 * STOP_MM, 1.2 * STOP_MM, _way_mm), SLOW),
+        (Bound("way", "mm", 0.95 * STOP_MM, 1.06 * STOP_MM, _way_mm), SLOW),
     ),
     Case(
         "E3",
         "holds",
-        "a sheet that friction can hold stays",
+        "a sheet that friction can hold creeps no faster than 1 mm/s, the speed below which friction is"
+        " regularised in this program; Coulomb's law allows 0",
         "newton issue 3943, mujoco issue 3328: it creeps, since friction vanishes without slip",
         (SLOW,),
     ),
@@ -105,6 +111,7 @@ CASES = (
                 "least height of the upper over the deepest of the lower", "mm", 0.0, np.inf, _least_height_mm
             ),
         ),
+        clean=True,
     ),
 )
 
@@ -129,6 +136,7 @@ def row_of(engine: str, variant: str, case: Case, out: Path) -> dict:
     row["numbers"] = [bound.measure(x, scene) for bound in case.bounds]
     within = all(b.least <= value <= b.most for b, value in zip(case.bounds, row["numbers"]))
     verdict = judge(Path(done["out"]), scene)["verdict"]
+    within &= not case.clean or verdict == CLEAN
     return row | {"outcome": WITHIN if within else OUTSIDE, "verdict": verdict}
 
 
@@ -189,6 +197,13 @@ def allowed_of(bound: Bound) -> str:
 HEADER = ["engine", "variant", "case", "measured", "outcome", "judge", "detail"]
 
 
+def _coverage(rows: list[dict]) -> str:
+    """By how many engines each case was run."""
+    ran = {c.name: {r["engine"] for r in rows if r["case"] == c.name and r["numbers"]} for c in CASES}
+    counts = [f"{name} by {', '.join(sorted(of)) or 'none'}" for name, of in ran.items()]
+    return f"Engines that ran each case: {'; '.join(counts)}."
+
+
 def page_of(rows: list[dict], command: str) -> str:
     """results/ENGINES_CASES.md."""
     lines = [
@@ -196,7 +211,8 @@ def page_of(rows: list[dict], command: str) -> str:
         "",
         f"Made by `{command}`. Each case is a config of `configs/engines/cases`; `within`: all numbers are in"
         " their ranges; `refused`: the engine has no words for the scene, as its card says; `skipped`: it was"
-        " not installed. What `./bench judge` says of the frames stands beside it and decides nothing here.",
+        " not installed. What `./bench judge` says of the frames stands beside it; E4 needs the verdict"
+        f" `{CLEAN}`, too. {_coverage(rows)}",
         "",
         "| case | what | allowed | after |",
         "|---|---|---|---|",

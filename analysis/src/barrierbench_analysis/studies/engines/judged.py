@@ -68,7 +68,7 @@ def judge(folder: Path, scene: dict) -> dict:
         "passages": total["passages"],
         "depth_obstacles_m": max(beyond),
         "depth_bodies_m": max(deep),
-        "stretch_most": max((f.get("stretch_max") or 1.0 for f in frames), default=1.0),
+        "stretch_most": max((s for f in frames if (s := f.get("stretch_max"))), default=None),
         **energy_of(frames),
         **{key: value for key, value in (record["energy"] or {}).items() if key in BALANCE},
     }

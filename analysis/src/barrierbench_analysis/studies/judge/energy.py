@@ -3,10 +3,11 @@
 At the middle of an interval between two frames the balance is T = K + (G + G')/2 + (E + E')/2 - W with the
 kinetic energy K of the mean velocities of the interval, the energies of gravity G, G' and of elasticity E, E'
 of its two frames, all of vertices that move freely, and the work W that given vertices have done against
-elastic forces by then. Where nothing adds energy T never rises: contact and friction, drag and the damping of
-an integrator only take from it. Its largest rise is what was gained. Frames that are too far apart for the
-motion make rises of their own, since K of a mean velocity is too small while something swings; so the same is
-computed of every second frame, and a rise that changes much with it says nothing.
+elastic forces by then. Where nothing adds energy T is never above its first value: contact may store some of
+it and give it back, and friction, drag and the damping of an integrator only take from it. What T has above
+its first value appears from nowhere; after a loss more may have appeared than that. Frames that are too far
+apart for the motion make gains of their own, since K of a mean velocity is too small while something swings;
+so the same is computed of every second frame, and a gain that changes much with it says nothing.
 """
 
 import numpy as np
@@ -50,9 +51,9 @@ def balance(kinetic: np.ndarray, potential: np.ndarray, work: np.ndarray) -> np.
     return kinetic[1:] + (potential[1:] + potential[:-1]) / 2 - (work[1:] + work[:-1]) / 2
 
 
-def rise(values: np.ndarray) -> float:
-    """The most that a series is above the least value before it."""
-    return float((values - np.minimum.accumulate(values)).max(initial=0.0))
+def gain(values: np.ndarray) -> float:
+    """The most that a series is above its first value, at least 0."""
+    return float((values - values[0]).max(initial=0.0))
 
 
 def _missing(topology: Topology, about: About, motion: Motion, frames: list[dict]) -> str | None:
@@ -62,9 +63,11 @@ def _missing(topology: Topology, about: About, motion: Motion, frames: list[dict
     if motion.times_s is None:
         return "the frames have no times"
     body = topology.body_of_vertices()
-    heavy = {topology.names[k] for k in np.unique(body[motion.free > 0])}
-    if bare := sorted(heavy - set(about.materials)):
+    moving = {topology.names[k] for k in np.unique(np.delete(body, about.given))}
+    if bare := sorted(moving - set(about.materials)):
         return f"no material is given of {', '.join(bare)}"
+    if light := sorted(moving - set(about.density)):
+        return f"no density is given of {', '.join(light)}"
     if about.paths_m:
         return "an obstacle moves, whose work through contact is not known"
     if len(frames) < 2 or not all(frame["finite"] for frame in frames):
@@ -104,8 +107,8 @@ def energy_of(topology: Topology, about: About, motion: Motion, frames: list[dic
         return {"gained_J": None, "why_not": "an energy is beyond the range of numbers"}
     exchanged = max(float(np.ptp(series)) for series in (kinetic[1:], gravity, np.array(elastic)))
     return {
-        "gained_J": rise(values),
-        "gained_of_every_second_frame_J": rise(coarse) if len(coarse) > 1 else None,
+        "gained_J": gain(values),
+        "gained_of_every_second_frame_J": gain(coarse) if len(coarse) > 1 else None,
         "lost_J": float(values[0] - values[-1]),
         "exchanged_J": exchanged,
         "work_of_given_J": float(work[-1]),
@@ -124,6 +127,7 @@ def words(energy: dict | None) -> list[str]:
     second = "" if coarse is None else f" ({coarse:.3g} J by every second frame)"
     gained, lost, exchanged = (energy[key] for key in ("gained_J", "lost_J", "exchanged_J"))
     return [
-        f"energy: {gained:.3g} J appear from nowhere{second}, {lost:.3g} J are lost; up to {exchanged:.3g} J"
-        " change their kind"
+        f"energy: at least {gained:.3g} J appear from nowhere{second}, {lost:.3g} J are lost; up to"
+        f" {exchanged:.3g} J change their kind",
+        *(f"  {condition}" for condition in energy["conditions"]),
     ]

@@ -12,8 +12,9 @@ from . import cost, store
 from .spec import Cell, Study
 
 METRIC = "peak_bytes"
-# The power of the unknowns by which it grows where kept rows do not tell: that of a Cholesky factor of a
-# solid whose unknowns nested dissection has ordered (of a shell it is 1, but for a logarithm).
+# The least power of the unknowns by which it grows: that of a Cholesky factor of a solid whose unknowns
+# nested dissection has ordered (of a shell it is 1, but for a logarithm). Small runs are mostly the program
+# itself, so that rows of them would tell a lower one.
 GROWTH = 4 / 3
 GIB = 1 << 30
 
@@ -27,7 +28,7 @@ def expected(study: Study, rows: dict[str, store.Row], cells: list[Cell]) -> dic
         for cell in study.cells
         if (row := rows.get(cell.key)) and row.values.get(METRIC)
     ]
-    power = cost.growth(kept, GROWTH)
+    power = max(GROWTH, cost.growth(kept, GROWTH))
     found = {cell.key: cost.expected(cell, kept, power) for cell in cells if cell.unknowns}
     return {key: one for key, one in found.items() if one is not None}
 
@@ -37,7 +38,7 @@ def require(study: Study, rows: dict[str, store.Row], cells: list[Cell], jobs: i
     is free.
     """
     needed, free = expected(study, rows, cells), free_bytes()
-    for cell in cells:
+    for cell in cells if free is not None else []:
         if jobs * needed.get(cell.key, 0) > free:
             raise UserError(
                 f"{study.file}: found {cell.label!r}, which needs about {needed[cell.key] / GIB:.1f} GiB by"

@@ -16,6 +16,9 @@ from . import search, shape
 from .measured import CONVERGED
 from .search import BEST, CENTRE, HALVES, LAW, LOG, TUNE, Search
 
+# Largest standard deviation of a parameter in the last draws above which a search has not converged: the
+# parameters are logarithms, so 0.2 lets b'' grow by a fifth more or less at a knot.
+SETTLED = 0.2
 OVER = {"iterations": "Newton iterations over the log", "products": "products over the log"}
 
 
@@ -98,12 +101,14 @@ def apart(one: Found, other: Found) -> tuple[float, float]:
     return min(ratios), max(ratios)
 
 
-def _same(study: Study, found: list[Found], law: Found | None) -> list[str]:
-    """A computed sentence for each shape that was found."""
+def _same(study: Study, found: list[Found], law: Found | None, spreads: dict[str, float]) -> list[str]:
+    """A computed sentence for each shape that was found. spreads: of the last draws, by name of a search."""
     most, lines = study.about["same_within"], []
     for one in found if law else []:
         low, high = apart(one, law)
-        word = "is the same shape as" if high <= most and low >= 1 / most else "is another shape than"
+        spread = spreads[one.label.partition(",")[0]]
+        same = "is the same shape as" if high <= most and low >= 1 / most else "is another shape than"
+        word = same if spread <= SETTLED else f"is undecided beside (its draws still scatter by {spread:.2g})"
         gaps = " to ".join(f"{u:.2g}" for u in one.rests)
         lines.append(
             f"{one.label}, {word} {law.label}: between the gaps {gaps} d_hat, where its contacts rest, its"
@@ -127,6 +132,33 @@ def _agreement(study: Study, found: list[Found]) -> list[str]:
     return lines
 
 
+def _best(shapes: list[Found], half: str) -> str:
+    """What has the fewest iterations on a half, among the shapes of the program and among those of searches,
+    and the ratio of the two: a computed sentence, or nothing where a half lacks one of them."""
+    there = [one for one in shapes if half in one.rows]
+    first = sorted(there, key=lambda one: search.work(one.rows[half]))
+    mine = [one for one in first if ", " in one.label]
+    known = [one for one in first if ", " not in one.label]
+    if not mine or not known:
+        return ""
+    ratio = written(over(mine[0].rows[half], known[0].rows[half], "iterations"))
+    return (
+        f"On `{half}` {mine[0].label}, takes {ratio} times the Newton iterations of {known[0].label}, which"
+        " takes the fewest of the shapes of the program."
+    )
+
+
+def _rest(known: list[Found]) -> str:
+    """At which gaps the median of the load rests, step by step, with the log."""
+    log = next((one for one in known if one.label == LOG), None)
+    gaps = [
+        g
+        for half in HALVES
+        for g in (log.rows[half].values["gap_median"] if log and half in log.rows else [])
+    ]
+    return ", ".join(significant(gap, 2) for gap in gaps if gap)
+
+
 def rule(study: Study, rows: list[Row]) -> dict:
     """Sentences and tables of the page, and the curves of its figure."""
     of = {row.key: row for row in rows}
@@ -142,8 +174,11 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "states": {half: listed([f"`{name}`" for name in about["states"][half]]) for half in HALVES},
         "work": {half: _work([*known, *found], half) for half in HALVES},
         "rho": _rho([*known, *found]),
-        "same": _same(study, found, law),
+        "same": _same(study, found, law, {one.name: one.evolution.spread for one in searches}),
         "agreement": _agreement(study, found),
+        "best": [line for half in HALVES if (line := _best([*known, *found], half))],
+        "rest": _rest(known),
+        "settled": f"{SETTLED:g}",
         "generations": ", ".join(generations)
         + f" of {about['generations']} generations of {about['generation']}",
         "ended": ends,
