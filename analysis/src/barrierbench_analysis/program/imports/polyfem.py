@@ -9,7 +9,9 @@ from .polyfem_geometry import SELECTION_KEYS, numbers
 from .polyfem_scene import Scene
 
 INTEGRATORS = {"ImplicitEuler": "implicit_euler", "BDF1": "implicit_euler", "BDF2": "bdf2"}
+D_HAT, PART_OF_EDGE = 1e-3, 0.8  # defaults of the source: of dhat, and of dhat_percentage
 MOST_LAGGING = 20  # solves of a step where the source goes on until friction settles
+KINDS_OF_TIME = "ImplicitEuler, BDF1 to BDF6, ImplicitNewmark"
 CONDITION = "id value dimension interpolation time_reference"
 MATERIAL = "id type E nu lambda mu rho"
 
@@ -20,9 +22,10 @@ def _keys(above: str, names: str, consequence: str) -> list[tuple[str, str]]:
 
 
 KNOWN = (
+    ("/solver/rayleigh_damping", "there is no Rayleigh damping, so motions that it damps there go on here"),
     *_keys(
         "/solver",
-        "linear adjoint_linear nonlinear augmented_lagrangian contact rayleigh_damping advanced max_threads",
+        "linear adjoint_linear nonlinear augmented_lagrangian contact advanced max_threads",
         "the solver and its tolerances are those of this program",
     ),
     *_keys(
@@ -47,7 +50,7 @@ KNOWN = (
     ("/contact/collision_mesh", "the surface of the tetrahedra touches, no mesh of its own"),
     ("/contact/adhesion", "surfaces do not stick together"),
     ("/contact/periodic", "there is no periodic cell"),
-    ("/contact/dhat_percentage", "d_hat is that of /contact/dhat"),
+    ("/contact/dhat_percentage", "d_hat is that of /contact/dhat, or its default"),
     ("/contact/use_adaptive_dhat", "d_hat is the same everywhere, but for pairs that are closer at rest"),
     ("/contact/min_distance_ratio", "d_hat is the same everywhere, but for pairs that are closer at rest"),
     ("/contact/use_gcp_formulation", "the barrier is that of IPC 2020"),
@@ -122,11 +125,7 @@ def _settings(scene: Scene) -> None:
     """Everything but bodies."""
     _integrator(scene)
     contact, card, length = scene.section("contact"), scene.card, scene.units.length
-    if "dhat" not in contact:
-        card.default("/contact/dhat", 1e-3, "the default of the source")
-    d_hat = scene.number("/contact/dhat", contact.get("dhat", 1e-3), 0) * length
-    if d_hat <= 0:
-        raise card.refuse("/contact/dhat", contact["dhat"], "a length above 0")
+    d_hat = _d_hat(scene) * length
     card.mapped("/contact/dhat", "/formulation/d_hat_m", "a length")
     scene.config.settings |= {
         "formulation": {"name": "ipc2020", "d_hat_m": d_hat},
@@ -137,11 +136,49 @@ def _settings(scene: Scene) -> None:
     speed = scene.number("/contact/epsv", contact.get("epsv", 1e-3), 0) * length / scene.units.time
     card.mapped("/contact/epsv", "/friction/eps_v_m_per_s", "a speed")
     lagging = _lagging(scene)
+    _stiffness(scene)
     if friction > 0:
         scene.config.settings["friction"] = {"mu": friction, "eps_v_m_per_s": speed, **lagging}
     if not contact.get("enabled", False):
         scene.config.no_contact()
     card.mapped("/contact/enabled", "/scene/collisions", "all pairs are off where it is false")
+
+
+def _d_hat(scene: Scene) -> float:
+    """In the unit of the scene. A default above the shortest edge of all surfaces is a part of that edge in
+    the source (NonlinearElasticVarForm.cpp).
+    """
+    contact, card, at = scene.section("contact"), scene.card, "/contact/dhat"
+    if "dhat" in contact:
+        given = scene.number(at, contact["dhat"], 0)
+        if given <= 0:
+            raise card.refuse(at, contact["dhat"], "a length above 0")
+        return given
+    part = scene.number("/contact/dhat_percentage", contact.get("dhat_percentage", PART_OF_EDGE), 0)
+    if not contact.get("enabled", False) or scene.shortest_edge >= D_HAT:
+        card.default(at, D_HAT, "the default of the source")
+        return D_HAT
+    made = part * scene.shortest_edge
+    if made <= 0:
+        raise card.refuse("/contact/dhat_percentage", part, "a number above 0")
+    card.default(
+        at,
+        made,
+        f"the default {D_HAT:g} of the source is above the shortest edge of the surfaces,"
+        f" {scene.shortest_edge:g}, of which the source takes {part:g}",
+    )
+    card.mapped("/contact/dhat_percentage", "/formulation/d_hat_m", "times the shortest edge of the surfaces")
+    return made
+
+
+def _stiffness(scene: Scene) -> None:
+    """A number is a kappa that stays; without one, or with a text, the source adapts it."""
+    contact, at = scene.section("solver").get("contact"), "/solver/contact/barrier_stiffness"
+    given = contact.get("barrier_stiffness", "adaptive") if isinstance(contact, dict) else "adaptive"
+    if isinstance(given, str):
+        scene.card.mapped(at, "/formulation/name", "kappa adapts as in IPC 2020")
+    else:
+        scene.card.changed(at, given, "adaptive", "kappa is fixed in the source, and adapts here")
 
 
 def _lagging(scene: Scene) -> dict:
@@ -163,7 +200,9 @@ def _lagging(scene: Scene) -> dict:
 def _integrator(scene: Scene) -> None:
     time, card = scene.section("time"), scene.card
     given = time.get("integrator", "ImplicitEuler")
-    name = given if isinstance(given, str) else given.get("type")
+    name = given.get("type") if isinstance(given, dict) else given
+    if not isinstance(name, str):
+        raise card.refuse("/time/integrator", given, KINDS_OF_TIME)
     if name == "BDF":
         name = f"BDF{given.get('steps', 1)}"
     made = INTEGRATORS.get(name)
@@ -179,7 +218,7 @@ def _integrator(scene: Scene) -> None:
     elif made is None:
         made = "newmark" if name == "ImplicitNewmark" else "bdf2"
         if name not in ("ImplicitNewmark", *(f"BDF{k}" for k in range(3, 7))):
-            raise card.refuse("/time/integrator", given, "ImplicitEuler, BDF1 to BDF6, ImplicitNewmark")
+            raise card.refuse("/time/integrator", given, KINDS_OF_TIME)
         card.changed("/time/integrator", given, made, "this program has no other one of this kind")
     card.mapped("/time/integrator", "/integrator/name")
     card.mapped("/time/quasistatic", "/integrator/name", "quasi_static where it is true")

@@ -10,7 +10,7 @@ from barrierbench_analysis.program.trajectories.trajectory import surface_of
 from . import materials
 from .config import NotAtRest, cells_of
 from .expressions import NoExpression, compiled
-from .polyfem_geometry import mesh_of, numbers, selected, sides_of
+from .polyfem_geometry import direction, mesh_of, number_of, numbers, selected, sides_of
 from .polyfem_scene import Scene
 
 SOLIDS = {
@@ -20,6 +20,17 @@ SOLIDS = {
     "HookeLinearElasticity": "corotational",
     "FixedCorotational": "corotational",
 }
+
+
+UNREAD = " (ids that are stored in a file of Gmsh are not read)"
+
+
+def shortest_edge(cells) -> float:
+    """Of the surface and the rods of a mesh; infinite without any."""
+    faces = surface_of(cells)
+    ends = np.concatenate([cells.segments, *(faces[:, pair] for pair in ([0, 1], [1, 2], [2, 0]))])
+    ways = cells.points[ends[:, 1]] - cells.points[ends[:, 0]]
+    return float(np.linalg.norm(ways, axis=1).min(initial=np.inf))
 
 
 class Bodies:
@@ -51,7 +62,7 @@ class Bodies:
     def _plane(self, at: str, one: dict, kind: str) -> None:
         gravity = np.array(self.config.scene["gravity_m_per_s2"])
         if kind == "plane":
-            axis = numbers(self.card, f"{at}/normal", one.get("normal"), 3, 0.0)
+            axis = direction(self.card, f"{at}/normal", one.get("normal"))
             point = numbers(self.card, f"{at}/point", one.get("point"), 3, 0.0)
         elif not gravity.any():
             raise self.card.refuse(f"{at}/type", kind, "plane where there is no gravity")
@@ -67,6 +78,9 @@ class Bodies:
         given = mesh_of(self.card, at, one, self.card.source.parent, self.units.length_name)
         length, name = self.units.length, Path(one["mesh"]).stem
         cells = cells_of(given.points * length, given.triangles, given.segments, given.tetrahedra)
+        n_refs = number_of(self.card, f"{at}/n_refs", one.get("n_refs", 0), whole=True)
+        edge = shortest_edge(given) / 2**n_refs
+        self.scene.shortest_edge = min(self.scene.shortest_edge, edge)
         self.card.mapped(f"{at}/is_obstacle", "/scene/bodies/N/kind", "rigid where it is true")
         if one.get("is_obstacle", False):
             surface = cells_of(cells.points, surface_of(cells), cells.segments)
@@ -77,19 +91,26 @@ class Bodies:
             raise self.card.refuse(
                 f"{at}/mesh", one["mesh"], "a mesh of tetrahedra (no 2D scenes, hexahedra or shells)"
             )
-        if n := one.get("n_refs", 0):
-            self.card.changed(f"{at}/n_refs", n, 0, "the mesh is not refined, so the body is coarser")
+        if n_refs:
+            self.card.changed(f"{at}/n_refs", n_refs, 0, "the mesh is not refined, so the body is coarser")
         volume = self._volume_id(at, one)
-        material, velocity = self._material(at, volume), self._velocity(volume)
+        material, velocity = self._material(at, volume), self._velocity(at, volume)
         pins = self._pins(at, one, self.config.name_for(name), given, cells)
         self.config.add_body(name, cells, material=material, pins=pins or None, velocity_m_per_s=velocity)
 
     def _volume_id(self, at: str, one: dict) -> int | None:
-        """The id of a whole body; None where the source gives it none, or parts of it several."""
+        """The id of a whole body; None where it is not known: a file of Gmsh may have ids of its own, which
+        are not read. Cells without an id have 0 (GeometryReader.cpp).
+        """
         found = one.get("volume_selection")
         if isinstance(found, int):
             self.card.mapped(f"{at}/volume_selection", "/scene/bodies/N/material", "which material")
             return found
+        if found is None or isinstance(found, dict) and found.keys() == {"id_offset"}:
+            offset = (found or {}).get("id_offset", 0)
+            whole = number_of(self.card, f"{at}/volume_selection/id_offset", offset, whole=True)
+            self.card.mapped(f"{at}/volume_selection", "/scene/bodies/N/material", "which material")
+            return None if Path(one["mesh"]).suffix.lower() == ".msh" else whole
         if found is not None:
             self.card.changed(
                 f"{at}/volume_selection", found, "one material", "a body of this program has one material"
@@ -110,15 +131,14 @@ class Bodies:
             if not isinstance(row, dict):
                 raise self.card.refuse("/materials", row, "objects with a type")
             ids = row.get("id")
-            if len(rows) == 1 or volume is None or volume in (ids if isinstance(ids, list) else [ids]):
+            if len(rows) == 1 or volume is not None and _names(ids, volume):
                 return self._solid(f"/materials/{number}" if isinstance(listed, list) else "/materials", row)
-        raise self.card.refuse(
-            f"{at}/volume_selection", volume, ", ".join(str(row.get("id")) for row in rows)
-        )
+        allowed = ", ".join(str(row.get("id")) for row in rows)
+        raise self.card.refuse(f"{at}/volume_selection", volume, f"{allowed}{UNREAD * (volume is None)}")
 
     def _solid(self, at: str, row: dict) -> dict:
         kind, card, p = row.get("type"), self.card, self.units.pressure
-        if kind not in SOLIDS:
+        if not isinstance(kind, str) or kind not in SOLIDS:
             raise card.refuse(f"{at}/type", kind, ", ".join(SOLIDS))
         if "E" in row and "nu" in row:
             poisson = self.scene.number(f"{at}/nu", row["nu"])
@@ -148,45 +168,69 @@ class Bodies:
         )
         return materials.solid(model, shear, bulk, density)
 
-    def _velocity(self, volume: int | None) -> list[float] | None:
-        for at, one in self.scene.conditions("initial_conditions", "velocity"):
+    def _velocity(self, at: str, volume: int | None) -> list[float] | None:
+        every = self.scene.conditions("initial_conditions", "velocity")
+        if every and volume is None:
+            allowed = ", ".join(str(one.get("id")) for _, one in every)
+            raise self.card.refuse(f"{at}/volume_selection", None, f"{allowed}{UNREAD}")
+        for place, one in every:
             if one.get("id") == volume:
                 speed = self.units.length / self.units.time
-                found = numbers(self.card, f"{at}/value", one.get("value"), 3, 0.0) * speed
-                self.card.mapped([f"{at}/id", f"{at}/value"], "/scene/bodies/N/velocity_m_per_s", "a speed")
+                found = numbers(self.card, f"{place}/value", one.get("value"), 3, 0.0) * speed
+                keys = [f"{place}/id", f"{place}/value"]
+                self.card.mapped(keys, "/scene/bodies/N/velocity_m_per_s", "a speed")
                 return found.tolist()
         return None
 
     # --- what is prescribed
 
     def _pins(self, at: str, one: dict, name: str, given, cells) -> list[dict]:
-        """Pins of the sides that a Dirichlet condition names."""
-        selection = one.get("surface_selection")
+        """A pin for each Dirichlet condition that names sides of the body. A side has the first condition
+        with its id, as in the source; a vertex of several conditions has the first one of the scene.
+        """
+        selection, pins, held = one.get("surface_selection"), [], {}
         if selection is None:
             return []
-        pins = []
         sides = sides_of(self.card, f"{at}/surface_selection", selection, given)
-        for number, (side, vertices) in enumerate(sides.items()):
-            for place, condition in self.scene.conditions("boundary_conditions", "dirichlet_boundary"):
-                if not _names(condition.get("id"), side):
-                    continue
-                self.card.mapped(
-                    selected(f"{at}/surface_selection", selection),
-                    "/scene/bodies/N/pins",
-                    "vertices of its sides",
+        for place, condition in self.scene.conditions("boundary_conditions", "dirichlet_boundary"):
+            named = [side for side in sides if _names(condition.get("id"), side)]
+            if not named:
+                continue
+            every = np.unique(np.concatenate([sides.pop(side) for side in named]))
+            keys = selected(f"{at}/surface_selection", selection)
+            self.card.mapped(keys, "/scene/bodies/N/pins", "vertices of its sides")
+            if not self._holds_all(place, condition):
+                self.card.left_out(place, f"a pin holds all three coordinates, so {name} is not held here")
+                continue
+            vertices = np.array([v for v in every.tolist() if v not in held], int)
+            if not len(vertices):
+                self.card.left_out(
+                    condition_keys(place), f"conditions before it hold all its vertices of {name}"
                 )
-                axes = condition.get("dimension", [True] * 3)
-                if not all(axes):
-                    self.card.left_out(
-                        place, f"a pin holds all three coordinates, so {name} is not held here"
-                    )
-                    break
-                wish = f"{name}_pin{number}"
-                motion, moves = self._moved(place, condition, wish, cells, vertices)
-                if moves:
-                    pins.append({"indices": vertices.tolist(), **({"motion": motion} if motion else {})})
-                break
+                continue
+            self._shared(place, condition, [held[v] for v in every.tolist() if v in held])
+            motion, moves = self._moved(place, condition, f"{name}_pin{len(pins)}", cells, vertices)
+            if moves:
+                pins.append({"indices": vertices.tolist(), **({"motion": motion} if motion else {})})
+                held |= dict.fromkeys(vertices.tolist(), condition)
         return pins
+
+    def _holds_all(self, place: str, condition: dict) -> bool:
+        axes = condition.get("dimension", [True] * 3)
+        if not isinstance(axes, list):
+            raise self.card.refuse(f"{place}/dimension", axes, "an array of true and false")
+        return all(axes)
+
+    def _shared(self, place: str, condition: dict, before: list[dict]) -> None:
+        """Notes vertices that conditions before it hold in another way."""
+        other = [b for b in before if any(b.get(k) != condition.get(k) for k in ("value", "interpolation"))]
+        if other:
+            self.card.changed(
+                f"{place}/id",
+                condition.get("id"),
+                f"all its vertices but {len(before)}",
+                "conditions before it hold these here; in the source the last of its sides holds a vertex",
+            )
 
     def _obstacle_motion(self, at: str, one: dict, name: str, cells) -> dict | None:
         side = one.get("surface_selection")
@@ -237,16 +281,28 @@ class Bodies:
 
     def _factor(self, at: str, condition: dict):
         """The interpolation of a condition as a function of the time; None for one that is not read."""
-        how = condition.get("interpolation") or {"type": "none"}
+        how, at = condition.get("interpolation") or {"type": "none"}, f"{at}/interpolation"
+        if isinstance(how, list) and any(one != how[0] for one in how):
+            return None
         how = how[0] if isinstance(how, list) else how
+        if not isinstance(how, dict):
+            raise self.card.refuse(at, how, "an object with a type")
         kind = how.get("type", "none")
         if kind == "none":
             return lambda t: 1.0
         if kind == "linear":
             return lambda t: t
         if kind == "piecewise_linear" and how.get("extend", "constant") == "constant":
-            return lambda t: float(np.interp(t, how["points"], how["values"]))
+            points, values = (self._row(f"{at}/{key}", how.get(key)) for key in ("points", "values"))
+            if len(points) != len(values) or (np.diff(points) <= 0).any():
+                raise self.card.refuse(at, how, "as many values as points, and points that increase")
+            return lambda t: float(np.interp(t, points, values))
         return None
+
+    def _row(self, at: str, given) -> np.ndarray:
+        if not isinstance(given, list) or not given:
+            raise self.card.refuse(at, given, "an array of numbers")
+        return numbers(self.card, at, given, len(given), 0.0)
 
 
 def condition_keys(at: str) -> list[str]:

@@ -3,6 +3,7 @@
 The meaning of keys is that of json-specs/input-spec.json of polyfem/polyfem at 661588e8d9.
 """
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from .config import SceneConfig
 from .polyfem_geometry import LENGTHS
 
 MASSES = {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3, "lb": 0.45359237}
+ROUNDING = 1e-9  # of a quotient of two times, of which the source takes the whole number above
 TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0}
 
 
@@ -71,6 +73,7 @@ class Scene:
         self.card = Card(path, "polyfem", leaves(self.data))
         self.card.mapped("/common", "the whole config", "laid underneath this file")
         self.units = self._units()
+        self.shortest_edge = math.inf  # of the surfaces of all bodies, in the unit of the scene
         dt, count = self._time()
         if steps:
             keys = [f"/time/{key}" for key in ("tend", "time_steps")]
@@ -110,7 +113,7 @@ class Scene:
         given, made = self.section("units"), {}
         for key, table, usual in (("length", LENGTHS, "m"), ("mass", MASSES, "kg"), ("time", TIMES, "s")):
             made[key] = given.get(key, usual)
-            if made[key] not in table:
+            if not isinstance(made[key], str) or made[key] not in table:
                 raise self.card.refuse(f"/units/{key}", made[key], ", ".join(table))
             self.card.mapped(f"/units/{key}", "every number of the config", "converted to SI")
         return Units(LENGTHS[made["length"]], MASSES[made["mass"]], TIMES[made["time"]], made["length"])
@@ -131,6 +134,6 @@ class Scene:
         start = self.number(f"{at}/t0", time.get("t0", 0.0))
         dt = known["dt"] if "dt" in known else (known["tend"] - start) / known["time_steps"]
         count = known.get("time_steps") or (known["tend"] - start) / dt if dt > 0 else 0
-        if dt <= 0 or count < 1:
+        if dt <= 0 or count <= 0:
             raise self.card.refuse(at, known, "a step above 0 and an end behind the start")
-        return dt * self.units.time, round(count)
+        return dt * self.units.time, math.ceil(count * (1 - ROUNDING))
