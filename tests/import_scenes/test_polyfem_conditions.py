@@ -36,13 +36,40 @@ def test_cells_without_an_id_have_the_id_0(imported, tmp_path):
     assert density(imported(two_materials(tmp_path, "cube.vtk", volume_selection={"id_offset": 1}))) == 1000
 
 
-def test_ids_that_a_file_may_have_are_refused_where_they_decide(refused, tmp_path):
-    message = "#/geometry/0/volume_selection: found None; allowed: 1, 0 (ids that are stored in a file of Gmsh are not read)"
-    assert message in refused(two_materials(tmp_path, "cube.msh"))
-    assert message in refused(two_materials(tmp_path, "cube.msh", volume_selection={"id_offset": 1}))
-    data = with_(initial_conditions__velocity=[{"id": 3, "value": [0, 0, 1]}])
+def msh41(folder, *groups):
+    """A cube in MSH 4.1 with a point and volumes of these physical groups (of each, or none); its tetrahedra are in the first volume."""
+    points, cells = sources.CUBE, sources.TETRAHEDRA
+    volumes = [f"{k + 1} 0 0 0 1 1 1 {len(of)} {' '.join(map(str, of))} 0" for k, of in enumerate(groups)]
+    lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$Entities", f"1 0 0 {len(groups)}", "1 0 0 0 0", *volumes, "$EndEntities"]
+    lines += ["$Nodes", f"1 {len(points)} 1 {len(points)}", f"3 1 0 {len(points)}", *map(str, range(1, len(points) + 1))]
+    lines += [*(" ".join(map(repr, p)) for p in points.tolist()), "$EndNodes", "$Elements", f"1 {len(cells)} 1 {len(cells)}", f"3 1 4 {len(cells)}"]
+    lines += [f"{k + 1} {' '.join(str(c + 1) for c in row)}" for k, row in enumerate(cells.tolist())]
+    (folder / "groups.msh").write_text("\n".join([*lines, "$EndElements", ""]))
+
+
+@pytest.mark.parametrize("groups, offset, rho", [([(1,)], 0, 1000), ([(1, 7)], 0, 1000), ([(1,)], -1, 500), ([()], 0, 500), ([()], 1, 1000), ([(1,), (1, 2)], 0, 1000)])
+def test_the_physical_group_of_a_volume_is_its_id(imported, tmp_path, groups, offset, rho):
+    msh41(tmp_path, *groups)
+    assert density(imported(two_materials(tmp_path, "groups.msh", volume_selection={"id_offset": offset}))) == rho
+
+
+def test_cells_of_msh_2_have_the_id_0(imported, tmp_path):
+    assert density(imported(two_materials(tmp_path, "cube.msh"))) == 500
+
+
+def test_a_file_of_several_ids_is_refused_where_they_decide(refused, tmp_path):
+    msh41(tmp_path, (1,), (2,))
+    message = "#/geometry/0/volume_selection: found None; allowed: 1, 0 (the mesh file has no single id that is read)"
+    assert message in refused(two_materials(tmp_path, "groups.msh"))
+    data = with_(geometry__0__mesh="groups.msh", initial_conditions__velocity=[{"id": 3, "value": [0, 0, 1]}])
     del data["geometry"][0]["volume_selection"]
-    assert "#/geometry/0/volume_selection: found None; allowed: 3 (ids" in refused(sources.polyfem(tmp_path, data))
+    assert "#/geometry/0/volume_selection: found None; allowed: 3 (the mesh file" in refused(sources.polyfem(tmp_path, data))
+
+
+def test_a_start_velocity_is_of_the_id_of_the_file(imported, tmp_path):
+    data = with_(initial_conditions__velocity=[{"id": 3, "value": [0, 0, 1]}, {"id": 0, "value": [1, 0, 0]}])
+    del data["geometry"][0]["volume_selection"]
+    assert imported(sources.polyfem(tmp_path, data)).scene["bodies"][0]["velocity_m_per_s"] == [1, 0, 0]
 
 
 def test_one_material_needs_no_id(imported, tmp_path):

@@ -11,6 +11,7 @@ from . import materials
 from .config import NotAtRest, cells_of
 from .expressions import NoExpression, compiled
 from .polyfem_geometry import direction, mesh_of, number_of, numbers, selected, sides_of
+from .polyfem_ids import stored_id
 from .polyfem_scene import Scene
 
 SOLIDS = {
@@ -22,7 +23,7 @@ SOLIDS = {
 }
 
 
-UNREAD = " (ids that are stored in a file of Gmsh are not read)"
+UNREAD = " (the mesh file has no single id that is read)"
 
 
 def shortest_edge(cells) -> float:
@@ -99,9 +100,7 @@ class Bodies:
         self.config.add_body(name, cells, material=material, pins=pins or None, velocity_m_per_s=velocity)
 
     def _volume_id(self, at: str, one: dict) -> int | None:
-        """The id of a whole body; None where it is not known: a file of Gmsh may have ids of its own, which
-        are not read. Cells without an id have 0 (GeometryReader.cpp).
-        """
+        """The id of a whole body, as GeometryReader.cpp of PolyFEM has it; None where it is not known."""
         found = one.get("volume_selection")
         if isinstance(found, int):
             self.card.mapped(f"{at}/volume_selection", "/scene/bodies/N/material", "which material")
@@ -110,7 +109,8 @@ class Bodies:
             offset = (found or {}).get("id_offset", 0)
             whole = number_of(self.card, f"{at}/volume_selection/id_offset", offset, whole=True)
             self.card.mapped(f"{at}/volume_selection", "/scene/bodies/N/material", "which material")
-            return None if Path(one["mesh"]).suffix.lower() == ".msh" else whole
+            stored = stored_id(self.card.source.parent / one["mesh"])
+            return None if stored is None else stored + whole
         if found is not None:
             self.card.changed(
                 f"{at}/volume_selection", found, "one material", "a body of this program has one material"
