@@ -128,6 +128,33 @@ def test_two_that_move_at_other_times_are_refused(program, tmp_path):
     refused(written(tmp_path / "a.abc", fill), "/b: its samples are at other times than those of /a (one of them at 0.5 s)")
 
 
+def test_the_one_whose_times_were_taken_is_named(program, tmp_path):
+    def fill(archive, top):
+        two = [faces(SQUARE), faces(SQUARE + 1)]
+        sheet(top, "still")
+        sheet(top, "a", two, times_of(archive, [0.0, 0.5]))
+        sheet(top, "b", two, times_of(archive, [0.0, 0.75]))
+
+    refused(written(tmp_path / "a.abc", fill), "/b: its samples are at other times than those of /a (one of them at 0.5 s)")
+
+
+def test_a_mirror_keeps_the_outside_outside(program, tmp_path):
+    def fill(scale):
+        def of(archive, top):
+            placed = AbcGeom.OXform(top, "m")
+            step = AbcGeom.XformSample()
+            step.setScale(imath.V3d(*scale))
+            placed.getSchema().set(step)
+            sheet(placed, "leaf", [faces(SQUARE[:3], (0, 1, 2), (3,))])
+
+        return of
+
+    for name, scale, z in (("a.abc", (2, 1, 1), -1), ("b.abc", (-2, 1, 1), -1), ("c.abc", (1, 1, -1), 1), ("d.abc", (-1, -1, 1), -1)):
+        found = read_trajectory(written(tmp_path / name, fill(scale)), up="z")
+        x = next(found.frames())[found.topology.triangles[0]]
+        assert np.sign(np.cross(x[1] - x[0], x[2] - x[0])[2]) == z, name
+
+
 def test_a_topology_that_changes_is_refused_with_object_and_time(program, tmp_path):
     def film(name, second):
         return written(tmp_path / name, lambda archive, top: sheet(top, "cloth", [faces(SQUARE), faces(SQUARE + 1), second], times_of(archive, [0.0, 0.5, 1.5])))
@@ -158,6 +185,28 @@ def test_several_objects_are_bodies_and_points_beside_them_are_not(program, tmp_
     assert (t.names, t.first_vertex) == (("/cloth", "/rod", "/ring"), (0, 4, 10))
     assert t.segments.tolist() == [[4, 5], [5, 6], [6, 7], [8, 9], *[[k, k + 1] for k in range(10, 15)], [15, 10]]
     assert "not read: /dust" in found.notes
+
+
+def hide(one, value):
+    AbcGeom.CreateVisibilityProperty(one, 0).setValue(value)
+
+
+def test_hidden_objects_are_not_read_and_named(program, tmp_path):
+    def fill(archive, top):
+        sheet(top, "cloth")
+        gone = AbcGeom.OPolyMesh(top, "gone")
+        gone.getSchema().set(faces(SQUARE))
+        hide(gone, 0)
+        shown = AbcGeom.OPolyMesh(top, "shown")
+        shown.getSchema().set(faces(SQUARE))
+        hide(shown, 1)
+        group = AbcGeom.OXform(top, "group")
+        hide(group, 0)
+        sheet(group, "inner")
+
+    found = read_trajectory(written(tmp_path / "a.abc", fill))
+    assert found.topology.names == ("/cloth", "/shown")
+    assert "not read: /gone, /group/inner: hidden" in found.notes
 
 
 @pytest.mark.parametrize("fill, words", [

@@ -12,6 +12,8 @@ from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, Stat
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.frames import frame_paths, frames_of
 from barrierbench_analysis.io.record_file import read_record
+from barrierbench_analysis.program.film_files import joins
+from barrierbench_analysis.program.mesh_arrays import read_frame_file
 from barrierbench_analysis.program.trajectories.readers import read_trajectory
 from tests.falling_cloth import CLOTH_ON_BALL
 from tests.judge.test_judge_verb import judge
@@ -86,6 +88,50 @@ def test_rods_that_branch_or_close_are_several_curves():
     assert (part.kind, part.numbers.tolist(), part.counts.tolist()) == ("curves", [0, 1, 2, 0, 2, 3, 4], [4, 3])
 
 
+# A ring of four rods with a branch, and a leaf with a rod from one of its corners: neither can be curves without doubled points.
+NET = Mesh(
+    ["net", "leaf"],
+    np.repeat([0, 1], [6, 4]),
+    np.array([1]),
+    np.array([[6, 7, 8]]),
+    np.array([[0, 1], [1, 2], [2, 3], [3, 0], [2, 4], [4, 5], [8, 9]]),
+)
+PLACES = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 1, 0], [2, 2, 0], [5, 0, 0], [6, 0, 0], [5, 1, 0], [5, 2, 0]], float)
+FALLING = np.array([PLACES + [0, 0, -0.1 * k] for k in range(4)])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_rings_branches_and_rods_on_triangles_come_back_as_they_are(program, tmp_path, kind):
+    formats.write([sequence(mesh=NET, points=FALLING)], kind, tmp_path)
+    found = read_trajectory(tmp_path)
+    assert found.topology.names == (ROOT[kind] + "net", ROOT[kind] + "leaf") and found.topology.first_vertex == (0, 6)
+    np.testing.assert_array_equal(found.topology.triangles, NET.triangles)
+    assert {frozenset(e) for e in found.topology.segments.tolist()} == {frozenset(e) for e in NET.edges.tolist()}
+    for frame, x in zip(found.frames(), FALLING, strict=True):
+        np.testing.assert_array_equal(frame, x.astype("<f4").astype(float))
+    assert len(read_frame_file(tmp_path / f"frame.{kind}").points) == 10
+    assert any("4 points are joined to others" in note for note in found.notes), found.notes
+
+
+@pytest.mark.parametrize("kind", ("vtu", *KINDS))
+def test_a_film_with_a_ring_and_a_rod_on_a_triangle_is_clean(program, tmp_path, kind):
+    (tmp_path / kind).mkdir()
+    formats.write([sequence(mesh=NET, points=FALLING)], kind, tmp_path / kind)
+    code, record = judge(tmp_path, tmp_path / kind)
+    assert (code, record["verdict"]) == (0, "clean")
+
+
+def test_points_of_one_number_in_two_places_stay_two():
+    numbers = [np.array([0, 1, 2]), np.array([2, 0, 3]), None]
+    x = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]], float)
+    join = joins.join_of(numbers, [x, np.array([[2, 0, 0], [9, 0, 0], [3, 0, 0]], float), x])
+    assert join.kept.tolist() == [0, 1, 2, 4, 5, 6, 7, 8] and join.vertex.tolist() == [0, 1, 2, 2, 3, 4, 5, 6, 7]
+    assert join.first_vertices([3, 3, 3]) == [0, 3, 5]
+    assert joins.join_of([None, None], [x, x]) is None
+    with pytest.raises(UserError, match=r"a.usd \(1 s\): found points 2 and 3 apart, one vertex by barrierbench_vertex"):
+        join.points(np.arange(27.0).reshape(9, 3), "a.usd (1 s)")
+
+
 @pytest.fixture(scope="module")
 def run(program, tmp_path_factory):
     folder = tmp_path_factory.mktemp("film")
@@ -109,6 +155,14 @@ def test_a_run_is_exported_and_judged(run, tmp_path, kind):
     assert len(frames) == len(states) == 4
     for frame, state in zip(frames, states, strict=True):
         np.testing.assert_array_equal(frame, state.vertices.astype("<f4").astype(float)[: len(frame)])
+
+
+def test_unit_and_axis_of_a_run_are_fixed(run):
+    """Its obstacles and thicknesses would stay where they are."""
+    for wrong in ({"unit_m": 0.01}, {"up": "y"}):
+        with pytest.raises(UserError, match=r"--scale, --up: found .* for the run .*; allowed: 1 m per unit and z up"):
+            read_trajectory(run, **wrong)
+    assert len(read_trajectory(run, unit_m=1.0, up="z").labels) == 4
 
 
 @pytest.mark.parametrize("kind, module, words", [

@@ -65,7 +65,15 @@ def test_unit_and_axis_of_the_file_are_those_of_the_result(program, tmp_path):
 def test_a_stage_that_names_neither_has_those_of_usd(program, tmp_path):
     found = read_trajectory(square(tmp_path, head=()))
     np.testing.assert_array_equal(next(found.frames()), [[0, 0, 0], [0.01, 0, 0], [0.01, 0, 0.01], [0, 0, 0.01]])
-    assert "the stage names no metersPerUnit" in text_of(found) and "the stage names no upAxis" in text_of(found)
+    assert "the stage names no metersPerUnit: that of USD is taken (0.01), or --scale" in found.notes
+    assert "the stage names no upAxis: that of USD is taken (y), or --up" in found.notes
+    found = read_trajectory(square(tmp_path, head=("metersPerUnit = 1",)))
+    assert "no metersPerUnit" not in text_of(found) and "no upAxis" in text_of(found)
+
+
+@pytest.mark.parametrize("unit", ["0", "-1", "inf", "nan"])
+def test_a_unit_that_is_no_length_is_refused(program, tmp_path, unit):
+    refused(square(tmp_path, head=(f"metersPerUnit = {unit}",)), "a.usda: found metersPerUnit")
 
 
 def test_they_can_be_kept_as_they_are(program, tmp_path):
@@ -94,6 +102,20 @@ def test_transforms_of_all_parents_hold_at_each_time(program, tmp_path):
     here = np.array(SQUARE, float)
     for frame, x in zip(found.frames(), (0, 1, 3), strict=True):
         np.testing.assert_allclose(frame, np.stack([-2 * here[:, 1], 2 * (here[:, 0] + x), here[:, 2]], 1), atol=1e-14)
+
+
+def test_a_mirror_keeps_the_outside_outside(program, tmp_path):
+    """Faces and tetrahedra are reversed where a transform has a negative determinant."""
+    flat, solid = "int[] faceVertexCounts = [3]", "int4[] tetVertexIndices = [(0, 1, 2, 3)]"
+    cells = prim("Mesh", "leaf", flat, "int[] faceVertexIndices = [0, 1, 2]", points_of(SQUARE[:3]))
+    cells += prim("TetMesh", "solid", solid, points_of([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]))
+    scale = ("double3 xformOp:scale = (-1, 1, 1)", 'uniform token[] xformOpOrder = ["xformOp:scale"]')
+    found = read_trajectory(usda(tmp_path, prim("Xform", "m", *scale, cells)))
+    x, t = next(found.frames()), found.topology
+    leaf = x[t.triangles[0]]
+    assert np.cross(leaf[1] - leaf[0], leaf[2] - leaf[0])[2] == 1  # a side that is above is above in the mirror of x
+    sides = x[t.tetrahedra[0, 1:]] - x[t.tetrahedra[0, 0]]
+    assert np.linalg.det(sides) > 0
 
 
 def test_positions_between_samples_are_straight_and_reported(program, tmp_path):
@@ -151,6 +173,12 @@ def test_what_is_no_part_of_the_scene_is_not_read_and_named(program, tmp_path):
     assert found.topology.names == ("/cloth", "/smooth")
     for words in ("/ball: a Sphere (obstacles: --about)", "/proxy: of the purpose proxy", "/gone: invisible", "read as their control meshes: /smooth"):
         assert words in text_of(found)
+
+
+def test_holes_are_named(program, tmp_path):
+    assert "holeIndices" not in text_of(read_trajectory(square(tmp_path)))
+    found = read_trajectory(usda(tmp_path, sheet("cloth", "int[] holeIndices = [0]")))
+    assert "faces that are holes (holeIndices) are read as all others: /cloth" in found.notes
 
 
 SKINNED = prim(

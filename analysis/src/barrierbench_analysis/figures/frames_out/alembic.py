@@ -8,6 +8,7 @@ from barrierbench_analysis.figures.surfaces.sequence import Sequence
 from barrierbench_analysis.io.errors import TRY_AGAIN, UserError
 from barrierbench_analysis.program.film_files.alembic import CUSTOM, alembic3d
 from barrierbench_analysis.program.film_files.film import package
+from barrierbench_analysis.program.film_files.joins import VERTEX
 
 from .objects import CURVES, SURFACE, Part, parts_of
 
@@ -29,8 +30,13 @@ def _integers(values: np.ndarray):
 
 
 def _object(geometry, above, sampling, name: str, part: Part):
+    """Without points yet, and with the numbers of its vertices."""
     kind = {SURFACE: geometry.OPolyMesh, CURVES: geometry.OCurves}.get(part.kind, geometry.OPoints)
-    return kind(above, name, sampling)
+    made = kind(above, name, sampling)
+    scope, held = geometry.GeometryScope.kVertexScope, made.getSchema().getArbGeomParams()
+    numbers = geometry.OInt32GeomParam(held, VERTEX, False, scope, 1)
+    numbers.set(geometry.OInt32GeomParamSample(_integers(part.numbers), scope))
+    return made
 
 
 def _sample(geometry, part: Part, points):

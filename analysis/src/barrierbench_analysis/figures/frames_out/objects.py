@@ -32,7 +32,9 @@ def curves_of(edges: np.ndarray) -> list[list[int]]:
 
 
 def _curves(name: str, edges: np.ndarray) -> Part:
-    """A vertex in which more than two edges meet, or a ring closes, is a point of each curve through it."""
+    """A vertex in which more than two edges meet, or a ring closes, is a point of each curve through it, and
+    readers join these points by their numbers (film_files/joins.py).
+    """
     curves = curves_of(edges)
     counts = np.array([len(curve) for curve in curves])
     return Part(name, CURVES, np.concatenate(curves), np.zeros((0, 3), int), counts)

@@ -6,6 +6,7 @@ import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Sequence
 from barrierbench_analysis.io.errors import TRY_AGAIN, UserError
+from barrierbench_analysis.program.film_files.joins import VERTEX
 from barrierbench_analysis.program.film_files.usd import pxr
 
 from .objects import CURVES, SURFACE, Part, parts_of
@@ -28,7 +29,15 @@ def _names(parts: list[Part], valid) -> list[str]:
 
 
 def _prim(stage, path: str, part: Part):
-    """With its cells, and without points yet."""
+    """With its cells and the numbers of its vertices, and without points yet."""
+    geometry, vt, types = pxr(FOR), pxr(FOR, "Vt"), pxr(FOR, "Sdf").ValueTypeNames
+    made = _cells(stage, path, part)
+    numbers = geometry.PrimvarsAPI(made).CreatePrimvar(VERTEX, types.IntArray, geometry.Tokens.vertex)
+    numbers.Set(vt.IntArray.FromNumpy(part.numbers.astype(np.int32)))
+    return made
+
+
+def _cells(stage, path: str, part: Part):
     geometry, vt = pxr(FOR), pxr(FOR, "Vt")
 
     def integers(values: np.ndarray):

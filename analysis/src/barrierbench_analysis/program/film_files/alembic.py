@@ -25,10 +25,12 @@ from .film import (
     cells,
     chains,
     checked_file,
+    mirrored,
     no_cells,
     package,
     reversed_faces,
 )
+from .joins import VERTEX
 
 CUSTOM = Axes(1.0, "y")
 ALLOWED = "PolyMesh, SubD, linear Curves, or Points alone"
@@ -91,39 +93,68 @@ class Body:
     schema: object
     places: tuple  # schemas of the transforms above it, the nearest first
 
+    def vertices(self, geometry) -> np.ndarray | None:
+        """The numbers that our writer gives to its points."""
+        held = self.schema.getArbGeomParams()
+        if not held.valid() or held.getPropertyHeader(VERTEX) is None:
+            return None
+        found = geometry.IInt32GeomParam(held, VERTEX)
+        return _numbers(found.getExpandedValue().getVals(), np.int64)
+
     def moving(self) -> list:
         """Its schemas that have more than one sample."""
         return [schema for schema in (self.schema, *self.places) if schema.getNumSamples() > 1]
 
 
-def _walk(geometry, above, header, places: tuple) -> Iterator[tuple[str, str, object, tuple]]:
-    """Name, type, schema and transforms of all objects with a schema. An object holds those below it."""
+def _walk(
+    geometry, above, header, places: tuple = (), hidden: bool = False
+) -> Iterator[tuple[str, str, object, tuple, bool]]:
+    """Name, type, schema and transforms of all objects with a schema, and whether they are hidden. An object
+    holds those below it, and hides them with itself.
+    """
     meta = header.getMetaData()
     kinds = (*KINDS, "INuPatch", *NO_SHAPES)
     kind = next((kind for kind in kinds if getattr(geometry, kind).matches(meta)), None)
     held = getattr(geometry, kind)(above, header.getName()) if kind else header
+    hidden = hidden or _is_hidden(geometry, header)
     if kind == "IXform":
         places = (held.getSchema(), *places)
     elif kind:
-        yield header.getFullName(), kind, held.getSchema(), places
+        yield header.getFullName(), kind, held.getSchema(), places, hidden
     for child in header.children:
-        yield from _walk(geometry, held, child, places)
+        yield from _walk(geometry, held, child, places, hidden)
+
+
+def _is_hidden(geometry, one) -> bool:
+    """Whether an object is hidden at all times."""
+    found = geometry.GetVisibilityProperty(one)
+    if not found.valid() or found.getNumSamples() == 0:
+        return False
+    return found.isConstant() and geometry.GetVisibility(one) == geometry.ObjectVisibility.kVisibilityHidden
 
 
 def _bodies(path: Path, archive) -> tuple[list[Body], tuple[str, ...]]:
     """Those with a shape, and notes on what is not read. Errors: UserError where there is none."""
     geometry = alembic3d(str(path))
     top = archive.getTop()
-    every = [found for child in top.children for found in _walk(geometry, top, child, ())]
-    shapes = [Body(*found) for found in every if found[1] in KINDS and found[2].getNumSamples() > 0]
+    every = [found for child in top.children for found in _walk(geometry, top, child)]
+    hidden = [name for name, kind, *_, gone in every if gone and kind not in NO_SHAPES]
+    shapes = [
+        Body(*found[:4])
+        for found in every
+        if found[1] in KINDS and found[2].getNumSamples() > 0 and not found[4]
+    ]
     solid = [body for body in shapes if body.kind != "IPoints"]
     read = solid or shapes
     if not read:
         have = ", ".join(f"{name} ({kind[1:]})" for name, kind, *_ in every[:5]) or "no object with a shape"
         raise UserError(f"{path}: no mesh (found: {have}); allowed: an archive with {ALLOWED}")
     names = [body.name for body in read]
-    left = [name for name, kind, *_ in every if name not in names and kind not in NO_SHAPES]
+    passed = (*names, *hidden)
+    left = [name for name, kind, *_ in every if name not in passed and kind not in NO_SHAPES]
     notes = [f"not read: {', '.join(left)}"] if left else []
+    if hidden:
+        notes.append(f"not read: {', '.join(hidden)}: hidden")
     if smooth := [body.name for body in read if body.kind == "ISubD"]:
         notes.append(f"subdivision surfaces are read as their control meshes: {', '.join(smooth)}")
     return read, tuple(notes)
@@ -139,14 +170,15 @@ def _times(path: Path, bodies: list[Body]) -> list[float]:
     samples of one of them the format does not say.
     """
     times: list[float] = []
+    first = None
     for body in bodies:
         for schema in body.moving():
             own = _times_of(schema)
-            times = times or own
+            times, first = times or own, first or body
             if own != times:
                 lone = sorted(set(own) ^ set(times))[0]
                 raise UserError(
-                    f"{path}: {body.name}: its samples are at other times than those of {bodies[0].name} (one"
+                    f"{path}: {body.name}: its samples are at other times than those of {first.name} (one"
                     f" of them at {lone!r} s); allowed: the same times for all that moves"
                 )
     return times
@@ -166,15 +198,18 @@ class _World:
         x = _numbers(sample.getPositions(), np.float64).reshape(-1, 3)
         if not len(x):
             raise UserError(f"{self.path}: {one.name}: no points; at least one is needed")
+        mirror = False
         for place in one.places:
             if place.getNumSamples() == 0:
                 continue
             matrix = np.array(place.getValue(time).getMatrix())
             if not np.array_equal(matrix, np.eye(4)):
                 x = x @ matrix[:3, :3] + matrix[3, :3]
+                mirror ^= bool(np.linalg.det(matrix[:3, :3]) < 0)
             if not place.getInheritsXforms(time):
                 break
-        return Shape(x, *KINDS[one.kind](self.path, one.name, sample, len(x)))
+        read = KINDS[one.kind](self.path, one.name, sample, len(x))
+        return Shape(x, *(mirrored(*read) if mirror else read))
 
 
 def of_alembic(path: Path) -> FilmFile:
@@ -199,4 +234,5 @@ def of_alembic(path: Path) -> FilmFile:
             "Alembic names no unit and no upward axis: m and y up are taken, or --scale and --up",
             *notes,
         ),
+        [body.vertices(alembic3d(str(path))) for body in bodies],
     )

@@ -6,7 +6,8 @@ import contextlib
 import importlib
 import struct
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from types import ModuleType
 
@@ -15,6 +16,8 @@ import numpy as np
 from barrierbench_analysis.io.axes import OURS, Axes
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.input_file import TRAJECTORY, opened
+
+from .joins import Join, Numbers, join_of
 
 INSTALL = ".venv/bin/python -m pip install --requirement analysis/requirements-{}.txt"
 ROUNDED = "positions are float32 in the file: what is read are the rounded ones"
@@ -66,7 +69,15 @@ class FilmFile:
     shape: Callable[[int, int], Shape]  # of a body in a frame. Errors: UserError
     axes: Axes = OURS
     notes: tuple[str, ...] = ()
+    numbers: Numbers = ()  # of the vertices of each body, where the file has them
     known: dict[int, tuple[Shape, object]] = field(default_factory=dict)  # of a body, and what it was read as
+
+    @cached_property
+    def join(self) -> Join | None:
+        """Which points are one vertex. Errors: as `at`."""
+        if all(own is None for own in self.numbers):
+            return None
+        return join_of(self.numbers, [self.at(body, 0).points for body in range(len(self.bodies))])
 
     def at(self, body: int, frame: int) -> Shape:
         """Errors: UserError, also for what the library of the format cannot read."""
@@ -74,8 +85,12 @@ class FilmFile:
             return self.shape(body, frame)
 
     def frame(self, number: int) -> Shape:
-        """All bodies, one after the other. Errors: as `at`."""
-        return joined([self.at(body, number) for body in range(len(self.bodies))])
+        """All bodies, one after the other, a vertex once. Errors: as `at`, and where its points are apart."""
+        shape = joined([self.at(body, number) for body in range(len(self.bodies))])
+        if self.join is None:
+            return shape
+        points = self.join.points(shape.points, f"{self.path} ({self.labels[number]})")
+        return replace(shape, points=points, corners=self.join.vertex[shape.corners])
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,6 +152,15 @@ def reversed_faces(corners: np.ndarray, sizes: np.ndarray) -> np.ndarray:
     starts = np.repeat(np.cumsum(sizes) - sizes, sizes)
     place = np.arange(len(corners)) - starts
     return corners[starts + np.where(place == 0, 0, np.repeat(sizes, sizes) - place)]
+
+
+def mirrored(
+    corners: np.ndarray, sizes: np.ndarray, types: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cells whose points a transform with a negative determinant moved: in the other order, so that a side
+    that is outside stays outside, and a volume above 0 stays above 0.
+    """
+    return reversed_faces(corners, sizes), sizes, types
 
 
 def chains(sizes: np.ndarray, closed: bool) -> np.ndarray:

@@ -25,10 +25,12 @@ from .film import (
     cells,
     chains,
     checked_file,
+    mirrored,
     no_cells,
     package,
     reversed_faces,
 )
+from .joins import VERTEX
 
 Cells = tuple[np.ndarray, np.ndarray, np.ndarray]
 ALLOWED = "Mesh, TetMesh, linear BasisCurves, or Points alone"
@@ -81,6 +83,13 @@ def _tetrahedra(path: Path, prim, time, n_points: int) -> Cells:
 
 def _points(path: Path, prim, time, n_points: int) -> Cells:
     return no_cells()
+
+
+def _vertices(geometry, prim) -> np.ndarray | None:
+    """The numbers that our writer gives to its points."""
+    found = geometry.PrimvarsAPI(prim).GetPrimvar(VERTEX)
+    values = np.array(found.Get()) if found and found.HasValue() else np.zeros(0)
+    return values if values.dtype.kind == "i" and values.ndim == 1 else None
 
 
 KINDS: dict[str, Callable[..., Cells]] = {"Mesh": _mesh, "BasisCurves": _curves, "TetMesh": _tetrahedra}
@@ -152,8 +161,15 @@ def _prims(path: Path, stage) -> Prims:
     smooth = [prim for prim, kind in found if kind is _mesh and _is_smooth(geometry, prim)]
     if smooth:
         notes.append(f"subdivision surfaces are read as their control meshes: {_listed(smooth)}")
+    if holes := [prim for prim, kind in found if kind is _mesh and _has_holes(geometry, prim)]:
+        notes.append(f"faces that are holes (holeIndices) are read as all others: {_listed(holes)}")
     prims, kinds = zip(*(found or points))
     return Prims(list(prims), list(kinds), tuple(notes))
+
+
+def _has_holes(geometry, prim) -> bool:
+    holes = geometry.Mesh(prim).GetHoleIndicesAttr()
+    return any(len(holes.Get(time) or ()) for time in holes.GetTimeSamples() or [0.0])
 
 
 def _is_smooth(geometry, prim) -> bool:
@@ -207,7 +223,8 @@ class _World:
         place = np.array(self.places.GetLocalToWorldTransform(prim))
         if not np.array_equal(place, np.eye(4)):
             x = x @ place[:3, :3] + place[3, :3]
-        return Shape(x, *self.prims.cells[body](self.path, prim, time, len(x)))
+        read = self.prims.cells[body](self.path, prim, time, len(x))
+        return Shape(x, *(mirrored(*read) if np.linalg.det(place[:3, :3]) < 0 else read))
 
 
 def of_usd(path: Path) -> FilmFile:
@@ -218,17 +235,18 @@ def of_usd(path: Path) -> FilmFile:
     codes, rate = sorted(set().union(*each)), stage.GetTimeCodesPerSecond()
     if not (np.isfinite(rate) and rate > 0):
         raise UserError(f"{path}: found {rate} time codes per second; a number above 0 is needed")
+    unit = geometry.GetStageMetersPerUnit(stage)
+    if not (np.isfinite(unit) and unit > 0):
+        raise UserError(f"{path}: found metersPerUnit {unit}; a finite number above 0 is needed")
     times = [code / rate for code in codes]
     notes = [ROUNDED, *prims.notes]
     between = [prim for prim, own in zip(prims.read, each) if own and own != set(codes)]
     if between:
         notes.append(f"at times between samples of their own positions are straight: {_listed(between)}")
-    for name, has in (
-        ("metersPerUnit", geometry.StageHasAuthoredMetersPerUnit(stage)),
-        ("upAxis", stage.HasAuthoredMetadata("upAxis")),
-    ):
-        if not has:
-            notes.append(f"the stage names no {name}: that of USD is taken (0.01 and y), or --scale and --up")
+    if not geometry.StageHasAuthoredMetersPerUnit(stage):
+        notes.append("the stage names no metersPerUnit: that of USD is taken (0.01), or --scale")
+    if not stage.HasAuthoredMetadata("upAxis"):
+        notes.append("the stage names no upAxis: that of USD is taken (y), or --up")
     world = _World(path, stage, prims, [usd.TimeCode(code) for code in codes] or [usd.TimeCode.Default()])
     return FilmFile(
         path,
@@ -236,6 +254,7 @@ def of_usd(path: Path) -> FilmFile:
         [f"{time!r} s" for time in times] or ["at rest"],
         times or None,
         world.shape,
-        Axes(geometry.GetStageMetersPerUnit(stage), geometry.GetStageUpAxis(stage).lower()),
+        Axes(unit, geometry.GetStageUpAxis(stage).lower()),
         tuple(notes),
+        [_vertices(geometry, prim) for prim in prims.read],
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from barrierbench_analysis.io.axes import chosen, sentence
+from barrierbench_analysis.io.axes import OURS, chosen, sentence
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.frames import frame_paths, frames_of, read_scene, times_of
 from barrierbench_analysis.io.record_file import read_record
@@ -24,6 +24,7 @@ from .pvd import of_list, of_pvd
 from .sequence import no_frames, numbered, of_files, of_obstacles
 from .trajectory import Topology, Trajectory, has_cells, increasing, no_cells, read_mesh, topology_of_mesh
 
+RUN = "run of barrierbench"  # the format of one
 CACHES = {".pc2": of_pc2, ".mdd": of_mdd}  # one file for all frames, without cells
 
 # --- folders
@@ -123,7 +124,7 @@ def of_run(folder: Path) -> Trajectory:
         lambda: (frame.vertices.astype(float) for frame in frames_of(record, folder, steps)),
         [paths[step].name for step in steps],
         str(folder),
-        "run of barrierbench",
+        RUN,
         increasing(times_of(record, steps, folder), lambda k: f"{place}{paths[steps[k]].name}"),
         obstacles,
         scene["planar"],
@@ -193,6 +194,11 @@ HINTS = {
 def _upright(found: Trajectory, unit_m: float | None, up: str | None) -> Trajectory:
     """In m and with z up, and a note where that changes coordinates."""
     axes = chosen(found.axes, unit_m, up)
+    if found.format == RUN and axes != OURS:
+        raise UserError(
+            f"--scale, --up: found {axes.unit_m:g} m per unit and {axes.up} up for the run {found.source};"
+            " allowed: 1 m per unit and z up, which a run has"
+        )
     if (note := sentence(axes)) is None:
         return found
     return replace(found, frames=lambda: map(axes.metres, found.frames()), notes=(*found.notes, note))
