@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from barrierbench_analysis.io import input_file
 from barrierbench_analysis.program.formula.cache import command, compile_there
 from barrierbench_analysis.program.start import evaluated
 
@@ -78,7 +79,7 @@ def plugin_source(shapes: Mapping[str, Sequence[float]]) -> str:
         rows = ", ".join("{" + ", ".join(map(repr, map(float, row))) + "}" for row in pieces(parameters))
         tables.append(f"constexpr Table table_{place} = {{{{{rows}}}}};")
         entries.append(f'SEARCHED("{name}", table_{place})')
-    text = TEMPLATE.read_text()
+    text = input_file.read_text(TEMPLATE)
     known = {
         "@PIECES@": str(PARAMETERS),
         "@KNOTS@": ", ".join(map(repr, map(float, KNOTS))),
