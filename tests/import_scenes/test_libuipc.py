@@ -68,7 +68,7 @@ def test_affine_bodies_are_stiff_solids_or_rigid(imported, tmp_path):
 
     made = read(imported, tmp_path, make)
     still, free = made.scene["bodies"]
-    assert still["kind"] == "rigid" and free["material"]["solid_youngs_Pa"] == 1e8
+    assert still["kind"] == "rigid" and free["material"]["solid_youngs_Pa"] == pytest.approx(8e8) and free["material"]["solid_poisson"] == 0
     assert read_body_file(made.path.parent / free["mesh"]["file"]).points[:, 0].mean() == pytest.approx(3)
     assert {"a": free["name"], "b": free["name"], "kind": "off"} in made.scene["collisions"]
     key = next(k for k in made.keys if k.endswith("/kappa/name"))
@@ -94,8 +94,8 @@ def test_baraff_witkin_and_bending(imported, tmp_path):
     material = made.scene["bodies"][0]["material"]
     assert material["model"] == "baraff_witkin"
     assert moduli(material) == pytest.approx((0.004 * 7e4, 0.004 * 2e4))
-    areas = 0.125  # of each triangle; inner edges: 8, of which 4 are diagonals
-    straight, diagonal = (2 * 10 * length**2 * 3 / (2 * areas) for length in (0.5, np.sqrt(0.5)))
+    area, half = 2 * 0.125, 0.001  # of both triangles of a hinge; inner edges: 8, of which 4 are diagonals
+    straight, diagonal = (2 * 10 * area * half * length / (area / 3 / length) for length in (0.5, np.sqrt(0.5)))
     assert material["bending_J"] == pytest.approx((straight + diagonal) / 2)
 
 
@@ -137,10 +137,102 @@ def test_the_table_of_contacts(imported, tmp_path):
 
     made = read(imported, tmp_path, make, friction=((0, 0, 0.5, 1), (0, 1, 0.2, 0)))
     assert made.config["friction"]["mu"] == 0.5
-    assert [body.get("friction") for body in made.scene["bodies"]] == [0.2, None]
+    assert [body.get("friction") for body in made.scene["bodies"]] == [None, None]
     assert made.scene["collisions"] == [{"a": "cube", "b": "other", "kind": "off"}]
     key = next(k for k in made.keys if k.endswith("/friction_rate/name"))
-    assert entry_of(made.card, key)[0] == "changed"
+    assert entry_of(made.card, key)[0] == "mapped"
+
+
+def three(saved):
+    for number in (1, 2):
+        cells = {"tetrahedra": SOLID["tetrahedra"] | {"kappa": [1e5] * 6}}
+        saved.body(f"cube_{number}", sources.CUBE + [0, 3 * number, 0], 9, meta={"contact_element_id": [number]}, **cells)
+    saved.ground(-2.0, element=3)
+
+
+def combined(made, *names):
+    """The coefficient of a pair in the config."""
+    friction = made.config["friction"]
+    sides = {one["name"]: one.get("friction", friction["mu"]) for one in (*made.scene["bodies"], *made.scene["obstacles"])}
+    rule = {"min": min, "max": max, "mean": lambda a, b: (a + b) / 2}[friction.get("combine", "min")]
+    return rule(*(sides[name] for name in names))
+
+
+def test_pairs_with_a_ground_that_are_off(imported, tmp_path):
+    made = read(imported, tmp_path, three, friction=((0, 0, 0.5, 1), (1, 3, 0.2, 0)))
+    assert made.scene["collisions"] == [{"a": "cube_1", "b": "ground", "kind": "off"}]
+
+
+def test_pairs_that_the_table_lacks_are_as_the_first_one(imported, tmp_path):
+    made = read(imported, tmp_path, three, friction=((0, 0, 0.5, 0), (1, 2, 0.2, 1)))
+    off = {(pair["a"], pair["b"]) for pair in made.scene["collisions"]}
+    assert off == {("cube_1", "cube_1"), ("cube_2", "cube_2"), ("cube_1", "ground"), ("cube_2", "ground")}
+
+
+@pytest.mark.parametrize("rates, rule", [((0.5, 0.2, 0.2), "min"), ((0.6, 0.6, 0.1), "max"), ((0.1, 0.3, 0.2), "mean")])
+def test_friction_of_pairs_comes_out_right(imported, tmp_path, rates, rule):
+    between, first, second = rates
+    rows = ((0, 0, 0.9, 1), (1, 2, between, 1), (1, 3, first, 1), (2, 3, second, 1), (1, 1, 0.0, 0), (2, 2, 0.0, 0))
+    made = read(imported, tmp_path, three, friction=rows)
+    assert made.config["friction"].get("combine", "min") == rule
+    for pair, rate in zip((("cube_1", "cube_2"), ("cube_1", "ground"), ("cube_2", "ground")), rates):
+        assert combined(made, *pair) == pytest.approx(rate)
+    key = next(k for k in made.keys if k.endswith("/friction_rate/name"))
+    assert entry_of(made.card, key)[0] == "mapped"
+
+
+def test_friction_that_no_coefficients_give_is_listed(imported, tmp_path):
+    rows = ((0, 0, 0.9, 1), (1, 2, 0.1, 1), (1, 3, 0.3, 1), (2, 3, 0.2, 1), (1, 1, 0.7, 1), (2, 2, 0.5, 1))
+    made = read(imported, tmp_path, three, friction=rows)
+    kind, entry = entry_of(made.card, next(k for k in made.keys if k.endswith("/friction_rate/name")))
+    assert kind == "changed" and len(entry["was"]) == len(entry["became"]) > 0
+    names = {1: "cube_1", 2: "cube_2", 3: "ground"}
+    for was, became in zip(entry["was"], entry["became"]):
+        (pair, before), (same, after) = was.split(": "), became.split(": ")
+        a, b = map(int, pair.removeprefix("elements ").split(", "))
+        assert pair == same and next(rate for c, d, rate, _ in rows if (c, d) == (a, b)) == float(before)
+        assert combined(made, names[a], names[b]) == pytest.approx(float(after)) != float(before)
+    wrong = {one.split(": ")[0] for one in entry["was"]}
+    right = [(a, b, rate) for a, b, rate, _ in rows[1:] if f"elements {a}, {b}" not in wrong]
+    assert right and all(combined(made, names[a], names[b]) == pytest.approx(rate) for a, b, rate in right)
+
+
+@pytest.mark.parametrize("uid, shear", [(1, 4.0), (2, 1.0)])
+def test_instances_have_their_own_stiffness_and_velocity(imported, tmp_path, uid, shear):
+    far, speed = np.eye(4), np.zeros((2, 4, 4))
+    far[0, 3] = 3
+    speed[0, 0, 3], speed[1, 1, 3] = 2.0, -5.0
+
+    def make(saved):
+        two = {"transform": [np.eye(4).tolist(), far.tolist()], "kappa": [1e6, 3e6], "velocity": speed.tolist()}
+        saved.body("abd", sources.CUBE, uid, instances=two, tetrahedra=SOLID["tetrahedra"])
+
+    bodies = read(imported, tmp_path, make).scene["bodies"]
+    assert [body["velocity_m_per_s"] for body in bodies] == [[2, 0, 0], [0, -5, 0]]
+    for body, kappa in zip(bodies, (1e6, 3e6)):
+        material = body["material"]
+        assert material["solid_poisson"] == 0 and material["solid_youngs_Pa"] == pytest.approx(2 * shear * kappa)
+
+
+def test_affine_shells_that_can_move_are_left_out(imported, tmp_path):
+    def make(saved):
+        solid(saved)
+        instances = {"kappa": [1e8], "is_fixed": [0]}
+        saved.body("free", POINTS + [0, 5, 0], 1, instances=instances, triangles={"topo": sources.columns(FACES)})
+        instances = {"kappa": [1e8], "is_fixed": [1]}
+        saved.body("still", POINTS - [0, 5, 0], 1, instances=instances, triangles={"topo": sources.columns(FACES)})
+
+    made = read(imported, tmp_path, make)
+    assert [body["name"] for body in made.scene["bodies"]] == ["cube", "still"]
+    found = [entry for entry in made.card["not_mapped"] if "without tetrahedra" in entry["consequence"]]
+    assert len(found) == 1 and all("/geometries/1/" in f"{key}/" for key in found[0]["keys"])
+
+
+@pytest.mark.parametrize("topology", [[[0, 4]], [[[0], [4], [6], ["seven"]]], [[[0], [4], [6], [99]]]])
+def test_damaged_cells_are_refused_at_their_geometry(refused, tmp_path, topology):
+    saved = sources.Saved()
+    saved.body("cube", sources.CUBE, 9, tetrahedra={"topo": topology, "kappa": [1e5]})
+    assert "saved.json#/__data__/geometry_atlas/__data__/geometries/0: found values" in refused(saved.write(tmp_path / "saved.json"))
 
 
 def test_settings(imported, tmp_path):

@@ -113,7 +113,42 @@ def test_an_operation_that_is_not_read_is_listed(imported, session):
     text = '[pin-0-op-0]\ntype = "torque"\naxis_component = 0\nmagnitude = 1.0\nhint_vertex = 0\nt_start = 0.0\nt_end = 1.0\n'
     made = imported(session(pins=[([0], text, [None])]))
     assert entry_of(made.card, "info.toml#/pin-0-op-0/magnitude")[0] == "not_mapped"
+    assert "pins" not in made.scene["bodies"][0]  # the source leaves such vertices free
+
+
+MOVE = 'type = "move_by"\nt_start = 0.0\nt_end = 1.0\ntransition = "linear"\n'
+SPIN = 'type = "spin"\ncenter_x = 0.0\ncenter_y = 0.0\ncenter_z = 0.0\naxis_x = 0.0\naxis_y = 2.0\naxis_z = 0.0\nangular_velocity = 90.0\nt_start = 0.0\nt_end = 9.0\n'
+SCALE = 'type = "scale"\ncenter_x = 0.0\ncenter_y = 0.0\ncenter_z = 0.0\nfactor = 0.5\nt_start = 0.0\nt_end = 0.1\n'
+
+
+def test_operations_beside_one_that_is_not_read_are_listed(imported, session):
+    text = f'[pin-0-op-0]\n{MOVE}[pin-0-op-1]\ntype = "torque"\nmagnitude = 1.0\n'
+    made = imported(session(pins=[([0], text, [[[0.5, 0, 0]], None])]))
+    kind, entry = entry_of(made.card, "info.toml#/pin-0-op-0/t_start")
+    assert kind == "not_mapped" and "another one" in entry["consequence"]
     assert made.scene["bodies"][0]["pins"] == [{"indices": [0]}]
+
+
+def test_a_spin_backwards_does_nothing(imported, session):
+    text = "[pin-0-op-0]\n" + SPIN.replace("= 90.0", "= -90.0")
+    assert pinned(imported, session, text, [None]) == {"indices": [0, 5, 7]}
+
+
+def test_the_stiffness_of_a_rod_is_times_the_length_of_its_edges(imported, session):
+    folder = session(wall=False)
+    points = np.array([[0, 0, 0], [0.1, 0, 0], [0.3, 0, 0], [0.4, 0, 0]])
+    text = (folder / "info.toml").read_text().replace("vert = 25\n", "vert = 4\n", 1).replace("\ntri = 32", "\ntri = 0").replace("rod = 0", "rod = 3").replace("shell_count = 32", "shell_count = 0")
+    (folder / "info.toml").write_text(text)
+    for path in (folder / "bin/param").iterdir():
+        path.unlink()
+    (folder / "bin/tri.bin").unlink()
+    for name, rows, kind in (("vert", points, "<f8"), ("vel", 0 * points, "<f4"), ("vert_dmap", [0] * 4, "<u4"), ("rod", [[0, 1], [1, 2], [2, 3]], "<u8"), ("param/rod-young-mod", [1e4] * 3, "<f4"), ("param/rod-density", [0.02] * 3, "<f4")):
+        np.asarray(rows, kind).tofile(folder / "bin" / f"{name}.bin")
+    made = imported(folder)
+    material = made.scene["bodies"][0]["material"]
+    assert material["rod_stretching_N"] == pytest.approx(1e4 * 0.02 * 0.4 / 3, rel=1e-6)
+    assert material["line_density_kg_per_m"] == pytest.approx(0.02)
+    assert entry_of(made.card, "bin/param/rod-young-mod.bin")[0] == "changed"
 
 
 def test_gravity_over_time_and_scaling(imported, session):
@@ -141,6 +176,8 @@ def test_unknown_keys_and_files_are_listed(imported, session):
         (("info.toml", "[count]", "[count"), "info.toml: found no TOML"),
         (("param.toml", '"cubic"', '"quartic"'), "param.toml#/param/barrier: found 'quartic'; allowed: cubic, quad, log"),
         (("param.toml", "dt = 0.01", "dt = 0.0"), "param.toml#/param/dt: found 0.0; allowed: a number above 0"),
+        (("param.toml", "[0.0, -9.8, 0.0]", '"down"'), "param.toml#/param/gravity: found 'down'; allowed: three numbers"),
+        (("param.toml", "fps = 60.0", 'fps = "60"'), "param.toml#/param/fps: found '60'; allowed: a number above 0"),
         (("param.toml", '"max"', '"sum"'), "param.toml#/param/friction_mode: found 'sum'; allowed: min, max, mean"),
     ],
 )
@@ -150,6 +187,37 @@ def test_bad_input(refused, session, change, message):
     assert old in text
     (folder / name).write_text(text.replace(old, new, 1))
     assert message in refused(folder)
+
+
+@pytest.mark.parametrize(
+    "text, rows, change, message",
+    [
+        (MOVE, [[0.5, 0, 0]], None, "bin/pin-0-op-0.bin: found 1; allowed: 3 rows"),
+        (SPIN, None, ("t_end = 9.0\n", ""), "info.toml#/pin-0-op-0/t_end: found None; allowed: a number"),
+        (SCALE, None, ("t_end = 0.1\n", ""), "info.toml#/pin-0-op-0/t_end: found None; allowed: a number"),
+        (SPIN, None, ("axis_y = 2.0", "axis_y = 0.0"), "info.toml#/pin-0-op-0/axis_x: found 0.0; allowed: an axis"),
+        (SCALE, None, ("factor = 0.5", 'factor = "half"'), "info.toml#/pin-0-op-0/factor: found 'half'; allowed: a number"),
+        (SPIN, None, ("center_x = 0.0", "center_x = [1]"), "info.toml#/pin-0-op-0/center_x: found [1]; allowed: a number"),
+        (MOVE, [[0.5, 0, 0]] * 3, ("nx = 0.0\n", ""), "info.toml#/wall-0/nx: found None; allowed: a number"),
+        (MOVE, [[0.5, 0, 0]] * 3, ("friction = 0.1", 'friction = "much"'), "info.toml#/wall-0/friction: found 'much'"),
+        (MOVE, [[0.5, 0, 0]] * 3, ("pull = 0.0", "pull = []"), "info.toml#/pin-0/pull: found []; allowed: a number"),
+        (MOVE, [[0.5, 0, 0]] * 3, ("operation_count = 1", "operation_count = 1.5"), "operation_count: found 1.5; allowed: a whole"),
+        (MOVE, [[0.5, 0, 0]] * 3, ("shell_count = 32", 'shell_count = "all"'), "info.toml#/count/shell_count: found 'all'"),
+    ],
+)
+def test_damaged_tables(refused, session, text, rows, change, message):
+    folder = session(pins=[([0, 5, 7], "[pin-0-op-0]\n" + text, [rows])])
+    if change:
+        whole = (folder / "info.toml").read_text()
+        assert change[0] in whole
+        (folder / "info.toml").write_text(whole.replace(*change, 1))
+    assert message in refused(folder)
+
+
+def test_vertices_that_no_array_has(refused, session):
+    folder = session(pins=[([99], "", [])])
+    np.asarray([3] * 25, "<u4").tofile(folder / "bin/vert_dmap.bin")
+    assert "info.toml: found tables and arrays that do not fit together" in refused(folder)
 
 
 def test_an_array_that_is_cut_off(refused, session):

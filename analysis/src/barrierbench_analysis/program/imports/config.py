@@ -44,6 +44,7 @@ class SceneConfig:
         self.obstacles: list[dict] = []
         self.settings: dict = {}
         self.scene: dict = {}
+        self.apart: set[frozenset[str]] = set()  # names of pairs whose contact is off
         self.vertices = 0
 
     def times(self) -> np.ndarray:
@@ -104,12 +105,17 @@ class SceneConfig:
 
     def switch_off(self, a: dict, b: dict) -> None:
         """Turns contact off between a body and a body or an obstacle, where one of them can move freely."""
-        obstacle = b in self.obstacles
-        if a.get("kind") == "rigid" and (obstacle or b.get("kind") == "rigid"):
+        if not self.can_meet(a, b):
             return
         pair = {"a": a["name"], "b": b["name"], "kind": "off"}
-        if pair not in (pairs := self.scene.setdefault("collisions", [])):
-            pairs.append(pair)
+        self.scene.setdefault("collisions", []).append(pair)
+        self.apart.add(frozenset((a["name"], b["name"])))
+
+    def can_meet(self, a: dict, b: dict) -> bool:
+        """Whether contact acts between a body and a body (itself too) or an obstacle."""
+        if a.get("kind") == "rigid" and (b in self.obstacles or b.get("kind") == "rigid"):
+            return False
+        return frozenset((a["name"], b["name"])) not in self.apart
 
     def no_contact(self) -> None:
         """Turns contact off between all pairs."""

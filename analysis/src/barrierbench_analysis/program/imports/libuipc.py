@@ -16,9 +16,11 @@ from barrierbench_analysis.program.trajectories.trajectory import surface_of
 from .card import Card, leaves
 from .config import SceneConfig, cells_of
 from .libuipc_atlas import Atlas
-from .libuipc_models import material_of, names_of
+from .libuipc_contacts import Contacts
+from .libuipc_models import AFFINE_ARAP, ORTHO, material_of, names_of
 
 FILE = "/__data__/geometry_atlas/__data__"
+LEFT = object()  # in place of the velocity of an instance that is left out
 DEFAULT_STEPS = 100  # the file has no end of time
 INTEGRATORS = {"bdf1": "implicit_euler", "bdf2": "bdf2"}
 GEOMETRY = f"{FILE}/geometries/*/__data__"
@@ -120,7 +122,9 @@ class Scene:
                 "/time/steps", DEFAULT_STEPS, "a saved scene has no end; --steps says another one"
             )
         self.config = SceneConfig(out, dt, steps or DEFAULT_STEPS)
-        self.friction_of: dict[tuple[int, int], float] = {}
+        self.place = "/__data__"  # what is read now
+        self.sides: list[tuple[int, dict]] = []  # contact elements of bodies, then of obstacles
+        self.grounds: list[tuple[int, dict]] = []
 
     def contact(self) -> None:
         """Settings of the run, and the table of contacts."""
@@ -143,13 +147,10 @@ class Scene:
         else:
             given.changed("contact/constitution", form, "ipc2020", "contact is a barrier of IPC here")
         self._table()
-        speed = float(given.one("contact/eps_velocity", 0.01))
+        self.speed = float(given.one("contact/eps_velocity", 0.01))
         given.mapped("contact/eps_velocity", "/friction/eps_v_m_per_s")
         given.mapped("contact/friction/enable", "/friction", "no coefficient where it is 0")
         self.friction_on = bool(given.one("contact/friction/enable", 1))
-        usual = self.friction_of.get((0, 0), 0.0)
-        if self.friction_on and any(self.friction_of.values()):
-            made.settings["friction"] = {"mu": usual, "eps_v_m_per_s": speed}
         given.mapped("contact/enable", "/scene/collisions", "all pairs are off where it is 0")
 
     def _table(self) -> None:
@@ -158,19 +159,10 @@ class Scene:
         pairs = np.reshape(table.all("topo", [[0, 0]]), (-1, 2)).astype(int)
         rates = np.ravel(table.all("friction_rate", [0.0] * len(pairs))).astype(float)
         active = np.ravel(table.all("is_enabled", [1] * len(pairs))).astype(bool)
-        self.friction_of = {tuple(sorted(map(int, pair))): float(rate) for pair, rate in zip(pairs, rates)}
-        self.off = {tuple(sorted(map(int, pair))) for pair, on in zip(pairs, active) if not on}
+        names = [tuple(sorted(map(int, pair))) for pair in pairs]
+        self.contacts = Contacts(dict(zip(names, rates.tolist())), dict(zip(names, active.tolist())))
         table.mapped("topo", "/scene/bodies/N/friction", "which contact elements meet")
         table.mapped("is_enabled", "/scene/collisions", "pairs that are off")
-        if len(set(rates)) > 1:
-            table.changed(
-                "friction_rate",
-                rates.tolist(),
-                "one coefficient a body",
-                "this program combines the coefficients of both bodies (the smaller one counts)",
-            )
-        else:
-            table.mapped("friction_rate", "/friction/mu")
         self.card.mapped(
             "/__data__/contact_tabular/contact_elements", "/scene/bodies/N/friction", "their numbers"
         )
@@ -179,9 +171,9 @@ class Scene:
         """All geometries that stand in a slot, in the order of their numbers."""
         names = names_of(self.data)
         rests = {one["id"]: one["index"] for one in self.data["__data__"].get("rest_geometry_slots", [])}
-        self.elements: list[int] = []
         for slot in sorted(self.data["__data__"].get("geometry_slots", []), key=lambda one: one["id"]):
             geometry = self.atlas.geometry(slot["index"])
+            self.place = geometry.place
             name = names.get(slot["id"], f"geometry_{slot['id']}")
             first = len(self.config.bodies)
             if geometry.kind == "ImplicitGeometry":
@@ -193,6 +185,7 @@ class Scene:
             if slot["id"] in rests:
                 rest = self.atlas.geometry(rests[slot["id"]])
                 self._rest(geometry, rest, first)
+        self.place = "/__data__"
         self._collisions()
 
     def _plane(self, geometry, name: str) -> None:
@@ -204,10 +197,8 @@ class Scene:
         normals = np.reshape(geometry.instances.all("N"), (-1, 3)).astype(float)
         element = int(geometry.meta.one("contact_element_id", 0))
         for point, normal in zip(points, normals):
-            friction = self._friction(element)
-            self.config.add_obstacle(
-                name, kind="plane", point_m=(point + 0.0).tolist(), axis=normal.tolist(), friction=friction
-            )
+            self.config.add_obstacle(name, kind="plane", point_m=(point + 0.0).tolist(), axis=normal.tolist())
+            self.grounds.append((element, self.config.obstacles[-1]))
         for part, keys in (
             (geometry.instances, ("P", "N", "is_fixed")),
             (geometry.meta, ("implicit_geometry_uid", "contact_element_id")),
@@ -227,13 +218,17 @@ class Scene:
                     body["rest_mesh"] = self.config.mesh_file(f"{body['name']}_rest", cells)
         self.card.mapped(rest.shared(geometry), "/scene/bodies/N/mesh or rest_mesh", "the rest shape")
 
-    def _friction(self, element: int) -> float | None:
-        """The coefficient of a contact element with the usual one, where it has one of its own."""
-        found = self.friction_of.get((0, element))
-        return found if element and found is not None and self.friction_on else None
-
     def _complex(self, geometry, name: str) -> None:
         uid = int(geometry.meta.one("constitution_uid", 0))
+        fixed = np.ravel(geometry.instances.all("is_fixed", [0])).astype(bool)
+        thin = uid in (ORTHO, AFFINE_ARAP) and not len(geometry.tetrahedra.all("topo", []))
+        if thin and not fixed.all():
+            words = (
+                "an affine body without tetrahedra has no solid here: instances that can move are left out"
+            )
+            self.card.left_out(geometry.instances.pointers("kappa") if fixed.any() else geometry.place, words)
+            if not fixed.any():
+                return
         made = material_of(self.card, geometry, uid)
         if made is None:
             return
@@ -246,24 +241,27 @@ class Scene:
         geometry.instances.mapped(
             "transform", "/scene/bodies/N/mesh", "applied to the vertices; one body an instance"
         )
-        fixed = np.ravel(geometry.instances.all("is_fixed", [0] * len(transforms))).astype(bool)
+        fixed = np.resize(fixed, len(transforms))
         geometry.instances.mapped("is_fixed", "/scene/bodies/N/kind", "rigid where it is 1")
-        pins, velocity = self._held(geometry), self._velocity(geometry)
-        offset = made.offset or None
-        for transform, still in zip(transforms, fixed):
+        pins, velocities = self._held(geometry), self._velocities(geometry, points, len(transforms))
+        if thin:
+            velocities = [None if still else LEFT for still in fixed]
+        first = len(self.config.bodies)
+        for number, (transform, still) in enumerate(zip(transforms, fixed)):
+            if velocities[number] is LEFT:
+                continue
             moved = points @ transform[:3, :3].T + transform[:3, 3]
             here = MeshArrays(moved, cells.triangles, cells.segments, cells.tetrahedra)
-            keys = {"offset_m": offset, "friction": self._friction(element)}
+            keys: dict = {"kind": "rigid"}
             if still:
-                surface = cells_of(moved, surface_of(here), here.segments)
-                self.config.add_body(name, surface, kind="rigid", **keys)
+                here = cells_of(moved, surface_of(here), here.segments)
             else:
-                self.config.add_body(
-                    name, here, material=made.keys, pins=pins or None, velocity_m_per_s=velocity, **keys
-                )
-            self.elements.append(element)
+                keys = {"material": made.of(number), "pins": pins or None}
+                keys["velocity_m_per_s"] = velocities[number]
+            body = self.config.add_body(name, here, offset_m=made.offset or None, **keys)
+            self.sides.append((element, body))
         if not int(geometry.meta.one("self_collision", 1)):
-            for body in self.config.bodies[-len(transforms) :]:
+            for body in self.config.bodies[first:]:
                 self.config.switch_off(body, body)
         geometry.meta.mapped("self_collision", "/scene/collisions", "off where it is 0")
 
@@ -273,10 +271,10 @@ class Scene:
         geometry.vertices.mapped("is_fixed", "/scene/bodies/N/pins")
         return [{"indices": np.flatnonzero(fixed).tolist()}] if fixed.any() else []
 
-    def _velocity(self, geometry) -> list[float] | None:
-        """The mean velocity of the vertices, or that of the transform of an affine body."""
-        affine = np.reshape(geometry.instances.all("velocity", []), (-1, 4, 4)).astype(float)
+    def _velocities(self, geometry, points: np.ndarray, count: int) -> list[list[float] | None]:
+        """The velocity of each instance, m/s: the mean of its vertices."""
         given = np.reshape(geometry.vertices.all("velocity", []), (-1, 3)).astype(float)
+        affine = np.reshape(geometry.instances.all("velocity", []), (-1, 4, 4)).astype(float)
         turning = bool(len(affine)) and bool(np.abs(affine[:, :3, :3]).max() > 0)
         if turning or (len(given) and np.ptp(given, axis=0).max() > 0):
             words = "a body begins with one velocity of all its vertices"
@@ -284,36 +282,63 @@ class Scene:
                 part.changed("velocity", "a velocity of each vertex", "their mean", words)
         for part in (geometry.instances, geometry.vertices):
             part.mapped("velocity", "/scene/bodies/N/velocity_m_per_s")
-        found = (
-            given.mean(axis=0)
-            if len(given)
-            else affine[:, :3, 3].mean(axis=0)
-            if len(affine)
-            else np.zeros(3)
-        )
-        return found.tolist() if found.any() else None
+        means = np.zeros((count, 3)) + (given.mean(axis=0) if len(given) else 0.0)
+        if len(affine):
+            means = affine[:, :3, :3] @ points.mean(axis=0) + affine[:, :3, 3]
+        return [mean.tolist() if mean.any() else None for mean in means]
 
     def _collisions(self) -> None:
         """Pairs of bodies whose contact elements do not meet."""
         if not int(self.settings.one("contact/enable", 1)):
             self.config.no_contact()
             return
-        bodies = self.config.bodies
-        for number, (first, one) in enumerate(zip(self.elements, bodies)):
-            for second, other in zip(self.elements[number:], bodies[number:]):
-                if tuple(sorted((first, second))) in self.off:
+        sides = [*self.sides, *self.grounds]
+        met: list[tuple[int, int]] = []
+        for number, (first, one) in enumerate(self.sides):
+            for second, other in sides[number:]:
+                if not self.contacts.meet(first, second):
                     self.config.switch_off(one, other)
+                if self.config.can_meet(one, other):
+                    met.append((first, second))
+        self._frictions(met)
+
+    def _frictions(self, met: list[tuple[int, int]]) -> None:
+        """A coefficient for each body and obstacle, and how those of a pair combine."""
+        table = self.atlas.collection("contact_models")
+        rule, of_element, wrong = self.contacts.coefficients(met)
+        if self.friction_on and any(of_element.values()):
+            usual = of_element.get(0, next(iter(of_element.values())))
+            self.config.settings["friction"] = {"mu": usual, "eps_v_m_per_s": self.speed}
+            if rule != "min":
+                self.config.settings["friction"]["combine"] = rule
+            for element, side in (*self.sides, *self.grounds):
+                if of_element.get(element, usual) != usual:
+                    side["friction"] = of_element[element]
+            if wrong:
+                was, became = (
+                    [f"elements {a}, {b}: {pair[k]:g}" for (a, b), pair in wrong.items()] for k in (0, 1)
+                )
+                words = f"no coefficients of the bodies give all pairs ({rule} of both counts)"
+                table.changed("friction_rate", was, became, words)
+        table.mapped(
+            "friction_rate", "/friction/mu and /scene/bodies/N/friction", f"the {rule} of both counts"
+        )
 
 
 def read(path: Path, out: Path, steps: int | None) -> tuple[SceneConfig, Card]:
     """The config of a scene and its card. Errors: UserError with file and place."""
+    scene = None
     try:
         scene = Scene(path, out, steps)
         scene.contact()
         scene.bodies()
-    except (KeyError, IndexError, TypeError, AttributeError) as fault:
-        raise UserError(
-            f"{path}#/__data__: found a scene without {fault}; allowed: what SceneIO.save writes"
-        ) from None
+    except UserError:
+        raise
+    except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError) as fault:
+        place = scene.place if scene else "/__data__"
+        found = (
+            f"a scene without {fault}" if isinstance(fault, KeyError) else f"values of another form ({fault})"
+        )
+        raise UserError(f"{path}#{place}: found {found}; allowed: what SceneIO.save writes") from None
     scene.card.close(KNOWN)
     return scene.config, scene.card

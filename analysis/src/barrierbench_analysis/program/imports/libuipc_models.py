@@ -1,13 +1,14 @@
 """Constitutions of libuipc, by their numbers, as materials of this program."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from . import materials
 from .card import Card
 
-AFFINE = range(1, 9)
+ORTHO, AFFINE_ARAP = 1, 2  # of affine bodies
 ARAP, STABLE_NEO_HOOKEAN, NEO_HOOKEAN_SHELL, HOOKEAN_SPRING, PARTICLE = 9, 10, 11, 12, 13
 KIRCHHOFF_ROD, DISCRETE_SHELL, BARAFF_WITKIN = 15, 17, 819
 OTHERS = {14: "vertices are not pulled to a place", 16: "the transform is not pulled to a place"}
@@ -16,10 +17,15 @@ AT = "/scene/bodies/N/material"
 
 @dataclass
 class Material:
-    """Keys of a material, and the thickness on each side, m."""
+    """Keys of a material, the thickness on each side, m, and keys that differ between instances."""
 
     keys: dict
     offset: float = 0.0
+    each: list[dict] = field(default_factory=list)
+
+    def of(self, instance: int) -> dict:
+        """The keys of an instance."""
+        return self.keys | (self.each[min(instance, len(self.each) - 1)] if self.each else {})
 
 
 def names_of(data: dict) -> dict[int, str]:
@@ -30,14 +36,14 @@ def names_of(data: dict) -> dict[int, str]:
 
 def material_of(card: Card, geometry, uid: int) -> Material | None:
     """The material of a geometry; None for one that is left out, with a note on the card."""
-    reader = READERS.get("affine" if uid in AFFINE else uid)
+    reader = READERS.get(uid)
     if reader is None:
         words = "a particle has no cells" if uid == PARTICLE else f"the constitution {uid} is not read"
         card.left_out(geometry.place, f"{words}: the geometry is left out")
         return None
     density = float(geometry.meta.one("mass_density", 1000.0))
     made = reader(geometry, density)
-    if uid in AFFINE or uid == ARAP:
+    if uid in (ORTHO, AFFINE_ARAP, ARAP):
         geometry.meta.mapped("constitution_uid", f"{AT}/solid_model")
     geometry.meta.mapped("constitution_uid", f"{AT}/model or solid_model")
     geometry.meta.mapped("mass_density", AT, "a density of the cells")
@@ -55,23 +61,25 @@ def _mean(part, key: str, to: str) -> float:
     return mean
 
 
-def _affine(geometry, density: float) -> Material:
-    """An affine body resists by kappa; here it is a stiff solid of that modulus."""
-    kappa = float(geometry.instances.one("kappa"))
-    geometry.instances.changed(
-        "kappa",
-        f"an affine body of {kappa:g} Pa",
-        f"a solid with Young's modulus {kappa:g} Pa",
-        "this program has no affine bodies: all vertices are free",
-    )
-    return Material(
-        {
-            "solid_model": "corotational",
-            "solid_youngs_Pa": kappa,
-            "solid_poisson": 0.3,
-            "solid_density_kg_per_m3": density,
-        }
-    )
+def _affine(shear_of_kappa: float) -> Callable:
+    """A reader of affine bodies, which become stiff solids with the same moduli at rest. A small strain e has
+    the energy 4 kappa |e|^2 where it is kappa |A A^T - I|^2 (uid 1), and kappa |e|^2 where it is
+    kappa |A - R|^2 (uid 2); a solid has mu |e|^2, and lambda is 0.
+    """
+
+    def read(geometry, density: float) -> Material:
+        kappas = np.ravel(geometry.instances.all("kappa")).astype(float)
+        each = [materials.solid("corotational", shear_of_kappa * k, 0.0, density) for k in kappas]
+        youngs = [one["solid_youngs_Pa"] for one in each]
+        geometry.instances.changed(
+            "kappa",
+            f"affine bodies of {', '.join(f'{k:g}' for k in kappas)} Pa",
+            f"solids with Young's moduli {', '.join(f'{e:g}' for e in youngs)} Pa and Poisson's ratio 0",
+            "this program has no affine bodies: all vertices are free",
+        )
+        return Material(each[0], each=each)
+
+    return read
 
 
 def _thickness(geometry) -> float:
@@ -158,28 +166,26 @@ def _extras(geometry, made: Material) -> None:
 
 
 def _bending(geometry) -> float:
-    """2 kappa L0/h of the hinges, whose mean all hinges of the body get."""
+    """2 kappa A t L0/h of the hinges, whose mean all hinges of the body get. The energy of a hinge is
+    kappa (theta - theta_0)^2 L0/h times the volume A t, where A is the area of both triangles, h = A/(3 L0),
+    and t the mean of the thickness at its four vertices (V_bar in discrete_shell_bending.cu).
+    """
     points = np.reshape(geometry.vertices.all("position"), (-1, 3)).astype(float)
     triangles = np.reshape(geometry.triangles.all("topo"), (-1, 3)).astype(int)
     edges = np.reshape(geometry.edges.all("topo"), (-1, 2)).astype(int)
     kappa = np.ravel(geometry.edges.all("bending_stiffness")).astype(float)
-    area = np.linalg.norm(
-        np.cross(
-            points[triangles[:, 1]] - points[triangles[:, 0]],
-            points[triangles[:, 2]] - points[triangles[:, 0]],
-        ),
-        axis=1,
-    )  # twice that of each triangle
-    beside: dict[tuple[int, int], list[float]] = {}
-    for corners, twice in zip(triangles, area):
-        for a, b in ((0, 1), (1, 2), (0, 2)):
-            beside.setdefault(tuple(sorted((int(corners[a]), int(corners[b])))), []).append(float(twice) / 2)
+    thickness = np.ravel(geometry.vertices.all("thickness", [0.0] * len(points))).astype(float)
+    opposite: dict[tuple[int, int], list[int]] = {}
+    for corners in triangles.tolist():
+        for a, b, c in ((0, 1, 2), (1, 2, 0), (0, 2, 1)):
+            opposite.setdefault(tuple(sorted((corners[a], corners[b]))), []).append(corners[c])
     made = []
-    for edge, stiffness in zip(edges, kappa):
-        areas = beside.get(tuple(sorted(map(int, edge))), [])
-        if len(areas) == 2:
+    for edge, stiffness in zip(edges.tolist(), kappa):
+        tips = opposite.get(tuple(sorted(edge)), [])
+        if len(tips) == 2:
             length = float(np.linalg.norm(points[edge[1]] - points[edge[0]]))
-            made.append(2 * stiffness * length**2 * 3 / sum(areas))
+            # L0/h times A is 3 L0^2
+            made.append(6 * stiffness * length**2 * float(thickness[[*edge, *tips]].mean()))
     found = float(np.mean(made)) if made else 0.0
     geometry.edges.changed(
         "bending_stiffness",
@@ -191,7 +197,8 @@ def _bending(geometry) -> float:
 
 
 READERS = {
-    "affine": _affine,
+    ORTHO: _affine(4.0),
+    AFFINE_ARAP: _affine(1.0),
     ARAP: _arap,
     STABLE_NEO_HOOKEAN: _stable_neo_hookean,
     NEO_HOOKEAN_SHELL: _neo_hookean_shell,

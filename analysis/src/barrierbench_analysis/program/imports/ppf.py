@@ -11,7 +11,7 @@ from .card import Card
 from .config import NotAtRest, SceneConfig
 from .ppf_elements import KINDS, Elements, material_of
 from .ppf_obstacles import Obstacles
-from .ppf_session import Session
+from .ppf_session import Session, is_number
 
 FORMULATION = "cubic_dynamic_lagged"
 SHAPES = {"cubic": "cubic", "quad": "quadratic", "log": "log"}
@@ -129,14 +129,17 @@ class Scene:
 
     def _number(self, key: str, rest: float) -> float:
         found = self.session.value(key, rest)
-        if isinstance(found, bool) or not isinstance(found, (int, float)) or not found > 0:
+        if not is_number(found) or not found > 0:
             raise self.card.refuse(self.session.at(key), found, "a number above 0")
         return float(found)
 
     def settings(self) -> None:
         """Everything but bodies."""
         session, made, card = self.session, self.config, self.card
-        made.scene["gravity_m_per_s2"] = [float(g) for g in session.value("gravity", [0.0, -9.8, 0.0])]
+        gravity = session.value("gravity", [0.0, -9.8, 0.0])
+        if not isinstance(gravity, list) or len(gravity) != 3 or not all(map(is_number, gravity)):
+            raise card.refuse(session.at("gravity"), gravity, "three numbers")
+        made.scene["gravity_m_per_s2"] = [float(g) for g in gravity]
         card.mapped(session.at("gravity"), "/scene/gravity_m_per_s2")
         if rows := session.dynamic.get("gravity"):
             del made.scene["gravity_m_per_s2"]
@@ -145,7 +148,7 @@ class Scene:
         for key in session.dynamic:
             card.left_out(f"dyn_param.txt#/{key}", "this parameter stays as it is at the start")
         barrier = session.value("barrier", "cubic")
-        if barrier not in SHAPES:
+        if barrier not in tuple(SHAPES):
             raise card.refuse(session.at("barrier"), barrier, ", ".join(SHAPES))
         card.changed(
             session.at("barrier"),
@@ -254,13 +257,24 @@ class Scene:
 
     def _pin(self, name: str, pin: int, which, indices, local, cells) -> list[dict]:
         """One pin: held, moved by its operations, pulled, for a time."""
-        given = self.session.info.get(f"pin-{pin}", {})
+        at = f"pin-{pin}"
+        given = self.session.table(at)
         operations = self.session.operations(pin, self.scaling)
+        if operations and all(one.given.get("type") == "torque" for one in operations):
+            for one in operations:
+                self.card.left_out(one.keys, "the torque does not act: the vertices are free")
+            return []
         bad = [one for one in operations if not one.is_read]
         for one in bad:
             self.card.left_out(
                 one.keys, f"the operation {one.given.get('type')} does not act: the vertices are held"
             )
+        if bad:
+            for one in operations:
+                words = (
+                    "the operation does not act, as another one of its pin is not read: the vertices are held"
+                )
+                self.card.left_out(one.keys, words)
         made: dict = {"indices": local.tolist()}
         if operations and not bad:
             start, shift = self.points[indices], self.shifts[indices]
@@ -282,11 +296,11 @@ class Scene:
             for one in operations:
                 self.card.mapped(one.keys, "/scene/bodies/N/pins/N/motion", words)
         if "unpin_time" in given:
-            made["release_s"] = float(given["unpin_time"])
-        if float(given.get("pull", 0.0)) > 0:
-            at = f"info.toml#/pin-{pin}/pull"
+            made["release_s"] = self.session.number(at, "unpin_time")
+        if self.session.number(at, "pull", 0.0) > 0:
             self.card.left_out(
-                at, "the pull does not act: its stiffness is a part of mass/dt^2, and the vertices are free"
+                f"info.toml#/{at}/pull",
+                "the pull does not act: its stiffness is a part of mass/dt^2, and the vertices are free",
             )
             return []
         return [made]
@@ -298,14 +312,22 @@ class Scene:
             keys = ("operation_count", "pin", "pull", "pin_group_id")
             self.card.mapped([f"info.toml#/pin-{pin}/{key}" for key in keys], "/scene/bodies/N/pins")
             self.card.left_out(f"bin/pin-pullw-{pin}.bin", "the pull does not act")
-            for number in range(int(self.session.info.get(f"pin-{pin}", {}).get("operation_count", 0))):
+            for number in range(self.session.count("operation_count", of=f"pin-{pin}")):
                 self.card.mapped(f"bin/pin-{pin}-op-{number}.bin", "/scene/bodies/N/pins/N/motion")
 
 
 def read(folder: Path, out: Path, steps: int | None) -> tuple[SceneConfig, Card]:
     """The config of a session and its card. Errors: UserError with file and place."""
-    scene = Scene(folder, out, steps)
-    scene.bodies()
-    scene.settings()
+    try:
+        scene = Scene(folder, out, steps)
+        scene.bodies()
+        scene.settings()
+    except UserError:
+        raise
+    except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError) as fault:
+        raise UserError(
+            f"{folder}/info.toml: found tables and arrays that do not fit together ({fault});"
+            " allowed: what session.build() writes"
+        ) from None
     scene.card.close(KNOWN)
     return scene.config, scene.card

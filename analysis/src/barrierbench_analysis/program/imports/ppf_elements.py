@@ -1,7 +1,8 @@
 """Elements of a session of the ppf contact solver with their parameters as materials of this program.
 
 Young's modulus of a session is over the density (Pa m^3/kg): times the density of a cell it is Pa of a solid,
-N/m of a shell, N of a rod. Stiffnesses of bending are those of energy.cu at f23b356.
+N/m of a shell, and N/m of a rod, where N are times the length of an edge. Stiffnesses of bending are those
+of energy.cu at f23b356.
 """
 
 import numpy as np
@@ -66,7 +67,7 @@ class Elements:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.cells = {kind: session.array(kind).astype(np.int64) for kind in KINDS}
-        self.shells = session.info.get("count", {}).get("shell_count", len(self.cells["tri"]))
+        self.shells = session.count("shell_count", len(self.cells["tri"]))
         self.count = {kind: len(cells) for kind, cells in self.cells.items()}
         self.count["static"] = session.count("static_tri")
         self.sides = np.zeros(0, int)  # triangles of the body that was found last, also those of a solid
@@ -124,6 +125,7 @@ class Elements:
             at = f"bin/param/{kind}"
             for name, to in MAPPED.items():
                 how = "times the density" if name == "young-mod" else ""
+                how += " and the mean length of an edge" if (kind, name) == ("rod", "young-mod") else ""
                 card.mapped(f"{at}-{name}.bin", f"/scene/bodies/N/{to}", how)
             for name, words in LEFT_OUT.items():
                 card.left_out(f"{at}-{name}.bin", words)
@@ -157,7 +159,7 @@ def material_of(
         keys = {
             "model": "none",
             "line_density_kg_per_m": density,
-            "rod_stretching_N": modulus,
+            "rod_stretching_N": modulus * _rod_length(elements, cells),
             "rod_bending_N_m2": elements.one(kind, "bend", numbers) * density * ROD_LENGTH**2,
         }
         if not elements.one(kind, "bend-rest-from-geometry", numbers):
@@ -182,6 +184,24 @@ def material_of(
     if (axis := _warp(elements, numbers, cells)) is not None:
         keys["warp_axis"] = axis
     return keys, contact, elements.one(kind, "strain-limit", numbers)
+
+
+def _rod_length(elements: Elements, cells: MeshArrays) -> float:
+    """The mean length of the edges of a rod, m. The force of an edge of the length l_0 is
+    young (density l_0) (l/l_0 - 1) (energy.cu, hook.hpp, scene.rs): the stiffness against stretching is
+    young density l_0, which depends on the mesh.
+    """
+    ends = cells.points[cells.segments]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    mean = float(lengths.mean())
+    if np.ptp(lengths) > 1e-6 * mean:
+        elements.session.card.changed(
+            "bin/param/rod-young-mod.bin",
+            f"a stiffness of each edge, of {lengths.min():g} to {lengths.max():g} m",
+            f"that of the mean length, {mean:g} m",
+            "a body has one stiffness against stretching",
+        )
+    return mean
 
 
 def _hinges(cells: MeshArrays) -> float:

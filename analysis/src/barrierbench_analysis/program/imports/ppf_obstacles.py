@@ -38,7 +38,7 @@ class Obstacles:
 
     def _walls(self) -> None:
         for number in range(self.session.count("wall")):
-            given = self.session.info.get(f"wall-{number}", {})
+            given = self.session.table(f"wall-{number}")
             places = self.session.numbers(f"wall-pos-{number}", "<f8", 3) * self.scaling
             times = self.session.numbers(f"wall-timing-{number}", "<f8", 1)[:, 0]
             if len(places):
@@ -46,15 +46,15 @@ class Obstacles:
                     f"wall_{number}",
                     kind="plane",
                     point_m=places[0].tolist(),
-                    axis=[float(given[key]) for key in ("nx", "ny", "nz")],
+                    axis=[self.session.number(f"wall-{number}", key) for key in ("nx", "ny", "nz")],
                     motion=_keyframes(places, times, given.get("transition", "linear")),
-                    friction=float(given.get("friction", 0.0)) or None,
+                    friction=self.session.number(f"wall-{number}", "friction", 0.0) or None,
                 )
             self._obstacle_note("wall", number, ("nx", "ny", "nz"))
 
     def _spheres(self) -> None:
         for number in range(self.session.count("sphere")):
-            at, given = f"info.toml#/sphere-{number}", self.session.info.get(f"sphere-{number}", {})
+            at, given = f"info.toml#/sphere-{number}", self.session.table(f"sphere-{number}")
             places = self.session.numbers(f"sphere-pos-{number}", "<f8", 3) * self.scaling
             radius = (
                 self.session.numbers(f"sphere-radius-{number}", "<f4", 1)[:, 0].astype(float) * self.scaling
@@ -77,7 +77,7 @@ class Obstacles:
                     radius_m=float(radius[0]),
                     inside=True if given.get("invert", False) else None,
                     motion=_keyframes(places, times, given.get("transition", "linear")),
-                    friction=float(given.get("friction", 0.0)) or None,
+                    friction=self.session.number(f"sphere-{number}", "friction", 0.0) or None,
                 )
             self._obstacle_note("sphere", number, ("hemisphere", "invert"))
 

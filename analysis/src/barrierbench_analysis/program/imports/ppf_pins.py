@@ -12,6 +12,13 @@ KEYS = (
     " angular_velocity factor axis_component magnitude hint_vertex keyframe_count rest_tx rest_ty rest_tz"
     " bezier_h_rx bezier_h_ry bezier_h_lx bezier_h_ly"
 ).split()
+NEEDED = {
+    "move_by": ("t_start", "t_end"),
+    "move_to": ("t_start", "t_end"),
+    "spin": ("t_start", "t_end", "angular_velocity"),
+    "scale": ("t_start", "t_end", "factor"),
+}
+TEXTS = ("type", "transition", "center_mode")
 TRANSITIONS = ("linear", "smooth")  # bezier has handles of its own
 
 
@@ -44,6 +51,11 @@ class Operation:
         part = (time - start) / (end - start)
         return part * part * (3 - 2 * part) if self.given.get("transition") == "smooth" else part
 
+    @property
+    def axis(self) -> np.ndarray:
+        """The axis of a spin, of any length."""
+        return self._point("axis")
+
     def _point(self, name: str) -> np.ndarray:
         return np.array([float(self.given.get(f"{name}_{axis}", 0.0)) for axis in "xyz"])
 
@@ -53,7 +65,9 @@ class Operation:
         if kind == "spin":
             start, end = float(self.given["t_start"]), float(self.given["t_end"])
             angle = np.deg2rad(float(self.given["angular_velocity"])) * max(0.0, min(time, end) - start)
-            axis = self._point("axis")
+            if angle <= 0:  # as apply_pin_op of the source: it turns by positive angles only
+                return points
+            axis = self.axis
             return turned_about(
                 points, self.scaling * self._point("center"), axis / np.linalg.norm(axis), angle
             )

@@ -12,7 +12,7 @@ from barrierbench_analysis.io import input_file
 from barrierbench_analysis.io.errors import UserError
 
 from .card import Card, leaves
-from .ppf_pins import Operation
+from .ppf_pins import KEYS, NEEDED, TEXTS, Operation
 
 # name of an array in bin/: numbers in it, how many a row
 ARRAYS = {
@@ -54,7 +54,6 @@ class Session:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.info, found = _toml(folder / "info.toml"), _toml(folder / "param.toml")
-        self.param = found.get("param", {})
         self.dynamic = _dynamic(folder / "dyn_param.txt")
         files = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
         keys = [
@@ -65,15 +64,32 @@ class Session:
         keys += [f"dyn_param.txt#/{key}" for key in self.dynamic]
         keys += [name for name in files if name not in ("info.toml", "param.toml", "dyn_param.txt")]
         self.card = Card(folder, "ppf", keys)
+        self.param = found.get("param", {})
+        if not isinstance(self.param, dict):
+            raise self.card.refuse("param.toml#/param", self.param, "a table")
         for name in COUNTS:
             self._hold(name)
 
-    def count(self, key: str) -> int:
-        """A number of [count]. Errors: UserError."""
-        found = self.info.get("count", {}).get(key, 0)
-        if not isinstance(found, int) or isinstance(found, bool) or found < 0:
-            raise self.card.refuse(f"info.toml#/count/{key}", found, "a whole number from 0")
+    def table(self, name: str) -> dict:
+        """A table of info.toml, empty where it is missing. Errors: UserError."""
+        found = self.info.get(name, {})
+        if not isinstance(found, dict):
+            raise self.card.refuse(f"info.toml#/{name}", found, "a table")
         return found
+
+    def count(self, key: str, rest: int = 0, of: str = "count") -> int:
+        """A number of [count], or of another table. Errors: UserError."""
+        found = self.table(of).get(key, rest)
+        if not isinstance(found, int) or isinstance(found, bool) or found < 0:
+            raise self.card.refuse(f"info.toml#/{of}/{key}", found, "a whole number from 0")
+        return found
+
+    def number(self, of: str, key: str, rest: float | None = None) -> float:
+        """A number of a table of info.toml; without `rest` it has to be there. Errors: UserError."""
+        found = self.table(of).get(key, rest)
+        if not is_number(found):
+            raise self.card.refuse(f"info.toml#/{of}/{key}", found, "a number")
+        return float(found)
 
     def _hold(self, name: str) -> None:
         """Holds a count against the array."""
@@ -122,7 +138,7 @@ class Session:
     def operations(self, pin: int, scaling: float) -> list[Operation]:
         """The operations of a pin, in their order. Errors: UserError."""
         made = []
-        for number in range(int(self.info.get(f"pin-{pin}", {}).get("operation_count", 0))):
+        for number in range(self.count("operation_count", of=f"pin-{pin}")):
             name = f"pin-{pin}-op-{number}"
             given = self.info.get(name)
             if not isinstance(given, dict):
@@ -130,7 +146,28 @@ class Session:
             kind = given.get("type")
             rows = self.numbers(name, "<f8", 3) * scaling if kind in ("move_by", "move_to") else None
             made.append(Operation(f"info.toml#/{name}", given, rows, scaling))
+            self._hold_operation(name, made[-1], len(self.numbers(f"pin-ind-{pin}", "<u8", 1)))
         return made
+
+    def _hold_operation(self, name: str, one: Operation, pinned: int) -> None:
+        """Holds an operation against what its motion needs. Errors: UserError."""
+        for key, value in one.given.items():
+            if key in KEYS and key not in TEXTS and not is_number(value):
+                raise self.card.refuse(f"info.toml#/{name}/{key}", value, "a number")
+        if not one.is_read:
+            return
+        for key in NEEDED[one.given["type"]]:
+            self.number(name, key)
+        if one.rows is not None and len(one.rows) != pinned:
+            raise self.card.refuse(
+                f"bin/{name}.bin", len(one.rows), f"{pinned} rows, one for each vertex of the pin"
+            )
+        if one.given["type"] == "spin" and not one.axis.any():
+            raise self.card.refuse(f"info.toml#/{name}/axis_x", 0.0, "an axis of a length above 0")
+
+
+def is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _dynamic(path: Path) -> dict[str, list[list[float]]]:
@@ -144,6 +181,6 @@ def _dynamic(path: Path) -> dict[str, list[list[float]]]:
         elif line.strip():
             try:
                 rows.append([float(word) for word in line.split()])
-            except (ValueError, NameError):
+            except (ValueError, UnboundLocalError):
                 raise UserError(f"{path}: found {line!r}; allowed: a heading, or numbers") from None
     return found
