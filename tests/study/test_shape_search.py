@@ -266,7 +266,7 @@ def test_the_page_says_whether_what_was_found_is_the_law(study):
         keep(study)
     rows = list(search.rows_of_today(study).values())
     found = report.rule(study, rows)
-    assert found["ended"] and len(found["same"]) == 2 and all("is undecided beside" in line for line in found["same"])
+    assert found["ended"] and len(found["same"]) == 2 and all("has not settled" in line for line in found["same"])
     assert len(found["best"]) == 2 and all("of the shapes of the program." in line for line in found["best"])
     assert len(found["rest"].split(", ")) > 1
     law = next(one for one in found["curves"]["known"] if one.label.startswith("minimax ("))
@@ -274,7 +274,7 @@ def test_the_page_says_whether_what_was_found_is_the_law(study):
     same = report.Found("x", {"tune": SimpleNamespace(values={"gap_p05": [0.1], "gap_p95": [0.5]})}, [1.4 * x for x in law.rho])
     assert report.apart(same, law) == pytest.approx((1.4, 1.4))
     assert "is the same shape" in report._same(study, [same], law, {"x": 0.1})[0]
-    assert "is undecided" in report._same(study, [same], law, {"x": 0.3})[0]
+    assert "has not settled" in report._same(study, [same], law, {"x": 0.3})[0]
     other = report.Found("x, best", same.rows, [1.6 * x for x in law.rho])
     assert "is another shape" in report._same(study, [other], law, {"x": 0.1})[0]
     less = replace(same, rho=[0.6 * x for x in law.rho])

@@ -107,11 +107,14 @@ def _same(study: Study, found: list[Found], law: Found | None, spreads: dict[str
     for one in found if law else []:
         low, high = apart(one, law)
         spread = spreads[one.label.partition(",")[0]]
-        same = "is the same shape as" if high <= most and low >= 1 / most else "is another shape than"
-        word = same if spread <= SETTLED else f"is undecided beside (its draws still scatter by {spread:.2g})"
+        if spread > SETTLED:
+            verdict = f"has not settled (its draws still scatter by {spread:.2g}) beside"
+        else:
+            is_same = high <= most and low >= 1 / most
+            verdict = "is the same shape as" if is_same else "is another shape than"
         gaps = " to ".join(f"{u:.2g}" for u in one.rests)
         lines.append(
-            f"{one.label}, {word} {law.label}: between the gaps {gaps} d_hat, where its contacts rest, its"
+            f"{one.label}, {verdict} {law.label}: between the gaps {gaps} d_hat, where its contacts rest, its"
             f" rho is {low:.2f} to {high:.2f} times that of minimax."
         )
     return lines
