@@ -14,6 +14,10 @@ from tests.bench_call import bench, python
 
 TRIANGLE = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
             "$Elements\n1\n1 2 0 1 2 3\n$EndElements\n")
+TETRAHEDRON = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+               "$Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n")
+POLYFEM = {"geometry": [{"mesh": "tetrahedron.msh"}], "materials": {"type": "NeoHookean", "E": 1e5, "nu": 0.3, "rho": 1000}, "contact": {"enabled": True, "dhat": 0.001},
+           "time": {"tend": 0.02, "dt": 0.01}, "boundary_conditions": {"rhs": [0, 9.81, 0]}}
 CONFIG = {"schema": "barrierbench.config/1", "scene": {"name": "drape2d"}, "formulation": "log", "time": {"steps": 2}, "output": {"frames_every": 1}}
 STUDY = {"schema": "barrierbench.study/1", "name": "own", "rule": "drift", "question": "?", "base": "config.json", "axes": [{"names": ["formulation"], "cases": [{"label": "log", "set": {}}]}],
          "seeds": [1], "metrics": {"newton": "newton"}, "about": {"names": {"log": "log"}}, "page": "results/OWN.md"}  # of somebody's own, of the kit
@@ -51,6 +55,7 @@ WRITE = [  # words after `bench`, the file, and bytes that a file may have: what
         ("draw pictures --runs", "out/"), ("study gpu-report --results", "out/GPU.md"),
         ("study condition-table --out", "a temporary file"))),
     ("study own.json", "a temporary file", 0),
+    ("import-scene polyfem.json --out out.json", "out_meshes/tetrahedron.ply", 200),
 ]
 PLANNED = {"study match", "study causes", "gate run", "gate calibrate", "draw figure", "study claims", "draw pictures", "study matrix-corpus", "study step-corpus"}
 READ = {"status", "data surface-gaps", "gate trend", "setup", "verify", "completion"}  # which write nothing, or for the script ./bench
@@ -74,6 +79,8 @@ def inputs(program, tmp_path_factory):
     (folder / "config.json").write_text(json.dumps(CONFIG))
     (folder / "own.json").write_text(json.dumps(STUDY))
     (folder / "in.msh").write_text(TRIANGLE)
+    (folder / "tetrahedron.msh").write_text(TETRAHEDRON)
+    (folder / "polyfem.json").write_text(json.dumps(POLYFEM))
     (folder / "in.mtx").write_text("%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1\n2 2 2\n")
     done = bench("run", "config.json", "--out", "run", cwd=folder, program=program)
     assert done.returncode == 0, done.stderr
@@ -138,7 +145,7 @@ writers = [
     lambda: figure_files.copy_to_page([source / "file_4.png"], Path(".")),
     lambda: figures.copy(["![a](docs/file_5.png)"], source, Path(".")),
     lambda: matrix_corpus.keep(system, source / "file_6.json", Path(".")),
-    lambda: ours._write_frames({}, Path("."), {"steps": 1, "dt_s": 1.0, "triangles": []}, Path("file_7"), 1),
+    lambda: ours._write_frames({}, Path("."), {"steps": 1, "dt_s": 1.0, "triangles": [], "positions_m": []}, Path("file_7"), 1),
     lambda: trend.append(Path("file_8"), {"a": "x" * 100}),
 ]
 for write in writers:

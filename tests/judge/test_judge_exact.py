@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from barrierbench_analysis.studies.judge.about import About
 from barrierbench_analysis.studies.judge.ask import audited
 from barrierbench_analysis.program.trajectories.trajectory import Topology, Trajectory, no_cells
 from barrierbench_analysis.studies.judge.verdict import verdict_of
@@ -17,6 +18,7 @@ from barrierbench_analysis.studies.judge.verdict import verdict_of
 PAIRS = int(os.environ.get("JUDGE_PAIRS", 30000))
 GRID = 2.0**-50  # all coordinates are multiples of it below 4 m, so that an integer times it is exact
 TRIANGLES = np.array([[0, 1, 2], [3, 4, 5]])
+NOTHING_GIVEN = About(np.zeros(0, int), None)
 SIDES = [(0, 1), (1, 2), (2, 0)]
 
 
@@ -89,7 +91,7 @@ def answers(frames):
         "bodies": [{"name": "one", "first_vertex": 0}, {"name": "other", "first_vertex": 3}],
         "triangles": TRIANGLES.tolist(), "segments": [], "given": [], "obstacles": [],
     }  # fmt: skip
-    rows, total, _ = audited(Trajectory(topology, lambda: iter(frames), labels, "random", "npz"), subject, lambda *_: None)
+    rows, total, _ = audited(Trajectory(topology, lambda: iter(frames), labels, "random", "npz"), NOTHING_GIVEN, subject, lambda *_: None)
     return rows, total
 
 
