@@ -20,6 +20,7 @@ from .film import (
     POLYGON,
     ROUNDED,
     SEGMENT,
+    Cells,
     FilmFile,
     Shape,
     cells,
@@ -34,7 +35,6 @@ from .joins import VERTEX
 
 CUSTOM = Axes(1.0, "y")
 ALLOWED = "PolyMesh, SubD, linear Curves, or Points alone"
-Cells = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def alembic3d(user: str, module: str = "AbcGeom"):

@@ -23,6 +23,7 @@ INSTALL = ".venv/bin/python -m pip install --requirement analysis/requirements-{
 ROUNDED = "positions are float32 in the file: what is read are the rounded ones"
 # Types of VTK, of which every cell is one.
 SEGMENT, TETRAHEDRON, POLYGON = 3, 10, 7
+Cells = tuple[np.ndarray, np.ndarray, np.ndarray]  # as cells() makes them
 
 
 @dataclass(frozen=True)

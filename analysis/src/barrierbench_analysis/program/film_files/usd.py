@@ -20,6 +20,7 @@ from .film import (
     ROUNDED,
     SEGMENT,
     TETRAHEDRON,
+    Cells,
     FilmFile,
     Shape,
     cells,
@@ -32,7 +33,6 @@ from .film import (
 )
 from .joins import VERTEX
 
-Cells = tuple[np.ndarray, np.ndarray, np.ndarray]
 ALLOWED = "Mesh, TetMesh, linear BasisCurves, or Points alone"
 MOST_NAMES = 5  # of prims in a note
 # Attributes by which a prim changes in time, beside its place.

@@ -55,6 +55,10 @@ def _matches(key: str, pattern: str) -> bool:
     return len(parts) >= len(wanted) and all(map(fnmatchcase, parts, wanted))
 
 
+# What reading a damaged source raises where no check has named its place.
+DAMAGE = (LookupError, TypeError, AttributeError, ValueError, ArithmeticError)
+
+
 @dataclass
 class Card:
     """What became of each key of a source. A key that was noted before keeps its first note."""

@@ -13,7 +13,7 @@ from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.program.mesh_arrays import MeshArrays
 from barrierbench_analysis.program.trajectories.trajectory import surface_of
 
-from .card import Card, leaves
+from .card import DAMAGE, Card, leaves
 from .config import SceneConfig, cells_of
 from .libuipc_atlas import Atlas
 from .libuipc_contacts import Contacts
@@ -334,7 +334,7 @@ def read(path: Path, out: Path, steps: int | None) -> tuple[SceneConfig, Card]:
         scene.bodies()
     except UserError:
         raise
-    except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError) as fault:
+    except DAMAGE as fault:
         place = scene.place if scene else "/__data__"
         found = (
             f"a scene without {fault}" if isinstance(fault, KeyError) else f"values of another form ({fault})"

@@ -7,7 +7,7 @@ import numpy as np
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.program.mesh_arrays import MeshArrays
 
-from .card import Card
+from .card import DAMAGE, Card
 from .config import NotAtRest, SceneConfig
 from .ppf_elements import KINDS, Elements, material_of
 from .ppf_obstacles import Obstacles
@@ -324,7 +324,7 @@ def read(folder: Path, out: Path, steps: int | None) -> tuple[SceneConfig, Card]
         scene.settings()
     except UserError:
         raise
-    except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError) as fault:
+    except DAMAGE as fault:
         raise UserError(
             f"{folder}/info.toml: found tables and arrays that do not fit together ({fault});"
             " allowed: what session.build() writes"

@@ -2,7 +2,7 @@
 
 At the middle of an interval between two frames the balance is T = K + (G + G')/2 + (E + E')/2 - W with the
 kinetic energy K of the mean velocities of the interval, the energies of gravity G, G' and of elasticity E, E'
-of its two frames, all of vertices that move freely, and the work W that given vertices have done against
+of its two frames, all of vertices that move freely, and the work W that prescribed vertices have done against
 elastic forces by then. Where nothing adds energy T is never above its first value: contact may store some of
 it and give it back, and friction, drag and the damping of an integrator only take from it. What T has above
 its first value appears from nowhere; after a loss more may have appeared than that. Frames that are too far
@@ -16,7 +16,7 @@ from barrierbench_analysis.program.trajectories.trajectory import Topology
 
 from .about import About
 
-MOVES = 1e-12  # m, of given vertices: less is rounding
+MOVES = 1e-12  # m, of prescribed vertices: less is rounding
 
 
 class Motion:
@@ -79,7 +79,8 @@ def _conditions(motion: Motion) -> list[str]:
     out = ["elastic energies are those of this program's models, with the materials of --about"]
     if motion.given_move:
         out.append(
-            "given vertices move: their work against elastic forces is taken off, that through contact is not"
+            "prescribed vertices move: their work against elastic forces is taken off, that through contact"
+            " is not"
         )
     return out
 
