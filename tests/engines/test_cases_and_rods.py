@@ -211,3 +211,11 @@ def test_an_obstacle_that_moves_is_exported_and_judged_where_it_is(program, here
     short = data | {"obstacles": [lift | {"points_m": lift["points_m"][:-1]}]}
     with pytest.raises(UserError, match="#/obstacles/0/points_m: found 10"):
         scene.made(short, Path("short"))
+
+
+def test_cases_that_an_engine_refuses_all_are_not_green(monkeypatch, tmp_path):
+    row = {"case": "E2", "engine": "template", "variant": "plain", "numbers": [], "verdict": "", "detail": "friction"}
+    monkeypatch.setattr(cases, "rows_of", lambda *_: [row | {"outcome": cases.REFUSED}, row | {"outcome": cases.SKIPPED}])
+    assert verb.main(["template", "cases", "--runs", str(tmp_path)]) == verb.NOT_RUN
+    monkeypatch.setattr(cases, "rows_of", lambda *_: [row | {"outcome": cases.REFUSED}, row | {"outcome": cases.WITHIN, "numbers": [25.0, 0.0]}])
+    assert verb.main(["template", "cases", "--runs", str(tmp_path)]) == verb.OK

@@ -172,7 +172,7 @@ def _compare(spec: Path, options: argparse.Namespace, argv: list[str]) -> int:
 
 def _cases(engines: list[str], options: argparse.Namespace, argv: list[str]) -> int:
     """Of all engines, on a page; of one alone the table is printed."""
-    from .cases import HEADER, SKIPPED, all_engines, cells_of, is_well, page_of, rows_of
+    from .cases import HEADER, REFUSED, SKIPPED, all_engines, cells_of, is_well, page_of, rows_of
 
     say = lambda line: print(f"engine: {line}", file=sys.stderr, flush=True)  # noqa: E731
     rows = rows_of(engines or all_engines(), options.runs / "cases", say)
@@ -182,7 +182,7 @@ def _cases(engines: list[str], options: argparse.Namespace, argv: list[str]) -> 
         page = page_of(rows, command).replace(f"{ROOT}/", "")  # no path of a machine
         write_whole(ROOT / "results/ENGINES_CASES.md", page)
         print("results/ENGINES_CASES.md")
-    if engines and all(row["outcome"] == SKIPPED for row in rows):
+    if all(row["outcome"] in (SKIPPED, REFUSED) for row in rows):  # nothing was judged
         return NOT_RUN
     return OK if all(map(is_well, rows)) else NOT_CLEAN
 
