@@ -124,7 +124,12 @@ SENTENCES = {
         "",
     ),
     4: ("The ratio log/cubic of seconds", "seconds to velocity", "velocity_seconds", "pcg"),
-    5: ("The share of changed loads under which the cubic ends ok", "cubic: share that ends ok", "", ""),
+    5: (
+        "The share of changed loads under which the cubic ends ok at size XS",
+        "cubic: share that ends ok",
+        "",
+        "",
+    ),
     6: ("The factor on that ratio of iterations where all Hessians are clamped", "clamped: Newton", "", ""),
 }
 COMMANDS = {

@@ -156,7 +156,7 @@ def work(rows: Rows) -> Answer:
 
 
 def robustness(rows: Rows) -> Answer:
-    """5: which formulation ends ok under changed loads more often? Of each scene at S, how many of ten
+    """5: which formulation ends ok under changed loads more often? Of each scene at XS, how many of ten
     changed loads end ok; a sign test over scenes of each formulation against the log, without a rule about
     gaps.
     """
