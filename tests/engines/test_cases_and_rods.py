@@ -9,7 +9,7 @@ import pytest
 from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.places import ROOT
 from barrierbench_analysis.studies.engines import card as cards
-from barrierbench_analysis.studies.engines import cases, environment, launch, ours, scene, verb
+from barrierbench_analysis.studies.engines import cases, environment, launch, ours, report, scene, verb
 from barrierbench_analysis.studies.engines.judged import judge
 
 BY_NAME = {case.name: case for case in cases.CASES}
@@ -173,6 +173,23 @@ def test_rods_of_a_config_are_exported_with_their_stiffness(program):
     assert cable["bodies"][0]["rod"] == {"stretching_N": pytest.approx(5000), "bending_N_m2": pytest.approx(1e-6), "straight": True}
     material = scene.about(cable)["materials"]["cable"]
     assert material["line_density_kg_per_m"] == pytest.approx(0.5) and material["rod_rest"] == "straight"
+
+
+def test_the_page_of_rods_balances_energies_and_names_warnings():
+    record = json.loads((ROOT / "results/engines_rods.json").read_text())
+    page = report.text_of(record)
+    assert page == (ROOT / "results/ENGINES_RODS.md").read_text()
+    assert page.count("| exchanged, J |") == len(record["scenes"]) == 3
+    cable = next(one for one in record["scenes"] if one["scene"] == "hanging_cable")
+    exchanged = [row["exchanged_J"] for row in cable["rows"] if row["engine"] == "mujoco"]
+    assert exchanged[0] > 100 * exchanged[1] > 100 * exchanged[2] > 0
+    assert "- warnings of mujoco newton at 10 ms: mjWARN_INERTIA" in page
+    for one in record["scenes"]:
+        for row in one["rows"]:
+            row.pop("gained_J", None)
+            row.get("notes", {}).pop("warnings", None)
+    bare = report.text_of(record)
+    assert "exchanged" not in bare and "warnings" not in bare and "## hanging_cable" in bare
 
 
 # --- what moves

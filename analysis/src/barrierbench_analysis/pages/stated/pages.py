@@ -110,7 +110,9 @@ READERS: dict[str, tuple[Reader, ...]] = {
     "results/ABLATION.md": (_ablation,),
     **{f"results/{of.__name__.upper()}.md": (of,) for of in (counted.stress, counted.catalogue)},
     "results/WORK_PRECISION.md": (counted.work_precision,),
-    **dict.fromkeys(("results/ENGINES.md", "results/ENGINES_SIZE.md"), (counted.engines,)),
+    **dict.fromkeys(
+        ("results/ENGINES.md", "results/ENGINES_SIZE.md", "results/ENGINES_RODS.md"), (counted.engines,)
+    ),
     "docs/results/which-barrier.md": (counted.gap_map,),
     "docs/results/engines.md": (counted.engines_in_words,),
     "docs/guides/verbs.md": (counted.mentions,),

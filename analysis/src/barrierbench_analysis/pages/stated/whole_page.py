@@ -18,7 +18,13 @@ NAMING = {
 A_NUMBER = re.compile(r"[+-]?\d[\d.,]*(?:e[+-]?\d+)?")
 SENTENCE_END = re.compile(r"(?<=[.!?])\s+(?=[A-Z`*\[(])")
 # Pages whose sentences have readers of their own.
-ELSEWHERE = ("results/CLAIMS.csv", "results/CLAIMS.md", "results/ENGINES.md", "results/ENGINES_SIZE.md")
+ELSEWHERE = (
+    "results/CLAIMS.csv",
+    "results/CLAIMS.md",
+    "results/ENGINES.md",
+    "results/ENGINES_SIZE.md",
+    "results/ENGINES_RODS.md",
+)
 ABOUT = 40  # characters of an item that say what it is of
 FEWEST_WORDS = 5  # of a sentence: `10 of 10` alone is of what stands before it
 

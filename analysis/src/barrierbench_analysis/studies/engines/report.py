@@ -32,6 +32,32 @@ def _row(row: dict) -> list[str]:
     ]
 
 
+BALANCE = {"gained_J": "gained, all kinds, J", "exchanged_J": "exchanged, J"}
+
+
+def _balance_of(one: dict) -> list[list[str]]:
+    """Heads, then a line a run whose energies of all kinds the judge balanced. Empty where it balanced none.
+    A run exchanges as much as one of its energies (of motion, gravity, elasticity) changes at most.
+    """
+    body = [
+        [f"{row['engine']} {row['variant']}", number(row.get("dt_s"), 1e3)]
+        + [number(row[key]) for key in BALANCE]
+        for row in one["rows"]
+        if row.get("gained_J") is not None
+    ]
+    return [["engine", "dt, ms", *BALANCE.values()], *body] if body else []
+
+
+def _warnings_of(one: dict) -> list[str]:
+    """What engines warned of while they ran: a line a run that has any."""
+    return [
+        f"{row['engine']} {row['variant']} at {number(row.get('dt_s'), 1e3)} ms: "
+        + ", ".join(f"{name} ({count})" for name, count in found.items())
+        for row in one["rows"]
+        if (found := row.get("notes", {}).get("warnings"))
+    ]
+
+
 def _contacts_of(one: dict) -> int | None:
     """The most contacts that our runs had, where they were counted: without any nothing was promised."""
     counts = (row["notes"]["contacts_most"] for row in one["rows"] if "contacts_most" in row.get("notes", {}))
@@ -84,6 +110,8 @@ def text_of(record: dict) -> str:
         "worst_of": lambda left: max(left, key=lambda key: abs(left[key])),
         "contacts_of": _contacts_of,
         "rows_of": lambda one: map(_row, one["rows"]),
+        "balance_of": _balance_of,
+        "warnings_of": _warnings_of,
         "equal_of": lambda one: equal(one["rows"], OURS),
         "starts_of": _starts_of,
         "seen_of": lambda engine: _seen_of(record, engine),
