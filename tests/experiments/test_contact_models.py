@@ -233,3 +233,41 @@ def test_dart_as_published_is_25_for_cloth(program, tmp_path):
     record = run(program, tmp_path / "run", sheet_on_a_plane(5, 1), **{"/formulation": "dart", "/formulation/d_hat_m": D_HAT, "/time/steps": 3})
     assert record["summary"]["stiffness"]["kappa_end_N_per_m"] == 25
     assert record["steps"][-1]["contacts"]["total"] > 0
+
+
+# --- a frictionless card on a flat table
+
+
+def card_on_table(y_m: float) -> dict:
+    """A stiff card over a table of eight triangles. At y = 7 mm no vertex or edge of one is within 0.6 mm of an edge or a
+    vertex of the other, seen from above, and d_hat is 0.5 mm; at 6.4 mm a line of the card's vertices is 0.05 mm from a line of the table."""
+    card = {"name": "card", "mesh": {"generator": "grid", "n_x": 6, "n_y": 8, "size_x_m": 0.0635, "size_y_m": 0.0889},
+            "transform": {"translate_m": [0.013, y_m, 0.0006]},
+            "material": {"youngs_N_per_m": 3e5, "poisson": 0.3, "density_kg_per_m2": 0.3, "bending_J": 0.001}}  # fmt: skip
+    table = {"name": "table", "kind": "rigid", "mesh": {"generator": "grid", "n_x": 3, "n_y": 3, "size_x_m": 0.4, "size_y_m": 0.4}}
+    policy = {"name": "fixed", "kappa_N_per_m": 50}
+    return {"schema": "barrierbench.config/1", "scene": {"name": "bodies", "gravity_m_per_s2": [0, 0, -9.81], "bodies": [card, table]},
+            "formulation": {"name": "log", "d_hat_m": 0.0005, "stiffness_policy": policy}, "time": {"dt_s": 0.01, "steps": 12}}  # fmt: skip
+
+
+def rows_of(record: dict) -> list:
+    return [{kind: step["contacts"][kind] for kind in ("point_point", "point_edge", "point_triangle", "edge_edge", "mollified")} for step in record["steps"]]
+
+
+def test_blocks_change_no_digit_where_no_closest_point_is_at_a_border(program, tmp_path):
+    """Vertices over triangles and crossing edges are in their blocks, so that blocks leave every row."""
+    both = [run(program, tmp_path / model, card_on_table(0.007), **{"/contact/model": model}) for model in ("all_pairs", "offset_geometric")]
+    rows = rows_of(both[0])
+    assert sum(one["point_triangle"] for one in rows) > 300 and sum(one["edge_edge"] for one in rows) > 300
+    assert sum(one["point_point"] + one["point_edge"] + one["mollified"] for one in rows) == 0
+    assert rows == rows_of(both[1])
+    for one, other in zip(*(record["steps"] for record in both), strict=True):
+        for name in ("kinetic_J", "elastic_J", "contact_J", "gravity_J", "contact_load_sum_N", "gap_min_m"):
+            assert one[name] == other[name]
+
+
+def test_blocks_take_the_rows_at_borders_of_a_flat_table(program, tmp_path):
+    both = [run(program, tmp_path / model, card_on_table(0.0064), **{"/contact/model": model}) for model in ("all_pairs", "offset_geometric")]
+    every, left = ([sum(one["point_point"] + one["point_edge"] + one["mollified"] for one in rows_of(record)) for record in both])
+    assert every > 0 and left == 0
+    assert both[0]["steps"][-1]["kinetic_J"] != both[1]["steps"][-1]["kinetic_J"]
