@@ -120,15 +120,18 @@ def test_the_page_has_means_with_intervals_and_outcomes_where_there_is_no_number
     values = {"gap": 0.7, "tangential_J": 1e-9, "pull": 1e-3, "border": 0.1}
     rows = [row(LOG, str(k), drift_m=1e-3 * k, **values) for k in (1, 3)] + [row(LOG, "4", "newton_stall")]
     blocks = Arm("log", "offset_geometric", "25mm")
-    rows += [row(blocks, str(k), drift_m=1e-3, **values | {"border": 0.0}) for k in (1, 2)]
+    drifts = {1: 1e-3, 2: 9e-3, 3: 1e-3}  # placement 2 is none of all pairs
+    rows += [row(blocks, str(k), drift_m=one, **values | {"border": 0.0}) for k, one in drifts.items()]
     refused = Arm("ipc2020", "area", "25mm")
     rows.append(row(refused, "match1", REFUSED, detail="#/contact/weighting: no area"))
     found = report.rule(STUDY, rows)
     line = next(one for one in found["tables"][ALL_PAIRS]["drift_m"].splitlines() if one.startswith("| log |"))
     assert line == "| log | not run | 2 [-10.7, 14.7] (2 of 3) | not run |"
     assert "| ipc2020 | not run | refused | not run |" in found["tables"]["area"]["drift_m"]
-    assert (found["runs"], found["failed"], found["refused"]) == (5, 1, ["no area"])
-    assert "`offset_geometric` drifts 0.5 on 25mm" in found["beside"][0]
+    assert (found["runs"], found["failed"], found["refused"]) == (6, 1, ["no area"])
+    # 1 and 1/3 of the drift of all pairs; Student's t of two placements
+    upper = math.exp(-math.log(3) / 2 + 12.706 * math.log(3) / 2)
+    assert found["beside"][0].startswith(f"`offset_geometric` drifts 0.577 [{1 / (3 * upper):.3g}, {upper:.3g}] on 25mm (2 placements)")
     assert "`all_pairs`: 10 % on 25mm" in found["borders"]
     assert found["failures"] == ["`all_pairs`: newton_stall 1, of 3"]
     assert not any(one.startswith("| cubic |") for one in found["tables"][ALL_PAIRS]["drift_m"].splitlines())

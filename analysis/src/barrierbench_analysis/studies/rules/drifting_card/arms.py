@@ -1,6 +1,5 @@
 """What is compared: formulations, contact models and tables, each as settings of a run."""
 
-import math
 import random
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -121,8 +120,3 @@ def case(study: Study, arm: Arm, label: str, placement: int, scale: float) -> Ca
     place = {"formulation": arm.formulation, "model": arm.model, "level": arm.level, "placement": label}
     settings = {"/scene": _scene(study, arm, placement), **_stiffness(study, arm, scale), **_contact(arm)}
     return Case(place, settings)
-
-
-def slack(gap: float) -> float:
-    """2 ln(1 - gap): how the force of a barrier changes with the gap, near enough to begin a search."""
-    return 2 * math.log(1 - gap)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from barrierbench_analysis.studies.kit.alone import REFUSED
+from barrierbench_analysis.studies.kit.alone import REFUSED, TIMEOUT
 from barrierbench_analysis.studies.kit.study import store
 from barrierbench_analysis.studies.kit.study.collect import sources_of
 from barrierbench_analysis.studies.kit.study.spec import Case, Study
@@ -30,6 +30,11 @@ class Search:
     scale: float | None
 
 
+def slack(gap: float) -> float:
+    """2 ln(1 - gap): how the force of a barrier changes with the gap, near enough to begin a search."""
+    return 2 * math.log(1 - gap)
+
+
 def _next(tried: list[tuple[float, float]], theta: float, too_soft: float) -> float:
     """The scale after those that were tried, as (scale, gap), above one that is too soft to carry the card.
     The force of the card's weight stays, so ln scale falls as the slack grows: by as much at first, then as
@@ -39,19 +44,20 @@ def _next(tried: list[tuple[float, float]], theta: float, too_soft: float) -> fl
     slope = -1.0
     if len(tried) > 1 and tried[-2][1] != gap:
         before = tried[-2]
-        slope = math.log(scale / before[0]) / (arms.slack(gap) - arms.slack(before[1]))
-    found = scale * math.exp(slope * (arms.slack(theta) - arms.slack(gap)))
+        slope = math.log(scale / before[0]) / (slack(gap) - slack(before[1]))
+    found = scale * math.exp(slope * (slack(theta) - slack(gap)))
     return found if found > MARGIN * too_soft else math.sqrt(too_soft * scale)
 
 
 def search(study: Study, arm: Arm, rows: Rows) -> Search:
-    """The runs of an arm as far as their rows are there, and the next one. A refused one ends the search."""
+    """The runs of an arm as far as their rows are there, and the next one. A refused one ends the search,
+    and so does one that takes too long, which says nothing of its stiffness."""
     theta, cases, tried = study.about["theta"], [], []
     scale, too_soft = START, 0.0
     for k in range(study.about["tries"]):
         cases.append(arms.case(study, arm, f"{MATCH}{k + 1}", 0, scale))
         row = rows.get(study.cell(cases[-1]).key)
-        if row is None or row.outcome == REFUSED:
+        if row is None or row.outcome in (REFUSED, TIMEOUT):
             return Search(cases, None)
         gap = row.values["gap"]
         if gap is None or not 0 < gap < 1:  # it fails, as a run does whose contacts are too soft

@@ -1,7 +1,7 @@
 """The numbers of the page: means over placements with their intervals, and how combinations ended."""
 
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import dataclass
 
 from barrierbench_analysis.io.text_table import markdown
@@ -10,7 +10,7 @@ from barrierbench_analysis.studies.kit.study.spec import Study
 from barrierbench_analysis.studies.kit.study.store import Row
 from barrierbench_analysis.tables.numbers import significant, written
 from barrierbench_analysis.tables.outcomes import OK
-from barrierbench_analysis.tables.statistics import Mean, mean_over, ratio_over
+from barrierbench_analysis.tables.statistics import Mean, Ratio, mean_over, ratio_of_scenes
 from barrierbench_analysis.tables.words import counted, listed
 
 from . import arms
@@ -24,6 +24,7 @@ METRICS = {
     "pull": ("tangential over normal force, 1e-3", 1e3),
 }
 NOT_RUN = "not run"
+FAR = 0.06  # of d_hat, of a mean gap from that of the spec
 
 
 @dataclass(frozen=True)
@@ -107,18 +108,28 @@ def _failed(found: dict[Arm, Found], model: str) -> str:
     return f"`{model}`: {words}, of {len(rows)}" if counts else ""
 
 
+def _ratio(found: dict[Arm, Found], model: str, level: str) -> Ratio | None:
+    """Drift of a model over that of all pairs: geometric mean over formulations of each placement that ends
+    in both, and over placements, which are the samples.
+    """
+    logs: dict[str, dict[str, list[float]]] = defaultdict(dict)
+    for name in arms.compared():
+        pair = [found.get(Arm(name, one, level)) for one in (model, ALL_PAIRS)]
+        if all(pair):
+            drifts = [{row.place["placement"]: row.values["drift_m"] for row in one.ended} for one in pair]
+            for placement in drifts[0].keys() & drifts[1].keys():
+                logs[placement][name] = [math.log(drifts[0][placement] / drifts[1][placement])]
+    return ratio_of_scenes({placement: logs[placement] for placement in sorted(logs)})
+
+
 def _beside_all_pairs(study: Study, found: dict[Arm, Found], model: str) -> str:
     """A computed sentence: drift of a model over that of all pairs, for each table."""
-    said = []
-    for level in study.about["tables"]:
-        logs = []
-        for name in arms.compared():
-            pair = [found.get(Arm(name, one, level)) for one in (model, ALL_PAIRS)]
-            means = [one.mean("drift_m") if one else None for one in pair]
-            if all(means):
-                logs.append(math.log(means[0].value / means[1].value))
-        if logs:
-            said.append(f"{written(ratio_over(logs))} on {level} ({counted(len(logs), 'formulation')})")
+    ratios = {level: _ratio(found, model, level) for level in study.about["tables"]}
+    said = [
+        f"{ratio} on {level} ({counted(ratio.scenes, 'placement')})"
+        for level, ratio in ratios.items()
+        if ratio
+    ]
     return f"`{model}` drifts {listed(said)} times as far as `{ALL_PAIRS}`." if said else ""
 
 
@@ -138,6 +149,15 @@ def _gaps(found: dict[Arm, Found], model: str) -> str:
     return f"`{model}` {min(gaps):.3f} to {max(gaps):.3f}" if gaps else ""
 
 
+def _unmatched(study: Study, found: dict[Arm, Found]) -> list[str]:
+    """Arms whose mean gap is farther than FAR from that of the others: a computed line each."""
+    return [
+        f"`{arm.formulation}` with `{arm.model}` on {arm.level}: {mean.value:.3f}"
+        for arm, one in found.items()
+        if (mean := one.mean("gap")) and abs(mean.value - study.about["theta"]) > FAR
+    ]
+
+
 def _same_as(names: list[str]) -> list[str]:
     """Presets that are left out, since matching makes them another one."""
     return [name for name in formulations.known() if name not in names]
@@ -155,6 +175,8 @@ def rule(study: Study, rows: list[Row]) -> dict:
         "beside": [line for one in models[1:] if (line := _beside_all_pairs(study, found, one))],
         "borders": [line for one in models if (line := _border(study, found, one))],
         "gaps": listed([line for one in [*models, PLANE] if (line := _gaps(found, one))]),
+        "unmatched": _unmatched(study, found),
+        "far": f"{FAR:g}",
         "theta": f"{study.about['theta']:g}",
         "placements": study.about["placements"],
         "formulations": len(arms.compared()),
