@@ -159,6 +159,10 @@ double mollifier_of(const MollifiedTable& rows, std::size_t r, const PositionsVi
   return mollifier_value<double>(rows, r, x);
 }
 
+Vec<double, 12> mollified_gradient(const MollifiedTable& rows, std::size_t r, const PositionsView& x) {
+  return mollified_derivatives<double>(rows, r, x).gradient;
+}
+
 void mollified_energies(const MollifiedTable& rows, const PositionsView& x, std::vector<double>& energy,
                         Precision precision) {
   energy.resize(rows.size());

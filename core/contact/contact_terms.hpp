@@ -48,6 +48,8 @@ HoldTimes add_curvature_correction(const ContactTable& rows, const PositionsView
                                    PositionsSpan force);
 /// The mollifier e of row r at x, in double.
 double mollifier_of(const MollifiedTable& rows, std::size_t r, const PositionsView& x);
+/// Gradient of kappa e b in the four points of row r as they stand in its stencil, in double, N; 0 at those of an axis.
+Vec<double, 12> mollified_gradient(const MollifiedTable& rows, std::size_t r, const PositionsView& x);
 /// Energies kappa b (and kappa e b) of every row, J.
 void contact_energies(const ContactTable& rows, std::vector<double>& energy,
                       Precision precision = Precision::full);

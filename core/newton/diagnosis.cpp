@@ -10,6 +10,7 @@ namespace bb {
 const Scene& Diagnosis::scene() const { return state_.scene; }
 PositionsView Diagnosis::x() const { return points(state_.x); }
 PositionsView Diagnosis::gradient() const { return points(state_.g); }
+PositionsView Diagnosis::x_n() const { return points(state_.x_n); }
 PositionsView Diagnosis::direction() const { return points(state_.dx); }
 const TermList& Diagnosis::terms() const { return potential_.terms_; }
 const BlockSystem& Diagnosis::blocks() const { return *potential_.blocks_; }

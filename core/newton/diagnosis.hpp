@@ -23,6 +23,8 @@ class Diagnosis {
   /// The iterate [3 x n] m, and the gradient of E there, N.
   PositionsView x() const;
   PositionsView gradient() const;
+  /// The start of the step [3 x n] m.
+  PositionsView x_n() const;
   /// The direction that was found or set last [3 x n] m.
   PositionsView direction() const;
   const TermList& terms() const;

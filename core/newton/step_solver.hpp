@@ -71,6 +71,8 @@ struct StepSolverEntry {
   /// m, how far a surface may be beyond an obstacle at the end of a step that converges; null: not at all.
   double (*promised_overlap)(const ParameterMap& complete) = nullptr;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
+  /// Whether steps end in a state whose contact rows carry forces: those of the last system that was solved.
+  bool has_forces = true;
   void (*set_terms)(const StepSolverOptions& complete,
                     TermOptions&) = nullptr;  // what it requires of terms by numbers
   std::function<std::unique_ptr<StepSolver>(const StepSolverOptions& complete)> make;

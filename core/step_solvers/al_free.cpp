@@ -238,6 +238,7 @@ StepSolverEntry step_solver_al_free() {
   entry.needs.minimum = false;
   entry.needs.multipliers = true;
   entry.asked_to_converge = false;
+  entry.has_forces = false;
   entry.settings.unmoved = entry.settings.velocity_of_step = true;
   entry.set_terms = [](const StepSolverOptions& options, TermOptions& terms) {
     const auto of = [&](const char* name) { return number(options.parameters, name); };

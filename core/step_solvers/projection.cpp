@@ -76,6 +76,7 @@ StepSolverEntry step_solver_projection() {
   entry.settings.implicit_euler = true;
   entry.settings.own_stiffness = true;
   entry.asked_to_converge = false;
+  entry.has_forces = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<ProjectionSteps>(options);
   };

@@ -65,6 +65,7 @@ StepSolverEntry step_solver_xpbd() {
   entry.needs = {.matrix = false, .energies = false, .minimum = false, .step_bound = false};
   entry.settings.implicit_euler = true;
   entry.asked_to_converge = false;
+  entry.has_forces = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<Xpbd>(options);
   };

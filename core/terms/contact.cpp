@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "core/contact/contact_forces.hpp"
 #include "core/contact/contact_loads.hpp"
 #include "core/contact/pair_name.hpp"
 #include "core/math/error.hpp"
@@ -174,6 +175,11 @@ void ContactTerm::add_loads(const PositionsView& x, ContactLoads& out) const {
   bb::add_loads(state_.rows, out);
   bb::add_loads(state_.mollified, x, out);
   if (carries_) carried_.give(first, out);
+}
+
+void ContactTerm::add_forces(const PositionsView& x, const PositionsView& x_n,
+                             std::vector<ContactForce>& out) const {
+  state_.for_each_table([&](const auto& rows) { bb::add_forces(rows, x, x_n, out); });
 }
 
 void ContactTerm::prepare(const Motion& motion, PhaseClock& clock) {

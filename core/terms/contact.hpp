@@ -61,6 +61,8 @@ class ContactTerm final : public ContactSteps<HostTerm> {
   void clamp(const PositionsView& x) override;
   void add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) override;
   void add_loads(const PositionsView& x, ContactLoads& out) const override;
+  void add_forces(const PositionsView& x, const PositionsView& x_n,
+                  std::vector<ContactForce>& out) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
   void bound_audited(bool bound) override { contacts_.bound_audited(bound); }
   StepBound prove_step(const PositionsView& x_n, const PositionsView& x, PhaseClock& clock) override;

@@ -22,12 +22,16 @@ struct FrictionRows : LaggedRows {
             static_cast<T>(secant)};
   }
   template <class T = double>
-  BB_HD Vec<T, 3> slide(const double* x, exec::Index r) const {
-    Vec<T, 3> way = motion<T>(x, r);
+  BB_HD Vec<T, 3> way(const double* x, exec::Index r) const {
+    Vec<T, 3> out = motion<T>(x, r);
     if (spin) {
-      way -= Vec<T, 3>(static_cast<T>(spin[r]), static_cast<T>(spin[n + r]), static_cast<T>(spin[2 * n + r]));
+      out -= Vec<T, 3>(static_cast<T>(spin[r]), static_cast<T>(spin[n + r]), static_cast<T>(spin[2 * n + r]));
     }
-    return slide_of<T>(way, normal_of<T>(r));
+    return out;
+  }
+  template <class T = double>
+  BB_HD Vec<T, 3> slide(const double* x, exec::Index r) const {
+    return slide_of<T>(way<T>(x, r), normal_of<T>(r));
   }
   template <class T = double>
   BB_HD T value(const double* x, exec::Index r) const {

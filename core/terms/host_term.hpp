@@ -14,6 +14,7 @@
 
 namespace bb {
 
+struct ContactForce;
 struct ContactLoads;
 struct Cusps;
 struct KnownStep;
@@ -84,6 +85,11 @@ class HostTerm : public Term {
   /// Appends the contacts that this term holds at the iterate x, with their loads once it is linearised there. Terms of later
   /// lines, which are handed it when they are made, read them at the start of a step: friction, restitution.
   virtual void add_loads(const PositionsView& /*x*/, ContactLoads& /*out*/) const {}
+
+  /// Appends what the contacts of the end x of a step, which began at x_n, do to each vertex there, prescribed ones too: the rows as
+  /// the last iterate left them. Requires energies of x.
+  virtual void add_forces(const PositionsView& /*x*/, const PositionsView& /*x_n*/,
+                          std::vector<ContactForce>& /*out*/) const {}
 
   /// What the last bound() was the smallest of, where each vertex has a bound of its own: [n] the part of its motion that
   /// each may go, whatever part the others do. Empty where one part serves all.

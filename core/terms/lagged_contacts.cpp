@@ -49,18 +49,30 @@ void LaggedContacts::linearise(const PositionsView& x, const TermContext&) {
   family_->derivatives(x.data(), families_[0].local);
 }
 
-void LaggedContacts::add_forces(const PositionsView& x, PositionsSpan force) const {
+void LaggedContacts::add_forces(const PositionsView& x, const PositionsView&,
+                                std::vector<ContactForce>& out) const {
   if (!family_->loads_known()) return;
   const LaggedColumns& rows = family_->rows();
   const auto n = static_cast<std::size_t>(rows.size());
-  std::vector<double> energy(n), gradient(3 * n);
+  std::vector<double> energy(n), gradient(3 * n), way(3 * n);
   family_->gradients(x.data(), energy.data(), gradient.data());
+  family_->ways(x.data(), way.data());
   for (std::size_t e = 0; e < n; ++e) {
-    const Vec3d of_row(gradient[e], gradient[n + e], gradient[2 * n + e]);
+    const int* const vertex = rows.vertex.data() + e;
+    const double* const weight = rows.weight.data() + e;
+    const Vec3d on_motion = -Vec3d(gradient[e], gradient[n + e], gradient[2 * n + e]);
+    const Vec3d normal(rows.normal.data()[e], rows.normal.data()[n + e], rows.normal.data()[2 * n + e]);
+    ContactForce row;
+    row.term = name_;
+    row.key = key_of(rows.pair.data()[e], vertex, weight, n);
     for (std::size_t k = 0; k < 4; ++k) {
-      const int v = rows.vertex.data()[k * n + e];
-      if (v >= 0) force.col(v) -= rows.weight.data()[k * n + e] * of_row;
+      row.vertex[k] = vertex[k * n];
+      row.force[k] = row.vertex[k] >= 0 ? Vec3d(weight[k * n] * on_motion) : Vec3d::Zero();
     }
+    row.normal = normal.dot(on_motion);
+    row.tangential = slide_of<double>(on_motion, normal).norm();
+    row.work = on_motion.dot(Vec3d::Map(&way[3 * e]));
+    out.push_back(row);
   }
 }
 

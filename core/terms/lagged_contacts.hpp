@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/contact/contact_forces.hpp"
 #include "core/contact/contact_loads.hpp"
 #include "core/terms/host_term.hpp"
 #include "core/terms/lagged_steps.hpp"
@@ -22,9 +23,9 @@ class LaggedContacts final : public LaggedSteps<HostTerm> {
   void adopt(const KnownStep& known) override;
   void adopt_from(const HostTerm& other) override;
 
-  /// Adds to `force` [3 x n] (N) what its rows, as they are, do to each vertex at x, prescribed ones too; nothing while loads are
-  /// not known.
-  void add_forces(const PositionsView& x, PositionsSpan force) const;
+  /// Nothing while loads are not known.
+  void add_forces(const PositionsView& x, const PositionsView& x_n,
+                  std::vector<ContactForce>& out) const override;
 
   /// Errors: std::logic_error where the terms before, which have been linearised, hold other contacts than when the step began.
   void linearise(const PositionsView& x, const TermContext&) override;

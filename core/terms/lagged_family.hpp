@@ -84,6 +84,9 @@ class LaggedFamily {
   virtual void changes(const double* x, const double* motion, double* force) = 0;
   /// In the host's memory alone: terms of elements of four vertices. out is large enough for them.
   virtual void derivatives(const double* x, LocalTerms& out) = 0;
+  /// In the host's memory alone: way [3 n] m, the relative motion of each row since the start of the step, with what the turn of
+  /// an obstacle takes its surface along by.
+  virtual void ways(const double* x, double* way) const = 0;
   /// What a step that ends at x says. Requires known loads.
   virtual void report_end(const double* x, StepNumbers& out) = 0;
 

@@ -43,6 +43,10 @@ class LaggedFamilyOf : public LaggedFamily {
       place_.executor.each(size(), MotionLocalTerms<Rows, T>{of_kind(), parts, x, &out});
     });
   }
+  void ways(const double* x, double* way) const override {
+    const Rows rows = of_kind();
+    for (exec::Index r = 0; r < rows.n; ++r) Vec3d::Map(way + 3 * r) = rows.way(x, r);
+  }
 
  protected:
   using LaggedFamily::LaggedFamily;

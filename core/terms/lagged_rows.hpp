@@ -48,6 +48,11 @@ struct LaggedRows {
                        static_cast<T>(x[3 * v + 2] - from[3 * v + 2]));
     });
   }
+  /// The motion of which the energy is a function; kinds that know more of it have their own.
+  template <class T = double>
+  BB_HD Vec<T, 3> way(const double* x, exec::Index r) const {
+    return motion<T>(x, r);
+  }
   /// What of a motion [3 n_vertices] (m, 0 at free vertices) is relative, m.
   BB_HD Vec3d moved(const double* motion, exec::Index r) const {
     return weighted<double>(

@@ -303,10 +303,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
                        complain);
   }
   check_device(config, complain);
-  if (config.output.matrices && !config.passes.diagnose) {
-    complain("/output/matrices", "true",
-             "false, or passes.diagnose true: matrices are those of diagnosed iterations");
-  }
+  check_output(config, complain);
 }
 
 }  // namespace bb

@@ -141,9 +141,6 @@ void refuse_friction(const RunConfig& config, const std::string& allowed, const 
 }
 
 void check_friction(const RunConfig& config, const Complain& complain) {
-  if (config.output.friction_forces.value_or(false) && config.output.frames_every == 0) {
-    complain("/output/friction_forces", "true", "false without frames (frames_every > 0)");
-  }
   check_coefficients(config, complain);
   check_scales(config, complain);
   check_refresh(config, complain);

@@ -105,6 +105,10 @@ std::string solvers_with_minimum() {
   return solvers_where([](const StepSolverEntry& entry) { return entry.needs.minimum; });
 }
 
+std::string solvers_with_forces() {
+  return solvers_where([](const StepSolverEntry& entry) { return entry.has_forces; });
+}
+
 StepNeeds needs_of(const RunConfig& config) {
   const StepSolverEntry* entry = step_solvers().find(config.step_solver.name);
   return entry ? entry->needs : StepNeeds{};

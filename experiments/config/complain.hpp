@@ -33,6 +33,10 @@ void refuse_friction(const RunConfig& config, const std::string& allowed, const 
 void check_friction(const RunConfig& config, const Complain& complain);
 /// Names of the step solvers whose steps end in a minimum of E.
 std::string solvers_with_minimum();
+/// Names of the step solvers whose contact rows carry forces at the end of a step.
+std::string solvers_with_forces();
+/// What files beside the record require (check_output.cpp).
+void check_output(const RunConfig& config, const Complain& complain);
 /// What steps of chosen length require of the other sections (check_step_size.cpp).
 void check_step_size(const RunConfig& config, const Complain& complain);
 /// What a step solver requires of the other sections (check_step_solver.cpp).

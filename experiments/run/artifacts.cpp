@@ -13,7 +13,6 @@
 #include "core/model/bodies/part.hpp"
 #include "core/model/mesh/write_mesh.hpp"
 #include "core/model/scene/contact_plan.hpp"
-#include "core/terms/lagged_contacts.hpp"
 #include "experiments/matrix/matrix_market.hpp"
 #include "experiments/run/keep_record.hpp"
 #include "experiments/run/scene_json.hpp"
@@ -55,7 +54,7 @@ static void write_copy(const std::filesystem::path& from, const std::filesystem:
 
 ContactFields contact_fields(const ContactState& state, int n_vertices) {
   const auto n = static_cast<std::size_t>(n_vertices);
-  ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0), std::nullopt};
+  ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0), std::nullopt, std::nullopt};
   const auto gather = [&fields](const auto& rows) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (const int id : rows.key(r)) {  // prescribed vertices included; an obstacle is negative
@@ -80,10 +79,13 @@ ContactFields contact_fields(const ContactState& state, int n_vertices) {
   return fields;
 }
 
-Positions friction_forces(const TermList& terms, const Positions& x) {
-  Positions out = Positions::Zero(3, x.cols());
-  for (const auto& term : terms) {
-    if (term->name() == "friction") static_cast<const LaggedContacts&>(*term).add_forces(x, out);
+Positions vertex_forces(const std::vector<ContactForce>& rows, int n_vertices, bool friction) {
+  Positions out = Positions::Zero(3, n_vertices);
+  for (const ContactForce& row : rows) {
+    if ((row.term == "friction") != friction) continue;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (row.vertex[k] >= 0) out.col(row.vertex[k]) += row.force[k];
+    }
   }
   return out;
 }
@@ -143,6 +145,7 @@ void ArtifactWriter::write_frame(const std::filesystem::path& relative, const Po
   if (fields) {
     of_vertices.push_back({"gap_rel", fields->gap_rel});
     of_vertices.push_back({"load_N", fields->load});
+    if (fields->contact) add_vector(of_vertices, "contact", *fields->contact);
     if (fields->friction) add_vector(of_vertices, "friction", *fields->friction);
   }
   FrameFields columns{std::move(of_vertices), {{"body", triangle_body_}}};
@@ -158,6 +161,10 @@ void ArtifactWriter::matrix(const StoredSystem& stored) {
   write("matrices/" + name + ".mtx", text, "matrix", "text/x-matrix-market");
   write("matrices/" + name + ".json", side_car_text(stored, name + ".mtx", text), "matrix_side_car",
         "application/json");
+}
+
+void ArtifactWriter::pair_forces(const std::string& csv) {
+  write("forces/pairs.csv", csv, "pair_forces", "text/csv");
 }
 
 void ArtifactWriter::drop_matrices(int step) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/record/run_record.hpp"
+#include "core/contact/contact_forces.hpp"
 #include "core/model/scene/scene.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/matrix/system_file.hpp"
@@ -15,25 +16,24 @@ namespace bb {
 struct ContactFields {
   std::vector<double> gap_rel;  // [n vertices] smallest d/d_hat of the rows at the vertex; 1 without a row
   std::vector<double> load;     // [n vertices] N, sum of |w_i| kappa |b'| over those rows; 0 without a row
-  std::optional<Positions>
-      friction;  // [3 x n vertices] N, force of friction on the vertex, where it is requested
+  std::optional<Positions> contact, friction;  // [3 x n vertices] N, forces on the vertex, where requested
 };
 
 /// Both fields from the rows of a state. A nearly parallel edge pair has a gap, but, as in the records, no
 /// load of its own: its mollifier scales kappa |b'|.   Cost: O(vertices + rows).
 ContactFields contact_fields(const ContactState& state, int n_vertices);
 
-/// Forces of friction on every vertex at x, the end of a step [3 x n vertices], N; 0 where there is none.
-Positions friction_forces(const TermList& terms, const Positions& x);
+/// Forces of friction, or of contact with restitution, on every vertex [3 x n vertices], N; 0 where there is none.
+Positions vertex_forces(const std::vector<ContactForce>& rows, int n_vertices, bool friction);
 
-/// Files of one run below `folder`/frames and `folder`/matrices.
+/// Files of one run below `folder`/frames, `folder`/forces and `folder`/matrices.
 ///
 /// A frame is a binary PLY file of all bodies: triangles, and rods as edges. Every vertex has `body` (index
 /// into the bodies of frames/scene.json), every triangle `body`; parts (core/model/bodies/part.hpp) add theirs: membranes `stretch`, the
 /// largest singular value of its deformation gradient, minus 1. At the end of a step vertices also have `gap_rel` and `load_N`, as in
-/// ContactFields. Errors of every function: RecordError when a file cannot be written whole.
+/// ContactFields; where they are requested, forces as contact_x_N, contact_y_N, contact_z_N and friction_x_N, ... Errors of every function: RecordError when a file cannot be written whole.
 ///
-/// Files lie in frames.part and matrices.part until put_in_place() (core/base/record/run_folder.hpp), so that those of an
+/// Files lie in frames.part, forces.part and matrices.part until put_in_place() (core/base/record/run_folder.hpp), so that those of an
 /// earlier run stay with its run.json until the new run is over; a run that never finishes leaves neither.
 class ArtifactWriter {
  public:
@@ -50,6 +50,8 @@ class ArtifactWriter {
   /// that name.
   void matrix(const StoredSystem& stored);
   const std::vector<Artifact>& written() const { return written_; }
+  /// forces/pairs.csv with this text, once.
+  void pair_forces(const std::string& csv);
   /// The names of what was written so far. Reading requires that the files are there. Errors: ConfigError naming one
   /// that is not, or has another size.
   void keep(Archive& archive);

@@ -17,12 +17,13 @@ BodyPair body_pair(const Scene& scene, const ContactKey& key) {
   return {low, high};
 }
 
+const std::string& owner_name(const Scene& scene, int owner) {
+  const auto i = static_cast<std::size_t>(owner), n = scene.bodies.size();
+  return i < n ? scene.bodies[i].name : scene.obstacles[i - n].name;
+}
+
 std::string name_of(const Scene& scene, const BodyPair& pair) {
-  const auto name = [&scene](int owner) -> const std::string& {
-    const auto i = static_cast<std::size_t>(owner), n = scene.bodies.size();
-    return i < n ? scene.bodies[i].name : scene.obstacles[i - n].name;
-  };
-  const auto [one, other] = std::minmax(name(pair.first), name(pair.second));
+  const auto [one, other] = std::minmax(owner_name(scene, pair.first), owner_name(scene, pair.second));
   return one + "|" + other;
 }
 

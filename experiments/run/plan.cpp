@@ -20,7 +20,7 @@ Method uncalibrated(const RunConfig& config) {
 
 bool has_observed_run(const RunConfig& config) {
   return config.passes.diagnose || config.passes.audit || !config.passes.time ||
-         config.output.frames_every > 0;
+         config.output.frames_every > 0 || config.output.pair_forces.value_or(false);
 }
 
 Plan plan_of(const RunConfig& config, const Scene& scene) {

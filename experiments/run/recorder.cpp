@@ -1,6 +1,7 @@
 #include "experiments/run/recorder.hpp"
 
 #include "core/newton/newton_system.hpp"
+#include "core/step_solvers/registry.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/config/step_promise.hpp"
 #include "experiments/run/keep_record.hpp"
@@ -19,6 +20,7 @@ Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& recor
       first_contacts_(scene),
       gaps_(scene) {
   if (artifacts_ && config.output.frames_every > 0) artifacts_->start();
+  if (artifacts_ && config.output.pair_forces.value_or(false)) pair_forces_.emplace(scene);
   record_.audit.enabled = config.passes.audit;
   if (config.passes.audit)
     audit_.emplace(scene, config.time.dt, config.contact.min_gap_fraction, record_.audit,
@@ -59,17 +61,38 @@ void Recorder::forget_attempt(int step) {
   condition_.forget_step();
 }
 
-// Frames and first contacts. A run on a device that is only timed has neither: rows would have to be found again on
+bool Recorder::wants_forces() const {
+  const OutputConfig& output = config_.output;
+  return pair_forces_ || output.contact_forces.value_or(false) || output.friction_forces.value_or(false);
+}
+
+// Friction alone does without the rows of contact.
+std::vector<ContactForce> Recorder::forces_of(Diagnosis& state) const {
+  const bool all = pair_forces_ || config_.output.contact_forces.value_or(false);
+  std::vector<ContactForce> out;
+  for (const auto& term : state.terms()) {
+    if (all || term->name() == "friction") term->add_forces(state.x(), state.x_n(), out);
+  }
+  return out;
+}
+
+// Frames, forces and first contacts. A run on a device that is only timed has none: rows would have to be found again on
 // the CPU.
 void Recorder::look_at_rows(StepSystem& system, const StepReport& report, const Positions& x) {
   if (!system.is_on_host() && !trace_ && !audit_ && !artifacts_) return;
-  const TermList& terms = system.on_host().diagnosis().terms();
-  const ContactState& contact = contact_state(terms);
+  Diagnosis& state = system.on_host().diagnosis();
+  const ContactState& contact = contact_state(state.terms());
+  const std::vector<ContactForce> forces =
+      artifacts_ && wants_forces() ? forces_of(state) : std::vector<ContactForce>();
   if (artifacts_ && config_.output.frames_every > 0) {
-    last_.emplace(LastState{report.step, x, contact_fields(contact, system.view().scene().n_vertices())});
-    if (config_.output.friction_forces.value_or(false)) last_->fields.friction = friction_forces(terms, x);
+    const int n = system.view().scene().n_vertices();
+    last_.emplace(LastState{report.step, x, contact_fields(contact, n)});
+    ContactFields& fields = last_->fields;
+    if (config_.output.contact_forces.value_or(false)) fields.contact = vertex_forces(forces, n, false);
+    if (config_.output.friction_forces.value_or(false)) fields.friction = vertex_forces(forces, n, true);
     if (report.step % config_.output.frames_every == 0) write_last();
   }
+  if (pair_forces_) pair_forces_->add(report.step, report.t_s, forces);
   first_contacts_.note(contact, report.step, record_.summary.first_contact);
 }
 
@@ -103,14 +126,16 @@ void Recorder::keep(Archive& archive) {
   archive.grown("iterations", seen_);
   archive(record_.summary.first_contact, record_.audit, condition_, first_contacts_, gaps_, last_);
   if (audit_) archive(*audit_);
+  if (pair_forces_) archive(*pair_forces_);
 }
 
 void Recorder::LastState::keep(Archive& archive) {
-  archive(step, x, fields.gap_rel, fields.load, fields.friction);
+  archive(step, x, fields.gap_rel, fields.load, fields.contact, fields.friction);
 }
 
 void Recorder::finish() {
   write_last();
+  if (pair_forces_) artifacts_->pair_forces(pair_forces_->csv());
   const StepSolverEntry& solver = step_solvers().require(config_.step_solver.name, "/step_solver/name");
   summarize_steps(solver.counters, record_);
   record_.summary.convergence = solver.asked_to_converge ? "asked" : "not_asked";

@@ -15,6 +15,7 @@
 #include "experiments/run/contact_gaps.hpp"
 #include "experiments/run/first_contacts.hpp"
 #include "experiments/run/outcome.hpp"
+#include "experiments/run/pair_forces.hpp"
 
 namespace bb {
 
@@ -57,6 +58,8 @@ class Recorder final : public StepObserver {
     void keep(Archive& archive);
   };
   void forget_attempt(int step);
+  bool wants_forces() const;
+  std::vector<ContactForce> forces_of(Diagnosis& state) const;
   void look_at_rows(StepSystem& system, const StepReport& report, const Positions& x);
   void write_last();
 
@@ -68,6 +71,7 @@ class Recorder final : public StepObserver {
   std::optional<AuditWatch> audit_;
   FirstContacts first_contacts_;
   ContactGaps gaps_;
+  std::optional<PairForces> pair_forces_;
   std::optional<LastState> last_;
   std::vector<TraceRow> rows_;  // of the step in progress
   std::vector<double> linear_;  // iterations of every solve

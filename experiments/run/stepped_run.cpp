@@ -83,8 +83,9 @@ SteppedRun::SteppedRun(const RunConfig& asked, RunOptions options)
   require_device(config_, scene_);
   check_step_solver_forms(config_, scene_);
   require_usable(config_.linear_solver.name);
-  if (!has_folder() && (config_.output.frames_every > 0 || config_.output.matrices)) {
-    throw ConfigError("/output", "frames or matrices", "a folder to write them to, or none of them");
+  const OutputConfig& output = config_.output;
+  if (!has_folder() && (output.frames_every > 0 || output.matrices || output.pair_forces.value_or(false))) {
+    throw ConfigError("/output", "frames, matrices or forces", "a folder to write them to, or none of them");
   }
   prepare();
 }
@@ -227,8 +228,8 @@ RunRecord SteppedRun::record() {
     out.status.outcome = result_.verdict.outcome;
     out.status.detail = result_.verdict.detail;
   } else {
-    if (files_.artifacts && config_.output.frames_every > 0) {
-      throw std::logic_error("the record of a run with frames is made by finish()");
+    if (files_.artifacts && (config_.output.frames_every > 0 || config_.output.pair_forces.value_or(false))) {
+      throw std::logic_error("the record of a run with frames or forces is made by finish()");
     }
     Recorder apart(config_, scene_, out, nullptr);
     Archive written;

@@ -188,3 +188,17 @@ def test_friction_beside_its_closed_form(program, runs, tmp_path, monkeypatch):
     assert len(slides) == 12 and len(sticks) == 9
     assert ((slides["acceleration_m_per_s2"] / slides["closed_form_m_per_s2"] - 1).abs() < 0.01).all()
     assert (sticks["speed_m_per_s"] < sticks["eps_v_m_per_s"]).all() and (sticks["closed_form_m_per_s2"] == 0).all()
+
+
+@pytest.mark.usefixtures("unpainted")
+def test_a_stack_bears_what_lies_above(program, runs, tmp_path, monkeypatch):
+    """Records of the program: at rest each of the four layers, all of one weight, bears that of the layers above it."""
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
+    assert rebuild.main(["stack_forces", "--quick", "--runs", str(runs), "--out", str(tmp_path)]) == 0
+    found = pd.read_csv(tmp_path / "stack_forces.csv")
+    assert len(found) == 2 * 40 * 4 and set(found["formulation"]) == {"log", "cubic"}
+    last = found[found["t_s"] == found["t_s"].max()]
+    weight = 2.943  # N: 17.32 kg/m^2 on a triangle with sides of 0.2 m, times 9.81 m/s^2
+    for pair, layers in (("layer0, floor", 4), ("layer0, layer1", 3), ("layer1, layer2", 2), ("layer2, layer3", 1)):
+        borne = last[last["pair"] == pair]["normal_N"]
+        assert len(borne) == 2 and borne.to_numpy() == pytest.approx(layers * weight, rel=0.05)

@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm
 from barrierbench_analysis.figures import pgfplots
 from barrierbench_analysis.figures.captions import Facts
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.figures.plots import friction_slope, gap_ridge, heat_map, matrices, one_step, phase_times, profiles, resolution, scaling, slopes, step_front, trend
+from barrierbench_analysis.figures.plots import friction_slope, gap_ridge, heat_map, matrices, one_step, pair_forces, phase_times, profiles, resolution, scaling, slopes, step_front, trend
 from barrierbench_analysis.tables.records import load
 from synthetic import write_set
 
@@ -156,6 +156,14 @@ def test_a_failed_run_has_no_acceleration():
     row = friction_slope.table([(pd.Series({"formulation": "log", "outcome": "newton_stall"}), run)]).iloc[0]
 
     assert math.isnan(row["acceleration_m_per_s2"])
+
+
+def test_forces_of_a_step_without_contact_are_0():
+    run = Run(config(), *({"t_s": t} for t in (0.5, 1.0)))
+    run.pair_forces = pd.DataFrame([{"step": 1, "t_s": 1.0, "body_a": "a", "body_b": "b", "contacts": 3, "normal_N": 2.5, "friction_N": 0.5}])
+    found = pair_forces.table([(pd.Series({"formulation": "log", "run": "r", "outcome": "ok"}), run)])
+    assert list(found["t_s"]) == [0.5, 1.0] and set(found["pair"]) == {"a, b"}
+    assert list(found["normal_N"]) == [0, 2.5] and list(found["friction_N"]) == [0, 0.5] and list(found["contacts"]) == [0, 3]
 
 
 def test_errors_of_meshes_against_both_references():

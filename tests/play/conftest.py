@@ -19,6 +19,12 @@ def cubic_run(program, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def forces_run(program, tmp_path_factory) -> Path:
+    settings = ("/output/contact_forces=true", "/output/friction_forces=true", "/friction/mu=0.3")
+    return run_of(program, tmp_path_factory.mktemp("play") / "forces", *settings)
+
+
+@pytest.fixture(scope="session")
 def library():
     """The player's library; what needs it is skipped without."""
     if importlib.util.find_spec("k3d") is None:

@@ -66,6 +66,19 @@ def test_a_sharp_edge_has_normals_of_its_own_and_a_smooth_one_shares_them():
     np.testing.assert_array_equal(source[drawn], mesh(2.0).triangles)
 
 
+def test_a_film_has_the_forces_of_its_frames_and_without_them_the_loads(forces_run, log_run):
+    film, plain = filmed(opened(forces_run)), filmed(opened(log_run))
+    last = read_frame(forces_run / LAST)
+    contact = np.stack([last.of_vertices[f"contact_{axis}_N"] for axis in "xyz"], axis=1)
+    np.testing.assert_array_equal(film.contact_N[-1], contact.astype("f4"))
+    assert np.isnan(film.contact_N[0]).all() and np.abs(contact).max() > 0
+    np.testing.assert_allclose(film.force_N[-1], np.linalg.norm(contact, axis=1), rtol=1e-6)
+    rubs = np.stack([last.of_vertices[f"friction_{axis}_N"] for axis in "xyz"], axis=1)
+    np.testing.assert_allclose(film.arrows_N[-1], contact + rubs, rtol=1e-5, atol=1e-7)
+    assert np.abs(rubs).max() > 0
+    assert plain.contact_N is None and plain.arrows_N is None and plain.force_N is plain.load_N
+
+
 # --- scales
 
 
@@ -110,6 +123,20 @@ def test_a_page_holds_all_it_shows_and_no_address(library, log_run, cubic_run, t
     assert verb.play([log_run], tmp_path / "again.html", "gap") and verb.play([log_run], tmp_path / "twice.html", "gap")
     same = (tmp_path / "again.html").read_bytes() == (tmp_path / "twice.html").read_bytes()
     assert same
+
+
+def test_a_page_has_the_forces_of_the_runs_that_have_them(library, forces_run, log_run, tmp_path):
+    verb.play([forces_run, log_run], tmp_path / "both.html", "force")
+    text = (tmp_path / "both.html").read_text()
+    words, film = words_of(text), filmed(opened(forces_run))
+    assert [of["forces"] for of in words["films"]] == [True, False]
+    sizes = np.linalg.norm(film.arrows_N[1:], axis=-1)
+    assert 0 < words["longest_arrow_N"] <= 1.05 * sizes.max() and 0 < words["longest_arrow_m"] < words["radius"]
+    arrays, of_frames = arrays_of(text, 0), 6 * 3 * 40
+    forces = arrays[len(arrays) - of_frames :].view("<f4").reshape(6, 40, 3)
+    np.testing.assert_array_equal(forces, np.nan_to_num(film.arrows_N))
+    assert len(arrays) == len(arrays_of(text, 1)) + of_frames
+    assert opened(forces_run).frame_bytes == opened(log_run).frame_bytes + 4 * 3 * 40
 
 
 def test_names_from_a_config_are_no_markup(library, log_run, tmp_path):

@@ -120,3 +120,23 @@ def test_on_a_telephone_in_the_dark(browser, both):
     assert share_that_differs(picture, np.broadcast_to(picture[3, 3], picture.shape)) > 0.02
     assert opened.errors == []
     opened.context.close()
+
+
+@needs_browser
+def test_forces_are_arrows_that_can_be_hidden(browser, library, forces_run, log_run, tmp_path):
+    verb.play([forces_run], tmp_path / "forces.html", "body")
+    opened = Opened(browser, tmp_path / "forces.html")
+    assert "Force arrows" in opened.page.locator("#arrows").inner_text()
+    opened.slide("End", 5)
+    shown = opened.pixels(0)
+    opened.page.get_by_label("Force arrows").uncheck()
+    hidden = opened.pixels(0)
+    assert share_that_differs(shown, hidden) > 1e-3
+    opened.page.get_by_label("Force arrows").check()
+    assert share_that_differs(opened.pixels(0), shown) == 0
+    assert opened.errors == []
+    opened.context.close()
+    verb.play([log_run], tmp_path / "plain.html", "force")
+    plain = Opened(browser, tmp_path / "plain.html")
+    assert plain.page.locator("#arrows").is_hidden() and plain.errors == []
+    plain.context.close()

@@ -108,7 +108,7 @@ def test_what_a_callback_raises_leaves_the_run_where_it_was(bb, drape, tmp_path)
 
 
 def test_errors_are_those_of_the_program(bb, drape, tmp_path):
-    with pytest.raises(bb.ConfigError, match="/output: found frames or matrices"):
+    with pytest.raises(bb.ConfigError, match="/output: found frames, matrices or forces"):
         bb.Simulation(drape, {"/output/frames_every": 1})
     with pytest.raises(bb.ConfigError, match="did you mean drape"):
         bb.Simulation({"scene": {"name": "drap"}})

@@ -153,7 +153,7 @@ void check_writable(const fs::path& folder) {
   for (const char* name : {"run.json", "trace.jsonl"}) {
     if (fs::is_directory(folder / name, absent)) fail_with(folder / name, "in the way of a file", EISDIR);
   }
-  for (const char* name : {"frames", "matrices"}) {
+  for (const char* name : {"frames", "forces", "matrices"}) {
     const fs::file_status found = fs::status(folder / name, absent);
     if (fs::exists(found) && !fs::is_directory(found)) {
       fail_with(folder / name, "in the way of a folder", ENOTDIR);

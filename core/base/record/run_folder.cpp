@@ -1,5 +1,6 @@
 #include "core/base/record/run_folder.hpp"
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
@@ -14,10 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The names of frames and matrices, below the folder of a run.
+/// Folders of what is written beside a record.
+constexpr std::array artifact_folders = {"frames", "forces", "matrices"};
+
+/// The names of the files in them, below the folder of a run.
 bool is_artifact_name(const std::string& relative) {
   static const std::regex name(
-      R"(frames/(scene\.json|start\.ply|step_\d{6,}\.ply)|matrices/step_\d{6,}_iteration_\d{3,}(_exact)?\.(mtx|json))");
+      R"(frames/(scene\.json|start\.ply|step_\d{6,}\.ply)|forces/pairs\.csv|matrices/step_\d{6,}_iteration_\d{3,}(_exact)?\.(mtx|json))");
   return std::regex_match(relative, name);
 }
 
@@ -55,7 +59,7 @@ fs::path part_of(const fs::path& relative) {
 
 void remove_temporaries(const fs::path& folder) {
   remove_files(folder, is_temporary_name);
-  for (const std::string kind : {"frames", "matrices"}) {
+  for (const std::string kind : artifact_folders) {
     remove_files(folder / (kind + ".part"), [&kind](const std::string& name) {
       const std::size_t end = name.find(".tmp.");
       return end != std::string::npos && is_artifact_name(kind + "/" + name.substr(0, end));
@@ -71,7 +75,7 @@ void remove_unfinished(const fs::path& folder) {
 
 void remove_unfinished_artifacts(const fs::path& folder) {
   std::error_code error;
-  for (const std::string kind : {"frames", "matrices"}) {
+  for (const std::string kind : artifact_folders) {
     const fs::path part = folder / (kind + ".part");
     remove_files(part, [&kind](const std::string& name) {
       return is_artifact_name(kind + "/" + name.substr(0, name.find(".tmp.")));

@@ -78,7 +78,7 @@ struct Skipped {
 struct Artifact {
   BB_RECORD(Artifact, "a file of the run beside run.json");
   BB_FIELD(std::string, path, "relative to the folder of this record");
-  BB_FIELD(std::string, kind, "what it is", "frame frame_scene matrix matrix_side_car trace");
+  BB_FIELD(std::string, kind, "what it is", "frame frame_scene matrix matrix_side_car pair_forces trace");
   BB_FIELD(std::string, media_type, "of its format");
   BB_FIELD(std::string, sha256, "of its bytes", sha256_or_empty);
   BB_FIELD(std::uint64_t, bytes, "its size") = 0;

@@ -7,7 +7,7 @@ namespace bb {
 /// MODEL.REVISION.ADDITION. The first number counts fields that are gone, and readers refuse another one; the second
 /// fields that mean something else (changed_in_run, changed_in_trace) or hold more words; the third those that were added.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.10.1";
+inline constexpr const char* run_schema_version = "3.11.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 /// A field whose values are not compared with those of records before `since`.

@@ -64,7 +64,7 @@ void write_run(const std::filesystem::path& folder, const RunRecord& record);
 
 /// Fails before the run rather than after it: creates the folder, writes and removes a probe file, and sees
 /// that no folder has the name of a file that the run ends with (run.json, trace.jsonl), and no file that of
-/// a folder (frames, matrices). Errors: RecordError.
+/// a folder (frames, forces, matrices). Errors: RecordError.
 void check_writable(const std::filesystem::path& folder);
 
 /// Where the trace of a folder is that begins with `prefix`: trace.jsonl.part, or trace.jsonl once its run was recorded.

@@ -26,8 +26,24 @@ class Frame:
     vertices: np.ndarray  # [n, 3]
     triangles: np.ndarray  # [m, 3] indices of vertices
     edges: np.ndarray  # [k, 2] rods
-    of_vertices: dict[str, np.ndarray] = field(default_factory=dict)  # body; gap_rel and load_N after a step
+    # body; after a step gap_rel and load_N, and where they were requested contact_x_N, ..., friction_z_N
+    of_vertices: dict[str, np.ndarray] = field(default_factory=dict)
     of_triangles: dict[str, np.ndarray] = field(default_factory=dict)  # body, stretch
+
+
+def with_vectors(of_vertices: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The same fields, with three of the names NAME_x_N, NAME_y_N, NAME_z_N as one of the name NAME_N [n, 3]:
+    the force of contact, or of friction, on every vertex.
+    """
+    out: dict[str, np.ndarray] = {}
+    for name, values in of_vertices.items():
+        match = re.fullmatch(r"(\w+)_([xyz])_N", name)
+        parts = [f"{match[1]}_{axis}_N" for axis in "xyz"] if match else []
+        if not match or not all(part in of_vertices for part in parts):
+            out[name] = values
+        elif match[2] == "x":
+            out[f"{match[1]}_N"] = np.stack([of_vertices[part] for part in parts], axis=1)
+    return out
 
 
 def _elements(header: list[str], path: Path) -> list[tuple[str, int, np.dtype]]:

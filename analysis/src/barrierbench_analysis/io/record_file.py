@@ -180,8 +180,8 @@ def sha256_of(path: Path) -> str:
 
 
 def named_files(record: dict, kind: str) -> list[str]:
-    """Paths of the files of a kind (frame, frame_scene, matrix, matrix_side_car, trace) that the record
-    names, relative to its folder.
+    """Paths of the files of a kind (frame, frame_scene, matrix, matrix_side_car, pair_forces, trace) that the
+    record names, relative to its folder.
     """
     return [file["path"] for file in record.get("artifacts") or [] if file["kind"] == kind]
 

@@ -5,6 +5,7 @@ are requested, and only where they are the very ones that the record names.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +13,16 @@ import pandas as pd
 from scipy import sparse
 
 from barrierbench_analysis.io import fields
+from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.frames import Frame, frame_paths, frames_of
+from barrierbench_analysis.io.input_file import read_text
 from barrierbench_analysis.io.json_file import read_object
 from barrierbench_analysis.io.matrix_market import read_matrix
 from barrierbench_analysis.io.record_file import bound_file, named_files, read_record, read_trace
 
 from .run_rows import run_row
+
+PAIR_FORCES = "/output/pair_forces=true"
 
 
 @dataclass(frozen=True)
@@ -85,6 +90,25 @@ class Run:
                 for line in self._lines
                 for sample in line["cond"]
             ]
+        )
+
+    @cached_property
+    def pair_forces(self) -> pd.DataFrame:
+        """One row a step and two bodies that touch (/output/pair_forces, docs/reference/records.md): step,
+        t_s, body_a, body_b, contacts, normal_N, ...; area_m2 is nan without weights by area. Errors:
+        UserError where the run kept none.
+        """
+        names = named_files(self.record, "pair_forces")
+        if not names:
+            raise UserError(f"{self.folder}: no forces of bodies; run the config with --set {PAIR_FORCES}")
+        text = read_text(bound_file(self.record, self.folder, names[0]))
+        words = {"body_a": str, "body_b": str}  # a body may be called nan
+        return pd.read_csv(
+            StringIO(text),
+            dtype=words,
+            keep_default_na=False,
+            na_values={"area_m2": [""]},
+            float_precision="round_trip",
         )
 
     def frames(self) -> Iterator[tuple[int, Frame]]:

@@ -3,6 +3,7 @@
 Frames are numbered from 0, one after the other, in the order of times.csv.
 """
 
+import io
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +13,7 @@ import meshio
 import numpy as np
 
 from barrierbench_analysis.figures.surfaces.sequence import Mesh, Sequence, State
+from barrierbench_analysis.io.frames import with_vectors
 from barrierbench_analysis.io.whole_file import whole, write_whole, write_whole_bytes
 
 from .alembic import write_alembic
@@ -123,8 +125,8 @@ def write_pc2(sequence: Sequence, folder: Path) -> None:
 
 
 def _vtu(mesh: Mesh, state: State) -> meshio.Mesh:
-    """Triangles and, of rods, lines; point data: body, gap_rel, load_N, ...; cell data: body, stretch (nan of
-    lines).
+    """Triangles and, of rods, lines; point data: body, gap_rel, load_N, and forces as vectors contact_N and
+    friction_N; cell data: body, stretch (nan of lines).
     """
     cells = [("triangle", mesh.triangles), ("line", mesh.edges)]
     of_cells = {"body": [mesh.of_triangles, mesh.of_points[mesh.edges[:, 0]]]}
@@ -133,7 +135,7 @@ def _vtu(mesh: Mesh, state: State) -> meshio.Mesh:
     return meshio.Mesh(
         state.points,
         [cells[k] for k in there],
-        point_data={"body": mesh.of_points, **state.of_points},
+        point_data={"body": mesh.of_points, **with_vectors(state.of_points)},
         cell_data={name: [values[k] for k in there] for name, values in of_cells.items()},
     )
 
@@ -158,11 +160,36 @@ def pvd_text(sequences: list[Sequence]) -> str:
     return "\n".join([*lines, "  </Collection>", "</VTKFile>", ""])
 
 
+# --- NPZ
+
+
+def write_npz(sequence: Sequence, folder: Path) -> None:
+    """STEM.npz of NumPy, under the names that `data film` and `judge` read: positions [frames, n, 3] m,
+    triangles, segments (rods), times_s; beside them body [n], names of the bodies, and every field of
+    vertices [frames, n], forces [frames, n, 3] N. nan: at the start, where nothing is solved.
+    """
+    states = list(sequence.states())
+    fields = [with_vectors(state.of_points) for state in states]
+    arrays = {
+        "positions": np.stack([state.points for state in states]),
+        "times_s": np.array(sequence.times_s),
+    }
+    arrays |= {"triangles": sequence.mesh.triangles, "body": sequence.mesh.of_points}
+    arrays |= {"names": np.array(sequence.mesh.names)}
+    if len(sequence.mesh.edges):
+        arrays["segments"] = sequence.mesh.edges
+    arrays |= {name: np.stack([field[name] for field in fields]) for name in fields[0]}
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **arrays)
+    write_whole_bytes(folder / f"{sequence.stem}.npz", buffer.getvalue())
+
+
 WRITERS = {
     "obj": write_obj,
     "ply": write_ply,
     "pc2": write_pc2,
     "vtu": write_vtu,
+    "npz": write_npz,
     "usd": write_usd,
     "abc": write_alembic,
 }

@@ -36,8 +36,9 @@ REACH = 0.05  # of the diagonal of a body's box: how far a vertex may be from it
 MOST_TIMES = 6  # 4^6 = 4096 triangles for one
 ABOUT = """
 OUT becomes a folder. obj, ply, vtu: a file a frame, frame_000000.obj, ...; pc2: frame.pc2 and frame.obj, its
-first state; usd, abc: frame.usd or frame.abc, bodies and times in one file, positions in single precision, by
-packages that are installed on demand (analysis/requirements-usd.txt, requirements-alembic.txt).
+first state; npz: frame.npz, arrays of NumPy; usd, abc: frame.usd or frame.abc, bodies and times in one file,
+positions in single precision, by packages that are installed on demand (analysis/requirements-usd.txt,
+requirements-alembic.txt). vtu and npz have forces as vectors (--set /output/contact_forces=true).
 obstacles.obj, ...: the analytic obstacles as triangles. times.csv: number, step and time (s) of every frame.
 frames.pvd, of vtu: what ParaView opens. Rods are lines, solids their surface. Lengths are m, z is up; of abc
 y is up."""

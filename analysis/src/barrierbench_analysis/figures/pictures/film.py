@@ -13,7 +13,7 @@ from barrierbench_analysis.figures.surfaces import sequence
 from barrierbench_analysis.figures.surfaces.rasterizer import sharp_corners
 from barrierbench_analysis.figures.surfaces.sequence import Run
 from barrierbench_analysis.io.errors import UserError
-from barrierbench_analysis.io.frames import Frame
+from barrierbench_analysis.io.frames import Frame, with_vectors
 
 KINDS = ("plane", "sphere", "cylinder")  # obstacles that the page can draw
 
@@ -33,7 +33,23 @@ class Film:
     gap_rel: np.ndarray  # [f, n] in units of d_hat; nan where nothing was computed, as at the start
     load_N: np.ndarray  # [f, n]; nan likewise
     stretch: np.ndarray  # [f, m] sigma_max - 1
+    contact_N: np.ndarray | None  # [f, n, 3] force of contact; nan likewise; None: its frames have none
+    friction_N: np.ndarray | None  # [f, n, 3] force of friction
     left_out: int  # frames of the run that are not in the film
+
+    @property
+    def force_N(self) -> np.ndarray:
+        """[f, n] length of the force of contact on a vertex; of frames without forces `load_N`, the sum of
+        loads there.
+        """
+        return self.load_N if self.contact_N is None else np.linalg.norm(self.contact_N, axis=-1)
+
+    @property
+    def arrows_N(self) -> np.ndarray | None:
+        """[f, n, 3] the force of contact and friction on every vertex."""
+        if self.contact_N is None or self.friction_N is None:
+            return self.contact_N
+        return self.contact_N + self.friction_N
 
 
 def kept(steps: list[int], every: int) -> list[int]:
@@ -44,6 +60,15 @@ def kept(steps: list[int], every: int) -> list[int]:
 def _field(values: dict[str, np.ndarray], name: str, count: int) -> np.ndarray:
     found = values.get(name)
     return np.full(count, np.nan, np.float32) if found is None else np.asarray(found, np.float32)
+
+
+def _forces(frames: list[Frame], name: str) -> np.ndarray | None:
+    """Of contact or friction; None where no frame has any."""
+    found = [with_vectors(frame.of_vertices).get(f"{name}_N") for frame in frames]
+    if all(values is None for values in found):
+        return None
+    shape = frames[0].vertices.shape
+    return np.stack([np.full(shape, np.nan, "f4") if v is None else np.asarray(v, np.float32) for v in found])
 
 
 def opened(run: str | Path, bicubic: tuple[int, int] | None = None) -> Run:
@@ -75,6 +100,8 @@ def filmed(source: Run, every: int = 1) -> Film:
         gap_rel=np.stack([_field(frame.of_vertices, "gap_rel", n) for frame in frames]),
         load_N=np.stack([_field(frame.of_vertices, "load_N", n) for frame in frames]),
         stretch=np.stack([_field(frame.of_triangles, "stretch", m) for frame in frames]),
+        contact_N=_forces(frames, "contact"),
+        friction_N=_forces(frames, "friction"),
         left_out=len(source.steps) - len(steps),
     )  # fmt: skip
 

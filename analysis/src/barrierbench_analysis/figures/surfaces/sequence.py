@@ -73,9 +73,14 @@ class Run:
         return self._drawn(self.recorded)
 
     @property
+    def has_forces(self) -> bool:
+        """Whether its frames have the force of contact on every vertex."""
+        return bool((self.record.get("config") or {}).get("output", {}).get("contact_forces"))
+
+    @property
     def frame_bytes(self) -> int:
-        """Of a frame in single precision: position, gap and load of vertices, stretch of triangles."""
-        return 4 * (5 * len(self.start.vertices) + len(self.start.triangles))
+        """Of a frame in single precision: position, gap, load and force of vertices, stretch of triangles."""
+        return 4 * ((8 if self.has_forces else 5) * len(self.start.vertices) + len(self.start.triangles))
 
     def _drawn(self, frame: Frame) -> Frame:
         return self.splines.finer(frame) if self.splines else frame

@@ -23,11 +23,12 @@ from barrierbench_analysis.io.errors import UserError
 from barrierbench_analysis.io.frames import points_of_bodies
 from barrierbench_analysis.tables.run_rows import case_name, own_name
 
-from .scales import FIELDS, NOT_COMPUTED, scale
+from .scales import FIELDS, NOT_COMPUTED, longest_arrow, scale
 
 HERE = Path(__file__).resolve().parent
 SCRIPTS = ("shapes.js", "view.js", "player.js")
 ROD_SHARE = 0.006  # radius of a drawn rod, of the radius of all that is shown
+ARROW_SHARE = 0.3  # length of the longest arrow, of that radius
 # What K3D would ask for: fonts beside the page (it has each of them inside too), itself from a network.
 ELSEWHERE = re.compile(
     r',url\(fonts/[^)]*\) format\("\w+"\)|https://(?:unpkg\.com|cdnjs\.cloudflare\.com)/[\w@./\[\]-]*'
@@ -71,11 +72,14 @@ def _film_data(film: Film) -> tuple[dict, bytes]:
     parts = [np.ascontiguousarray(array, "<u4").tobytes() for array in whole]
     parts += [
         np.ascontiguousarray(array, "<f4").tobytes()
-        for array in (film.positions, film.gap_rel, film.load_N, film.stretch)
+        for array in (film.positions, film.gap_rel, film.force_N, film.stretch)
     ]
+    if film.arrows_N is not None:
+        parts.append(np.ascontiguousarray(np.nan_to_num(film.arrows_N), "<f4").tobytes())
     words = {"formulation": case_name(film.labels), "scene": own_name(film.labels) or film.labels["scene"]}
     words |= {"run": Path(film.run).name, "outcome": film.outcome, "steps": film.steps, "times": film.times_s}
     words |= {name: film.scene[name] for name in ("bodies", "obstacles")}
+    words |= {"forces": film.arrows_N is not None}
     counted = {"vertices": body, "drawn": source, "triangles": drawn, "edges": film.start.edges}
     return words | {f"n_{name}": len(of) for name, of in counted.items()}, b"".join(parts)
 
@@ -108,6 +112,7 @@ def page(films: list[Film], colour: str, notes: list[str], shared_library: str =
     words |= {"body_colours": BODY_COLORS, "obstacle_colour": OBSTACLE_COLOR, "not_computed": NOT_COMPUTED}
     words |= {"low": low.tolist(), "high": high.tolist(), "middle": ((low + high) / 2).tolist()}
     words |= {"radius": radius, "rod_radius": ROD_SHARE * radius, "notes": notes}
+    words |= {"longest_arrow_N": longest_arrow(films), "longest_arrow_m": ARROW_SHARE * radius}
     words |= {"planar": all(film.scene["planar"] for film in films), "films": [about for about, _ in packed]}
     data = "\n".join(
         f'<script type="application/octet-stream" id="film-{k}">{_packed(arrays)}</script>'

@@ -211,13 +211,19 @@ async function start() {
   const player = new Player(views, whens);
   fillChoices(player.times[player.times.length - 1] - player.times[0] || 1);
   const home = () => views.forEach((view, k) => view.plot.setCamera(homeCamera(plots[k])));
-  for (const view of views) await view.obstacles();
+  for (const view of views) { await view.obstacles(); await view.arrowObject(); }
+  $("arrows").hidden = !views.some((view) => view.pushed.length);
+  $("arrow-scale").textContent = `(the longest: ${number(words.longest_arrow_N)} N or more)`;
   await player.recolour($("colour").value);
   tieCameras(views);
   home();
   $("time").addEventListener("input", () => { player.toggle(false); player.show(player.place()); });
   $("play").addEventListener("click", () => player.toggle());
   $("colour").addEventListener("change", () => player.recolour($("colour").value));
+  $("forces").addEventListener("change", () => {
+    for (const view of views) view.showsForces = $("forces").checked;
+    player.show(player.place());
+  });
   $("home").addEventListener("click", home);
   dark.addEventListener("change", () => views.forEach((view) => { view.plot.setClearColor(ground()); view.plot.render(); }));
   plots.forEach((plot, k) => plot.addEventListener("keydown", (event) => {

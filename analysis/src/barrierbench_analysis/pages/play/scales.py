@@ -31,7 +31,7 @@ class Field:
 FIELDS = {
     "gap": Field("gap_rel", "vertex", "smallest gap (1: no contact)", "d_hat", 1, "YlGnBu_r", 1.0),
     "stretch": Field("stretch", "triangle", "stretch of a triangle", "%", 100, "YlOrRd", None),
-    "force": Field("load_N", "vertex", "contact force on a vertex", "N", 1, "magma_r", None),
+    "force": Field("force_N", "vertex", "contact force on a vertex", "N", 1, "magma_r", None),
 }
 COLOURS = (*FIELDS, "body")
 
@@ -47,6 +47,14 @@ def top_of(films: list[Film], field: Field) -> tuple[float, bool]:
         return 1.0, False
     top = float(f"{np.percentile(positive, SHARE):.2g}")
     return top, bool(positive.max() > top)
+
+
+def longest_arrow(films: list[Film]) -> float:
+    """N, of the longest arrow; forces beyond it have its length. 0 where no frame has forces."""
+    arrows = [film.arrows_N for film in films if film.arrows_N is not None]
+    sizes = np.concatenate([np.zeros(0), *(np.linalg.norm(of, axis=-1).ravel() for of in arrows)])
+    positive = sizes[np.isfinite(sizes) & (sizes > 0)]
+    return float(f"{np.percentile(positive, SHARE):.2g}") if positive.size else 0.0
 
 
 def scale(films: list[Film], name: str) -> dict:

@@ -95,3 +95,36 @@ function tubeIndices(count) {
   }
   return new Uint32Array(out);
 }
+
+const ARROW_RINGS = [[0, 0.25], [0.72, 0.25], [0.72, 0.7], [1, 0]];  // share of the length, share of the thickness
+
+/** Arrows from points along vectors (m): SIDES vertices a ring, ring after ring. Points and vectors: [x y z ...]. */
+function arrowVertices(points, vectors, thickness) {
+  const out = new Float32Array(points.length * ARROW_RINGS.length * SIDES);
+  for (let k = 0, at = 0; k < points.length; k += 3) {
+    const tail = points.slice(k, k + 3), way = vectors.slice(k, k + 3), length = Math.hypot(...way);
+    const [u, v] = across(unit(way));
+    for (const [along, wide] of ARROW_RINGS) {
+      const centre = add(tail, way, along), radius = wide * Math.min(thickness, 0.3 * length);
+      for (let s = 0; s < SIDES; s++, at += 3) {
+        const turn = 2 * Math.PI * s / SIDES;
+        out.set(add(add(centre, u, radius * Math.cos(turn)), v, radius * Math.sin(turn)), at);
+      }
+    }
+  }
+  return out;
+}
+
+function arrowIndices(count) {
+  const out = [], rings = ARROW_RINGS.length;
+  for (let k = 0; k < count; k++) {
+    for (let ring = 0; ring + 1 < rings; ring++) {
+      const first = SIDES * (rings * k + ring);
+      for (let s = 0; s < SIDES; s++) {
+        const i = first + s, j = first + (s + 1) % SIDES;
+        out.push(i, j, i + SIDES, j, j + SIDES, i + SIDES);
+      }
+    }
+  }
+  return new Uint32Array(out);
+}

@@ -1,7 +1,8 @@
 // One film in one plot of K3D: its surfaces, rods and obstacles in the state of a frame.
 
-const MESH = 1, ROD = 2, OBSTACLE = 10;  // ids of objects in a plot
+const MESH = 1, ROD = 2, ARROWS = 3, OBSTACLE = 10;  // ids of objects in a plot
 const FIELD_OF_VIEW = {planar: 8, solid: 30};  // degrees
+const ARROW_COLOUR = 0xd03a2b;
 const GREY_END = 0.02;  // share of a colour map below its scale: what was not computed
 
 const shaped = (data, columns) => ({data, shape: [data.length / columns, columns]});
@@ -18,6 +19,7 @@ function unpacked(film, buffer) {
     drawn: take(Uint32Array, 3 * m), triangles: take(Uint32Array, 3 * m), source: take(Uint32Array, n_drawn),
     edges: take(Uint32Array, 2 * n_edges), body: take(Uint32Array, n),
     positions: rows(3 * n), gap: rows(n), force: rows(n), stretch: rows(m),
+    forces: film.forces ? rows(3 * n) : null,
   };
 }
 
@@ -51,6 +53,38 @@ class View {
     this.colour = "";
     this.rodIndices = tubeIndices(film.n_edges);
     this.moving = [];  // obstacles: object, and the obstacle
+    this.showsForces = true;
+    this.pushed = this.forces ? this.everPushed() : [];
+  }
+
+  /** Vertices on which a force acts in some frame. */
+  everPushed() {
+    const out = [];
+    for (let v = 0; v < this.film.n_vertices; v++) {
+      if (this.forces.some((of) => of[3 * v] || of[3 * v + 1] || of[3 * v + 2])) out.push(v);
+    }
+    return out;
+  }
+
+  /** Arrows of the forces of a frame; of a vertex without one, and where they are not shown, without a length. */
+  arrows() {
+    const x = this.positions[this.frame], f = this.forces[this.frame], points = [], vectors = [];
+    const {longest_arrow_N: most, longest_arrow_m: longest, rod_radius} = this.words;
+    for (const v of this.pushed) {
+      const force = [f[3 * v], f[3 * v + 1], f[3 * v + 2]], size = Math.hypot(...force);
+      const metres = this.showsForces && size ? longest * Math.min(1, size / most) / size : 0;
+      points.push(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
+      vectors.push(...force.map((part) => metres * part));
+    }
+    return {vertices: shaped(arrowVertices(points, vectors, 4 * rod_radius), 3)};
+  }
+
+  /** The object of all arrows, once. */
+  async arrowObject() {
+    if (!this.pushed.length) return;
+    const indices = shaped(arrowIndices(this.pushed.length), 3);
+    this.arrowMesh = this.surface(ARROWS, this.arrows().vertices, indices, {color: ARROW_COLOUR});
+    await this.plot.load({objects: [this.arrowMesh]});
   }
 
   /** Obstacles, once; those that move are reloaded with every frame. */
@@ -138,6 +172,11 @@ class View {
       const state = object.id === MESH ? this.state() : this.rods();
       Object.assign(object, state);
       await this.plot.reload(object, state);
+    }
+    if (this.arrowMesh) {
+      const state = this.arrows();
+      Object.assign(this.arrowMesh, state);
+      await this.plot.reload(this.arrowMesh, state);
     }
     for (const [object, o] of this.moving) {
       const state = {vertices: this.obstacleVertices(o)};
