@@ -29,8 +29,9 @@ std::vector<EdgeVertices> sides(const Eigen::Matrix3Xi& triangles) {
 /// One question a primitive and obstacle: a state is a motion that stands still.
 class ObstacleJudge {
  public:
-  ObstacleJudge(const AuditMesh& mesh, const Positions& x0, const Positions& x1, bool moving)
-      : mesh_(mesh), x0_(x0), x1_(x1), moving_(moving) {}
+  ObstacleJudge(const AuditMesh& mesh, const Positions& x0, const Positions& x1, bool moving,
+                bool lists = false)
+      : mesh_(mesh), x0_(x0), x1_(x1), moving_(moving), lists_(lists) {}
 
   ObstacleAudit all(const ObstaclePrimitives& primitives) const {
     ObstacleAudit out;
@@ -106,6 +107,7 @@ class ObstacleJudge {
     if (const int named = prescribed_vertex >= 0 ? prescribed_vertex : free_vertex; named >= 0) {
       name.kind = PairKind::vertex_obstacle, name.first = named;
     }
+    if (lists_) sum.all.push_back(name);
     if (prescribed_vertex >= 0 || mesh_.all_prescribed(ids)) {
       ++sum.scene_faults;
       keep_first(sum.first_fault, name);
@@ -123,7 +125,7 @@ class ObstacleJudge {
 
   const AuditMesh& mesh_;
   const Positions &x0_, &x1_;
-  bool moving_;
+  bool moving_, lists_;
 };
 
 }  // namespace
@@ -191,6 +193,12 @@ void ObstacleAudit::merge(const ObstacleAudit& other) {
   unproven += other.unproven, scene_faults += other.scene_faults;
   keep_first(first_bad, other.first_bad);
   keep_first(first_fault, other.first_fault);
+  all.insert(all.end(), other.all.begin(), other.all.end());
+}
+
+std::vector<PairName> all_beyond_obstacles(const AuditMesh& mesh, const ObstaclePrimitives& primitives,
+                                           const Positions& x) {
+  return ObstacleJudge(mesh, x, x, false, true).all(primitives).all;
 }
 
 ObstacleAudit audit_obstacles(const AuditMesh& mesh, const ObstaclePrimitives& primitives,

@@ -46,12 +46,18 @@ struct ObstacleAudit {
   long unproven = 0;      // motions of edges and triangles that could not be certified
   long scene_faults = 0;  // either, where only prescribed vertices decide; in no other count
   std::optional<PairName> first_bad, first_fault;
+  std::vector<PairName> all;  // offenders one by one, of all_beyond_obstacles() alone
   void merge(const ObstacleAudit& other);
 };
 
 /// The state x [3 n_vertices], m; finite. Exact. Cost: O(primitives x obstacles).
 ObstacleAudit audit_obstacles(const AuditMesh& mesh, const ObstaclePrimitives& primitives,
                               const Positions& x);
+
+/// Every primitive with a point strictly beyond an obstacle in the state x, prescribed ones too, by the name that
+/// audit_obstacles() gives it; in no order.
+std::vector<PairName> all_beyond_obstacles(const AuditMesh& mesh, const ObstaclePrimitives& primitives,
+                                           const Positions& x);
 
 /// The motion x0 -> x1, of the primitives of which a vertex moves, or past which the obstacle does; vertices exactly, the others as
 /// judge_past_obstacle() says.

@@ -18,8 +18,8 @@ namespace {
 
 class StateJudge {
  public:
-  StateJudge(const AuditMesh& mesh, const Positions& x, bool include_rigid)
-      : mesh_(mesh), x_(x), reach_(include_rigid ? RigidReach() : RigidReach(mesh, x, x)) {}
+  StateJudge(const AuditMesh& mesh, const Positions& x, bool include_rigid, bool lists = false)
+      : mesh_(mesh), x_(x), reach_(include_rigid ? RigidReach() : RigidReach(mesh, x, x)), lists_(lists) {}
 
   StateAudit edges_and_triangles() const {
     const std::vector<int> edges = reach_.active(mesh_.edges), triangles = reach_.active(mesh_.triangles);
@@ -53,6 +53,7 @@ class StateJudge {
                                     if (orient2d(flat(v[0]), flat(v[1]), flat(v[2])) > 0) return;
                                     ++sum.inverted;
                                     keep_first(sum.first_bad, PairName{PairKind::inverted, t, t});
+                                    if (lists_) sum.all.push_back({PairKind::inverted, t, t});
                                   });
   }
 
@@ -66,6 +67,7 @@ class StateJudge {
       const bool given = mesh_.planar ? mesh_.all_prescribed(mesh_.edges.col(name.second))
                                       : mesh_.all_prescribed(mesh_.triangles.col(name.second));
       out.add_crossing(name, given && mesh_.all_prescribed(p));
+      if (lists_) out.all.push_back(name);
     }
   }
 
@@ -92,10 +94,12 @@ class StateJudge {
     return out;
   }
 
-  static void count(Crossing found, const PairName& name, bool prescribed, StateAudit& sum) {
+  void count(Crossing found, const PairName& name, bool prescribed, StateAudit& sum) const {
     ++sum.pairs;
     if (found == Crossing::touch) sum.touching.push_back(name);
-    if (found == Crossing::crossing) sum.add_crossing(name, prescribed);
+    if (found != Crossing::crossing) return;
+    sum.add_crossing(name, prescribed);
+    if (lists_) sum.all.push_back(name);
   }
   void edge_triangle(int e, int t, StateAudit& sum) const {
     const auto p = mesh_.edges.col(e);
@@ -124,6 +128,7 @@ class StateJudge {
   const AuditMesh& mesh_;
   const Positions& x_;
   RigidReach reach_;
+  bool lists_;
 };
 
 }  // namespace
@@ -149,6 +154,7 @@ void StateAudit::merge(const StateAudit& other) {
   obstacle_by_vertex += other.obstacle_by_vertex;
   finite = finite && other.finite;
   touching.insert(touching.end(), other.touching.begin(), other.touching.end());
+  all.insert(all.end(), other.all.begin(), other.all.end());
   keep_first(first_bad, other.first_bad);
   keep_first(first_fault, other.first_fault);
   keep_deeper(other.deepest, other.deepest_m);
@@ -173,6 +179,19 @@ StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitiv
 
 StateAudit audit_state(const AuditMesh& mesh, const Positions& x, bool include_rigid) {
   return audit_state(mesh, obstacle_primitives(mesh), x, include_rigid);
+}
+
+std::vector<PairName> all_crossings(const AuditMesh& mesh, const Positions& x) {
+  const StateJudge judge(mesh, x, true, true);
+  StateAudit out = mesh.planar ? judge.boundary_edges() : judge.edges_and_triangles();
+  judge.decide_touches(out);
+  if (mesh.planar) out.merge(judge.inversions());
+  if (!mesh.obstacles.empty()) {
+    const std::vector<PairName> beyond = all_beyond_obstacles(mesh, obstacle_primitives(mesh), x);
+    out.all.insert(out.all.end(), beyond.begin(), beyond.end());
+  }
+  std::sort(out.all.begin(), out.all.end());
+  return std::move(out.all);
 }
 
 }  // namespace bb::audit

@@ -22,6 +22,7 @@ struct StateAudit {
   long scene_faults = 0;                // of prescribed primitives: crossings, and what is beyond an obstacle
   bool finite = true;                   // false: nothing was judged
   std::vector<PairName> touching;       // while pairs are collected; then decided, and empty
+  std::vector<PairName> all;            // offenders one by one, of all_crossings() alone
   std::optional<PairName> first_bad;    // the lowest in PairName's order, touches aside
   std::optional<PairName> first_fault;  // the same of the scene's faults, which are in no other count
   std::optional<PairName> deepest;      // crossing of edge and triangle (3D), and how far the edge reaches
@@ -37,5 +38,9 @@ struct StateAudit {
 StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x,
                        bool include_rigid);
 StateAudit audit_state(const AuditMesh& mesh, const Positions& x, bool include_rigid);
+
+/// Every pair that a state's audit counts as a crossing or as a violation of an obstacle, those of prescribed primitives
+/// among them, and in the plane every inverted element; ascending. x: finite.
+std::vector<PairName> all_crossings(const AuditMesh& mesh, const Positions& x);
 
 }  // namespace bb::audit

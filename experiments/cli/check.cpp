@@ -11,6 +11,7 @@
 #include "core/base/input/names.hpp"
 #include "core/base/input/read_file.hpp"
 #include "core/base/record/run_folder.hpp"
+#include "core/base/record/writer.hpp"
 #include "core/math/error.hpp"
 #include "core/model/mesh/read_mesh.hpp"
 #include "experiments/cli/options.hpp"
@@ -20,18 +21,21 @@
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/artifacts.hpp"
+#include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/device_memory.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/prescribed_crossings.hpp"
 #include "experiments/run/start_check.hpp"
+#include "experiments/start/start_report.hpp"
 
 namespace bb::cli {
 namespace {
 
 struct CheckVerb : RunVerb {
   bool film = false;
+  std::string pairs, marks;  // files that are written
 };
 
 constexpr std::size_t most_bodies = 20;
@@ -158,6 +162,15 @@ void check_films(const std::string& file, const RunConfig& config, const Scene& 
        steps, config.time.dt);
 }
 
+/// Lists what crosses and what is near in the start, and writes the files that were requested.
+void show_pairs(const CheckVerb& verb, const RunConfig& config, const Scene& scene) {
+  const StartReport report = report_start(config, scene, audit_mesh_of(config, scene), scene.x0);
+  if (!verb.pairs.empty()) write_atomically(verb.pairs, start_csv(scene, report));
+  if (!verb.marks.empty()) write_atomically(verb.marks, marked_start(scene, report));
+  show("{}", start_text(scene, report));
+  if (!report.clean() && verb.pairs.empty()) show("  --pairs FILE.csv lists all of them\n");
+}
+
 int check(const CheckVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
@@ -167,10 +180,12 @@ int check(const CheckVerb& verb) {
   check_step_solver_forms(config, scene);
   if (verb.film) check_films(verb.config, config, scene);
   if (const auto failure = start_failure(config, scene, plan.contacts, {&interrupted()})) {
+    show_pairs(verb, config, scene);
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
   show("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));
   print_sizes(config, scene);
+  show_pairs(verb, config, scene);
   if (config.device != Device::cpu) print_contacts(count_device_memory(config, scene, plan, {}));
   return exit_ok;
 }
@@ -184,6 +199,13 @@ Action verb::check(CLI::App& app) {
       "--start-frame", verb->out,
       "write the start as DIR/frames/start.ply and scene.json, also where something crosses; ./bench "
       "render CONFIG draws it");
+  app.add_option(
+      "--pairs", verb->pairs,
+      "write every pair that crosses at the start, or is nearer than its d_hat, as a line of FILE.csv");
+  app.add_option(
+      "--export", verb->marks,
+      "write the start as FILE.ply with columns of its vertices, crossing and near, which are 1 where a "
+      "pair of --pairs has the vertex; ./bench draw still CONFIG --color crossing draws them");
   app.add_flag(
       "--film", verb->film,
       "report what films the scene has, and follow all of them, to their ends: every time and pair at which "

@@ -35,7 +35,9 @@ COLORINGS = {
     ),
     "load": Coloring("vertex", "load_N", "contact load of a vertex (N)", 1, "magma_r", None),
     "stretch": Coloring("triangle", "stretch", "stretch of a triangle (%)", 100, "YlOrRd", None),
+    "crossing": Coloring("vertex", "crossing", "1: vertex of a pair that crosses at the start", 1, "YlOrRd", 1),
 }
+OF_A_START = ("body", "crossing")  # colours of a config, of which nothing is solved
 
 
 def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
@@ -43,8 +45,8 @@ def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
     fields = frame.of_vertices if coloring.element == "vertex" else frame.of_triangles
     if coloring.key not in fields:
         raise UserError(
-            f"this frame has no {coloring.key}: nothing is solved before the first step; choose a step or"
-            " --color body"
+            f"this frame has no {coloring.key}: nothing is solved before the first step, and crossings are"
+            " drawn of a config; choose a step or --color body"
         )
     values = np.asarray(fields[coloring.key], float) * coloring.factor
     return values[frame.triangles] if coloring.element == "vertex" else np.repeat(values[:, None], 3, axis=1)

@@ -25,7 +25,7 @@ from barrierbench_analysis.program.arguments import (
 from barrierbench_analysis.program.start import started
 
 from .animation import animate
-from .coloring import COLORINGS, annotate
+from .coloring import COLORINGS, OF_A_START, annotate
 from .frame_pixels import RENDERERS, Look, drawn
 from .still_picture import MEANS, picture_file, png, render, shown
 
@@ -38,6 +38,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         "A config in the place of RUN: its start is drawn, nothing is run.",
         "./bench draw still results/runs/drape --color gap --out drape.gif",
         "./bench draw still configs/scenes/sheets_on_ball.json --out start.png",
+        "./bench draw still scene.json --color crossing --out start.png",
     )
     options(parser, "run RUN: folder of run.json; or a config", run=Path)
     color_argument(parser, ["body", *COLORINGS], "body", "what colors mean")
@@ -115,9 +116,13 @@ def main(arguments: list[str]) -> int:
 # --- preview
 
 
-def _start(config: Path, overrides: list[str], scratch: Path) -> subprocess.CompletedProcess:
-    """The program's check of a config, with its start below `scratch`. Errors: UserError without one."""
+def _start(config: Path, overrides: list[str], color: str, scratch: Path) -> subprocess.CompletedProcess:
+    """The program's check of a config, with its start below `scratch`, in which what crosses is marked where
+    the colours mean that. Errors: UserError without one.
+    """
     words = [word for one in overrides for word in ("--set", one)]
+    if color == "crossing":
+        words += ["--export", str(scratch / "frames" / "start.ply")]
     done = started("check", str(config), *words, "--start-frame", str(scratch))
     if not (scratch / "frames" / "start.ply").is_file():
         said = done.stderr.strip() or f"{config}: the program ended with {done.returncode}"
@@ -129,13 +134,14 @@ def preview(config: Path, out: Path | None, look: Look, overrides: list[str]) ->
     """Writes a PNG and its caption; returns the PNG. A start in which something crosses is drawn, and that is
     said. Errors: UserError.
     """
-    if look.color != "body" or look.subdivide or look.bicubic:
+    if look.color not in OF_A_START or look.subdivide or look.bicubic:
         raise UserError(
-            "--color, --subdivide, --bicubic: are of runs; a config is drawn with --color body, as it is"
+            "--color, --subdivide, --bicubic: are of runs; a config is drawn with --color body or crossing,"
+            " as it is"
         )
     path = picture_file(out or Path(), f"{config.stem}_start.png")
     with tempfile.TemporaryDirectory() as scratch:
-        done = _start(config, overrides, Path(scratch))
+        done = _start(config, overrides, look.color, Path(scratch))
         frame = read_frame(Path(scratch) / "frames" / "start.ply")
         scene = scene_at(read_object(Path(scratch) / "frames" / "scene.json"), frame)
     if done.returncode != 0:
