@@ -3,6 +3,7 @@
 
 #include "experiments/cli/options.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/neutral_scene.hpp"
 #include "experiments/run/plan.hpp"
 

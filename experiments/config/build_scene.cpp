@@ -104,6 +104,27 @@ void take_rest_of_film(BodySpec& spec) {
   spec.rest_film->at(0, spec.mesh.vertices);
 }
 
+}  // namespace
+
+BodySpec placed_body(const RunConfig& config, std::size_t i) {
+  const BodyConfig& body = config.scene.bodies[i];
+  BodySpec spec = body.spec;
+  const std::string where = fmt::format("{}#/scene/bodies/{}", config.source, i);
+  MeshFile made = make_mesh(body.mesh, where + "/mesh");
+  spec.mesh = std::move(made.mesh);
+  take_pinned_objects(made.objects, body.mesh, where, spec.pins);
+  take_films(body, where, spec);
+  apply(body.transform, spec.mesh.vertices);
+  take_rest_of_film(spec);
+  if (body.rest_mesh.given()) {
+    take_rest_shape(body, where + "/rest_mesh", spec);
+  }
+  spec.weights = make_weights(body.weights, spec.start ? *spec.start : spec.mesh.vertices, where);
+  return spec;
+}
+
+namespace {
+
 Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>& limit) {
   SceneBuilder builder("bodies", config.scene.planar, config.scene.gravity, config.source + "#/scene");
   builder.set_planar_pairs(config.scene.pairs);
@@ -112,18 +133,7 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
   builder.set_damping(config.scene.damping);
   for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
     const BodyConfig& body = config.scene.bodies[i];
-    BodySpec spec = body.spec;
-    const std::string where = fmt::format("{}#/scene/bodies/{}", config.source, i);
-    MeshFile made = make_mesh(body.mesh, where + "/mesh");
-    spec.mesh = std::move(made.mesh);
-    take_pinned_objects(made.objects, body.mesh, where, spec.pins);
-    take_films(body, where, spec);
-    apply(body.transform, spec.mesh.vertices);
-    take_rest_of_film(spec);
-    if (body.rest_mesh.given()) {
-      take_rest_shape(body, where + "/rest_mesh", spec);
-    }
-    spec.weights = make_weights(body.weights, spec.start ? *spec.start : spec.mesh.vertices, where);
+    BodySpec spec = placed_body(config, i);
     if (body.limited) spec.material.limit = limit;
     spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);
     builder.add_body(spec);

@@ -41,6 +41,10 @@ std::string config_id(const RunConfig& config);
 /// Errors: ConfigError (mesh files, scene checks).
 Scene build_scene(const RunConfig& config);
 
+/// Body i of a config with its mesh and rest shape placed, its films and weights read, and in the indices of its pins the
+/// vertices of objects that they name. Without d_hat and limit. Errors: as build_scene.
+BodySpec placed_body(const RunConfig& config, std::size_t i);
+
 /// The folder of presets, schema and scenes: $BARRIERBENCH_CONFIGS, else the one this program
 /// was built beside.
 std::string configs_folder();

@@ -1,4 +1,4 @@
-// Which vertices a PinSpec means. Private to core/model/bodies.
+// Which vertices a PinSpec means.
 #pragma once
 
 #include <vector>
