@@ -35,7 +35,7 @@ COLORINGS = {
     ),
     "load": Coloring("vertex", "load_N", "contact load of a vertex (N)", 1, "magma_r", None),
     "stretch": Coloring("triangle", "stretch", "stretch of a triangle (%)", 100, "YlOrRd", None),
-    "crossing": Coloring("vertex", "crossing", "1: vertex of a pair that crosses at the start", 1, "YlOrRd", 1),
+    "crossing": Coloring("vertex", "crossing", "1: vertex of a pair that crosses", 1, "YlOrRd", 1),
 }
 OF_A_START = ("body", "crossing")  # colours of a config, of which nothing is solved
 
