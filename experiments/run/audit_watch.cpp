@@ -46,7 +46,8 @@ AuditWatch::AuditWatch(const Scene& scene, double dt, double min_gap_fraction, A
 
 void AuditWatch::judge(const Positions& x, int step) {
   const double start = now_s();
-  audit_.check_state(x, step);
+  const audit::StateAudit found = audit_.check_state(x, step);
+  crossings_ = found.crossings + found.obstacle_violations;
   last_judged_ = x;
   record_.time_s += now_s() - start;
 }
@@ -71,8 +72,15 @@ void AuditWatch::on_step(const Positions& x, StepRecord& step) {
   step.violations = record_.violations - before.violations;
   step.unproven = record_.unproven - before.unproven;
   step.inverted = record_.inverted - before.inverted;
+  note_step_end(step.step);
   measure_gaps(x, step);
   at_step_end_ = {audit_.ledger(), last_judged_};
+}
+
+void AuditWatch::note_step_end(int step) {
+  if (crossings_ == 0 && record_.step_end_crossings_last > 0) record_.recovered_step = step;
+  record_.step_end_crossings_last = crossings_;
+  record_.step_end_crossings_max = std::max<long long>(record_.step_end_crossings_max, crossings_);
 }
 
 void AuditWatch::measure_gaps(const Positions& x, StepRecord& step) {
@@ -143,6 +151,13 @@ void AuditWatch::fill_record() {
 Verdict AuditWatch::verdict() const {
   const audit::AuditLedger& ledger = audit_.ledger();
   Verdict out = judge_audit(scene_, mesh_, ledger);
+  if (out.outcome == Outcome::penetration && record_.step_end_crossings_max > 0) {
+    out.detail += fmt::format("; steps ended with at most {} crossings, the last with {}{}",
+                              record_.step_end_crossings_max, record_.step_end_crossings_last,
+                              record_.recovered_step >= 0
+                                  ? fmt::format(", after recovery in step {}", record_.recovered_step)
+                                  : std::string());
+  }
   if (!mesh_.only_points || out.outcome != Outcome::ok) return out;
   const Number& gap = record_.surface_gap_obstacles_m;
   out.detail += fmt::format(

@@ -34,6 +34,7 @@ class AuditWatch {
   void judge(const Positions& x, int step);
   void measure_gaps(const Positions& x, StepRecord& step);
   void fill_record();
+  void note_step_end(int step);
 
   const Scene& scene_;
   AuditRecord& record_;
@@ -42,6 +43,7 @@ class AuditWatch {
   double tolerance_ = 0;
   double reach_ = 0;       // m, within which gaps between surfaces are measured: the largest d_hat
   Positions last_judged_;  // where the next motion has to start
+  long crossings_ = 0;     // that state's, with primitives beyond obstacles
   struct {
     audit::AuditLedger ledger;
     Positions last_judged;  // the end of the step

@@ -63,6 +63,26 @@ TEST(AuditWatch, AnOverlapWithinWhatIsPromisedIsOkAndHasADepth) {
   }
 }
 
+TEST(AuditWatch, ARunThatFreesItselfReportsHowManyCrossingsThereWereAndInWhichStepNoneWasLeft) {
+  const Scene scene = sheet_over_ball();
+  AuditRecord record;
+  AuditWatch watch(scene, 0.01, 0.1, record);
+  Positions x = scene.x0;
+  fall(watch, x, -0.02, 0);
+  EXPECT_GT(record.step_end_crossings_max, 0);
+  EXPECT_EQ(record.step_end_crossings_last, record.step_end_crossings_max);
+  EXPECT_EQ(record.recovered_step, -1);
+  EXPECT_NE(watch.verdict().detail.find("steps ended with at most"), std::string::npos);
+  fall(watch, x, 0.02, 1);
+  fall(watch, x, 0.001, 2);
+  EXPECT_GT(record.step_end_crossings_max, 0);
+  EXPECT_EQ(record.step_end_crossings_last, 0);
+  EXPECT_EQ(record.recovered_step, 1);
+  EXPECT_EQ(watch.verdict().outcome, Outcome::penetration)
+      << "what passed through something was no clean run";
+  EXPECT_NE(watch.verdict().detail.find("recovery in step 1"), std::string::npos) << watch.verdict().detail;
+}
+
 TEST(AuditWatch, AnOverlapWithinAStepIsNoneAtItsEndAndAWayThroughTheBallIsStillAPenetration) {
   const Scene scene = sheet_over_ball();
   AuditRecord record;

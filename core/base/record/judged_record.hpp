@@ -55,6 +55,12 @@ struct AuditRecord {
   BB_FIELD(long long, scene_faults,
            "prescribed primitives that cross or cannot be certified; in no other count") = 0;
   BB_FIELD(int, first_bad_step, "-1: none", "-1") = -1;
+  BB_FIELD(long long, step_end_crossings_max,
+           "most crossings and primitives beyond an obstacle in the state at the end of a step") = 0;
+  BB_FIELD(long long, step_end_crossings_last, "those at the end of the last step") = 0;
+  BB_FIELD(int, recovered_step,
+           "last step that ended without any after one that ended with some: the run freed itself; -1: none",
+           "-1") = -1;
   BB_FIELD(double, time_s, "what the checks took") = 0;
   BB_FIELD(long long, surface_gaps, "converged step ends at which surface gaps were measured") = 0;
   BB_FIELD(Number, surface_gap_obstacles_m,
