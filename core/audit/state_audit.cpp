@@ -191,6 +191,7 @@ std::vector<PairName> all_crossings(const AuditMesh& mesh, const Positions& x) {
     out.all.insert(out.all.end(), beyond.begin(), beyond.end());
   }
   std::sort(out.all.begin(), out.all.end());
+  out.all.erase(std::unique(out.all.begin(), out.all.end()), out.all.end());
   return std::move(out.all);
 }
 

@@ -40,7 +40,7 @@ StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitiv
 StateAudit audit_state(const AuditMesh& mesh, const Positions& x, bool include_rigid);
 
 /// Every pair that a state's audit counts as a crossing or as a violation of an obstacle, those of prescribed primitives
-/// among them, and in the plane every inverted element; ascending. x: finite.
+/// among them, and in the plane every inverted element; ascending, each once. x: finite.
 std::vector<PairName> all_crossings(const AuditMesh& mesh, const Positions& x);
 
 }  // namespace bb::audit

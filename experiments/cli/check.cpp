@@ -162,13 +162,13 @@ void check_films(const std::string& file, const RunConfig& config, const Scene& 
        steps, config.time.dt);
 }
 
-/// Lists what crosses and what is near in the start, and writes the files that were requested.
-void show_pairs(const CheckVerb& verb, const RunConfig& config, const Scene& scene) {
+/// What crosses and what is near in the start, in words; the files that were requested are written.
+std::string pairs_of(const CheckVerb& verb, const RunConfig& config, const Scene& scene) {
   const StartReport report = report_start(config, scene, audit_mesh_of(config, scene), scene.x0);
   if (!verb.pairs.empty()) write_atomically(verb.pairs, start_csv(scene, report));
   if (!verb.marks.empty()) write_atomically(verb.marks, marked_start(scene, report));
-  show("{}", start_text(scene, report));
-  if (!report.clean() && verb.pairs.empty()) show("  --pairs FILE.csv lists all of them\n");
+  const bool whole = report.clean() || !verb.pairs.empty();
+  return start_text(scene, report) + (whole ? "" : "  --pairs FILE.csv lists all of them\n");
 }
 
 int check(const CheckVerb& verb) {
@@ -180,12 +180,12 @@ int check(const CheckVerb& verb) {
   check_step_solver_forms(config, scene);
   if (verb.film) check_films(verb.config, config, scene);
   if (const auto failure = start_failure(config, scene, plan.contacts, {&interrupted()})) {
-    show_pairs(verb, config, scene);
+    say(pairs_of(verb, config, scene));
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
   show("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));
   print_sizes(config, scene);
-  show_pairs(verb, config, scene);
+  show_text(pairs_of(verb, config, scene));
   if (config.device != Device::cpu) print_contacts(count_device_memory(config, scene, plan, {}));
   return exit_ok;
 }

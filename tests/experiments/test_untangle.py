@@ -144,8 +144,8 @@ def test_check_lists_every_crossing_by_bodies_with_its_place_and_marks_it(progra
     rows, done = crossings_of(program, path, tmp_path)
     assert len(rows) > 4 and {row["bodies"] for row in rows} == {"card|table"}
     assert all(abs(float(row["z_m"])) < 1e-9 and abs(float(row["y_m"]) - 0.02) < 1e-9 for row in rows), "places of the crossings"
-    assert f"{len(rows)} crossings" in done.stdout and "card|table" in done.stdout and "more" in done.stdout
-    assert len(done.stdout.splitlines()) < 20 and done.returncode == 2
+    assert f"{len(rows)} crossings" in done.stderr and "card|table" in done.stderr and "more" in done.stderr
+    assert len(done.stderr.splitlines()) < 20 and done.returncode == 2 and not done.stdout
     frame = read_frame(tmp_path / "marks.ply")
     marked = frame.of_vertices["crossing"]
     assert 0 < marked.sum() < len(marked) and set(frame.of_vertices["body"][marked == 1]) == {0, 1}
