@@ -124,7 +124,8 @@ def test_a_start_is_repaired_and_a_run_begins_from_it(program, tmp_path, name):
         overlap, *masses = known
         way, mobility = overlap + GAP, sum(1 / mass for mass in masses)
         assert 0.999 * (way if math.inf in masses else way / 2) <= numbers["displacement_max_m"] <= 1.01 * way, numbers
-        assert numbers["displacement_mass_norm"] <= 1.001 * way / mobility**0.5, "more than to shift both as they are"
+        part = 1.001 if math.inf in masses else 0.8  # of the shift of both as they are: near the contact alone it takes less
+        assert numbers["displacement_mass_norm"] <= part * way / mobility**0.5, numbers
     assert bench(program, "check", out).returncode == 0
     ran = bench(program, "run", out, "--out", tmp_path / "run")
     assert ran.returncode == 0, ran.stderr
