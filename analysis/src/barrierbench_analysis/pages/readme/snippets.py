@@ -177,7 +177,11 @@ def _shell_faults(snippet: Snippet) -> list[str]:
     faults = []
     for k, line in enumerate(snippet.text.splitlines()):
         for command in re.split(r"&&", line):
-            words = shlex.split(command, comments=True)
+            try:
+                words = shlex.split(command, comments=True)
+            except ValueError as error:  # a quote that is open, or a line that goes on in the next
+                faults.append(f"{snippet.page}:{snippet.line + k}: {command.strip()}: {error}")
+                continue
             if not words:
                 continue
             if "|" in words and "./bench" in words:

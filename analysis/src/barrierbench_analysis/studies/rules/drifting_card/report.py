@@ -150,12 +150,13 @@ def _gaps(found: dict[Arm, Found], model: str) -> str:
 
 
 def _unmatched(study: Study, found: dict[Arm, Found]) -> list[str]:
-    """Arms whose mean gap is farther than FAR from that of the others: a computed line each."""
-    return [
-        f"`{arm.formulation}` with `{arm.model}` on {arm.level}: {mean.value:.3f}"
+    """A table of the arms whose mean gap is farther than FAR from the wanted one; empty without any."""
+    body = [
+        [arm.formulation, arm.model, arm.level, f"{mean.value:.3f}"]
         for arm, one in found.items()
         if (mean := one.mean("gap")) and abs(mean.value - study.about["theta"]) > FAR
     ]
+    return markdown(["formulation", "contact", "level", "mean gap / d_hat"], body) if body else []
 
 
 def _same_as(names: list[str]) -> list[str]:
