@@ -57,10 +57,7 @@ std::string held_text(const Scene& scene, const RepairedStart& start) {
 
 int untangle_config(const UntangleVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
-  if (config.scene.name != "bodies") {
-    throw ConfigError(verb.config + "#/scene/name", '"' + config.scene.name + '"',
-                      "a scene given as bodies, whose starts are files");
-  }
+  require_repairable(config, verb.out);
   const Scene scene = build_scene(config);
   const double begun = now_s();
   const RepairedStart start = untangle(config, scene, verb.options);
@@ -72,7 +69,7 @@ int untangle_config(const UntangleVerb& verb) {
   }
   write_repaired(config, scene, start.x, numbers_json(start, seconds), verb.out);
   show("{}: repaired\n{}{}\n", verb.config, numbers_text(start, seconds),
-       (std::filesystem::path(verb.out) / "config.json").string());
+       (std::filesystem::path(verb.out) / "config.json").lexically_normal().string());
   return exit_ok;
 }
 

@@ -41,7 +41,7 @@ AuditWatch::AuditWatch(const Scene& scene, double dt, double min_gap_fraction, A
   if (only_points) record_.obstacles_judge = "points";
   judge(scene.x0, -1);
   audit_.check_step_end(scene.x0, scene.x0, -1, tolerance_);
-  at_step_end_ = {audit_.ledger(), last_judged_};
+  at_step_end_ = {audit_.ledger(), last_judged_, crossings_};
 }
 
 void AuditWatch::judge(const Positions& x, int step) {
@@ -74,7 +74,7 @@ void AuditWatch::on_step(const Positions& x, StepRecord& step) {
   step.inverted = record_.inverted - before.inverted;
   note_step_end(step.step);
   measure_gaps(x, step);
-  at_step_end_ = {audit_.ledger(), last_judged_};
+  at_step_end_ = {audit_.ledger(), last_judged_, crossings_};
 }
 
 void AuditWatch::note_step_end(int step) {
@@ -104,6 +104,7 @@ void AuditWatch::measure_gaps(const Positions& x, StepRecord& step) {
 void AuditWatch::on_retry() {
   audit_.restore(at_step_end_.ledger);
   last_judged_ = at_step_end_.last_judged;
+  crossings_ = at_step_end_.crossings;
 }
 
 void AuditWatch::on_redo() {
@@ -113,7 +114,7 @@ void AuditWatch::on_redo() {
 
 // The subjects are those of the scene.
 void AuditWatch::keep(Archive& archive) {
-  archive(at_step_end_.ledger, at_step_end_.last_judged);
+  archive(at_step_end_.ledger, at_step_end_.last_judged, at_step_end_.crossings);
   if (!archive.reads()) return;
   const audit::AuditSubjects subjects = audit_.ledger().subjects;
   at_step_end_.ledger.subjects = subjects;

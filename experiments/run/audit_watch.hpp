@@ -47,6 +47,7 @@ class AuditWatch {
   struct {
     audit::AuditLedger ledger;
     Positions last_judged;  // the end of the step
+    long crossings = 0;     // of it
   } at_step_end_;
 };
 

@@ -18,8 +18,11 @@ struct PairForce {
   int step = 0;
   double t_s = 0;
   BodyPair pair{0, 0};
-  int contacts = 0;                     // rows of contact
-  double normal_N = 0, friction_N = 0;  // sums of lengths: contact with restitution, friction
+  int contacts = 0;  // rows of contact, those that correct weights among them
+  double
+      normal_N = 0,
+      friction_N =
+          0;  // sums: of -kappa b' (below 0 where a row corrects weights) with restitution; of lengths of friction
   Vec3d contact = Vec3d::Zero(), friction = Vec3d::Zero();  // N, sums of vectors, on the first body
   double contact_work_J = 0, friction_work_J = 0;           // done on both
   std::optional<double> area_m2;                            // of weights by area

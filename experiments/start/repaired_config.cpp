@@ -1,6 +1,7 @@
 #include "experiments/start/repaired_config.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -113,23 +114,37 @@ void require_same(const fs::path& file, const Scene& scene, const Positions& x) 
     refuse(failure->detail, "a start from which a run begins");
 }
 
+void require_new(const fs::path& folder) {
+  if (std::error_code error; fs::exists(folder, error))
+    throw ConfigError("--out", '"' + folder.string() + "\", which is there already", "a new folder");
+}
+
+/// "a/b/" and "a/b/." are a/b.
+fs::path named(const fs::path& folder) {
+  const fs::path plain = folder.lexically_normal();
+  return plain.has_filename() ? plain : plain.parent_path();
+}
+
 }  // namespace
 
-void write_repaired(const RunConfig& config, const Scene& scene, const Positions& x,
-                    const std::string& numbers, const fs::path& folder) {
+void require_repairable(const RunConfig& config, const fs::path& folder) {
   if (config.scene.name != "bodies") {
     throw ConfigError(config.source + "#/scene/name", '"' + config.scene.name + '"',
                       "a scene given as bodies, whose starts are files");
   }
-  if (std::error_code error; fs::exists(folder, error))
-    throw ConfigError("--out", '"' + folder.string() + "\", which is there already", "a new folder");
+  require_new(named(folder));
+}
+
+void write_repaired(const RunConfig& config, const Scene& scene, const Positions& x,
+                    const std::string& numbers, const fs::path& out) {
+  require_repairable(config, out);
+  const fs::path folder = named(out);
   RunConfig plain = config;
   plain.seeds.jitter = 0;
   const Positions before = build_scene(plain).x0;
   json document = settings_document(plain);
-  const fs::path part = folder.string() + ".part";
-  std::error_code ignored;
-  fs::remove_all(part, ignored);
+  const fs::path part = fmt::format("{}.part.{}", folder.string(), ::getpid());
+  require_new(part);
   try {
     make_folder(part);
     for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
@@ -144,6 +159,7 @@ void write_repaired(const RunConfig& config, const Scene& scene, const Positions
     require_same(part / "config.json", scene, x);
     move_into_place(part, folder);
   } catch (...) {
+    std::error_code ignored;
     fs::remove_all(part, ignored);
     throw;
   }

@@ -106,6 +106,11 @@ bool Tangle::clean(const Positions& x) const {
   return found.finite && found.crossings + found.obstacle_violations + found.scene_faults == 0;
 }
 
+bool Tangle::apart(const Positions& x) {
+  const std::vector<NearPair> pairs = near_.find(x);
+  return std::all_of(pairs.begin(), pairs.end(), [](const NearPair& near) { return near.gap > 0; });
+}
+
 double Tangle::slack(const Positions& x) {
   double least = std::numeric_limits<double>::infinity();
   for (const NearPair& near : near_.find(x))

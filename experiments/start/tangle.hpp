@@ -19,7 +19,7 @@ struct RepairOptions {
   int most_iterations = 400;  // of one method
 };
 
-/// Whether a pair of a state may be there, by exact signs alone.
+/// The scene with its start, the masses and pieces that can move, and what is measured of a state of it.
 class Tangle {
  public:
   /// config and scene must outlive it.
@@ -40,6 +40,8 @@ class Tangle {
 
   /// No edge through a triangle, nothing beyond an obstacle: the audit of the state x.
   bool clean(const Positions& x) const;
+  /// Every pair has a gap above 0 once thickness is taken off.
+  bool apart(const Positions& x);
   /// The smallest gap of all pairs over what they have to have, m; >= 0: every pair has it.
   double slack(const Positions& x);
   /// The largest relative change of an edge's length since the start.

@@ -75,10 +75,9 @@ void consider(Tangle& tangle, const std::optional<Positions>& proposal, const ch
   heed_stop();
   if (!proposal || !tangle.clean(*proposal)) return;
   const Positions x = least_motion(tangle, *proposal, out.iterations);
-  const double slack = tangle.slack(x);
-  if (!(slack > -tangle.widest_gap()) || !tangle.clean(x)) return;
+  if (!tangle.apart(x) || !tangle.clean(x)) return;
   if (out.repaired && tangle.cost(x) >= tangle.cost(out.x)) return;
-  out.repaired = true, out.x = x, out.method = method, out.slack = slack;
+  out.repaired = true, out.x = x, out.method = method, out.slack = tangle.slack(x);
 }
 
 }  // namespace

@@ -10,15 +10,15 @@
 namespace bb {
 
 struct RepairedStart {
-  bool repaired = false;  // clean, and every pair has a positive gap
-  Positions x;            // [3 x n] m; of a start that could not be repaired the best state that was found
-  std::string method;     // that led to it: none, separation, spread, contour, or obstacles
-  int iterations = 0;     // of all methods together
+  bool repaired = false;        // clean, and every pair has a positive gap
+  Positions x;                  // [3 x n] m; the start itself where it could not be repaired
+  std::string method;           // that led to it: none, separation, spread, contour, or obstacles
+  int iterations = 0;           // of all methods together
   double largest = 0, rms = 0;  // displacement of vertices that can move, m
   double mass_norm = 0;         // sqrt(sum_v m_v |u_v|^2), kg^1/2 m
   double strain = 0;            // largest relative change of an edge
   double slack = 0;             // m, smallest gap over what pairs have to have
-  StartReport left;             // what is left of it where it is not repaired
+  StartReport left;             // what crosses or is near in the start, where it is not repaired
 };
 
 /// Methods (separation.hpp, contour.hpp) propose clean states; from each the least motion is sought

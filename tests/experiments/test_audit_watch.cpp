@@ -83,6 +83,22 @@ TEST(AuditWatch, ARunThatFreesItselfReportsHowManyCrossingsThereWereAndInWhichSt
   EXPECT_NE(watch.verdict().detail.find("recovery in step 1"), std::string::npos) << watch.verdict().detail;
 }
 
+TEST(AuditWatch, CrossingsOfAnAttemptThatIsDoneAgainAreNotThoseOfTheEndOfTheStep) {
+  const Scene scene = sheet_over_ball();
+  AuditRecord record;
+  AuditWatch watch(scene, 0.01, 0.1, record);
+  Positions deep = scene.x0;
+  deep.row(2).array() -= 0.02;
+  watch.on_motion(scene.x0, deep, 0);
+  EXPECT_NE(watch.verdict().outcome, Outcome::ok) << "the attempt crosses nothing";
+  watch.on_retry();
+  StepRecord step = converged();
+  watch.on_step(scene.x0, step);  // nothing moves in the second attempt
+  EXPECT_EQ(record.step_end_crossings_max, 0);
+  EXPECT_EQ(record.step_end_crossings_last, 0);
+  EXPECT_EQ(watch.verdict().outcome, Outcome::ok) << watch.verdict().detail;
+}
+
 TEST(AuditWatch, AnOverlapWithinAStepIsNoneAtItsEndAndAWayThroughTheBallIsStillAPenetration) {
   const Scene scene = sheet_over_ball();
   AuditRecord record;

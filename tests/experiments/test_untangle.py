@@ -195,6 +195,38 @@ def test_a_folder_that_is_there_and_scenes_that_are_no_bodies_are_refused(progra
     assert done.returncode == 2 and "bodies" in done.stderr and not (tmp_path / "new").exists()
 
 
+def test_a_folder_may_end_with_a_slash_and_folders_of_others_beside_it_stay(program, tmp_path):
+    path = config(tmp_path, *two_triangles(tmp_path))
+    beside = tmp_path / "out.part"
+    beside.mkdir()
+    (beside / "mine.txt").write_text("mine")
+    done = bench(program, "untangle", path, "--out", f"{tmp_path}/out/")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (tmp_path / "out/config.json").is_file() and (beside / "mine.txt").read_text() == "mine"
+    assert sorted(one.name for one in tmp_path.glob("out*")) == ["out", "out.part"]
+
+
+def test_layers_within_their_thickness_are_moved_apart(program, tmp_path):
+    """Half thicknesses of 20 mm each, 10 mm apart: each has to go at least 15.25 mm, gap included."""
+    layers = [sheet(name, 4, 0.5, translate_m=[0.01 * k, 0, 0.01 * k]) | {"offset_m": 0.02} for k, name in enumerate(("low", "high"))]
+    done, out = repaired(program, tmp_path, layers)
+    assert done.returncode == 0, done.stdout + done.stderr
+    most = json.loads((out.parent / "repair.json").read_text())["displacement_max_m"]
+    assert 0.999 * (0.03 + GAP) / 2 <= most <= 1.01 * (0.03 + GAP), most
+    assert bench(program, "check", out).returncode == 0
+
+
+def test_a_thick_net_that_cannot_leave_is_not_called_repaired(program, tmp_path):
+    """Its middle alone can move, and would have to go farther than its edges allow."""
+    spike = obj(tmp_path, "spike", [(0.0, 0.0, 0.0), (0.05, 0.02, 0.2), (-0.05, 0.02, 0.2)], [(0, 1, 2)])
+    net = sheet("net", 3, 0.3, pins=[{"indices": [0, 1, 2, 3, 5, 6, 7, 8]}]) | {"offset_m": 0.05}
+    held = body("spike", spike, pins=[{"all": True}], translate_m=[0, 0, 0.02]) | {"offset_m": 0.05}
+    path = config(tmp_path, net, held, sheet("free", translate_m=[0, 0, 9]))
+    done = bench(program, "untangle", path, "--out", tmp_path / "out", "--iterations", 50, "--stretch", 0.01)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "net|spike" in done.stdout and not list(tmp_path.glob("out*"))
+
+
 @pytest.mark.parametrize("at_most", [100, 3000])
 def test_a_full_disk_leaves_no_folder_behind(program, tmp_path, at_most):
     path = config(tmp_path, sheet("card", 5, 0.5, translate_m=[0, 0, -0.02]), obstacles=[GROUND])
