@@ -19,6 +19,7 @@ KNOWN = {
     "studies/device/gpu_evidence.py": {"open"},  # an archive, of a file that was opened there
     "io/matrix_market.py": {"mmread", "mminfo"}, "studies/engines/launch.py": {"load", "open"},  # of bytes that were read there; a log that is written
     "studies/gate/trend.py": {"open"}, "studies/engines/environment.py": {"open"}, "figures/frames_out/formats.py": {"open"}, "front/test.py": {"open"}, "program/building.py": {"open"},
+    "tables/run.py": {"read_csv"},  # of a text that was read there
     "tables/archive.py": {"ZipFile", "open"},  # of a file that was opened there; files that it unpacks
     "studies/toolkit/toolkit_meshes.py": {"open"}, "figures/pictures/animation.py": {"open"}, "io/whole_file.py": {"open"},  # written
     "front/door.py": {"open"},  # /dev/null

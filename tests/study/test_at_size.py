@@ -199,16 +199,14 @@ def test_a_size_whose_load_is_not_known_has_the_runs_that_find_it_alone():
 
 
 def test_the_residual_of_a_stop_follows_a_changed_mass_and_step_length():
-    def limit(setting, measure):
-        cell = next(
-            c for c in STUDY.cells if (c.place["scene"], c.place["setting"], c.place["measure"]) == ("drape", setting, measure)
-            and c.place["size"] == "S"
-        )
+    def limit(setting, measure, size):
+        place = {"scene": "drape", "setting": setting, "measure": measure, "size": size}
+        cell = next(c for c in STUDY.cells if place.items() <= c.place.items())
         return measured.limits(STUDY, cell)["residual"]
 
-    own = limit("base", "diagnosed")
-    assert own > 0 and limit("m10", "audited") == pytest.approx(10 * own)
-    assert limit("E10", "audited") == pytest.approx(own) and limit("dt24", "diagnosed") == pytest.approx(own * (24 * 0.01) ** 2)
+    own = limit("base", "diagnosed", "XS")
+    assert own > 0 and limit("m10", "audited", "XS") == pytest.approx(10 * own) and limit("E10", "audited", "XS") == pytest.approx(own)
+    assert limit("dt24", "diagnosed", "S") == pytest.approx(limit("base", "diagnosed", "S") * (24 * 0.01) ** 2)
 
 
 @pytest.mark.parametrize(("label", "found"), [("E0.01", ("E", 0.01)), ("v4", ("v", 4.0)), ("base", None), ("Eva", None), ("m", None)])
