@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/base/archive/archive.hpp"
+#include "experiments/run/csv_cell.hpp"
 
 namespace bb {
 namespace {
@@ -41,13 +42,6 @@ void add_row(const Scene& scene, const ContactForce& row, PairForce& sum) {
   if (row.area) sum.area_m2 = sum.area_m2.value_or(0) + *row.area;
 }
 
-std::string cell(const std::string& name) {
-  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
-  std::string out = "\"";
-  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 }  // namespace
 
 void PairForce::keep(Archive& archive) {
@@ -76,10 +70,10 @@ std::string PairForces::csv() const {
   for (const PairForce& row : rows_) {
     const Vec3d &c = row.contact, &f = row.friction;
     out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.step, row.t_s,
-                       cell(owner_name(scene_, row.pair.first)), cell(owner_name(scene_, row.pair.second)),
-                       row.contacts, row.normal_N, row.friction_N, c[0], c[1], c[2], f[0], f[1], f[2],
-                       row.contact_work_J, row.friction_work_J,
-                       row.area_m2 ? fmt::format("{}", *row.area_m2) : "");
+                       csv_cell(owner_name(scene_, row.pair.first)),
+                       csv_cell(owner_name(scene_, row.pair.second)), row.contacts, row.normal_N,
+                       row.friction_N, c[0], c[1], c[2], f[0], f[1], f[2], row.contact_work_J,
+                       row.friction_work_J, row.area_m2 ? fmt::format("{}", *row.area_m2) : "");
   }
   return out;
 }

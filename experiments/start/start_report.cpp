@@ -11,6 +11,7 @@
 #include "core/model/mesh/write_mesh.hpp"
 #include "core/model/scene/contact_plan.hpp"
 #include "experiments/run/audit_verdict.hpp"
+#include "experiments/run/csv_cell.hpp"
 #include "experiments/start/near_pairs.hpp"
 
 namespace bb {
@@ -94,12 +95,6 @@ std::string lines_of(const Scene& scene, const std::vector<StartPair>& pairs, co
   return out;
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
 }  // namespace
 
 bool StartReport::clean() const { return crossings.empty() && within_thickness() == 0; }
@@ -166,8 +161,8 @@ std::string start_csv(const Scene& scene, const StartReport& report) {
   std::string out = "kind,bodies,pair,x_m,y_m,z_m,gap_m\n";
   const auto add = [&](const char* kind, const std::vector<StartPair>& pairs) {
     for (const StartPair& one : pairs) {
-      out += fmt::format("{},{},{},{:.17g},{:.17g},{:.17g},", kind, quoted(name_of(scene, one.bodies)),
-                         quoted(one.text), one.place.x(), one.place.y(), one.place.z());
+      out += fmt::format("{},{},{},{:.17g},{:.17g},{:.17g},", kind, csv_cell(name_of(scene, one.bodies)),
+                         csv_cell(one.text), one.place.x(), one.place.y(), one.place.z());
       out += std::isnan(one.gap) ? "\n" : fmt::format("{:.17g}\n", one.gap);
     }
   };
